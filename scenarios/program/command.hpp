@@ -21,8 +21,8 @@ namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
 }
 
-/// Shared by all commands: exit status, the command line, output, common options, names, directories of results, other
-/// programs. The command line is a thin front of CLI11, so that command_line.cpp alone compiles that header.
+/// Shared by all commands: exit status, the command line, studies, common options, output and names. The command line
+/// is a thin front of CLI11, so that command_line.cpp alone compiles that header.
 namespace hapbench {
 
 /// Exit status of the program.
@@ -34,13 +34,14 @@ enum ExitStatus : int {
   kStopped = 128,          ///< plus the number of the signal, as shells do: 130 for Ctrl-C, 143 for SIGTERM
 };
 
-/// Runs the command that argv[1], argv[2], ... name and returns the program's exit status. Reports on standard error
-/// when a signal (stop_signal.hpp) stopped the work. Throws InputError, also for words that are not a command, and
-/// IoError.
-int run_program(int argc, char** argv);
+using ProgramWords = std::vector<std::string>;
+
+/// Runs the command of the words behind the program's name and returns the exit status. Says on standard error when a
+/// signal (stop_signal.hpp) stopped the work. Throws InputError, also for words that are no command, and IoError.
+int run_program(const ProgramWords& words);
 
 /// Does the same, but reports exceptions on standard error: exit status 2 for InputError, 1 for all others.
-int run_program_to_exit(int argc, char** argv);
+int run_program_to_exit(const ProgramWords& words);
 
 // ---- The command line
 
@@ -67,13 +68,11 @@ struct Takes {
   std::vector<std::string> one_of = {};                             ///< refuses other words
 };
 
-/// A subcommand that takes its options. The variables bound here are written while the command line is parsed and must
-/// live until then.
+/// A subcommand that takes its options. The variables bound here are written, and must live, until the line is parsed.
 class Command {
  public:
   template <class... Values>
   using OneOf = std::variant<std::reference_wrapper<Values>...>;
-  /// The variable that an option writes.
   using Variable = OneOf<std::string, std::vector<std::string>, int, unsigned, std::int64_t, std::uint64_t, double>;
 
   explicit Command(CLI::App* app) : app_(app) {}
@@ -97,7 +96,6 @@ InputError with_typed_places(const InputError& error, const std::vector<std::str
 class CommandLine {
  public:
   CommandLine();
-  ~CommandLine();
 
   /// Adds a command and the options that `action` is called with when it is chosen; they live as long as the command
   /// line, and their `output` is what its last options write. `when_stopped`: a note on its results for when Ctrl-C
@@ -118,26 +116,58 @@ class CommandLine {
     return {add(name, summary, options->output, run, when_stopped), *options};
   }
   /// Adds a command whose words behind its name, options and --help included, all go to `action` as they are.
-  void pass_on(const std::string& name, std::function<int(const std::vector<std::string>&)> action);
-  /// Replaces a study by its words (study.hpp), loads the modules that the words and HAPBENCH_MODULE_PATH name, then
-  /// runs the command. Returns its exit status; for a success during which a law or a source of contacts from outside
-  /// failed, kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for modules.
-  int run(int argc, char** argv);
-  /// The chosen command's note on its results for when it is stopped.
+  void pass_on(const std::string& name, std::function<int(const ProgramWords&)> action);
+  /// Replaces a study by its words, loads the modules that the words and HAPBENCH_MODULE_PATH name, then runs the
+  /// command. Returns its exit status; for a success during which a law from outside failed, kUnexpectedOutcome. Throws
+  /// what the command throws, and InputError for a wrong usage and for modules.
+  int run(const ProgramWords& words);
   const std::string& when_stopped() const { return when_stopped_; }
 
  private:
   Command add(const std::string& name, const std::string& summary, OutputOptions& output, std::function<int()> action,
               const std::string& when_stopped);
   void add_module_option(CLI::App& app);
-  int run(std::vector<std::string> words);
+  int parse_and_run(ProgramWords words);
 
-  std::unique_ptr<CLI::App> app_;
+  std::shared_ptr<CLI::App> app_;
   std::function<int()> action_;  ///< of the chosen command
   std::string when_stopped_;
   std::vector<std::pair<CLI::App*, OutputOptions*>> outputs_;
   std::vector<std::string> modules_;
-  std::map<std::string, std::function<int(const std::vector<std::string>&)>> passed_on_;
+  std::map<std::string, std::function<int(const ProgramWords&)>> passed_on_;
+};
+
+// ---- Studies: questions as files. A study names a command, scenarios, and the command's options, and a command takes
+// it in place of scenarios.
+//
+//   {"ask": "limit", "scenarios": ["wall_on_handle"], "summary": "K over B of a wall on an impedance device",
+//    "between": [1e2, 1e5], "stable": "bounded",
+//    "over": {"rendering.damping_N_s_per_m": {"from": 0.1, "to": 150, "count": 17, "log": true}}}
+//
+// Numbers, texts and true stand for themselves; two numbers of "between" for a range; a list for values separated by
+// commas ("bound": for one option each); objects of "set", "over" and "vary" for fields by their paths, with a value, a
+// list or a range with "from", "to", "count" and "log". A scenario that is a file is looked for next to the study
+// first. "alone" is for scripts/reproduce: nothing runs at the same time as what is about time.
+
+struct BundledStudy {
+  std::string name, ask, summary;
+  std::filesystem::path file;
+};
+/// All of them, by name.
+std::vector<BundledStudy> bundled_studies();
+
+/// The words of a command line in which a study stood, and where in its file they come from.
+struct StudyWords {
+  /// Replaces the first study behind the command by its scenarios and options; options that are given besides go before
+  /// those of the study. `words`: without the program's name. Throws InputError for a study of another command.
+  static std::optional<StudyWords> in(const ProgramWords& words);
+
+  /// The error, about the line of the study that has the option which it names, if it names one.
+  InputError located(const InputError& error) const;
+
+  std::filesystem::path file;
+  ProgramWords words;
+  std::map<std::string, std::size_t> lines;  ///< of options, as "--over"
 };
 
 // ---- Options, output and names
@@ -152,7 +182,7 @@ struct CommonOptions {
 
 // Each adds an option, add_common all three of CommonOptions.
 void add_overrides(Command& command, std::vector<std::string>& overrides);
-void add_jobs(Command& command, unsigned& jobs, const std::string& help = shared_option_help("--jobs"));
+void add_jobs(Command& command, unsigned& jobs);
 /// `name`: of the folder below results/out without the option.
 void add_out(Command& command, std::string& out, const std::string& name);
 /// `otherwise`: those without the option.
@@ -163,8 +193,8 @@ void add_common(Command& command, CommonOptions& options, const std::string& nam
 void print(const OutputOptions& options, const std::string& text, const Json& json);
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const std::vector<std::string>& warnings);
-/// The same with the file of each in front.
-void print_warnings(const LoadedScenario& loaded, const std::vector<Warning>& warnings);
+/// Prints those about a scenario, given values first, then files, with the file of each in front.
+void print_warnings(const LoadedScenario& loaded);
 /// Prints "hapbench: TEXT" on standard error.
 void print_note(std::string_view text);
 /// Prints "hapbench: error: TEXT" on standard error.
@@ -184,15 +214,8 @@ struct CapturedOutput {
 /// The object that collects what the commands of this thread print, for a host that is not a terminal; null: none does.
 CapturedOutput*& captured_output() noexcept;
 
-/// Draws the run in a folder into a file, FILE.svg. Throws IoError when it cannot be made, after the Python tool has
-/// explained why on standard error.
+/// Draws the run in a folder into FILE.svg. Throws IoError, after the Python tool has said why on standard error.
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet);
-
-/// A value as JSON; null for none.
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 /// Throws InputError unless each name is among the valid ones and given once; `got` stands before the name in its
 /// message, as in "--only: got". `shown_by`: a command that shows the valid ones, see quoted_list.
@@ -202,8 +225,10 @@ void require_names(std::string_view got, const std::vector<std::string>& names, 
 std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
                                       const std::vector<std::string>& all, std::string_view shown_by = {});
 
-/// The metric that sweeps and levels show: the one asked for, or else the first of kDefaultMetrics that there is.
-/// Throws InputError when there is none of that name.
+/// The algorithms of --algorithms.
+std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given);
+
+/// The metric to show: the one asked for, else the first of kDefaultMetrics. Throws InputError when it is not there.
 std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for);
 
 /// `out`, or results/out/`name` when it is empty.
@@ -216,7 +241,7 @@ void require_writable_directory(const std::filesystem::path& directory, std::str
 JobOptions job_options(const CommonOptions& options, const std::string& label);
 
 /// Quotes words for a POSIX shell: those with anything but letters, digits and "_-./:=,+@%" in single quotes.
-std::string shell_line(const std::vector<std::string>& words);
+std::string shell_line(const ProgramWords& words);
 
 /// The file of this program; a host that is another program sets it.
 std::filesystem::path& this_program();

@@ -12,12 +12,10 @@
 
 #include "algorithms/module/module.hpp"
 #include "results/io/atomic_file.hpp"
-#include "results/summary/provenance.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
-#include "scenarios/program/command.hpp"
-#include "scenarios/program/study.hpp"
-#include "scenarios/program/table.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -33,85 +31,77 @@ namespace {
 
 constexpr const char *kProgramName = "hapbench", *kDescription = "an offline bench for haptic rendering";
 
-constexpr AddCommand* kCommands[] = {add_run,   add_compare,         add_stress,    add_tune,
-                                     add_limit, add_converge,        add_reproduce, add_sweep,
-                                     add_new,   add_python_commands, add_describe,  add_validate};
-
-/// A command in the program's help.
+/// A command in the program's help, and in its own.
 struct CommandGuide {
   std::string_view group, name, answers;  ///< the question that it answers
+  AddCommand* add;                        ///< null: another one adds it, too
+  std::string_view examples = {};         ///< a line each
 };
 
 /// In the order of the help.
-constexpr CommandGuide kGuides[] = {
-    {"make", "new", "a scene to start from"},
-    {"make", "import", "my recording as a stroke; my device's log as a device"},
-    {"make", "validate", "is a scene right, and what is in it?"},
-    {"run", "run", "what happens, what is wrong with it, what to try?"},
-    {"run", "compare", "which law does better, over scenes and seeds?"},
-    {"run", "sweep", "how does it depend on fields?"},
-    {"decide", "limit", "how far may a field go, on which device, with which law?"},
-    {"decide", "tune", "which law, stiffness and damping?"},
-    {"decide", "converge", "how accurate is a number?"},
-    {"decide", "stress", "does any law break on degenerate contacts?"},
-    {"decide", "reproduce", "which claims of the thesis hold?"},
-    {"look", "describe", "what is a name? without one: what is there?"},
-    {"look", "plot", "a picture of results"},
-    {"look", "report", "a page of results with replay; of two: what differs"},
-};
+constexpr CommandGuide kCommands[] = {
+    {"make", "new", "a scene to start from", add_new,
+     "new\n"
+     "new drag --from my.stl --extent 12mm --preview\n"
+     "new hole --out mine.json"},
+    {"make", "import", "my recording as a stroke; my device's log as a device", add_python_commands},
+    {"make", "validate", "is a scene right, and what is in it?", add_validate,
+     "validate mine.json\n"
+     "validate mine.json --set environment.spacing_m=1e-4\n"
+     "validate drag_molar --points shell.csv"},
+    {"run", "run", "what happens, what is wrong with it, what to try?", add_run,
+     "run drag_molar\n"
+     "run drag_molar --set rendering.algorithm=proxy --out results/proxy\n"
+     "run mine.json --latency"},
+    {"run", "compare", "which law does better, over scenes and seeds?", add_compare,
+     "compare drag_molar\n"
+     "compare tap_wall tap_corner --algorithms mean,proxy --seeds 5\n"
+     "compare mine.json --algorithms mean,proxy --errors"},
+    {"run", "sweep", "how does it depend on fields?", add_sweep,
+     "sweep tap_wall --vary rendering.stiffness_N_per_m=1e3:1e5:9:log\n"
+     "sweep tap_wall --vary rendering.algorithm=all --vary seed=1,2,3\n"
+     "sweep results/out/sweep_tap_wall --where 'inside_max_m<3e-4'"},
+    {"decide", "limit", "how far may a field go, on which device, with which law?", add_limit,
+     "limit tap_wall --device all\n"
+     "limit mine.json --algorithms mean,shaped_stiffness\n"
+     "limit tap_wall --vary time.step_s --between 1e-4:1e-2"},
+    {"decide", "tune", "which law, stiffness and damping?", add_tune,
+     "tune tap_wall --device touch\n"
+     "tune mine.json --device log_device.json --algorithms mean,proxy\n"
+     "tune drag_molar --device omega.3 --bound inside_max_m=3e-4"},
+    {"decide", "converge", "how accurate is a number?", add_converge,
+     "converge drag_molar --metric force_max_N\n"
+     "converge mine.json --levels 5 --metric inside_max_m\n"
+     "converge drag_molar --vary environment.spacing_m"},
+    {"decide", "stress", "does any law break on degenerate contacts?", add_stress,
+     "stress\n"
+     "stress --count 1000\n"
+     "stress --module ./my_law.so"},
+    {"decide", "reproduce", "which claims of the thesis hold?", add_reproduce,
+     "reproduce\n"
+     "reproduce --only T2,R1b\n"
+     "reproduce --choices results/reference/readings.csv"},
+    {"look", "describe", "what is a name? without one: what is there?", add_describe,
+     "describe\n"
+     "describe shaped_stiffness\n"
+     "describe scenarios --grep molar"},
+    {"look", "plot", "a picture of results", nullptr},
+    {"look", "report", "a page of results with replay; of two: what differs", nullptr}};
 
-/// What the help of a command, which is the first word, ends with.
-constexpr std::string_view kExamples[] = {
-    "new",
-    "new drag --from my.stl --extent 12mm --preview",
-    "new hole --out mine.json",
-    "validate mine.json",
-    "validate mine.json --set environment.spacing_m=1e-4",
-    "validate drag_molar --points shell.csv",
-    "run drag_molar",
-    "run drag_molar --set rendering.algorithm=proxy --out results/proxy",
-    "run mine.json --latency",
-    "compare drag_molar",
-    "compare tap_wall tap_corner --algorithms mean,proxy --seeds 5",
-    "compare mine.json --algorithms mean,proxy --errors",
-    "sweep tap_wall --vary rendering.stiffness_N_per_m=1e3:1e5:9:log",
-    "sweep tap_wall --vary rendering.algorithm=all --vary seed=1,2,3",
-    "sweep results/out/sweep_tap_wall --where 'inside_max_m<3e-4'",
-    "limit tap_wall --device all",
-    "limit mine.json --algorithms mean,shaped_stiffness",
-    "limit tap_wall --vary time.step_s --between 1e-4:1e-2",
-    "tune tap_wall --device touch",
-    "tune mine.json --device log_device.json --algorithms mean,proxy",
-    "tune drag_molar --device omega.3 --bound inside_max_m=3e-4",
-    "converge drag_molar --metric force_max_N",
-    "converge mine.json --levels 5 --metric inside_max_m",
-    "converge drag_molar --vary environment.spacing_m",
-    "stress",
-    "stress --count 1000",
-    "stress --module ./my_law.so",
-    "reproduce",
-    "reproduce --only T2,R1b",
-    "reproduce --choices results/reference/readings.csv",
-    "describe",
-    "describe shaped_stiffness",
-    "describe scenarios --grep molar",
-};
-
-/// What --version prints.
 std::string version_text(bool as_json) {
   const Provenance program = provenance();
   if (!as_json) return fmt::format("hapbench {} ({})", program.version, program.commit);
-  const InstructionSet set = instruction_set();
-  Json json = {{"version", program.version},
-               {"commit", program.commit},
-               {"compiler", program.compiler},
-               {"build_type", program.build_type},
-               {"flags", program.flags},
-               {"instruction_set", {{"march", set.march}, {"widest", set.widest}, {"simd", set.simd}}}};
-  json["promise"] =
-      "Within a major version (before 1.0: a minor one) no field of scenarios, no file or column of results, no command, "
-      "option or exit status goes away or changes its meaning; there may be more of them. Computed numbers may change "
-      "with every version: results name the commit that made them.";
+  Json json = {
+      {"version", program.version},
+      {"commit", program.commit},
+      {"compiler", program.compiler},
+      {"build_type", program.build_type},
+      {"flags", program.flags},
+      {"instruction_set", {{"march", program.march}, {"widest", program.widest}, {"simd", program.simd}}},
+      {"promise",
+       "Within a major version (before 1.0: a minor one) no field of scenarios, no file or column of results, no "
+       "command, option or exit status goes away or changes its meaning; there may be more of them. Computed "
+       "numbers may change with every version: results name the commit that made them."}};
   return json.dump(2);
 }
 
@@ -178,10 +168,6 @@ constexpr std::pair<std::string_view, std::string_view> kSharedOptions[] = {
     {"--wide", "print tables in full width, however narrow the terminal is"},
     {"--help", "explain the command, with examples"}};
 
-/// The first things to do.
-constexpr const char* kFirst[] = {"hapbench run drag_molar", "hapbench new drag --from my.stl --extent 12mm",
-                                  "hapbench describe"};
-
 std::string name_of(const CLI::Option& option) {
   return option.get_name(option.get_positional(), true);
 }
@@ -190,7 +176,6 @@ std::string name_of(const CLI::Option& option) {
 std::string kind_of_value(const CLI::Option& option) {
   if (option.get_type_size() == 0 || option.get_type_name().empty()) return "";
   std::string kind = option.get_type_name();
-  if (option.get_expected_min() == 0) kind = "[" + kind + "]";
   if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
     kind += option.get_delimiter() == ',' ? ",..." : " ...";
   return kind;
@@ -231,8 +216,8 @@ std::string help_text(const CLI::App& app) {
   std::string text =
       wrapped(app.get_description(), 0) + usage(app) + options_text(app, true) + options_text(app, false) + "\n";
   if (!app.get_footer().empty()) text += wrapped(app.get_footer(), 0) + "\n";
-  for (const std::string_view example : kExamples)
-    if (words_of(example).front() == app.get_name()) text += fmt::format("  {} {}\n", kProgramName, example);
+  LineReader examples(std::ranges::find(kCommands, app.get_name(), &CommandGuide::name)->examples);
+  while (const auto example = examples.next()) text += fmt::format("  {} {}\n", kProgramName, *example);
   return text;
 }
 
@@ -240,14 +225,17 @@ std::string help_text(const CLI::App& app) {
 std::string front() {
   std::string text = fmt::format("{}: {}\n\n", kProgramName, kDescription);
   std::string_view group;
-  for (const CommandGuide& guide : kGuides) {
+  for (const CommandGuide& guide : kCommands) {
     text += entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
     group = guide.group;
   }
-  text += "\n";
-  for (const char* line : kFirst) text += fmt::format("{:8}{}\n", line == kFirst[0] ? "first" : "", line);
-  return text + fmt::format("\n\"{} COMMAND --help\" explains a command, \"{} --help\" what all share.\n", kProgramName,
-                            kProgramName);
+  return text + fmt::format(
+                    "\n"
+                    "first   {0} run drag_molar\n"
+                    "        {0} new drag --from my.stl --extent 12mm\n"
+                    "        {0} describe\n\n"
+                    "\"{0} COMMAND --help\" explains a command, \"{0} --help\" what all share.\n",
+                    kProgramName);
 }
 
 std::string program_help() {
@@ -263,9 +251,8 @@ std::string program_help() {
 
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
+  for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
   return names;
 }
 
@@ -273,9 +260,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
 std::string field_hint(const std::string& option, const std::vector<std::string>& known) {
   const std::string field = option.substr(std::min(option.find_first_not_of('-'), option.size()));
   if (nearest_name(field, scenario_field_paths()).empty()) return "";
-  const auto has = [&known](const char* name) { return std::find(known.begin(), known.end(), name) != known.end(); };
-  if (has("--vary")) return "; fields are varied by --vary FIELD=VALUES";
-  return has("--set") ? "; fields are set by --set FIELD=VALUE" : "";
+  if (std::ranges::count(known, "--vary") > 0) return "; fields are varied by --vary FIELD=VALUES";
+  return std::ranges::count(known, "--set") > 0 ? "; fields are set by --set FIELD=VALUE" : "";
 }
 
 /// Explains a word that no option or argument takes.
@@ -287,13 +273,11 @@ std::string problem_of(const std::string& word, const CLI::App& program, const C
     return fmt::format("unknown option \"{}\"{}", name, hint.empty() ? field_hint(name, known) : hint);
   }
   if (command != nullptr) return fmt::format("unexpected argument \"{}\"", word);
-  std::vector<std::string> names;
-  for (const CLI::App* other : program.get_subcommands({})) names.push_back(other->get_name());
+  std::vector<std::string> names = names_of(program.get_subcommands({}), &CLI::App::get_name);
   std::ranges::copy(option_names(program), std::back_inserter(names));
   return fmt::format("unknown command \"{}\"{}", word, nearest_name_hint(word, names));
 }
 
-/// Refuses a word that only earlier versions took.
 void refuse_old_words(const CLI::App& program, const CLI::App* command) {
   for (const std::string& word : program.remaining()) refuse_old_word("", word);
   if (command == nullptr) return;
@@ -306,7 +290,7 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
   const std::string name = command ? command->get_name() + ": " : "", words = command ? command->get_name() + " " : "";
   const std::string help = fmt::format("; \"{} {}--help\" explains", kProgramName, words);
-  std::vector<std::string> extra = program.remaining(true);
+  ProgramWords extra = program.remaining(true);
   std::erase(extra, "--");
   refuse_old_words(program, command);
   // An unknown option leaves its value behind as an extra word; the option is the mistake to report.
@@ -366,22 +350,14 @@ void Command::add(const std::string& name, Variable variable, const std::string&
   if (takes.comma_separated)
     option->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
   // CLI11's own checks word the errors differently, and show in the help.
-  if (takes.range) {
-    const auto problem = [range = *takes.range](const std::string& word) -> std::string {
-      const auto [least, greatest] = range;
-      std::int64_t number = 0;
-      if (CLI::detail::lexical_cast(word, number) && number >= least && number <= greatest) return "";
-      return fmt::format("got {}; allowed: {} ... {}", word, least, greatest);
-    };
-    option->check(CLI::Validator(problem, ""));
-  }
-  if (!takes.one_of.empty()) {
-    const auto problem = [words = takes.one_of](const std::string& word) -> std::string {
-      if (std::ranges::find(words, word) != words.end()) return "";
-      return fmt::format("got \"{}\"; allowed: {}{}", word, quoted_list(words), nearest_name_hint(word, words));
-    };
-    option->check(CLI::Validator(problem, ""));
-  }
+  const auto problem = [range = takes.range, words = takes.one_of](const std::string& word) -> std::string {
+    std::int64_t number = 0;
+    if (range && !(CLI::detail::lexical_cast(word, number) && number >= range->first && number <= range->second))
+      return fmt::format("got {}; allowed: {} ... {}", word, range->first, range->second);
+    if (words.empty() || std::ranges::find(words, word) != words.end()) return "";
+    return fmt::format("got \"{}\"{}; allowed: {}", word, nearest_name_hint(word, words), quoted_list(words));
+  };
+  option->check(CLI::Validator(problem, ""));
 }
 
 void Command::flag(const std::string& name, bool& value, const std::string& help) {
@@ -396,14 +372,12 @@ void Command::footer(const std::string& text) {
   app_->footer(text);
 }
 
-CommandLine::CommandLine() : app_(std::make_unique<CLI::App>(kDescription, kProgramName)) {
+CommandLine::CommandLine() : app_(std::make_shared<CLI::App>(kDescription, kProgramName)) {
   CLI::Option* json = app_->add_flag("--json");
   json->needs(app_->set_version_flag("--version", [json] { return version_text(json->count() > 0); }));
   add_module_option(*app_);
   app_->require_subcommand(1);
 }
-
-CommandLine::~CommandLine() = default;
 
 /// The program and each command have it, so that it may stand before or behind the command.
 void CommandLine::add_module_option(CLI::App& app) {
@@ -428,7 +402,7 @@ Command CommandLine::add(const std::string& name, const std::string& summary, Ou
   return Command(app);
 }
 
-void CommandLine::pass_on(const std::string& name, std::function<int(const std::vector<std::string>&)> action) {
+void CommandLine::pass_on(const std::string& name, std::function<int(const ProgramWords&)> action) {
   app_->add_subcommand(name);
   passed_on_[name] = std::move(action);
 }
@@ -440,10 +414,11 @@ InputError with_typed_places(const InputError& error, const std::vector<std::str
     std::string place = fault.place();
     for (const std::string& override : overrides) {
       std::string pointer = "/" + std::string(overridden_path(override));
-      std::replace(pointer.begin(), pointer.end(), '.', '/');
+      std::ranges::replace(pointer, '.', '/');
       const std::size_t at = place.find(": " + pointer);
-      const std::string rest = at == std::string::npos ? "" : place.substr(at + 2 + pointer.size());
-      if (at == std::string::npos || !(rest.empty() || rest.starts_with('/'))) continue;
+      if (at == std::string::npos) continue;
+      const std::string rest = place.substr(at + 2 + pointer.size());
+      if (!rest.empty() && !rest.starts_with('/')) continue;
       const std::size_t file = place.rfind(": ", at - 1);  // behind what else was typed, as --device
       const std::string typed = file == std::string::npos ? "" : place.substr(0, file + 2);
       const bool is_long = override.size() > kMostTyped;
@@ -456,18 +431,17 @@ InputError with_typed_places(const InputError& error, const std::vector<std::str
   return InputError::all(faults);
 }
 
-int CommandLine::run(int argc, char** argv) {
-  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+int CommandLine::run(const ProgramWords& words) {
   const std::optional<StudyWords> study = StudyWords::in(words);
-  if (!study) return run(std::move(words));
+  if (!study) return parse_and_run(words);
   try {
-    return run(study->words);
+    return parse_and_run(study->words);
   } catch (const InputError& error) {
     throw study->located(error);
   }
 }
 
-int CommandLine::run(std::vector<std::string> words) {
+int CommandLine::parse_and_run(ProgramWords words) {
   if (words.empty()) {
     fmt::print("{}", front());
     return kSuccess;
@@ -498,7 +472,7 @@ int CommandLine::run(std::vector<std::string> words) {
   return status_with_faults(action_());
 }
 
-int run_program(int argc, char** argv) {
+int run_program(const ProgramWords& words) {
   // Numbers are read and written without the language of a host such as Python, whose decimal point may be a comma.
   const locale_t plain = ::newlocale(LC_ALL_MASK, "C", nullptr), before = ::uselocale(plain);
   const std::shared_ptr<void> restored(nullptr, [=](void*) {
@@ -506,18 +480,19 @@ int run_program(int argc, char** argv) {
     ::freelocale(plain);
   });
   CommandLine line;
-  for (AddCommand* add_command : kCommands) add_command(line);
+  for (const CommandGuide& command : kCommands)
+    if (command.add != nullptr) command.add(line);
   try {
-    return line.run(argc, argv);
+    return line.run(words);
   } catch (const Stopped& stop) {
     print_note(fmt::format("stopped; {}", line.when_stopped()));
     return kStopped + stop.signal;
   }
 }
 
-int run_program_to_exit(int argc, char** argv) {
+int run_program_to_exit(const ProgramWords& words) {
   try {
-    const int status = run_program(argc, argv);
+    const int status = run_program(words);
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
     return fail(fmt::format("cannot write standard output: {}", std::strerror(errno)));
   } catch (const InputError& error) {

@@ -1,12 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <optional>
-#include <span>
 
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
@@ -20,8 +16,6 @@
 namespace hapbench {
 namespace {
 
-// ---- comparison.csv
-
 /// Programs may read these by their place: append new ones.
 constexpr std::string_view kComparedMetrics =
     "force_max_N velocity_total_variation_m_per_s force_reversals vibration_power_above_30Hz_m2_per_s2 depth_max_m "
@@ -34,29 +28,28 @@ constexpr std::string_view kComparedMetrics =
 /// A line: a run, and the number of its repetition.
 struct ComparedRun {
   std::uint64_t seed;
-  const Result* run;
+  const Result& run;
 };
 
 /// Without times, so that equal comparisons give equal bytes; several seeds get a column in front.
 Columns<ComparedRun> comparison_columns(bool seeds) {
-  Columns<ComparedRun> columns;
-  if (seeds) columns.add("seed", "1", "number of the repetition", &ComparedRun::seed);
-  columns.add("algorithm", "", "force algorithm", [](const ComparedRun& r) { return r.run->algorithm; });
-  columns.add("outcome", "", "how the run ended",
-              [](const ComparedRun& r) { return outcome_name(r.run->end.outcome); });
-  columns.add("steps", "1", "rows of the run", [](const ComparedRun& r) { return r.run->end.rows; });
+  using Row = ComparedRun;
+  Columns<Row> columns;
+  if (seeds) columns.add({{"seed", "1", "number of the repetition", &Row::seed}});
+  columns.add({{"algorithm", "", "force algorithm", [](const Row& r) { return r.run.algorithm; }},
+               {"outcome", "", "how the run ended", [](const Row& r) { return outcome_name(r.run.end.outcome); }},
+               {"steps", "1", "rows of the run", [](const Row& r) { return r.run.end.rows; }}});
   for (const std::string_view name : words_of(kComparedMetrics)) {
     const Metric& metric = *find_metric(all_metrics(), name);
-    columns.add(metric.name, metric.unit, metric.meaning,
-                [name](const ComparedRun& r) { return value_of(r.run->metrics, name); });
+    columns.add(
+        {{metric.name, metric.unit, metric.meaning, [name](const Row& r) { return value_of(r.run.metrics, name); }}});
   }
   return columns;
 }
 
 // ---- The league
 
-/// By how much the mean may be wrong: by what its numbers may be, or by what another choice of seeds gives; more digits
-/// than means of one rank have in common are not shown.
+/// By how much the mean may be wrong: as its numbers, or by other seeds; at least what means of one rank differ by.
 std::optional<double> error_of_mean(const Standing& standing) {
   if (!standing.spread) return standing.tolerance;
   const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));
@@ -86,18 +79,15 @@ std::vector<Standing> ranked(const League& league) {
 }
 
 Columns<LawStanding> law_columns() {
-  Columns<LawStanding> columns;
-  columns.add("algorithm", "", "", &LawStanding::algorithm, {.heading = "algorithm"});
-  columns.add("mean_rank", "1",
-              "mean of the algorithm's ranks over all metrics and scenarios, with those after failures",
-              &LawStanding::mean_rank, {.heading = "mean rank", .digits = 3});
-  columns.print("fails in", "", "scenarios in which a run failed", [](const LawStanding& l) {
+  const auto fails = [](const LawStanding& l) {
     return l.fails.empty() ? "-" : fmt::format("{}", fmt::join(l.fails, ", "));
-  });
-  return columns;
+  };
+  return {{"algorithm", "", "", &LawStanding::algorithm, under("algorithm")},
+          {"mean_rank", "1", "mean of the algorithm's ranks over all metrics and scenarios, with those after failures",
+           &LawStanding::mean_rank, under("mean rank", 3)},
+          {"fails in", "", "scenarios in which a run failed", fails, only_printed()}};
 }
 
-/// Says which laws are first, alone or with others, in how many rankings.
 std::string firsts_text(const League& league) {
   constexpr std::size_t kMostNamed = 5;
   if (!league.laws.front().mean_rank) return "nothing is ranked: neither less nor more of these metrics is better";
@@ -118,7 +108,6 @@ std::string firsts_text(const League& league) {
                      fmt::join(first_few(firsts, kMostNamed), ", "));
 }
 
-/// Says who is first, and where no spread is known.
 std::string verdict(const League& league) {
   const std::string text = wrapped(firsts_text(league), 0);
   if (league.seeds < 2) return text + "one seed: no spread is known; --seeds K gives one\n";
@@ -134,39 +123,34 @@ std::string verdict(const League& league) {
 
 /// league.csv, a row for each scenario, algorithm and metric; `seeds`: there are several.
 Columns<Standing> league_columns(bool seeds) {
-  Columns<Standing> columns;
-  columns.add("scenario", "", "name of the scenario", &Standing::scenario, {.heading = "scenario"});
-  columns.add("algorithm", "", "force algorithm", &Standing::algorithm, {.heading = "algorithm"});
-  columns.add("metric", "", "name of the metric; its unit is part of the name", &Standing::metric,
-              {.heading = "metric"});
-  columns.add("seeds", "1", "seeds of the algorithm in the scenario", &Standing::seeds);
-  columns.add("failed", "1", "seeds that failed", &Standing::failed);
-  columns.add("outcome", "", "how the runs ended; of several ways with their numbers", &Standing::outcome,
-              {.heading = "how it ended"});
-  columns.add("mean", "by name", "mean of the metric over the common seeds; empty when there is none", &Standing::mean,
-              {.heading = "mean"}, error_of_mean);
-  columns.add("spread", "by name",
-              "standard deviation over these seeds; empty when there is one, or when seeds change nothing",
-              &Standing::spread, {.heading = seeds ? "spread" : "", .digits = 2});
-  columns.add(
-      "rank", "1",
-      "1 + the number of algorithms that did better in this scenario by this metric, by more than 0.1 % and both "
-      "errors; those with failures are last, by the number of these",
-      &Standing::rank, {.heading = "rank"});
-  columns.add("common_seeds", "1",
-              "seeds that mean and spread are over: those in which no algorithm failed that has any success in the "
-              "scenario; if there are none, all seeds of the algorithms that never failed",
-              &Standing::common_seeds);
-  columns.add("better", "",
-              "less or more, whichever is better of the metric; empty when neither is, and nothing is ranked",
-              [](const Standing& s) {
-                return s.better == Better::none ? Cell() : Cell(s.better == Better::less ? "less" : "more");
-              });
-  return columns;
+  using Row = Standing;
+  const auto better = [](const Row& r) {
+    return r.better == Better::none ? Cell() : Cell(r.better == Better::less ? "less" : "more");
+  };
+  return {
+      {"scenario", "", "name of the scenario", &Row::scenario, under("scenario")},
+      {"algorithm", "", "force algorithm", &Row::algorithm, under("algorithm")},
+      {"metric", "", "name of the metric; its unit is part of the name", &Row::metric, under("metric")},
+      {"seeds", "1", "seeds of the algorithm in the scenario", &Row::seeds},
+      {"failed", "1", "seeds that failed", &Row::failed},
+      {"outcome", "", "how the runs ended; of several ways with their numbers", &Row::outcome, under("how it ended")},
+      {"mean", "by name", "mean of the metric over the common seeds; empty when there is none", &Row::mean,
+       under("mean"), error_of_mean},
+      {"spread", "by name",
+       "standard deviation over these seeds; empty when there is one, or when seeds change nothing", &Row::spread,
+       under(seeds ? "spread" : "", 2)},
+      {"rank", "1",
+       "1 + the number of algorithms that did better in this scenario by this metric, by more than 0.1 % and both "
+       "errors; those with failures are last, by the number of these",
+       &Row::rank, under("rank")},
+      {"common_seeds", "1",
+       "seeds that mean and spread are over: those in which no algorithm failed that has any success in the "
+       "scenario; if there are none, all seeds of the algorithms that never failed",
+       &Row::common_seeds},
+      {"better", "", "less or more, whichever is better of the metric; empty when neither is, and nothing is ranked",
+       better}};
 }
 
-/// A table of the standings, if that is short or with --wide, a line for each algorithm, and who is first in a
-/// sentence.
 std::string league_text(const League& league) {
   constexpr std::size_t kMostPrinted = 60;
   const std::string table =
@@ -177,20 +161,12 @@ std::string league_text(const League& league) {
 }
 
 Json league_json(const League& league) {
-  Json rows = Json::array(), laws = Json::array();
-  const Columns<Standing> columns = league_columns(false);
-  for (const Standing& standing : league.standings) rows.push_back(columns.json(standing));
-  for (const LawStanding& law : league.laws) laws.emplace_back(law_columns().json(law))["fails"] = law.fails;
-  return {{"standings", std::move(rows)}, {"laws", std::move(laws)}};
+  Json laws = law_columns().json_list(league.laws);
+  for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
+  return {{"standings", league_columns(false).json_list(league.standings)}, {"laws", std::move(laws)}};
 }
 
 // ---- How sure the numbers are, and which order of laws is larger than that
-
-/// The means of a metric in a scenario, by algorithm, and what is known of their errors.
-struct MetricNumbers {
-  std::vector<NumberWithError> numbers = {};
-  std::vector<KnownError> known = {};
-};
 
 /// The mean of an algorithm's errors over the common seeds, which bounds the error of their mean.
 KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t scenario, std::size_t algorithm,
@@ -211,66 +187,60 @@ KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t 
   return mean;
 }
 
-/// Laws that failed have no number.
-MetricNumbers numbers_of(const League& league, const FinerRuns& finer, std::size_t scenario, std::size_t metric) {
-  MetricNumbers found;
+/// The means of a metric in a scenario by algorithm, none of laws that failed; adds them and their order to the JSON.
+std::vector<NumberWithError> numbers_of(const League& league, const FinerRuns& finer, std::size_t scenario,
+                                        std::size_t metric, Json& json) {
+  std::vector<NumberWithError> numbers;
+  Json rows = Json::array(), order = Json::array();
   for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
     const Standing& standing = league.at(scenario, a, metric);
-    found.known.push_back(mean_error(league, finer, scenario, a, standing.metric));
-    found.numbers.push_back({standing.failed > 0 ? std::nullopt : standing.mean, found.known.back().sum()});
+    const KnownError known = mean_error(league, finer, scenario, a, standing.metric);
+    const auto& [value, error] =
+        numbers.emplace_back(NumberWithError{standing.failed > 0 ? std::nullopt : standing.mean, known.sum()});
+    rows.push_back({{"algorithm", standing.algorithm},
+                    {"value", cell_json(cell_if(value))},
+                    {"error_estimate", cell_json(cell_if(error))},
+                    {"error_of_step", cell_json(cell_if(known.step))},
+                    {"error_of_spacing", cell_json(cell_if(known.spacing))}});
   }
-  return found;
-}
-
-/// The JSON of a metric's numbers and of the order of laws that their errors leave.
-Json numbers_json(const MetricNumbers& found, const std::vector<std::string>& algorithms) {
-  Json numbers = Json::array(), order = Json::array();
-  for (std::size_t a = 0; a < algorithms.size(); ++a) {
-    numbers.push_back({{"algorithm", algorithms[a]},
-                       {"value", or_null(found.numbers[a].value)},
-                       {"error_estimate", or_null(found.numbers[a].error)},
-                       {"error_of_step", or_null(found.known[a].step)},
-                       {"error_of_spacing", or_null(found.known[a].spacing)}});
-  }
-  for (const auto& group : held_order(found.numbers).groups) {
+  for (const auto& group : held_order(numbers).groups) {
     Json& names = order.emplace_back(Json::array());
-    for (const std::size_t a : group) names.push_back(algorithms[a]);
+    for (const std::size_t a : group) names.push_back(league.algorithms[a]);
   }
-  return {{"order", std::move(order)}, {"numbers", std::move(numbers)}};
+  json["order"] = std::move(order);
+  json["numbers"] = std::move(rows);
+  return numbers;
 }
 
 /// Reports a table of the numbers of a scenario with their errors, and a sentence on each metric that it shows.
 void report_errors(const League& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report) {
-  Columns<std::size_t> columns;  // a row is the place of an algorithm
-  columns.print("algorithm", "", "", [&league](std::size_t a) { return league.algorithms[a]; });
+  Table table{{{"algorithm", false}}};
+  for (const std::string& algorithm : league.algorithms) table.rows.push_back({algorithm});
   std::string sentences;
   for (std::size_t m = 0; m < league.metrics.size(); ++m) {
     const std::string& metric = league.metrics[m];
-    const MetricNumbers found = numbers_of(league, finer, scenario, m);
-    const std::string says = held_text(found.numbers, league.algorithms);
     Json& json =
         report.json()["errors"].emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
-    json.update(numbers_json(found, league.algorithms));
+    const std::vector<NumberWithError> numbers = numbers_of(league, finer, scenario, m, json);
+    const std::string says = held_text(numbers, league.algorithms);
     json["says"] = says;
     const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
     const bool known = heading != std::end(kRunHeadings);
     if (!all && (!known || heading->wide)) continue;
     const double factor = known ? heading->factor : 1.0;
-    columns.print(known ? heading->title : metric, "by name", "", [numbers = found.numbers, factor](std::size_t a) {
+    table.columns.push_back({known ? heading->title : metric});
+    for (std::size_t a = 0; a < numbers.size(); ++a) {
       const auto& [value, error] = numbers[a];
-      return value ? with_error_text(factor * *value, error ? std::optional(factor * *error) : error) : "-";
-    });
+      const auto shown_error = error ? std::optional(factor * *error) : error;
+      table.rows[a].push_back(value ? with_error_text(factor * *value, shown_error) : "-");
+    }
     sentences += wrapped(fmt::format("{}: {}", metric, says), 0);
   }
-  std::vector<std::size_t> places(league.algorithms.size());
-  std::iota(places.begin(), places.end(), std::size_t{0});
-  report.say(fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario],
-                         columns.table(places).text(prose_width()), sentences,
-                         wrapped(fmt::format("+-: {}", finer.refined(scenario)), 0)));
+  report.say(fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario], table.text(prose_width()),
+                         sentences, wrapped(fmt::format("+-: {}", finer.refined(scenario)), 0)));
 }
 
-/// Says of the laws of a scene which vibrate less than others by more than what hands feel. Where a law has no settled
-/// contact, as one that throws the tool out, the vibration is that of the tool.
+/// Which laws vibrate less by more than hands feel; where one has no settled contact, by the vibration of the tool.
 std::string vibration_text(const League& league) {
   struct Vibration {
     const char *of, *metric;
@@ -308,20 +278,18 @@ struct CompareOptions : CommonOptions {
 };
 
 Comparison planned(const CompareOptions& options) {
-  if (!options.metrics.empty()) require_names("--by: got", options.metrics, names_of(all_metrics(), &Metric::name));
+  require_names("--by: got", options.metrics, names_of(all_metrics(), &Metric::name), "hapbench describe metrics");
   constexpr double kMostJitter = 1.0;
   ComparisonQuestion question = options.question;
   if (!(question.jitter >= 0.0 && question.jitter <= kMostJitter))
     throw InputError(fmt::format("--jitter: got {}; allowed: 0 ... {} m", question.jitter, kMostJitter));
   question.scenarios = find_scenarios(options.scenarios);
   question.overrides = options.overrides;
-  const std::vector<std::string> all = algorithm_names();
-  question.algorithms = question.algorithms.empty() ? all : chosen_names("--algorithms: got", question.algorithms, all);
+  question.algorithms = question.algorithms.empty() ? algorithm_names() : chosen_algorithms(question.algorithms);
   return planned(question);
 }
 
-/// A comparison, where its files go, and whether there are several scenarios or seeds to rank over, or metrics to rank
-/// by.
+/// A comparison, where its files go, and whether there is something to rank over, or metrics to rank by.
 struct Asked {
   const CompareOptions& options;
   const Comparison comparison = planned(options);
@@ -339,13 +307,6 @@ std::vector<std::string> compared(const Asked& asked, const std::vector<Result>&
   return metrics;
 }
 
-std::vector<Result> results_of(const Asked& asked, JobOptions jobs) {
-  // The wide table of a single comparison shows times, which concurrent runs would lengthen.
-  if (asked.options.jobs == 0 && !asked.league && output_is_in_full()) jobs.threads = 1;
-  return run_all(asked.comparison.scenes, jobs,
-                 [&asked](std::size_t run) { return asked.out / asked.comparison.folder(run); });
-}
-
 Json summaries_json(const Asked& asked, const std::vector<Result>& reports) {
   const Comparison& comparison = asked.comparison;
   Json summaries = Json::array();
@@ -357,18 +318,16 @@ Json summaries_json(const Asked& asked, const std::vector<Result>& reports) {
   return summaries;
 }
 
-/// Reports runs that diverge although their scenario does not expect it, the only expectation that concerns every
-/// algorithm.
+/// Reports runs that diverge unexpectedly; no other expectation of a scenario concerns every algorithm.
 void judge(const Asked& asked, const std::vector<Result>& reports, Report& report) {
   constexpr std::size_t kMostShown = 15;
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < reports.size(); ++i) {
-    const Result& summary = reports[i];
-    if (summary.end.outcome != Outcome::diverges) continue;
+    if (reports[i].end.outcome != Outcome::diverges) continue;
     const LoadedScenario loaded = asked.comparison.load(i);
     if (outcome_is_expected(loaded.scenario.expect, Outcome::diverges)) continue;
-    const Divergence& d = summary.end.divergence;
-    texts.push_back(fmt::format("{}: {} diverges at step {}{}", loaded.file.string(), summary.algorithm, d.step,
+    const Divergence& d = reports[i].end.divergence;
+    texts.push_back(fmt::format("{}: {} diverges at step {}{}", loaded.file.string(), reports[i].algorithm, d.step,
                                 d.fault.empty() ? "" : ": " + d.fault));
   }
   for (const std::string& text : first_few(texts, kMostShown)) report.fault(text, kUnexpectedOutcome);
@@ -386,14 +345,18 @@ int compare(const CompareOptions& options) {
   for (std::size_t run = 0; run < comparison.size(); ++run)
     require_writable_directory(asked.out / comparison.folder(run));
   const JobOptions jobs = job_options(options, "compare");
-  const std::vector<Result> reports = results_of(asked, jobs);
+  JobOptions timed = jobs;
+  // The wide table of a single comparison shows times, which concurrent runs would lengthen.
+  if (options.jobs == 0 && !asked.league && output_is_in_full()) timed.threads = 1;
+  const std::vector<Result> reports =
+      run_all(comparison.scenes, timed, [&](std::size_t run) { return asked.out / comparison.folder(run); });
   const League league = league_of(comparison, reports, compared(asked, reports));
   Report report(options.output, asked.out);
   for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
     const auto of_scene = std::span(reports).subspan(s * comparison.each(), comparison.each());
     print_warnings(run_warnings(of_scene));
     std::vector<ComparedRun> runs;
-    for (const Result& run : of_scene) runs.push_back({runs.size() % comparison.seeds, &run});
+    for (const Result& run : of_scene) runs.push_back({runs.size() % comparison.seeds, run});
     report.write(comparison.scene_folder(s) / "comparison.csv", comparison_columns(comparison.seeds > 1), runs);
   }
   report.json() = summaries_json(asked, reports);

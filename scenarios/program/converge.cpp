@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <nlohmann/json.hpp>
-#include <optional>
 
 #include "scenarios/cases/run_sweep.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
@@ -21,7 +19,6 @@ namespace {
 
 constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv",
                      *kTimes = "converge_levels_timing.csv";
-constexpr int kFewestLevels = 3, kMostLevels = 9;
 constexpr double kLargestRatio = 10.0;
 
 struct ConvergeOptions : CommonOptions {
@@ -33,21 +30,18 @@ struct ConvergeOptions : CommonOptions {
   std::string to;
 };
 
-/// The run of a level, and its time.
 struct LevelRun {
   Result result;
   double seconds = 0.0;
 };
 
-/// What a metric came to at a level.
 struct LevelRow {
   std::string metric, value, outcome;
   std::optional<double> result, order, error;
+  double seconds;
   std::optional<double> share = {};  ///< the error relative to the finest result, as the grid convergence index
-  double seconds = 0.0;
 };
 
-/// The verdict on a metric.
 struct ConvergeStudy : Convergence {
   std::string metric, field;
   double formal_order;
@@ -59,9 +53,9 @@ ConvergeStudy studied(const LevelSweep& levels, const std::vector<LevelRun>& run
   for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i].result, metric));
   ConvergeStudy study{convergence_of(levels, results), metric, levels.axis.path, levels.formal_order, {}};
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    LevelRow& row = study.levels.emplace_back(LevelRow{metric, levels.axis.values[i], results[i].outcome,
-                                                       results[i].result, study.orders[i], study.errors[i]});
-    row.seconds = runs[i].seconds;
+    LevelRow& row =
+        study.levels.emplace_back(LevelRow{metric, levels.axis.values[i], results[i].outcome, results[i].result,
+                                           study.orders[i], study.errors[i], runs[i].seconds});
     if (row.error && *results.back().result != 0.0) row.share = *row.error / std::abs(*results.back().result);
   }
   return study;
@@ -70,75 +64,66 @@ ConvergeStudy studied(const LevelSweep& levels, const std::vector<LevelRun>& run
 /// `study`: what is printed, whose field and metric stand above the columns.
 Columns<LevelRow> level_columns(const ConvergeStudy& study) {
   using Row = LevelRow;
-  Columns<Row> columns;
-  columns.add("metric", "", "name of the metric", &Row::metric, only_csv());
-  columns.add("value", "by field", "value of the field that is refined",
-              [](const Row& r) { return finite_number(r.value); });
-  columns.print(study.field, "1", "", &Row::value);
-  columns.add("outcome", "", "how the run ended", &Row::outcome, {.heading = "outcome"});
-  columns.add("result", "by name",
-              "the metric, at the times of the coarsest rows; empty where the run has none or diverges", &Row::result);
-  columns.print(study.metric, "1", "", [](const Row& r) { return r.result ? number_text(*r.result, r.error) : "-"; });
-  columns.add("observed_order", "1",
-              "p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level and the two before, if any", &Row::order);
-  columns.print("order", "1", "observed_order", [has_order = study.order.has_value()](const Row& r) {
+  const auto value = [](const Row& r) { return finite_number(r.value); };
+  const auto result = [](const Row& r) { return r.result ? number_text(*r.result, r.error) : "-"; };
+  const auto order = [has_order = study.order.has_value()](const Row& r) {
     return has_order && r.order ? fmt::format("{:.2f}", *r.order) : "-";
-  });
-  columns.add("error_estimate", "by name",
-              "with an order 1.25 |f - f*|, else the largest distance from a finer level or in the band", &Row::error);
-  columns.print("error %", "1", "of converge: error over the result of the finest level",
-                [](const Row& r) { return r.share ? significant(100.0 * *r.share, 2) : "-"; });
-  columns.add("seconds", "s", "of converge: processor time of the level's run [s]", &Row::seconds,
-              {.csv = false, .heading = "run s", .digits = 2});
-  return columns;
+  };
+  const auto percent = [](const Row& r) { return r.share ? significant(100.0 * *r.share, 2) : "-"; };
+  return {{"metric", "", "name of the metric", &Row::metric, kOnlyCsv},
+          {"value", "by field", "value of the field that is refined", value},
+          {study.field, "1", "", &Row::value, only_printed()},
+          {"outcome", "", "how the run ended", &Row::outcome, under("outcome")},
+          {"result", "by name",
+           "the metric, at the times of the coarsest rows; empty where the run has none or diverges", &Row::result},
+          {study.metric, "1", "", result, only_printed()},
+          {"observed_order", "1", "p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level and the two before, if any",
+           &Row::order},
+          {"order", "1", "observed_order", order, only_printed()},
+          {"error_estimate", "by name",
+           "with an order 1.25 |f - f*|, else the largest distance from a finer level or in the band", &Row::error},
+          {"error %", "1", "of converge: error over the result of the finest level", percent, only_printed()},
+          {"seconds", "s", "of converge: processor time of the level's run [s]", &Row::seconds,
+           under("run s", 2, kOnlyJson)}};
 }
 
 /// Times in a file of their own: the others are the same bytes in every run.
 Columns<LevelRow> time_columns() {
-  Columns<LevelRow> columns;
-  columns.add("value", "by field", "value of the field that is refined", &LevelRow::value);
-  columns.add("seconds", "s", "processor time of the run", &LevelRow::seconds);
-  return columns;
+  return {{"value", "by field", "value of the field that is refined", &LevelRow::value},
+          {"seconds", "s", "processor time of the run", &LevelRow::seconds}};
 }
 
 Columns<ConvergeStudy> order_columns() {
-  using Study = ConvergeStudy;
-  Columns<Study> columns;
-  columns.add("metric", "", "name of the metric", &Study::metric);
-  columns.add("field", "", "path of the field", &Study::field);
-  columns.add("formal_order", "1",
-              "of the integrator; 1 with a device, which holds the force between samples; 2 of other fields",
-              &Study::formal_order);
-  columns.add("observed_order", "1", "at the three finest levels; empty where none is credible", &Study::order,
-              only_csv());
-  columns.add("order", "1", "the same", &Study::order, only_json());
-  columns.add("reason", "", "why no order is stated", &Study::reason);
-  columns.add("extrapolated", "by name", "Richardson's value f* = f_3 + (f_3 - f_2) / (r^p - 1); only with an order",
-              &Study::extrapolated);
-  columns.add("gci", "1",
-              "grid convergence index 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)) of the finest level; only with an order",
-              &Study::gci);
-  columns.add("asymptotic", "",
-              "true when GCI_21 / (r^p GCI_32) is 1 within 0.1 at the last three levels and the three before",
-              &Study::asymptotic);
-  columns.add(
-      "low", "by name", "least result of the band: of the last three levels that ended as the finest",
-      [](const Study& s) { return s.band ? std::optional(s.band->first) : std::nullopt; }, only_csv());
-  columns.add(
-      "high", "by name", "the largest",
-      [](const Study& s) { return s.band ? std::optional(s.band->second) : std::nullopt; }, only_csv());
-  return columns;
+  using Row = ConvergeStudy;
+  const auto low = [](const Row& r) { return r.band ? Cell(r.band->first) : Cell(); };
+  const auto high = [](const Row& r) { return r.band ? Cell(r.band->second) : Cell(); };
+  return {
+      {"metric", "", "name of the metric", &Row::metric},
+      {"field", "", "path of the field", &Row::field},
+      {"formal_order", "1",
+       "of the integrator; 1 with a device, which holds the force between samples; 2 of other fields",
+       &Row::formal_order},
+      {"observed_order", "1", "at the three finest levels; empty where none is credible", &Row::order, kOnlyCsv},
+      {"order", "1", "the same", &Row::order, kOnlyJson},
+      {"reason", "", "why no order is stated", &Row::reason},
+      {"extrapolated", "by name", "Richardson's value f* = f_3 + (f_3 - f_2) / (r^p - 1); only with an order",
+       &Row::extrapolated},
+      {"gci", "1",
+       "grid convergence index 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)) of the finest level; only with an order",
+       &Row::gci},
+      {"asymptotic", "",
+       "true when GCI_21 / (r^p GCI_32) is 1 within 0.1 at the last three levels and the three before",
+       &Row::asymptotic},
+      {"low", "by name", "least result of the band: of the last three levels that ended as the finest", low, kOnlyCsv},
+      {"high", "by name", "the largest", high, kOnlyCsv}};
 }
 
 Json study_json(const ConvergeStudy& study) {
   Json json = order_columns().json(study);
   json["band"] = study.band ? Json::array({study.band->first, study.band->second}) : Json(nullptr);
-  const Columns<LevelRow> columns = level_columns(study);
-  for (const LevelRow& row : study.levels) json["levels"].push_back(columns.json(row));
+  json["levels"] = level_columns(study).json_list(study.levels);
   return json;
 }
-
-// ---- Text
 
 std::string verdict_text(const ConvergeStudy& c) {
   if (c.order) {
@@ -178,8 +163,6 @@ std::string enough_text(const ConvergeStudy& study, double most) {
   return below + fmt::format("no level is; by this order {} = {:.2g} would be", study.field,
                              *finite_number(finest.value) / finer);
 }
-
-// ---- Command
 
 double share_of(const std::string& text) {
   const bool percent = text.ends_with('%');
@@ -229,7 +212,7 @@ int converge(const ConvergeOptions& options) {
   const SweepPlan plan = plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), jobs);
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
-  require_names("--metric: got", metrics, plan.metrics);
+  require_names("--metric: got", metrics, plan.metrics, "hapbench describe metrics");
   print_warnings(plan.warnings);
   Report report(options, "converge_" + file.stem().string());
   std::vector<LevelRun> runs(plan.cases.size());
@@ -276,7 +259,7 @@ void add_converge(CommandLine& line) {
       "the field to refine: time.step_s (default), environment.grid_m, environment.spacing_m, tool.grid_m or any "
       "other number above 0 that gets better as it falls");
   command.add("--levels", options.levels, "number of levels, the scenario's own value the coarsest (default: 5)",
-              {.range = {{kFewestLevels, kMostLevels}}});
+              {.range = {{3, 9}}});
   command.add("--ratio", options.ratio, "of each level to the next; whole for the step (default: 2)");
   command.add("--to", options.to, "also name the coarsest level with a smaller relative error, as 1%, and its cost");
   add_common(command, options, "converge_NAME");

@@ -7,15 +7,23 @@
 
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
-#include "scenarios/program/study.hpp"
-#include "scenarios/program/table.hpp"
-#include "scenarios/thesis/ledger.hpp"
+#include "scenarios/program/report.hpp"
 
 /// The command `describe`, which explains the index and what lies in the folders beside the program.
 namespace hapbench {
 namespace {
+
+/// The kinds that lists have, in their order.
+constexpr const char* kListed[] = {"algorithm", "depth model", "stage",    "integrator", "environment", "tool", "hand",
+                                   "device",    "preset",      "scenario", "study",      "metric",      "claim"};
+
+/// The name of a kind's list: "depth_models".
+std::string list_name(const std::string& kind) {
+  std::string name = kind == "study" ? "studies" : kind + "s";
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
 
 // ---- What lies in the folders beside the program
 
@@ -47,22 +55,19 @@ Description describe_scenario(const std::filesystem::path& file) {
 
 /// A fault of the file becomes its summary.
 Named named_scenario(const BundledScenario& bundled) {
-  Named named{"scenario",
-              bundled.name,
-              "",
-              [file = bundled.file] { return describe_scenario(file); },
-              {{"group", bundled.group}, {"source", ""}}};
+  Json json;
   try {
-    const Json json = read_scenario_text(bundled.file).json;
-    named.summary = json.value("description", "");
-    named.more["source"] = json.value("source", "");
+    json = read_scenario_text(bundled.file).json;
   } catch (const InputError& error) {
-    named.summary = error.what();
+    json = {{"description", error.what()}};
   }
-  return named;
+  return {"scenario",
+          bundled.name,
+          json.value("description", ""),
+          [file = bundled.file] { return describe_scenario(file); },
+          {{"group", bundled.group}, {"source", json.value("source", "")}}};
 }
 
-/// The command that a study stands for, and its file as it is.
 Description describe_study(const BundledStudy& study) {
   const std::string text = read_text_file(study.file, kLargestJsonFile);
   return {fmt::format("study {}\n{}\n{}\n{}\n  asked by: hapbench {} {}\n", bold(stdout, study.name),
@@ -70,7 +75,6 @@ Description describe_study(const BundledStudy& study) {
           {{"kind", "study"}, {"name", study.name}, {"file", study.file.string()}, {"study", parse_json(text)}}};
 }
 
-/// A list of results/reference/LIST.json.
 Json list_on_record(const std::string& list) {
   const std::filesystem::path file = installed_folder("results/reference") / (list + ".json");
   try {
@@ -93,9 +97,9 @@ Named on_record(const char* kind, const Json& thing) {
     for (const char* member : {"id", "cases", "choices_reach_it", "ours", "robustness", "timing"}) titled.erase(member);
     return Description{thing_text(titled), thing};
   };
-  Named named{kind, thing.at("id"), thing.value("claim", ""), describe};
-  if (thing.contains("claim")) named.more = {{"verdict", thing.at("verdict")}, {"source", thing.at("place")}};
-  return named;
+  Json more = Json::object();
+  if (thing.contains("claim")) more = {{"verdict", thing.at("verdict")}, {"source", thing.at("place")}};
+  return {kind, thing.at("id"), thing.value("claim", ""), describe, more};
 }
 
 /// What the folders beside the program hold: scenarios, studies, claims and choices on record. Throws InputError.
@@ -111,10 +115,9 @@ Index folder_index() {
 
 // ---- Places of the thesis
 
-/// A place of the thesis: "Fig. A.2" is {"Fig.", "A.2"}.
+/// A place of the thesis: "Fig. A.2" is {"Fig.", "A.2"}; the kind is "Fig.", "Table" or "section".
 struct Place {
-  std::string kind;  ///< "Fig.", "Table" or "section"
-  std::string number;
+  std::string kind, number;
 };
 
 /// The kind of place that a word announces. Numbers behind any other word are sections.
@@ -125,8 +128,7 @@ std::string place_kind(const std::string& word) {
   return "section";
 }
 
-/// Reads a place, of any kind where none is given, also from the name of a figure's file such as
-/// figure_A.4_springs.svg. None when the name is not a place's.
+/// A place, of any kind where none is given, or of a figure's file such as figure_A.4_springs.svg; none of other names.
 std::optional<Place> asked_place(const std::string& name) {
   static const std::regex kPlace(
       R"((?:(fig|figs|figure|table|section)[._ ]*)?((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
@@ -166,16 +168,14 @@ std::vector<std::filesystem::path> pictures_of(const Place& place) {
   std::error_code none;
   for (const auto& entry :
        std::filesystem::directory_iterator(installed_folder("results/reference") / "figures", none)) {
-    const std::string stem = entry.path().stem().string();
-    if (stem == "figure_" + figure || stem.starts_with("figure_" + figure + "_")) pictures.push_back(entry.path());
+    if ((entry.path().stem().string() + "_").starts_with("figure_" + figure + "_")) pictures.push_back(entry.path());
   }
   std::ranges::sort(pictures);
   return pictures;
 }
 
-/// The bundled scenarios and claims that name a place of the thesis, as "A.2", "Fig. A.2", "Table A.1" or
-/// "section 3.4"; a place includes its parts: 3.4 includes 3.4.1, Fig. 2 includes Fig. 2c. None when the name is no
-/// place's. Throws InputError for a place that nothing names.
+/// The bundled scenarios and claims that name a place, as "A.2", "Fig. A.2", "Table A.1" or "section 3.4", or a part of
+/// it, as 3.4.1 or Fig. 2c. None when the name is no place's. Throws InputError for a place that nothing names.
 std::optional<Description> describe_place(const std::string& name) {
   const std::optional<Place> place = asked_place(name);
   if (!place) return std::nullopt;
@@ -185,11 +185,11 @@ std::optional<Description> describe_place(const std::string& name) {
   for (const Named& thing : folder_index()) {
     const std::string source = thing.more.value("source", "");
     if (!names_place(source, *place)) continue;
-    const bool is_claim = thing.kind == "claim";
-    (is_claim ? claims : scenarios) += is_claim
-                                           ? entry(thing.name, fmt::format("{} ({})", thing.summary, source), 4, 10)
-                                           : entry(thing.name, source, 4, 44);
-    json[is_claim ? "claims" : "scenarios"].push_back(thing.name);
+    if (thing.kind == "claim")
+      claims += entry(thing.name, fmt::format("{} ({})", thing.summary, source), 4, 10);
+    else
+      scenarios += entry(thing.name, source, 4, 44);
+    json[list_name(thing.kind)].push_back(thing.name);
   }
   std::string pictures;
   for (const std::filesystem::path& picture : pictures_of(*place)) {
@@ -206,18 +206,7 @@ std::optional<Description> describe_place(const std::string& name) {
                      json};
 }
 
-// ---- list
-
-/// The kinds that lists have, in their order.
-constexpr const char* kListed[] = {"algorithm", "depth model", "stage",    "integrator", "environment", "tool", "hand",
-                                   "device",    "preset",      "scenario", "study",      "metric",      "claim"};
-
-/// The name of the list that has it: "depth_models"; of scenarios also their group.
-std::string list_name(const std::string& kind) {
-  std::string name = kind == "study" ? "studies" : kind + "s";
-  std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
-}
+// ---- Lists
 
 std::string group_of(const Named& thing) {
   return thing.more.value("group", "");
@@ -225,22 +214,12 @@ std::string group_of(const Named& thing) {
 
 /// True for the name of a kind's list. All metrics are told by a section of that name.
 bool is_kind(const std::string& name) {
-  return name != "metrics" && std::ranges::any_of(kListed, [&](const char* kind) { return list_name(kind) == name; });
-}
-
-/// What lists have, in their order.
-Index everything() {
-  Index index = program_index(), all;
-  std::ranges::move(folder_index(), std::back_inserter(index));
-  for (const std::string_view kind : kListed)
-    std::ranges::copy_if(index, std::back_inserter(all), [kind](const Named& thing) { return thing.kind == kind; });
-  return all;
+  return name != "metrics" && std::ranges::find(kListed, name, list_name) != std::end(kListed);
 }
 
 constexpr std::size_t kColumn = 34;  // of the summaries
 
-/// The first sentence of a summary, up to a semicolon or a colon that is not near its beginning, cut to what the line
-/// holds.
+/// The first sentence, up to a semicolon or a colon that is not near its beginning, cut to what the line holds.
 std::string short_summary(const std::string& text) {
   std::size_t end = std::min(text.find("; "), text.find(": ", 20));
   for (std::size_t dot = text.find('.'); dot < end; dot = text.find('.', dot + 1)) {
@@ -253,51 +232,46 @@ std::string short_summary(const std::string& text) {
   return sentence.substr(0, sentence.rfind(' ', room - 4)) + " ...";
 }
 
-/// Lists below their titles: with a line for each name, or the names alone.
 std::string list_text(const Index& all, bool names_alone) {
-  std::string text, title, names;
-  const auto end_list = [&] {
-    if (!names.empty()) text += wrapped(names.substr(2));
-    names.clear();
-  };
+  std::vector<std::pair<std::string, std::string>> lists;  // title, entries
   for (const Named& thing : all) {
-    const std::string group = group_of(thing), of = list_name(thing.kind) + (group.empty() ? "" : " of " + group);
-    if (of != title) {
-      end_list();
-      text += (title.empty() ? "" : "\n") + bold(stdout, of) + "\n";
-    }
-    title = of;
-    if (names_alone) {
-      names += ", " + thing.name;
-      continue;
-    }
+    const std::string group = group_of(thing), title = list_name(thing.kind) + (group.empty() ? "" : " of " + group);
+    if (lists.empty() || lists.back().first != title) lists.emplace_back(title, "");
+    std::string& entries = lists.back().second;
     const std::string verdict = thing.more.value("verdict", "");  // of a claim, which is told in full
-    text += verdict.empty()
-                ? entry(thing.name, short_summary(thing.summary), 2, kColumn, output_width())
-                : entry(fmt::format("{:<5}{}", thing.name, verdict), thing.summary, 2, kColumn, output_width());
+    if (names_alone)
+      entries += (entries.empty() ? "" : ", ") + thing.name;
+    else if (verdict.empty())
+      entries += entry(thing.name, short_summary(thing.summary), 2, kColumn, output_width());
+    else
+      entries += entry(fmt::format("{:<5}{}", thing.name, verdict), thing.summary, 2, kColumn, output_width());
   }
-  end_list();
+  std::string text;
+  for (const auto& [title, entries] : lists)
+    text += (text.empty() ? "" : "\n") + bold(stdout, title) + "\n" + (names_alone ? wrapped(entries) : entries);
   return text;
 }
 
 struct DescribeOptions {
-  std::string name;
-  std::string grep;
+  std::string name, grep;
   OutputOptions output;
 };
 
 /// Lists what is of a kind or a group, or of each kind but the many metrics and claims the names.
 int list(const DescribeOptions& options) {
-  Index all = everything();
   const bool of_everything = options.name.empty() && options.grep.empty();
   const std::string pattern = lower_case(options.grep);
-  std::erase_if(all, [&](const Named& thing) {
+  const auto is_asked = [&](const Named& thing) {
+    if (of_everything) return thing.kind != "metric" && thing.kind != "claim";
     const std::string text = thing.name + " " + thing.summary + " " + thing.more.value("source", "");
-    const bool is_asked =
-        options.name.empty() || list_name(thing.kind) == options.name || group_of(thing) == options.name;
-    return !is_asked || lower_case(text).find(pattern) == std::string::npos ||
-           (of_everything && (thing.kind == "metric" || thing.kind == "claim"));
-  });
+    return (options.name.empty() || list_name(thing.kind) == options.name || group_of(thing) == options.name) &&
+           lower_case(text).find(pattern) != std::string::npos;
+  };
+  Index index = program_index(), all;
+  std::ranges::move(folder_index(), std::back_inserter(index));
+  for (const std::string_view kind : kListed)
+    for (const Named& thing : index)
+      if (thing.kind == kind && is_asked(thing)) all.push_back(thing);
   if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
   Json json = Json::array();
   for (const Named& thing : all) {
@@ -315,7 +289,6 @@ int list(const DescribeOptions& options) {
 
 // ---- describe
 
-/// A heading in lower case, without blanks and line breaks.
 std::string plain(std::string_view text) {
   std::string plain = lower_case(text);
   std::erase_if(plain, [](unsigned char c) { return std::isspace(c); });
@@ -329,8 +302,7 @@ bool is_heading(const Named& thing, std::string_view name) {
          (plain(name) == plain(title) || plain(name) == plain(title.substr(0, title.find('\n'))));
 }
 
-template <class IsMeant>
-std::vector<Description> described(const Index& index, const IsMeant& is_meant) {
+std::vector<Description> described(const Index& index, const std::function<bool(const Named&)>& is_meant) {
   std::vector<Description> found;
   for (const Named& thing : index)
     if (is_meant(thing)) found.push_back(thing.describe());

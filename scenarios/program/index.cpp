@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "algorithms/registry.hpp"
-#include "device_model/device_presets.hpp"
 #include "device_model/theory/linear_loops.hpp"
 #include "results/record/recorder.hpp"
 #include "results/summary/summary.hpp"
@@ -16,10 +15,8 @@
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/limits/stability/run_stability.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/program/run_table.hpp"
-#include "scenarios/program/table.hpp"
 #include "scenarios/run/diagnosis.hpp"
-#include "scenarios/run/result_folder.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis/choices.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -44,27 +41,22 @@ Description described(const Json& thing) {
   return {thing_text(thing), thing};
 }
 
-/// A parameter of a model, which is a field of scenarios.
-Json parameter_json(const std::string& path, const char* unit, const char* meaning) {
-  const FieldGuide& field = *find_field(path);
-  const Json& initial = field.initial;
-  const std::string given = initial.is_number_float() ? fmt::format("{:g}", initial.get<double>()) : initial.dump();
-  return {{"name", path},
-          {"unit", unit},
-          {"default", field.presence == Presence::has_default ? given : "by scene"},
-          {"range", field.value.allowed},
-          {"meaning", meaning}};
-}
-
 Json model_json(const char* kind, const ModelInfo& info, std::span<const OwnParameter> own,
                 const AlgorithmOrigin& origin) {
   Json parameters = Json::array();
-  for (const auto& [parameter, meaning] : info.parameters)
-    parameters.push_back(parameter_json(parameter.field, parameter.range.unit, meaning));
-  for (const OwnParameter& parameter : own) {
-    parameters.push_back(parameter_json(fmt::format("rendering.parameters.{}.{}", info.name, parameter.name),
-                                        parameter.range.unit, parameter.meaning));
-  }
+  const auto add = [&parameters](const std::string& path, const char* unit, const char* meaning) {
+    const FieldGuide& field = *find_field(path);
+    const Json& initial = field.initial;
+    const std::string given = initial.is_number_float() ? fmt::format("{:g}", initial.get<double>()) : initial.dump();
+    parameters.push_back({{"name", path},
+                          {"unit", unit},
+                          {"default", field.presence == Presence::has_default ? given : "by scene"},
+                          {"range", field.value.allowed},
+                          {"meaning", meaning}});
+  };
+  for (const auto& [parameter, meaning] : info.parameters) add(parameter.field, parameter.range.unit, meaning);
+  for (const OwnParameter& p : own)
+    add(fmt::format("rendering.parameters.{}.{}", info.name, p.name), p.range.unit, p.meaning);
   Json json = {{"kind", kind},
                {"name", info.name},
                {"summary", info.summary},
@@ -88,7 +80,6 @@ void add_models(Index& index) {
   for (const IntegratorEntry* entry : kIntegrators) add("integrator", entry->info);
 }
 
-/// Shows the numbers of a published device, each with its source.
 Description describe_preset(const DevicePreset& preset) {
   Description d;
   d.text = fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
@@ -102,20 +93,19 @@ Description describe_preset(const DevicePreset& preset) {
       {"coulomb_N", preset.coulomb, ""},
       {"encoder_step_m", preset.encoder_step, ""},
       {"force_max_N", preset.force_max, ""},
-      {"delay_samples", {config_of(preset).delay_samples, NumberSource::ours}, "none is published; "},
+      {"delay_samples", {config_of(preset).delay_samples, kOurEstimate}, "none is published; "},
       {"max_stiffness_N_per_m", preset.max_stiffness, "published largest stable stiffness; "},
       {"max_damping_N_s_per_m", preset.max_damping, "published largest stable damping; "}};
   for (const auto& [name, number, meaning] : numbers) {
     const std::string range =
         number.low < number.high ? fmt::format(", may be {:.3g} to {:.3g}", number.low, number.high) : "";
-    d.text += entry(fmt::format("{} {:g}", name, number.value), meaning + (source_text(number.source) + range), 2, 32);
+    d.text += entry(fmt::format("{} {:g}", name, number.value), meaning + (std::string(number.source) + range), 2, 32);
     d.json["numbers"][name] = {
-        {"value", number.value}, {"source", source_text(number.source)}, {"low", number.low}, {"high", number.high}};
+        {"value", number.value}, {"source", number.source}, {"low", number.low}, {"high", number.high}};
   }
   return d;
 }
 
-/// Explains how runs are judged to be stable, and what is known in theory.
 Description describe_stability() {
   Description d;
   d.json = {{"kind", "stability"}};
@@ -148,7 +138,6 @@ Description describe_stability() {
   return d;
 }
 
-/// The rules by which `run` says what is wrong.
 Description describe_diagnosis() {
   Description d{"rules of the diagnosis, which run prints and writes to summary.json\n\n", Json::array()};
   for (const DiagnosisRule& rule : diagnosis_rules()) {
@@ -158,14 +147,6 @@ Description describe_diagnosis() {
         {{"rule", rule.name}, {"number", rule.number}, {"unit", rule.unit}, {"threshold", rule.threshold}});
   }
   return d;
-}
-
-/// Names that stand for no single thing of a list.
-void add_sections(Index& index) {
-  index.push_back({"section", "choices_schema", "", [] { return Description{"", choices_schema()}; }});
-  index.push_back({"section", "diagnosis", "", describe_diagnosis});
-  index.push_back({"section", "schema", "", [] { return Description{"", scenario_schema()}; }});
-  index.push_back({"section", "stability", "", describe_stability});
 }
 
 // ---- The fields of scenario files
@@ -222,8 +203,7 @@ std::string value_text(const std::string& title, const std::string& of, const st
   return text;
 }
 
-/// The names of the types among which the field at a path such as "hand.type" chooses, with what they are; empty for a
-/// field that chooses no type.
+/// The types among which the field at a path such as "hand.type" chooses; empty for a field that chooses none.
 Description describe_types(const std::string& path) {
   const std::string end = std::string(".") + kTypeField;
   if (!path.ends_with(end)) return {};
@@ -243,10 +223,8 @@ Description describe_field(const std::string& path) {
   std::vector<PlacedField> found;
   for (const PlacedField& placed : placed_fields()) {
     if (placed.path != path) continue;
-    const auto is_same = [&placed](const PlacedField& other) {
-      return other.field->schema() == placed.field->schema();
-    };
-    const auto same = std::ranges::find_if(found, is_same);
+    const auto schema_of = [](const PlacedField& other) { return other.field->schema(); };
+    const auto same = std::ranges::find(found, placed.field->schema(), schema_of);
     if (same == found.end())
       found.push_back(placed);
     else
@@ -283,12 +261,10 @@ Description describe_scenario_fields() {
 /// The types among which fields choose, those that are the same in several fields once.
 void add_types(Index& index) {
   std::vector<std::pair<std::string, const ValueGuide*>> types;
-  for (const PlacedField& placed : placed_fields()) {
-    for (const ValueGuide& choice : placed.field->value.choices) {
-      const auto is_same = [&choice](const auto& known) { return known.second->schema == choice.schema; };
-      if (std::ranges::none_of(types, is_same)) types.emplace_back(placed.path, &choice);
-    }
-  }
+  const auto schema_of = [](const auto& known) -> const Json& { return known.second->schema; };
+  for (const PlacedField& placed : placed_fields())
+    for (const ValueGuide& choice : placed.field->value.choices)
+      if (std::ranges::find(types, choice.schema, schema_of) == types.end()) types.emplace_back(placed.path, &choice);
   for (const auto& [field, type] : types) {
     const auto has_the_name = [type = type](const auto& other) { return other.second->type == type->type; };
     const std::string of = std::ranges::count_if(types, has_the_name) > 1 ? field : "";
@@ -302,37 +278,24 @@ void add_types(Index& index) {
 const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
   if (!value.is_object()) return nullptr;
   if (guide.choices.empty()) return &guide;
-  for (const ValueGuide& choice : guide.choices) {
+  for (const ValueGuide& choice : guide.choices)
     if (value.value(kTypeField, choice.may_be_untyped ? choice.type : "") == choice.type) return &choice;
-  }
   return nullptr;
 }
 
-using FieldMeanings = std::vector<std::pair<std::string, std::string>>;
-
-void add_meanings(FieldMeanings& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
+void add_meanings(Json& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
   for (const auto& entry : value.items()) {
     const auto field = std::ranges::find(object.fields, entry.key(), &FieldGuide::name);
     if (field == object.fields.end()) continue;  // the type
-    meanings.emplace_back(prefix + entry.key(), field->meaning);
+    meanings[prefix + entry.key()] = field->meaning;
     if (const ValueGuide* nested = object_of(entry.value(), field->value))
       add_meanings(meanings, prefix + entry.key() + ".", entry.value(), *nested);
   }
 }
 
-/// The fields, the types among which they choose, and the sections that are about fields.
-void add_fields(Index& index) {
-  for (const std::string& path : scenario_field_paths())
-    index.push_back({"field", path, "", [path] { return describe_field(path); }});
-  constexpr std::pair<const char*, Description (*)()> kSections[] = {
-      {"algorithm", describe_algorithms}, {"profile", describe_profile}, {"scenario", describe_scenario_fields}};
-  for (const auto& [name, describe] : kSections) index.push_back({"section", name, "", describe});
-  add_types(index);
-}
-
 // ---- Names that results and printed tables have: metrics, files, columns, words, headings
 
-constexpr Column kShellColumns[] = {
+const std::vector<Column> kShellColumns = {
     {"x_m", "m", "x of a point of the shell"},         {"y_m", "m", "y of a point of the shell"},
     {"z_m", "m", "z of a point of the shell"},         {"nx", "1", "x of the outward unit normal there"},
     {"ny", "1", "y of the outward unit normal there"}, {"nz", "1", "z of the outward unit normal there"}};
@@ -359,9 +322,7 @@ Description describe_tables() {
 }
 
 struct Word {
-  std::string_view name;
-  const char* kind;
-  const char* meaning;
+  const char *name, *kind, *meaning;
 };
 
 constexpr const char* kTime = "number of timing.json";
@@ -413,46 +374,34 @@ Description describe_words() {
   return {"words that the program prints\n" + thing_text(json), json};
 }
 
-/// Adds a name with one meaning.
 void add_term(Index& index, const Json& json) {
   index.push_back({json["kind"], json["name"], json["meaning"], [json] { return described(json); }});
 }
 
 /// The columns of all files, those of one name and meaning once.
 void add_columns(Index& index, const std::vector<DescribedTable>& tables) {
-  std::vector<std::pair<DescribedTable::Entry, std::vector<std::string>>> all;
+  std::vector<Json> all;
   for (const DescribedTable& table : tables) {
     if (table.file.empty()) continue;
-    for (const DescribedTable::Entry& column : table.columns) {
-      const auto same = std::ranges::find_if(all, [&column](const auto& known) {
-        return known.first.name == column.name && known.first.meaning == column.meaning;
+    for (const auto& [name, unit, meaning] : table.columns) {
+      Json column = {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}};
+      const auto same = std::ranges::find_if(all, [&column](const Json& known) {
+        return known["name"] == column["name"] && known["meaning"] == column["meaning"];
       });
-      (same != all.end() ? *same : all.emplace_back(column, std::vector<std::string>())).second.push_back(table.file);
+      (same != all.end() ? *same : all.emplace_back(std::move(column)))["files"].push_back(table.file);
     }
   }
-  for (const auto& [column, files] : all) {
-    const auto& [name, unit, meaning] = column;
-    add_term(index, {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}, {"files", files}});
-  }
+  for (const Json& column : all) add_term(index, column);
 }
 
-/// Metrics, files, columns.
-void add_results(Index& index, const std::vector<DescribedTable>& tables) {
-  for (const char* name : {"metrics", "summary.json"}) index.push_back({"section", name, "", describe_metrics});
-  for (const Metric& metric : all_metrics()) {
-    add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}});
-  }
-  for (const char* name : {"columns", "columns.json"}) index.push_back({"section", name, "", describe_tables});
-  for (const DescribedTable& table : tables)
-    if (!table.file.empty()) index.push_back({"file", table.file, "", [table] { return describe_table(table); }});
-  add_columns(index, tables);
-}
-
-/// Outcomes, classes of motion, verdicts and others that the program prints.
-void add_words(Index& index) {
-  index.push_back({"section", "words", "", describe_words});
-  for (const Json& word : all_words()) add_term(index, word);
-}
+/// Names that stand for no single thing of a list.
+constexpr std::pair<const char*, Description (*)()> kSections[] = {
+    {"metrics", describe_metrics},          {"summary.json", describe_metrics},
+    {"columns", describe_tables},           {"columns.json", describe_tables},
+    {"algorithm", describe_algorithms},     {"profile", describe_profile},
+    {"scenario", describe_scenario_fields}, {"choices_schema", [] { return Description{"", choices_schema()}; }},
+    {"diagnosis", describe_diagnosis},      {"schema", [] { return Description{"", scenario_schema()}; }},
+    {"stability", describe_stability},      {"words", describe_words}};
 
 /// Headings of printed tables; the meaning of one is a name or a sentence.
 void add_headings(Index& index, const std::vector<DescribedTable>& tables) {
@@ -511,8 +460,8 @@ std::vector<DescribedTable> result_tables() {
   };
   for (const ResultTable& table : record_tables()) add(table);
   add(kTargetTable);
-  for (auto* tables_of : {run_tables, league_tables, limit_tables, converge_tables, tune_tables, claim_tables,
-                          sweep_tables, stress_tables})
+  for (auto* tables_of : {run_tables, single_run_tables, league_tables, limit_tables, converge_tables, tune_tables,
+                          claim_tables, sweep_tables, stress_tables})
     std::ranges::move(tables_of(), std::back_inserter(tables));
   add({"shell.csv", "of validate --points: one line per point of the environment", kShellColumns});
   return tables;
@@ -524,10 +473,16 @@ Index program_index() {
   add_models(index);
   for (const DevicePreset& preset : device_presets())
     index.push_back({"preset", preset.name, preset.device, [&preset] { return describe_preset(preset); }});
-  add_results(index, tables);
-  add_fields(index);
-  add_sections(index);
-  add_words(index);
+  for (const auto& [name, describe] : kSections) index.push_back({"section", name, "", describe});
+  for (const Metric& metric : all_metrics())
+    add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}});
+  for (const DescribedTable& table : tables)
+    if (!table.file.empty()) index.push_back({"file", table.file, "", [table] { return describe_table(table); }});
+  add_columns(index, tables);
+  for (const std::string& path : scenario_field_paths())
+    index.push_back({"field", path, "", [path] { return describe_field(path); }});
+  add_types(index);
+  for (const Json& word : all_words()) add_term(index, word);
   add_headings(index, tables);
   return index;
 }
@@ -538,8 +493,8 @@ const FieldGuide* find_field(const std::string& path) {
   return found == all.end() ? nullptr : found->field;
 }
 
-FieldMeanings field_meanings(const Json& scenario) {
-  FieldMeanings meanings;
+Json field_meanings(const Json& scenario) {
+  Json meanings = Json::object();
   add_meanings(meanings, "", scenario, scenario_guide());
   return meanings;
 }

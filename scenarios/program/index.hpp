@@ -3,10 +3,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "scenarios/format/json_file.hpp"
 #include "scenarios/format/writer.hpp"
 
 /// The index of names that users meet. `describe` lists those of some kinds and explains each, and refusals take the
@@ -19,8 +17,7 @@ struct Description {
   std::string text;  ///< empty for a schema, which is JSON however it is asked for
   Json json;
 };
-/// Several meanings of a name as one: their texts one after the other, their JSON as an array. Precondition: there is
-/// one.
+/// The meanings of a name, of which there is one, as one: their texts one after the other, their JSON as an array.
 Description joined(const std::vector<Description>& meanings);
 
 /// The text of a thing that is described by its JSON: name, unit and kind in its first line, below it what it is, and
@@ -37,25 +34,21 @@ struct Named {
 };
 using Index = std::vector<Named>;
 
-/// What the program knows by itself, the meanings of a name in the order in which they are told: models, presets,
-/// results, fields, sections, types, words, headings.
+/// What the program knows by itself, in the order in which it is told: models, presets, sections, metrics, files,
+/// columns, fields, types, words, headings.
 Index program_index();
 /// Every table among the results of this program, and those that are only printed, without a file.
 std::vector<DescribedTable> result_tables();
-// Those of single commands, from the columns that these write and print.
-std::vector<DescribedTable> claim_tables();
-std::vector<DescribedTable> converge_tables();
-std::vector<DescribedTable> league_tables();
-std::vector<DescribedTable> limit_tables();
-std::vector<DescribedTable> stress_tables();
-std::vector<DescribedTable> sweep_tables();
-std::vector<DescribedTable> tune_tables();
+/// Those of single commands, from the columns that these write and print.
+using CommandTables = std::vector<DescribedTable>();
+CommandTables claim_tables, converge_tables, league_tables, limit_tables, run_tables, single_run_tables, stress_tables,
+    sweep_tables, tune_tables;
 
 // ---- The fields of scenario files. Their names are dotted paths, as "rendering.limits".
 
 /// The field at that path, of the first type that has it where types choose the fields; null when there is none.
 const FieldGuide* find_field(const std::string& path);
-/// The path and the meaning of each field that a scenario's JSON has, objects before their fields.
-std::vector<std::pair<std::string, std::string>> field_meanings(const Json& scenario);
+/// The meaning of each field that a scenario's JSON has, by its path, objects before their fields.
+Json field_meanings(const Json& scenario);
 
 }  // namespace hapbench

@@ -12,7 +12,6 @@
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -23,8 +22,7 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/geometry/triangle_tree.hpp"
 
-/// The command `new`, which writes scenario files to start from: each scene runs at once and touches something, and has
-/// only the fields that a newcomer changes first.
+/// The command `new`: each scene runs at once and touches something, and has only what a newcomer changes first.
 namespace hapbench {
 namespace {
 
@@ -32,17 +30,14 @@ namespace fs = std::filesystem;
 
 constexpr double kStep = 0.0005;  ///< of the scenes [s]
 
-/// A kind of start.
 struct StartKind {
-  std::string name;
-  std::string summary;
+  std::string name, summary;
   std::string source;  ///< what it is made from: "mesh", "shell" or "stroke"; empty for nothing
   bool is_source_optional;
   Json scene;  ///< with what does not depend on the source
 };
 
-/// All kinds, those of scenarios/library/starts.json, in the order in which they are shown. Throws InputError without
-/// that file.
+/// Those of scenarios/library/starts.json, in the order in which they are shown. Throws InputError without that file.
 const std::vector<StartKind>& start_kinds() {
   static const std::vector<StartKind> kinds = [] {
     const Json json = parse_json(read_named_file(installed_folder("scenarios/library") / "starts.json"));
@@ -60,44 +55,23 @@ const std::vector<StartKind>& start_kinds() {
 }
 
 const StartKind& kind_named(const std::string& name) {
-  require_valid_name("KIND: got", name, names_of(start_kinds(), &StartKind::name));
+  require_valid_name("KIND: got", name, names_of(start_kinds(), &StartKind::name), "hapbench new");
   return *std::ranges::find(start_kinds(), name, &StartKind::name);
 }
 
 // ---- The options
 
 struct NewOptions {
-  std::string kind;
-  std::string from;
-  std::string on;
-  std::string extent;
-  std::string side = "z";
+  std::string kind, from, on, extent, side = "z", at, out;
   std::vector<std::string> path;
-  std::string at;
   bool preview = false;
-  std::string out;
   OutputOptions output;
 };
 
-void require_file(const char* option, const std::string& file) {
-  std::error_code ignored;
-  if (!file.empty() && !fs::exists(file, ignored))
-    throw InputError(fmt::format("{} {}: cannot be read: no such file", option, file));
-}
-
-void check_source(const StartKind& kind, const std::string& from) {
-  if (!kind.source.empty() && !kind.is_source_optional && from.empty())
-    throw InputError(fmt::format("--from: missing; \"{}\" starts from a file", kind.name));
-  if (kind.source.empty() && !from.empty())
-    throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, kind.name));
-  require_file("--from", from);
-}
-
 Vec3 place_in(const char* option, const std::string& text) {
   std::vector<double> numbers;
-  for (const std::string_view part : parts_of(text, ',')) {
+  for (const std::string_view part : parts_of(text, ','))
     if (const auto number = finite_number(part)) numbers.push_back(*number);
-  }
   if (numbers.size() != 3 || std::ranges::count(text, ',') != 2)
     throw InputError(fmt::format("{}: got \"{}\"; allowed: X,Y,Z in metres", option, text));
   return Vec3(numbers.data());
@@ -114,20 +88,29 @@ double length_in(const char* option, const std::string& text) {
       fmt::format("{}: got \"{}\"; allowed: a length above 0 with its unit, mm, cm, m or in: 12mm", option, text));
 }
 
-/// Throws InputError for options that the kind has no use for, and for files that are not there.
+/// Throws InputError for options that the kind lacks or has no use for, and for files that are not there.
 void check_options(const NewOptions& options, const StartKind& kind) {
-  const std::string& name = kind.name;
+  const std::string &name = kind.name, &from = options.from;
   const bool drags = name == "drag" || name == "bur", lands = drags || name == "mesh" || name == "shell";
-  const bool has_mesh = !options.on.empty() || (kind.source == "mesh" && !options.from.empty());
+  const bool has_mesh = !options.on.empty() || (kind.source == "mesh" && !from.empty());
   const auto require = [](bool is_right, const char* option, const char* allowed) {
     if (!is_right) throw InputError(fmt::format("{}: allowed: {}", option, allowed));
   };
+  const auto require_file = [](const char* option, const std::string& file) {
+    std::error_code ignored;
+    if (!file.empty() && !fs::exists(file, ignored))
+      throw InputError(fmt::format("{} {}: cannot be read: no such file", option, file));
+  };
+  if (!kind.source.empty() && !kind.is_source_optional && from.empty())
+    throw InputError(fmt::format("--from: missing; \"{}\" starts from a file", name));
+  if (kind.source.empty() && !from.empty())
+    throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, name));
+  require_file("--from", from);
   require(options.on.empty() || name == "stroke", "--on", "for stroke");
   require(options.path.empty() || (drags && options.path.size() > 1 && options.at.empty()), "--path",
           "for drag and bur, two points or more, and without --at");
   require(options.at.empty() || lands, "--at", "for mesh, shell, drag and bur");
-  require(options.side == "z" || (lands && !options.from.empty()), "--side",
-          "for mesh, shell, drag and bur with --from");
+  require(options.side == "z" || (lands && !from.empty()), "--side", "for mesh, shell, drag and bur with --from");
   require(options.extent.empty() || has_mesh, "--extent", "with the file of a mesh");
   require_file("--on", options.on);
 }
@@ -137,23 +120,20 @@ void check_options(const NewOptions& options, const StartKind& kind) {
 /// The point nearest to the middle of those within `tolerance` of the top.
 Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
   std::vector<Vec3> high;
-  for (const SurfacePoint& point : points) {
+  for (const SurfacePoint& point : points)
     if (point.position.z() >= top - tolerance) high.push_back(point.position);
-  }
   Vec3 middle = Vec3::Zero();
   for (const Vec3& place : high) middle += place;
   middle /= static_cast<double>(high.size());
   return *std::ranges::min_element(high, {}, [&middle](const Vec3& place) { return (place - middle).norm(); });
 }
 
-/// The highest of the points above or below the box's middle, to within `aside`; where there are none, as in a ring,
-/// the middle.
+/// The highest of the points within `aside` of the box's middle line; where there are none, as in a ring, the middle.
 Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside) {
   const Vec3 middle = 0.5 * (box.min + box.max);
   Vec3 top(middle.x(), middle.y(), box.min.z());
-  for (const SurfacePoint& point : points) {
+  for (const SurfacePoint& point : points)
     if ((point.position - middle).head<2>().norm() <= aside && point.position.z() > top.z()) top = point.position;
-  }
   return top.z() > box.min.z() ? top : middle;
 }
 
@@ -166,13 +146,11 @@ struct DragStart {
 };
 
 /// Tries along x and y, forwards and back, from each of `positions`, then with twice and four times `smoothing`, until
-/// a way is at least `enough` long; else takes the longest. A later direction or place has to lead a tenth further, so
-/// that the choice does not depend on rounding. Makes a walk of some 10 ms for each combination. Preconditions: a point
-/// in the shell, a position.
+/// a way is at least `enough` long; else takes the longest. A later one has to lead a tenth further, so that rounding
+/// does not decide. A walk of some 10 ms for each combination. Preconditions: a point in the shell, a position.
 DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough) {
   constexpr double kFurther = 1.1;
-  const Box box = shell.bounds();
-  const double furthest = diagonal(box);
+  const double furthest = diagonal(shell.bounds());
   DragStart best{positions.front(), Vec3::UnitX(), smoothing, 0.0};
   for (const double radius : {smoothing, 2.0 * smoothing, 4.0 * smoothing}) {
     const SmoothedSurface surface(shell, radius);
@@ -200,10 +178,6 @@ double rounded(double value) {
 
 Json list_of(const Vec3& v) {
   return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};  // never -0
-}
-
-double longest_edge(const Box& box) {
-  return box.size().maxCoeff();
 }
 
 /// Rounds to the micrometre, as people write places.
@@ -256,13 +230,13 @@ class Start {
 
   /// Writes the names of the source and of the mesh below a stroke where they are used.
   void name_files() {
-    const auto name = [this](Json& part, const fs::path& file) {
-      part["file"] = fs::proximate(file, directory_.empty() ? "." : directory_).generic_string();
-    };
-    if (scene["environment"].contains("file")) name(scene["environment"], mesh_file());
-    if (has_type("tool", "mesh")) name(scene["tool"], options_.from);
-    if (scene.contains("motion") && scene["motion"].contains("position") && !options_.from.empty())
-      name(scene["motion"]["position"], options_.from);
+    for (const auto& [field, file] : {std::pair{"/environment/file", mesh_file()},
+                                      {"/tool/file", options_.from},
+                                      {"/motion/position/file", options_.from}}) {
+      const Json::json_pointer place(field);
+      if (scene.contains(place))
+        scene[place] = fs::proximate(file, directory_.empty() ? "." : directory_).generic_string();
+    }
   }
 
   /// Puts the side's axes in the place of x, y and z.
@@ -295,7 +269,7 @@ class Start {
   /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
   /// stated is in metres. Throws InputError when it then is not an object to be worked on.
   double choose_scale(const Box& box, const char* object) {
-    const double longest = longest_edge(box) / 0.001;
+    const double longest = box.size().maxCoeff() / 0.001;
     if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
       const std::string command = fmt::format("hapbench new {} {} {} --extent", options_.kind,
                                               options_.on.empty() ? "--from" : "--on", mesh_file());
@@ -316,7 +290,7 @@ class Start {
     const Box box = bounds_of(points());
     const double scale = choose_scale(box, "mesh");
     scene["environment"]["scale"] = scale;
-    if (options_.on.empty()) choose_tool(longest_edge(box) / 0.001 * scale);
+    if (options_.on.empty()) choose_tool(box.size().maxCoeff() / 0.001 * scale);
     scene["environment"]["spacing_m"] = rounded(diameter_ / 10.0);
     if (!options_.on.empty())
       notes.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
@@ -324,15 +298,15 @@ class Start {
 
   void choose_tool(double longest) {
     diameter_ = std::max(0.001, rounded(longest / 50.0));
-    if (scene.contains("tool") && scene["tool"].contains("diameter_m")) scene["tool"]["diameter_m"] = diameter_;
-    if (scene.contains("tool") && scene["tool"].contains("length_m")) scene["tool"]["length_m"] = 10.0 * diameter_;
+    for (const auto& [field, size] : {std::pair{"diameter_m", diameter_}, {"length_m", 10.0 * diameter_}})
+      if (scene.contains("tool") && scene["tool"].contains(field)) scene["tool"][field] = size;
   }
 
   /// Turns the normals of an open mesh round that point away from the side, about its highest place.
   std::vector<SurfacePoint> facing_points() {
     std::vector<SurfacePoint> shell = points();
     const Box box = bounds_of(shell);
-    choose_tool(longest_edge(box));
+    choose_tool(box.size().maxCoeff());
     const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
     const bool is_open =
         !has_type("environment", "mesh") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
@@ -410,7 +384,6 @@ class Start {
              {"interpolation", "cosine"}};
   }
 
-  /// Leads the tool along the points of --path.
   void follow_path(const Vec3& first) {
     double way = 0.0;
     Json& hand = scene["hand"];
@@ -447,7 +420,7 @@ class Start {
 
   /// Drags over four fifths of the way to where the surface ends.
   void choose_way(const PointShell& shell, const std::vector<Vec3>& starts) {
-    const double enough = 0.25 * longest_edge(shell.bounds());
+    const double enough = 0.25 * shell.bounds().size().maxCoeff();
     const DragStart drag = choose_drag(shell, starts, 0.5 * diameter_, enough);
     const double way = 0.8 * drag.room;
     const bool has_room = way >= diameter_;
@@ -494,17 +467,12 @@ class Start {
 // ---- The command
 
 int list_kinds(const OutputOptions& output) {
-  Columns<StartKind> columns;
-  columns.add("kind", "", "", &StartKind::name, {.heading = "KIND"});
-  columns.add("summary", "", "", &StartKind::summary, {.heading = "what it starts with"});
-  const std::vector<StartKind> kinds = start_kinds();
-  Json json = Json::array();
-  for (const StartKind& kind : kinds) json.push_back(columns.json(kind));
-  print(output, columns.table(kinds).text(), json);
+  const Columns<StartKind> columns = {{"kind", "", "", &StartKind::name, under("KIND")},
+                                      {"summary", "", "", &StartKind::summary, under("what it starts with")}};
+  print(output, columns.table(start_kinds()).text(), columns.json_list(start_kinds()));
   return kSuccess;
 }
 
-/// Runs the new scenario, as `run` does, and draws it.
 void draw_preview(const fs::path& scenario, const fs::path& picture, bool quiet) {
   const fs::path run = results_directory("", scenario.stem().string());
   require_writable_directory(run);
@@ -515,7 +483,7 @@ void draw_preview(const fs::path& scenario, const fs::path& picture, bool quiet)
 int write_new(const NewOptions& options) {
   if (options.kind.empty()) return list_kinds(options.output);
   const StartKind& kind = kind_named(options.kind);
-  check_source(kind, options.from);
+  check_options(options, kind);
   const fs::path source = options.from;
   const fs::path out =
       !options.out.empty() ? options.out : (source.empty() ? "" : source.stem().string() + "_") + kind.name + ".json";
@@ -525,7 +493,6 @@ int write_new(const NewOptions& options) {
     throw InputError(fmt::format("{} exists; choose another name with --out", picture.string()));
   if (fs::exists(out, ignored)) throw InputError(fmt::format("{} exists; choose another with --out", out.string()));
   const fs::path directory = out.parent_path();
-  check_options(options, kind);
   const Start start = [&] {
     const WaitNotice notice("trying the scene", !options.output.quiet);
     return Start(kind, options, directory);
@@ -533,7 +500,7 @@ int write_new(const NewOptions& options) {
   LoadedScenario loaded = read_scenario(start.scene, directory);
   loaded.file = out;
   loaded = checked(std::move(loaded));
-  print_warnings(loaded, loaded.file_warnings);
+  print_warnings(with_files(loaded, loaded.file_warnings));
   require_writable_directory(directory.empty() ? "." : directory);
   write_file_atomically(out, json_text(start.scene));
 
@@ -543,11 +510,8 @@ int write_new(const NewOptions& options) {
   for (const std::string& note : start.notes) text += note + "\n";
   if (options.preview) text += fmt::format("picture of a run in {}\n", picture.string());
   text += "\n";
-  Json fields = Json::object();
-  for (const auto& [path, meaning] : field_meanings(start.scene)) {
-    text += entry(path, meaning, 0, 34);
-    fields[path] = meaning;
-  }
+  const Json fields = field_meanings(start.scene);
+  for (const auto& [path, meaning] : fields.items()) text += entry(path, meaning.get<std::string>(), 0, 34);
   text += fmt::format("\n\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
   Json said = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
   if (options.preview) said["picture"] = picture.string();

@@ -13,16 +13,13 @@
 #include "results/io/atomic_file.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/program/command.hpp"
-#include "scenarios/program/table.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 /// Commands whose work packages in Python do, which take every word behind the name, --help included.
 namespace hapbench {
 namespace {
-
-using ProgramWords = std::vector<std::string>;
 
 struct ImportKind {
   std::string name, sentence, package;
@@ -32,8 +29,7 @@ const ImportKind kImportKinds[] = {
     {"stroke", "Make a stroke to play back from a recording: poses and measured forces", "hapbench_import"},
     {"device", "Make a device's file from its log: mass, friction, delay, encoder", "hapbench_identify"}};
 
-/// The line of a shell that becomes the launcher, which finds a Python that has what the package needs. `package`: its
-/// name, and what it takes before the user's words.
+/// The line of a shell that becomes the launcher, which finds a Python for the package: its name and its first words.
 std::string launch_line(const ProgramWords& package, const ProgramWords& given) {
   ProgramWords words = {"exec", (installed_folder("scripts/python") / "launch").string()};
   words.insert(words.end(), package.begin(), package.end());
@@ -48,23 +44,20 @@ std::string launch_line(const ProgramWords& package, const ProgramWords& given) 
                 std::error_code(errno, std::generic_category()));
 }
 
-/// Runs the line as another process, and takes what it prints on standard output where `output` is given. Returns its
-/// exit status.
-int run_beside(const std::string& line, std::string* output) {
+/// Runs the line as another process. Returns its exit status and what it printed on standard output.
+std::pair<int, std::string> run_beside(const std::string& line) {
   std::fflush(stdout);
-  std::FILE* pipe = ::popen(line.c_str(), output != nullptr ? "r" : "w");
+  std::FILE* pipe = ::popen(line.c_str(), "r");
   if (pipe == nullptr) fail_to_launch();
-  if (output != nullptr)
-    for (int c = 0; (c = std::fgetc(pipe)) != EOF;) *output += static_cast<char>(c);
+  std::string text;
+  for (int c = 0; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
   const int ended = ::pclose(pipe);
-  return WIFEXITED(ended) ? WEXITSTATUS(ended) : kStopped + WTERMSIG(ended);
+  return {WIFEXITED(ended) ? WEXITSTATUS(ended) : kStopped + WTERMSIG(ended), text};
 }
 
-/// Runs it for the host, which gets what it prints on standard output as text, and its other lines as what they are.
-/// Returns its exit status. Throws an InputError for what it refuses.
+/// Runs it for the host, which gets text and messages. Returns its exit status. Throws InputError for what it refuses.
 int run_for(CapturedOutput& host, const std::string& line) {
-  std::string text;
-  const int status = run_beside(line + " 2>&1", &text);
+  const auto [status, text] = run_beside(line + " 2>&1");
   constexpr std::string_view kError = "hapbench: error: ", kWarning = "hapbench: warning: ";
   std::vector<InputError> faults;
   LineReader lines(text);
@@ -114,7 +107,6 @@ int run(const std::string& command, const ProgramWords& package, const ProgramWo
   fail_to_launch();
 }
 
-/// Runs the kind of import that the first word names.
 int run_import(const ProgramWords& given) {
   const std::string kind = given.empty() ? "" : given[0];
   std::string kinds;
@@ -137,7 +129,7 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
   const std::string line = launch_line({"hapbench_pictures", "plot"},
                                        {"--quiet", "--y=path", "--out=" + file.string(), "--", folder.string()});
   const WaitNotice notice("drawing", !quiet);
-  const int status = run_beside(line, nullptr);
+  const int status = run_beside(line).first;
   throw_if_stopped();
   if (status != 0) throw IoError("draw what is in", folder, std::make_error_code(std::errc::io_error));
 }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,27 +15,82 @@
 
 #include "results/io/table_writer.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/table.hpp"
 
-/// What a command answers: prose and tables. One list of columns a table gives its CSV file, the JSON, the printed
-/// table and what `describe` says of it.
+/// What a command answers: text as wide as the terminal, and tables, of which one list of columns gives the CSV file,
+/// the JSON, the printed table and what `describe` says.
 namespace hapbench {
+
+// ---- Text
+
+/// The width of standard output [characters]: COLUMNS of the environment, else that of the terminal; unbounded in a
+/// pipe or a file, and after `output_in_full` (--wide).
+std::size_t output_width();
+void output_in_full();
+bool output_is_in_full();
+/// The width of prose: that of the output, but at most 100.
+std::size_t prose_width();
+
+/// Breaks lines wider than the output at blanks, never within a word; continuations are indented by two more blanks.
+std::string fitted(std::string_view text, std::size_t width = output_width());
+
+/// The text in bold where the stream is a terminal, unless NO_COLOR is set or TERM is "dumb".
+std::string bold(std::FILE* stream, std::string_view text);
+
+/// A table for the terminal: columns as wide as their widest cell, a rule under the header. Numbers are aligned right,
+/// text left. A title may have two lines.
+struct Table {
+  struct Column {
+    std::string title;
+    bool number = true;        ///< aligned as one
+    std::string meaning = {};  ///< for `describe`: a name that it knows or a sentence; empty: it knows the title itself
+  };
+  std::vector<Column> columns;
+  std::vector<std::vector<std::string>> rows = {};  ///< a cell for each column
+
+  /// The table in at most `most_width` characters: a last column of text is wrapped; other columns that do not fit
+  /// follow below, in blocks that each begin with the first column.
+  std::string text(std::size_t most_width = output_width()) const;
+};
+
+/// Prose of at most `width` characters a line, each behind `indent` blanks; line breaks stay.
+std::string wrapped(std::string_view text, std::size_t indent = 2, std::size_t width = prose_width());
+
+/// A name behind `indent` blanks with its meaning beside it, from `column` on, or below it where the name is too long.
+std::string entry(std::string_view name, std::string_view meaning, std::size_t indent = 2, std::size_t column = 26,
+                  std::size_t width = prose_width());
+
+/// A number with `digits` significant digits; "-" for NaN and infinities.
+std::string significant(double value, int digits = 4);
+/// How many of `most` significant digits a tolerance leaves a number, one at least: down to its own leading one.
+int deserved_digits(double value, const std::optional<double>& tolerance, int most);
+/// A number with the digits that its tolerance (> 0) leaves it: down to the tolerance's leading one, and without an
+/// exponent above 1e-4. `digits` significant ones where no tolerance is known, or it is larger than the number.
+std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4);
+
+// ---- Tables in files, JSON and terminal
 
 /// Where a column of a table is.
 struct Shown {
-  bool csv = true, json = true;
-  /// Above the printed column, in two lines at most; empty: it is not printed.
-  std::string heading = {};
-  int digits = 4;     ///< significant ones of a number without a tolerance
-  bool wide = false;  ///< printed with --wide only
+  bool csv = true, json = true, printed = false;
+  bool wide = false;         ///< printed with --wide only
+  std::string heading = {};  ///< above the printed column, in two lines at most; empty: its name
+  int digits = 4;            ///< significant ones of a number without a tolerance
 };
-
-/// Columns that are not everywhere.
-inline Shown only_json() {
-  return {false, true};
+inline const Shown kOnlyJson = {.csv = false}, kOnlyCsv = {.json = false};
+/// Also printed, under a heading; not so when it is empty.
+inline Shown under(std::string heading, int digits = 4, Shown where = {}) {
+  where.printed = !heading.empty();
+  where.heading = std::move(heading);
+  where.digits = digits;
+  return where;
 }
-inline Shown only_csv() {
-  return {true, false};
+/// In no file; nor printed without a name.
+inline Shown only_printed(bool wide = false) {
+  return {.csv = false, .json = false, .printed = true, .wide = wide};
+}
+/// Nowhere unless the table has the column.
+inline Shown when(bool has_it, Shown where = {}) {
+  return has_it ? std::move(where) : Shown{.csv = false, .json = false};
 }
 
 /// The cell of a number, a count, a truth, a text, one of them that need not exist, or of what is a cell already.
@@ -61,7 +119,7 @@ inline std::string printed(const Cell& cell, const Shown& shown, const std::opti
 /// A table that `describe` knows; without a file one that is only printed.
 struct DescribedTable {
   struct Entry {
-    std::string name, unit, meaning;
+    std::string name, unit, meaning;  ///< no unit: text
   };
   std::string file = {}, holds = {};
   std::vector<Entry> columns = {};           ///< of the CSV file
@@ -73,27 +131,26 @@ struct DescribedTable {
 template <class Row>
 class Columns {
  public:
-  struct Entry {
-    std::string name, unit, meaning;
+  struct Entry : DescribedTable::Entry {
+    /// `get`: what a row has in the column, as a function of the row or a member of it (cell_of).
+    template <class Get>
+    Entry(std::string its_name, std::string its_unit, std::string its_meaning, Get get, Shown where = {},
+          std::function<std::optional<double>(const Row&)> its_tolerance = {})
+        : DescribedTable::Entry{std::move(its_name), std::move(its_unit), std::move(its_meaning)},
+          cell([get](const Row& row) { return cell_of(std::invoke(get, row)); }),
+          shown(std::move(where)),
+          tolerance(std::move(its_tolerance)) {}
+
     std::function<Cell(const Row&)> cell;
-    Shown shown = {};
-    std::function<std::optional<double>(const Row&)> tolerance = {};  ///< by how much the number may be wrong
+    Shown shown;
+    std::function<std::optional<double>(const Row&)> tolerance;  ///< by how much the number may be wrong
+
+    const std::string& title() const { return shown.heading.empty() ? name : shown.heading; }
+    bool is_printed(bool in_full) const { return shown.printed && !title().empty() && (in_full || !shown.wide); }
   };
 
-  /// `get`: what a row has in the column, as a function of the row or a member of it (cell_of).
-  template <class Get>
-  void add(std::string name, std::string unit, std::string meaning, Get get, Shown shown = {},
-           std::function<std::optional<double>(const Row&)> tolerance = {}) {
-    const auto cell = [get = std::move(get)](const Row& row) { return cell_of(std::invoke(get, row)); };
-    entries_.push_back(
-        {std::move(name), std::move(unit), std::move(meaning), cell, std::move(shown), std::move(tolerance)});
-  }
-  /// A column that is in no file; `unit` is empty for text.
-  template <class Get>
-  void print(std::string heading, std::string unit, std::string meaning, Get get, bool wide = false) {
-    add("", std::move(unit), std::move(meaning), std::move(get),
-        {.csv = false, .json = false, .heading = std::move(heading), .wide = wide});
-  }
+  Columns(std::initializer_list<Entry> entries = {}) : entries_(entries) {}
+  void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
   void write(const std::filesystem::path& file, std::span<const Row> rows, FileSet& files) const {
     std::string header;
@@ -112,40 +169,43 @@ class Columns {
 
   Json json(const Row& row) const {
     Json object = Json::object();
-    for (const Entry& entry : entries_) {
+    for (const Entry& entry : entries_)
       if (entry.shown.json) object[entry.name] = cell_json(entry.cell(row));
-    }
     return object;
+  }
+  Json json_list(std::span<const Row> rows) const {
+    Json list = Json::array();
+    for (const Row& row : rows) list.push_back(json(row));
+    return list;
   }
 
   /// As wide as the output is to be; `rows`: rows, or references to them.
   template <class Rows>
   Table table(const Rows& rows) const {
-    Table table(headings(output_is_in_full()));
+    Table table{headings(output_is_in_full())};
     for (const Row& row : rows) {
       std::vector<std::string> cells;
       for (const Entry& entry : entries_) {
-        if (entry.shown.heading.empty() || (entry.shown.wide && !output_is_in_full())) continue;
+        if (!entry.is_printed(output_is_in_full())) continue;
         cells.push_back(printed(entry.cell(row), entry.shown, entry.tolerance ? entry.tolerance(row) : std::nullopt));
       }
-      table.add(std::move(cells));
+      table.rows.push_back(std::move(cells));
     }
     return table;
   }
 
-  std::vector<Table::Column> headings(bool wide = true) const {
+  std::vector<Table::Column> headings(bool in_full = true) const {
     std::vector<Table::Column> headings;
-    for (const Entry& entry : entries_) {
-      if (!entry.shown.heading.empty() && (wide || !entry.shown.wide))
-        headings.push_back({entry.shown.heading, !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning});
-    }
+    for (const Entry& entry : entries_)
+      if (entry.is_printed(in_full))
+        headings.push_back({entry.title(), !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning});
     return headings;
   }
 
   DescribedTable described(std::string file = {}, std::string holds = {}) const {
     DescribedTable table{std::move(file), std::move(holds), {}, headings()};
     for (const Entry& entry : entries_)
-      if (entry.shown.csv) table.columns.push_back({entry.name, entry.unit, entry.meaning});
+      if (entry.shown.csv) table.columns.push_back(entry);
     return table;
   }
 

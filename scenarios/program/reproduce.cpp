@@ -12,9 +12,8 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/thesis/ledger.hpp"
-#include "scenarios/thesis/measurements.hpp"
-#include "scenarios/thesis/robustness.hpp"
+#include "scenarios/thesis/choices.hpp"
+#include "scenarios/thesis/claims.hpp"
 
 namespace hapbench {
 namespace {
@@ -28,6 +27,7 @@ struct ReproduceOptions : CommonOptions {
   std::string readings;  ///< file; empty for none
 
   fs::path folder() const { return results_directory(out, "reproduce"); }
+  fs::path runs() const { return folder() / "thesis"; }
 };
 
 std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
@@ -37,7 +37,7 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   std::set<std::string> chosen;
   for (const std::string& id : ids) {
     const auto found = std::ranges::find(valid, lower_case(id), lower_case);
-    if (found == valid.end()) require_valid_name("--only: got", id, valid);
+    if (found == valid.end()) require_valid_name("--only: got", id, valid, "hapbench describe claims");
     chosen.insert(*found);
   }
   std::erase_if(claims, [&chosen](const Claim& claim) { return !chosen.contains(claim.id); });
@@ -56,70 +56,40 @@ bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
   }
 }
 
-/// A scenario of the thesis, and what came of it.
 struct ThesisRun : BundledScenario {
-  bool is_done = false;
+  std::optional<double> seconds = {};   ///< that it took; none before it has run
   std::vector<std::string> unmet = {};  ///< what the run did otherwise than the scenario expects
-  double seconds = 0.0;
 };
 
-/// Runs the thesis's scenarios into subdirectories, except those whose results are current.
-class ThesisRuns {
- public:
-  explicit ThesisRuns(const ReproduceOptions& options) : directory_(options.folder() / "thesis"), anew_(options.anew) {
-    for (const BundledScenario& bundled : bundled_scenarios())
-      if (bundled.group == "thesis") runs_.push_back({bundled});
-  }
+/// Runs the scenario into its subdirectory of the directory, except where the results there are current or it has run.
+void provide(ThesisRun& run, const fs::path& directory, bool anew) {
+  if (run.seconds) return;
+  run.seconds = seconds_of(1, [&] {
+    const fs::path results = directory / run.name;
+    const LoadedScenario loaded = checked(load_scenario(run.file));
+    if (anew || !is_current(results, loaded)) run.unmet = run_scenario(loaded, results, false).unmet;
+  });
+}
 
-  const fs::path& directory() const { return directory_; }
-  const std::vector<ThesisRun>& runs() const { return runs_; }
-
-  /// Runs all of them on several threads.
-  void run_all(const JobOptions& jobs) {
-    for_each_job(runs_.size(), jobs, [&](std::size_t i) { run(runs_[i]); });
-  }
-
-  /// Runs one of them unless that has been done. Returns the seconds that it took; 0 for a scenario of another group.
-  double provide(const std::string& name) {
-    const auto found = std::ranges::find(runs_, name, &ThesisRun::name);
-    if (found == runs_.end()) return 0.0;
-    if (!found->is_done) run(*found);
-    return found->seconds;
-  }
-
- private:
-  void run(ThesisRun& made) const {
-    made.seconds = seconds_of(1, [&] {
-      const LoadedScenario loaded = checked(load_scenario(made.file));
-      if (anew_ || !is_current(directory_ / made.name, loaded))
-        made.unmet = run_scenario(loaded, directory_ / made.name, false).unmet;
-    });
-    made.is_done = true;
-  }
-
-  fs::path directory_;
-  bool anew_;
-  std::vector<ThesisRun> runs_;
-};
-
-/// Judges the claims by the thesis's runs.
+/// Judges the claims by the thesis's runs, those of which are made that are missing.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
-                               const Choices& choices, ThesisRuns& runs, bool progress) {
+                               const Choices& choices, std::vector<ThesisRun>& runs, const ReproduceOptions& options) {
   std::vector<JudgedClaim> judged;
-  ProgressBar bar("claims", claims.size(), progress);
+  ProgressBar bar(options.output.quiet ? "" : "claims", claims.size());
   for (const Claim& claim : claims) {
     bar.show(judged.size());
     std::set<std::string> used, provided;   // scenarios
     double providing = 0.0, running = 0.0;  // seconds: for what others share, of the claim's own runs
     const auto note = [&](const std::string& scenario) { used.insert(scenario); };
-    const auto provide = [&](const std::string& scenario) {
+    const auto provide_run = [&](const std::string& scenario) {
       note(scenario);
-      double seconds = 0.0;
-      providing += seconds_of(1, [&] { seconds = runs.provide(scenario); });
-      if (provided.insert(scenario).second) running += seconds;
+      const auto run = std::ranges::find(runs, scenario, &ThesisRun::name);
+      if (run == runs.end()) return;  // of another group
+      providing += seconds_of(1, [&] { provide(*run, options.runs(), options.anew); });
+      if (provided.insert(scenario).second) running += *run->seconds;
     };
     Finding finding;
-    const Evidence evidence{published, runs.directory(), provide, {}, note};
+    const Evidence evidence{published, options.runs(), provide_run, {}, note};
     const double measuring = seconds_of(1, [&] { finding = claim.finding(evidence); }) - providing;
     const std::vector<std::string> scenarios(used.begin(), used.end());
     judged.push_back({claim, std::move(finding), scenarios, choices.reach(scenarios, claim.rule), running + measuring});
@@ -127,15 +97,8 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   return judged;
 }
 
-/// The content of robustness.json; an empty record when there is no such file.
-Json read_record(const fs::path& file) {
-  if (!fs::exists(file)) return {{"claims", Json::array()}};
-  return read_json(file);
-}
-
-/// Judges the claims again under the readings, and writes robustness.* next to the ledger, if there is one. Returns the
-/// content of robustness.json.
-Json judge_readings(const ReproduceOptions& options, const Readings& readings, const fs::path& ledger) {
+/// Judges the claims under the readings; robustness.* go next to the ledger, if there is one. Returns that of .json.
+Json judge_readings(const ReproduceOptions& options, const Readings& readings, const fs::path& ledger, FileSet& files) {
   const fs::path scratch = options.folder() / "robustness";
   std::vector<ReadingVerdicts> judged(readings.values.size());
   for_each_job(judged.size(), job_options(options, "robustness"),
@@ -149,22 +112,18 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings, c
   // Readings of single claims leave those of the others as they are.
   const fs::path file = ledger.parent_path() / "robustness.json";
   const bool some = !ledger.empty() && !options.only.empty() && fs::exists(file);
-  const Json record = robustness_json(readings, judged, some ? read_record(file) : Json::object());
+  const Json record = robustness_json(readings, judged, some ? read_json(file) : Json::object());
   if (ledger.empty()) return record;
-  FileSet files;
   if (!some) files.write(ledger.parent_path() / "robustness.csv", robustness_table(readings, judged));
   files.write(file, json_text(record));
-  files.commit();
   return record;
 }
 
-/// The file of the ledger. Empty for single claims unless --ledger is given: they would replace the ledger of all
-/// claims.
+/// Empty for single claims unless --ledger is given: they would replace the ledger of all claims.
 fs::path ledger_file(const ReproduceOptions& options) {
   return options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);
 }
 
-/// States each claim and the reason for its verdict.
 std::string claims_text(const std::vector<JudgedClaim>& judged) {
   std::string text;
   for (const JudgedClaim& j : judged) {
@@ -174,11 +133,11 @@ std::string claims_text(const std::vector<JudgedClaim>& judged) {
   return text;
 }
 
-/// The claims of the ledger.
 Columns<Json> claim_columns() {
   Columns<Json> columns;
   const auto add = [&columns](const char* key, const char* meaning) {
-    columns.print(key, "", meaning, [key](const Json& claim) { return claim.at(key).get<std::string>(); });
+    const auto value = [key](const Json& claim) { return claim.at(key).get<std::string>(); };
+    columns.add({{key, "", meaning, value, only_printed()}});
   };
   add("id", "id of a claim, which describe explains");
   add("verdict", "on the claim");
@@ -197,17 +156,22 @@ int reproduce(const ReproduceOptions& options) {
   Readings readings{choices, published, {}, {}};
   if (!options.readings.empty()) readings.values = read_readings(options.readings, choices);
   Report report(options, "reproduce");
-  ThesisRuns runs(options);
+  std::vector<ThesisRun> runs;
+  for (const BundledScenario& bundled : bundled_scenarios())
+    if (bundled.group == "thesis") runs.push_back({bundled});
   // Single claims run only the scenarios they need.
-  if (options.only.empty()) runs.run_all(job_options(options, "thesis"));
+  if (options.only.empty())
+    for_each_job(runs.size(), job_options(options, "thesis"),
+                 [&](std::size_t i) { provide(runs[i], options.runs(), options.anew); });
 
-  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, !options.output.quiet);
+  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options);
   const fs::path ledger = ledger_file(options);
-  Json robustness = read_record(reference / "robustness.json");
+  const fs::path on_record = reference / "robustness.json";
+  Json robustness = fs::exists(on_record) ? read_json(on_record) : Json{{"claims", Json::array()}};
   if (!readings.values.empty()) {
     readings.claims = judged;
     std::erase_if(readings.claims, [](const JudgedClaim& j) { return !j.can_be_sampled(); });
-    robustness = judge_readings(options, readings, ledger);
+    robustness = judge_readings(options, readings, ledger, report.files());
   }
 
   report.json() = ledger_json(judged, published, robustness);
@@ -222,7 +186,7 @@ int reproduce(const ReproduceOptions& options) {
   } else {
     report.say("\nno ledger is written of single claims without --ledger FILE\n");
   }
-  for (const ThesisRun& run : runs.runs())
+  for (const ThesisRun& run : runs)
     for (const std::string& problem : run.unmet)
       report.fault(fmt::format("{}: {}", run.name, problem), kUnexpectedOutcome);
   return report.finish();

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 
@@ -27,8 +29,60 @@ std::vector<fs::path> output_directories(const std::string& out, const std::vect
   return directories;
 }
 
-/// What is wrong with a run by the rules of its diagnosis, and what to try; of several runs a line each, with the names
-/// of the rules. Empty where nothing is.
+Columns<PlaceMetrics> place_columns() {
+  const auto mean = [](SubjectMean PlaceMetrics::*of, double factor = 1.0) {
+    return [=](const PlaceMetrics& p) {
+      const SubjectMean& m = p.*of;
+      if (m.subjects == 0) return std::string("-");
+      return fmt::format("{} +- {}", deserved(factor * m.mean, 0.1 * factor * m.standard_error, 3),
+                         significant(factor * m.standard_error, 2));
+    };
+  };
+  return {
+      {"place", "1", "number of the target, from 0", &PlaceMetrics::place, only_printed()},
+      {"success rate", "1", "targets.0.success_rate.mean", mean(&PlaceMetrics::success_rate), only_printed()},
+      {"completion [s]", "1", "targets.0.completion_time_s.mean", mean(&PlaceMetrics::completion_time), only_printed()},
+      {"model force [N]", "1", "targets.0.model_force_N.mean", mean(&PlaceMetrics::model_force), only_printed()},
+      {"speed [mm/s]", "1", "targets.0.speed_m_per_s.mean", mean(&PlaceMetrics::speed, 1e3), only_printed()}};
+}
+
+/// The tables of thesis D.4 for a report with targets; empty for other reports.
+std::string targets_text(const Result& report) {
+  if (!report.has_section("targets")) return "";
+  return fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", report.name,
+                     place_columns().table(place_metrics(report.targets)).text());
+}
+
+/// The steps of runs that timed them.
+Columns<Result> latency_columns() {
+  const auto time = [](std::uint64_t StepLatency::*of) {
+    return [of](const Result& r) {
+      const StepLatency& latency = *r.timing.latency;
+      return latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(latency.*of) / 1e3) : "-";
+    };
+  };
+  Columns<Result> columns = {
+      {"step latency", "", "of run --latency: the scene whose steps were timed", &Result::name, only_printed()},
+      {"steps", "1", "", [](const Result& r) { return r.timing.latency->steps; }, only_printed()}};
+  for (const auto& [part, of] : {std::pair{"50", &StepLatency::p50},
+                                 {"95", &StepLatency::p95},
+                                 {"99", &StepLatency::p99},
+                                 {"99.9", &StepLatency::p99_9}}) {
+    columns.add(
+        {{fmt::format("p{} us", part), "us",
+          fmt::format("what {} % of the steps take at most, each by itself [us]", part), time(of), only_printed()}});
+  }
+  columns.add({{"max us", "us", "the longest step [us]", time(&StepLatency::max), only_printed()}});
+  for (std::size_t i = 0; i < std::size(kStepDeadlines); ++i) {
+    columns.add({{fmt::format("> {:.3f} ms", 1e3 * kStepDeadlines[i]), "1", "number of steps that took longer",
+                  [i](const Result& r) { return r.timing.latency->misses[i]; }, only_printed()}});
+  }
+  columns.add({{"clock us", "us", "what reading the clock takes, which is within each step's time [us]",
+                time(&StepLatency::overhead), only_printed()}});
+  return columns;
+}
+
+/// What is wrong with a run and what to try; of several runs a line each, with the names of the rules. May be empty.
 std::string diagnosis_text(std::span<const Result> reports) {
   std::string text;
   for (const Result& report : reports) {
@@ -57,8 +111,7 @@ int run(const RunOptions& options) {
   for (LoadedScenario& loaded : scenarios) {
     loaded = checked(std::move(loaded));
     if (options.no_skip) loaded.scenario.rendering.skips = Skips::off;
-    print_warnings(loaded, loaded.warnings);
-    print_warnings(loaded, loaded.file_warnings);
+    print_warnings(loaded);
   }
   for (const fs::path& directory : directories) require_writable_directory(directory);
 
@@ -90,6 +143,10 @@ int run(const RunOptions& options) {
 }
 
 }  // namespace
+
+std::vector<DescribedTable> single_run_tables() {
+  return {place_columns().described(), latency_columns().described()};
+}
 
 void add_run(CommandLine& line) {
   auto [command, options] = line.command("run", "Run scenarios, write their results and say what is wrong with them",

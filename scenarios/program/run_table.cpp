@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
-#include <utility>
 
-#include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/program/index.hpp"
 
 namespace hapbench {
 namespace {
@@ -53,28 +50,24 @@ void add_metrics(Columns<Result>& columns, std::span<const RunHeading> headings)
 }
 
 Columns<Result> run_columns(bool of_scenes) {
-  Columns<Result> columns;
-  if (of_scenes) columns.print("scenario", "", "", &Result::name);
-  columns.print("algorithm", "", "", &Result::algorithm);
-  columns.print("how it ended", "", "outcome, and when, as far as that was before the last row", ending_text);
+  const auto shaking = [](const Result& r) {
+    const auto power = number_of(r.metrics, kToolVibrationPower);
+    return power ? short_text(std::sqrt(*power), std::nullopt, 1e3) : "-";
+  };
+  const auto ratios = [](const Result& r) {
+    const auto least = number_of(r.metrics, "ratio_min"), most = number_of(r.metrics, "ratio_max");
+    return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
+  };
+  const auto step_time = [](const Result& r) { return short_text(r.timing.step_p50, std::nullopt, 1e6); };
+  Columns<Result> columns = {
+      {of_scenes ? "scenario" : "", "", "", &Result::name, only_printed()},
+      {"algorithm", "", "", &Result::algorithm, only_printed()},
+      {"how it ended", "", "outcome, and when, as far as that was before the last row", ending_text, only_printed()}};
   add_metrics(columns, kRunHeadings);
-  columns.print(
-      "tool shakes\n[mm/s rms]", "1", "root of vibration_power_above_30Hz_m2_per_s2, over all rows",
-      [](const Result& r) {
-        const auto power = number_of(r.metrics, kToolVibrationPower);
-        return power ? short_text(std::sqrt(*power), std::nullopt, 1e3) : "-";
-      },
-      of_scenes);
-  columns.print(
-      "stiffness\nratio", "1", "ratio_min",
-      [](const Result& r) {
-        const auto least = number_of(r.metrics, "ratio_min"), most = number_of(r.metrics, "ratio_max");
-        return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
-      },
-      true);
-  columns.print(
-      "half of the\nsteps [us]", "1", "step_p50_s",
-      [](const Result& r) { return short_text(r.timing.step_p50, std::nullopt, 1e6); }, true);
+  columns.add({{"tool shakes\n[mm/s rms]", "1", "root of vibration_power_above_30Hz_m2_per_s2, over all rows", shaking,
+                only_printed(of_scenes)},
+               {"stiffness\nratio", "1", "ratio_min", ratios, only_printed(true)},
+               {"half of the\nsteps [us]", "1", "step_p50_s", step_time, only_printed(true)}});
   return columns;
 }
 
@@ -86,24 +79,6 @@ constexpr RunHeading kFidelityHeadings[] = {
     {"direction\n[deg]", "fidelity.force_direction_error_rad", 57.295779513082323, false},
     {"artefacts\n[%]", "fidelity.force_artefact_share", 100.0, false},
     {"lag\n[ms]", "fidelity.force_lag_s", 1e3, false}};
-
-Columns<PlaceMetrics> place_columns() {
-  Columns<PlaceMetrics> columns;
-  columns.print("place", "1", "number of the target, from 0", &PlaceMetrics::place);
-  const auto add = [&columns](const char* title, const char* meaning, SubjectMean PlaceMetrics::*of, double factor) {
-    columns.print(title, "1", meaning, [of, factor](const PlaceMetrics& p) {
-      const SubjectMean& m = p.*of;
-      if (m.subjects == 0) return std::string("-");
-      return fmt::format("{} +- {}", deserved(factor * m.mean, 0.1 * factor * m.standard_error, 3),
-                         significant(factor * m.standard_error, 2));
-    });
-  };
-  add("success rate", "targets.0.success_rate.mean", &PlaceMetrics::success_rate, 1.0);
-  add("completion [s]", "targets.0.completion_time_s.mean", &PlaceMetrics::completion_time, 1.0);
-  add("model force [N]", "targets.0.model_force_N.mean", &PlaceMetrics::model_force, 1.0);
-  add("speed [mm/s]", "targets.0.speed_m_per_s.mean", &PlaceMetrics::speed, 1e3);
-  return columns;
-}
 
 }  // namespace
 
@@ -120,9 +95,8 @@ std::string fidelity_text(std::span<const Result> reports) {
   for (const Result& report : reports)
     if (report.has_section("fidelity")) with_reference.emplace_back(report);
   if (with_reference.empty()) return "";
-  Columns<Result> columns;
   const auto name = distinct_name(reports);
-  columns.print(name == &Result::algorithm ? "algorithm" : "scenario", "", "", name);
+  Columns<Result> columns = {{name == &Result::algorithm ? "algorithm" : "scenario", "", "", name, only_printed()}};
   add_metrics(columns, kFidelityHeadings);
   return fmt::format("\nrendered force against the reference, measured or ideal\n\n{}",
                      columns.table(with_reference).text());
@@ -159,43 +133,10 @@ std::string step_time_text(std::span<const Result> reports) {
   return "\n" + wrapped(text, 0);
 }
 
-std::string targets_text(const Result& report) {
-  if (!report.has_section("targets")) return "";
-  return fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", report.name,
-                     place_columns().table(place_metrics(report.targets)).text());
-}
-
-Columns<Result> latency_columns() {
-  Columns<Result> columns;
-  const auto add_time = [&columns](const std::string& title, const std::string& meaning,
-                                   std::uint64_t StepLatency::*time) {
-    columns.print(title, "us", meaning, [time](const Result& r) {
-      const StepLatency& latency = *r.timing.latency;
-      return latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(latency.*time) / 1e3) : "-";
-    });
-  };
-  columns.print("step latency", "", "of run --latency: the scene whose steps were timed", &Result::name);
-  columns.print("steps", "1", "", [](const Result& r) { return r.timing.latency->steps; });
-  for (const auto& [part, time] : {std::pair{"50", &StepLatency::p50},
-                                   {"95", &StepLatency::p95},
-                                   {"99", &StepLatency::p99},
-                                   {"99.9", &StepLatency::p99_9}}) {
-    add_time(fmt::format("p{} us", part), fmt::format("what {} % of the steps take at most, each by itself [us]", part),
-             time);
-  }
-  add_time("max us", "the longest step [us]", &StepLatency::max);
-  for (std::size_t i = 0; i < std::size(kStepDeadlines); ++i) {
-    columns.print(fmt::format("> {:.3f} ms", 1e3 * kStepDeadlines[i]), "1", "number of steps that took longer",
-                  [i](const Result& r) { return r.timing.latency->misses[i]; });
-  }
-  add_time("clock us", "what reading the clock takes, which is within each step's time [us]", &StepLatency::overhead);
-  return columns;
-}
-
 std::vector<DescribedTable> run_tables() {
   Columns<Result> runs = run_columns(true);
   add_metrics(runs, kFidelityHeadings);
-  return {runs.described(), place_columns().described(), latency_columns().described()};
+  return {runs.described()};
 }
 
 std::string number_text(double value, const std::optional<double>& error) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/cases/league.hpp"
+#include "scenarios/cases/comparison.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
@@ -26,8 +26,7 @@ inline constexpr RunHeading kRunHeadings[] = {
     {"force step\n(99 %) [N]", "force_step_p99_N"},    {"vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0, false},
     {"reversals\n[1/s]", "force_reversals_per_s"},     {"deepest\ninside [mm]", "inside_max_m", 1e3, false}};
 
-/// A number with the digits that its tolerance leaves it, three at most; `factor`: to the unit that is shown. "-" for
-/// none.
+/// A number, "-" for none, with the digits that its tolerance leaves it, three at most; `factor`: to the shown unit.
 std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor);
 
 /// Adds the columns of headings; `figure_of` gives what a row has of a metric by its name, a NumberWithError.
@@ -38,7 +37,7 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
       const auto [value, error] = figure_of(row, heading.metric);
       return short_text(value, error, heading.factor);
     };
-    columns.print(heading.title, "1", heading.metric, text, heading.wide);
+    columns.add({{heading.title, "1", heading.metric, text, only_printed(heading.wide)}});
   }
 }
 
@@ -50,13 +49,8 @@ std::string run_table(std::span<const Result> reports, bool of_scenes);
 /// Its root is the vibration of the tool.
 inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
 
-/// A paragraph on what 99 % of the steps take at most, in the slowest of the runs; empty when no run was long enough to
-/// tell. Precondition: there is a report.
+/// What 99 % of the steps take at most, in the slowest run, of which there is one; empty where all are too short.
 std::string step_time_text(std::span<const Result> reports);
-
-/// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
-/// Empty for other reports.
-std::string targets_text(const Result& report);
 
 /// A table of the rendered force against the reference, for the reports that have one.
 std::string fidelity_text(std::span<const Result> reports);
@@ -64,11 +58,6 @@ std::string fidelity_text(std::span<const Result> reports);
 /// The warnings about runs side by side, but for those that were known before: those of one kind once, in the words of
 /// the first run and with the names of the algorithms.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
-
-/// The latencies [us] and missed deadlines of the steps of runs that timed them.
-Columns<Result> latency_columns();
-
-std::vector<DescribedTable> run_tables();
 
 /// A number with the digits that its error leaves it: one where the error is larger, six where it is 0, four where it
 /// is not known.

@@ -8,28 +8,23 @@ namespace hapbench {
 namespace {
 
 struct StressOptions : CommonOptions {
-  std::uint64_t count = 100'000;
-  std::uint64_t seed = 1;
+  std::uint64_t count = 100'000, seed = 1;
 };
 
 Columns<StressCounts> stress_columns() {
-  Columns<StressCounts> columns;
-  columns.add("algorithm", "", "force algorithm", &StressCounts::algorithm, {.heading = "algorithm"});
-  columns.add("sets", "1", "random contact sets drawn", &StressCounts::sets, {.heading = "sets"});
-  columns.add("in_contact", "1", "sets whose tool touches a point", &StressCounts::in_contact,
-              {.heading = "in contact"});
-  columns.add("non_finite", "1", "answers that are not finite", &StressCounts::non_finite, {.heading = "non-finite"});
-  columns.add("out_of_bound", "1", "finite answers beyond what the law allows", &StressCounts::out_of_bound,
-              {.heading = "out of bound"});
-  columns.add("points_dropped", "1", "contacts that a full reduction refused", &StressCounts::points_dropped,
-              {.heading = "points dropped"});
-  columns.add("largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration",
-              &StressCounts::largest_force, {.heading = "largest |f|/(K d)"});
-  columns.add("largest_share_of_bound", "1",
-              "largest ||f_spring|| in units of the law's bound; empty for laws without one",
-              &StressCounts::largest_share, {.heading = "of its bound", .digits = 3});
-  columns.add("first_bad_set", "1", "number of the first set with a bad answer", &StressCounts::first_bad, only_json());
-  return columns;
+  using Row = StressCounts;
+  return {
+      {"algorithm", "", "force algorithm", &Row::algorithm, under("algorithm")},
+      {"sets", "1", "random contact sets drawn", &Row::sets, under("sets")},
+      {"in_contact", "1", "sets whose tool touches a point", &Row::in_contact, under("in contact")},
+      {"non_finite", "1", "answers that are not finite", &Row::non_finite, under("non-finite")},
+      {"out_of_bound", "1", "finite answers beyond what the law allows", &Row::out_of_bound, under("out of bound")},
+      {"points_dropped", "1", "contacts that a full reduction refused", &Row::points_dropped, under("points dropped")},
+      {"largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration",
+       &Row::largest_force, under("largest |f|/(K d)")},
+      {"largest_share_of_bound", "1", "largest ||f_spring|| in units of the law's bound; empty for laws without one",
+       &Row::largest_share, under("of its bound", 3)},
+      {"first_bad_set", "1", "number of the first set with a bad answer", &Row::first_bad, kOnlyJson}};
 }
 
 int stress(const StressOptions& options) {
@@ -38,8 +33,8 @@ int stress(const StressOptions& options) {
   const Columns<StressCounts> columns = stress_columns();
   report.write("stress.csv", columns, all);
   report.say(columns.table(all).text());
+  report.json() = columns.json_list(all);
   for (const StressCounts& c : all) {
-    report.json().push_back(columns.json(c));
     if (!c.first_bad) continue;
     report.fault(fmt::format("{}: {} of {} forces are not finite, {} out of bound; the first in set {} of seed {}",
                              c.algorithm, c.non_finite, c.sets, c.out_of_bound, *c.first_bad, options.seed),

@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <utility>
 
 #include "scenarios/cases/run_sweep.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
@@ -27,20 +24,21 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
   for (std::size_t c = single ? 1 : 0; c <= table.fields(); ++c) {
     std::string title = table.columns[c];
     if (const std::size_t dot = title.rfind('.'); !single && dot != std::string::npos) title.insert(dot + 1, "\n");
-    columns.print(title, "by name", table.columns[c], [c, rounds = sampled && c > 0](const SweepRow& row) {
+    const auto value = [c, rounds = sampled && c > 0](const SweepRow& row) {
       const auto number = rounds ? finite_number(row[c]) : std::nullopt;
       return number ? significant(*number, 6) : row[c];
-    });
+    };
+    columns.add({{title, "by name", table.columns[c], value, only_printed()}});
   }
-  columns.print("outcome", "", "outcome", [&table](const SweepRow& row) { return table.outcome(row); });
+  const auto outcome = [&table](const SweepRow& row) { return table.outcome(row); };
+  columns.add({{"outcome", "", "outcome", outcome, only_printed()}});
   std::vector<RunHeading> headings;
-  for (const RunHeading& heading : kRunHeadings)
+  for (RunHeading heading : kRunHeadings) {
+    heading.wide = heading.wide && heading.metric != metric;
     if (table.place(heading.metric) < table.columns.size()) headings.push_back(heading);
-  const auto has = std::ranges::find(headings, metric, &RunHeading::metric);
-  if (has == headings.end())
+  }
+  if (std::ranges::find(headings, metric, &RunHeading::metric) == headings.end())
     headings.push_back({metric.c_str(), metric.c_str(), 1.0, false});
-  else
-    has->wide = false;
   add_metrics(columns, headings, [&table](const SweepRow& row, const char* name) {
     return NumberWithError{table.number(row, name), table.tolerance(row, name)};
   });
@@ -50,13 +48,11 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
 using OutcomeCount = std::pair<const std::string, SweepCounts::Count>;
 
 Columns<OutcomeCount> count_columns() {
-  Columns<OutcomeCount> columns;
-  columns.print("outcome", "", "outcome", &OutcomeCount::first);
-  columns.print("runs", "1", "of sweep: number of the runs with this outcome",
-                [](const OutcomeCount& c) { return c.second.runs; });
-  columns.print("as expected", "1", "of sweep: number of these that ended as the scenario's expect says",
-                [](const OutcomeCount& c) { return c.second.expected; });
-  return columns;
+  return {{"outcome", "", "outcome", &OutcomeCount::first, only_printed()},
+          {"runs", "1", "of sweep: number of the runs with this outcome",
+           [](const OutcomeCount& c) { return c.second.runs; }, only_printed()},
+          {"as expected", "1", "of sweep: number of these that ended as the scenario's expect says",
+           [](const OutcomeCount& c) { return c.second.expected; }, only_printed()}};
 }
 
 /// The runs, of several fields those with the least of the metric, failures last; then the counts of outcomes.
@@ -79,7 +75,6 @@ std::string summary_text(const SweepTable& table, const std::string& metric) {
   return text + count_columns().table(table.kept.outcomes).text();
 }
 
-/// The counts, and the rows that the table has.
 Json summary_json(const SweepTable& table) {
   const SweepCounts& counts = table.kept;
   Json outcomes = Json::object();
@@ -99,8 +94,6 @@ Json summary_json(const SweepTable& table) {
   return json;
 }
 
-// ---- The command
-
 struct SweepCommand : CommonOptions {
   std::string scenario, sample, points, metric, shard;
   std::vector<std::string> vary, where;
@@ -108,12 +101,14 @@ struct SweepCommand : CommonOptions {
   bool resume = false, keep_runs = false, print = false;
 };
 
+constexpr const char* kNothingToSweep =
+    "sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep";
+
 /// The scenes that an axis names, or the one of the command line.
 std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vector<Axis>& axes) {
   const auto axis = std::ranges::find(axes, kSceneAxis, &Axis::path);
   if (axis == axes.end()) {
-    if (command.scenario.empty())
-      throw InputError("sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep");
+    if (command.scenario.empty()) throw InputError(kNothingToSweep);
     return {read_scenario_text(find_scenario(command.scenario))};
   }
   if (!command.scenario.empty() || axis->range)
@@ -167,8 +162,7 @@ int print_row(const SweepCommand& command, const Cases& cases) {
   return kSuccess;
 }
 
-/// Prints the rows that a finished sweep has, as far as they keep the conditions of --where; `resumed`: how many were
-/// there before.
+/// Prints the rows of a finished sweep that keep the conditions of --where; `resumed`: how many were there before.
 void print_sweep(const SweepCommand& command, const SweepTable& table, std::size_t resumed = 0) {
   const std::string metric = chosen_metric(table.metrics(), command.metric);
   if (command.output.json) return print(command.output, "", summary_json(table));
@@ -183,7 +177,6 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, std::size
   print(command.output, text, {});
 }
 
-/// Prints the sweep of a folder, without a run.
 int reprint(const SweepCommand& command) {
   const bool runs = !command.vary.empty() || !command.overrides.empty() || !command.sample.empty() ||
                     !command.points.empty() || !command.out.empty() || !command.shard.empty() || command.resume ||
@@ -202,8 +195,7 @@ int sweep(const SweepCommand& command) {
   if (fs::is_directory(command.scenario, ignored))
     if (join_shards(command.scenario) || fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored))
       return reprint(command);
-  if (command.vary.empty() && command.points.empty())
-    throw InputError("sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep");
+  if (command.vary.empty() && command.points.empty()) throw InputError(kNothingToSweep);
   if (!command.where.empty() && !command.shard.empty())
     throw InputError(
         "--where: got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");

@@ -3,10 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <nlohmann/json.hpp>
 
-#include "algorithms/registry.hpp"
-#include "results/io/columns.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/limits/tuning/tune.hpp"
 #include "scenarios/program/index.hpp"
@@ -26,19 +23,13 @@ struct TuneOptions : CommonOptions {
   TuneQuestion question;  ///< as far as options are its members
 };
 
-/// All that the command found.
 struct Tuning {
   TuneQuestion question;
   std::string scene;  ///< name of the scene, with that of the device
   TuneRanges ranges;  ///< of the first law
   std::vector<TunedLaw> laws;
   std::vector<const TunedLaw*> ranking;  ///< those with a choice, best first
-
-  std::size_t runs() const {
-    std::size_t sum = 0;
-    for (const TunedLaw& law : laws) sum += law.runs;
-    return sum;
-  }
+  std::size_t runs = 0;                  ///< simulations in all
 };
 
 /// Best is the least settled depth, where the scene has none the largest K lambda_max.
@@ -52,8 +43,6 @@ std::vector<const TunedLaw*> ranking_of(const std::vector<TunedLaw>& laws) {
   return ranking;
 }
 
-// ---- Tables and JSON
-
 /// With the digits that the search leaves it.
 std::string stiffness_text(const TuneTrial& choice) {
   return deserved(choice.stiffness, 0.005 * choice.stiffness);
@@ -61,29 +50,6 @@ std::string stiffness_text(const TuneTrial& choice) {
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
 
-/// A member of the choice; nothing where nothing is feasible.
-template <class Member>
-auto of_choice(Member member) {
-  return [member](const TunedLaw& law) { return law.choice ? cell_of(std::invoke(member, *law.choice)) : Cell(); };
-}
-
-void add_choice(Columns<TunedLaw>& columns) {
-  columns.add("stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible",
-              of_choice(&TuneTrial::stiffness));
-  columns.print("K [N/m]", "N/m", "of tune: the largest stiffness that keeps margin and limits [N/m]",
-                [](const TunedLaw& l) { return l.choice ? stiffness_text(*l.choice) : "none"; });
-  columns.add(kRatioColumn, "1", "zeta with it; empty where it has no part", of_choice(&TuneTrial::damping_ratio),
-              {.json = false, .heading = "zeta", .digits = 3});
-  columns.add("damping_ratio", "1", "the same", of_choice(&TuneTrial::damping_ratio), only_json());
-  columns.add("mass_kg", "kg", "virtual mass with it, of an admittance device; else empty: the scene's",
-              of_choice(&TuneTrial::mass));
-  columns.add("velocity_filter", "", "with it, as JSON; empty: the scene's", of_choice(&TuneTrial::filter));
-  columns.add("lambda_max", "1",
-              "largest eigenvalue of the mean S in the end of the run: K lambda_max is the stiffness rendered",
-              of_choice(&TuneTrial::lambda_max));
-}
-
-/// A margin in tables, JSON and words.
 struct Margin {
   const char *column, *unit, *meaning, *heading, *key, *words;
   std::optional<double> TuneMargins::*of;
@@ -97,69 +63,93 @@ constexpr Margin kMargins[] = {
     {"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one", "",
      "damping_ratio", "least damped mode {}", &TuneMargins::damping_ratio, 2.0}};
 
-Columns<TunedLaw> tuned_columns() {
-  Columns<TunedLaw> columns;
-  columns.add("algorithm", "", "force algorithm", &TunedLaw::algorithm, {.heading = "algorithm"});
-  columns.add("feasible", "", "false when nothing that was tried keeps all constraints",
-              [](const TunedLaw& l) { return l.choice.has_value(); });
-  add_choice(columns);
-  columns.add("binding", "",
-              "what a larger K does not keep: settled, margin, a limited metric, or range, the end of the search",
-              &TunedLaw::binding);
-  columns.add("why", "", "the same in words", &TunedLaw::why);
-  columns.add("relax", "", "where nothing is feasible: which limit to relax, and to what", &TunedLaw::relax);
-  for (const Margin& margin : kMargins) {
-    columns.add(margin.column, margin.unit, margin.meaning,
-                [of = margin.of](const TunedLaw& l) { return l.margins.*of; },
-                {.json = false, .heading = margin.heading, .digits = 3});
-  }
-  columns.add("verified", "1",
-              fmt::format("full-length runs between K and G K, all settled, {} of them just below G K", kTriedNear),
-              &TunedLaw::verified);
-  columns.add("may_fail_share", "1", "share of what lies between K and G K that may not be, with 95 % confidence",
-              [](const TunedLaw& l) { return l.verified > 0 ? Cell(may_fail_share(kTriedBetween)) : Cell(); });
-  columns.add("runs", "1", "simulations in all", &TunedLaw::runs);
-  const auto print_metric = [&](const char* heading, const char* name, double factor) {
-    columns.print(heading, "by name", name, [=](const TunedLaw& l) {
-      const auto value = l.choice ? value_in(l.choice->metrics, name, factor) : std::nullopt;
-      return value ? number_text(*value, value_in(l.error, name, factor)) : "-";
-    });
+/// What was chosen, and why not more; nothing where nothing is feasible.
+Columns<TunedLaw> choice_columns() {
+  using Row = TunedLaw;
+  const auto of_choice = [](auto member) {
+    return [member](const Row& r) { return r.choice ? cell_of(std::invoke(member, *r.choice)) : Cell(); };
   };
-  print_metric("settled\ninside [mm]", "inside_settled_m", 1e3);
-  print_metric("vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0);
-  print_metric("largest\nstep [N]", "settled_force_step_max_N", 1.0);
-  columns.print("binding", "", "of tune: what a larger K does not keep", &TunedLaw::binding);
+  const auto feasible = [](const Row& r) { return r.choice.has_value(); };
+  const auto stiffness = [](const Row& r) { return r.choice ? stiffness_text(*r.choice) : "none"; };
+  return {
+      {"algorithm", "", "force algorithm", &Row::algorithm, under("algorithm")},
+      {"feasible", "", "false when nothing that was tried keeps all constraints", feasible},
+      {"stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible", of_choice(&TuneTrial::stiffness)},
+      {"K [N/m]", "N/m", "of tune: the largest stiffness that keeps margin and limits [N/m]", stiffness,
+       only_printed()},
+      {kRatioColumn, "1", "zeta with it; empty where it has no part", of_choice(&TuneTrial::damping_ratio),
+       under("zeta", 3, kOnlyCsv)},
+      {"damping_ratio", "1", "the same", of_choice(&TuneTrial::damping_ratio), kOnlyJson},
+      {"mass_kg", "kg", "virtual mass with it, of an admittance device; else empty: the scene's",
+       of_choice(&TuneTrial::mass)},
+      {"velocity_filter", "", "with it, as JSON; empty: the scene's", of_choice(&TuneTrial::filter)},
+      {"lambda_max", "1",
+       "largest eigenvalue of the mean S in the end of the run: K lambda_max is the stiffness rendered",
+       of_choice(&TuneTrial::lambda_max)},
+      {"binding", "",
+       "what a larger K does not keep: settled, margin, a limited metric, or range, the end of the search",
+       &Row::binding},
+      {"why", "", "the same in words", &Row::why},
+      {"relax", "", "where nothing is feasible: which limit to relax, and to what", &Row::relax}};
+}
+
+Columns<TunedLaw> tuned_columns() {
+  using Row = TunedLaw;
+  Columns<Row> columns = choice_columns();
+  for (const Margin& margin : kMargins) {
+    columns.add({{margin.column, margin.unit, margin.meaning, [of = margin.of](const Row& r) { return r.margins.*of; },
+                  under(margin.heading, 3, kOnlyCsv)}});
+  }
+  const auto may_fail = [](const Row& r) { return r.verified > 0 ? Cell(may_fail_share(kTriedBetween)) : Cell(); };
+  const auto metric = [](const char* heading, const char* name, double factor) {
+    const auto text = [=](const Row& r) {
+      const auto value = r.choice ? value_in(r.choice->metrics, name, factor) : std::nullopt;
+      return value ? number_text(*value, value_in(r.error, name, factor)) : "-";
+    };
+    return Columns<Row>::Entry(heading, "by name", name, text, only_printed());
+  };
+  columns.add(
+      {{"verified", "1",
+        fmt::format("full-length runs between K and G K, all settled, {} of them just below G K", kTriedNear),
+        &Row::verified},
+       {"may_fail_share", "1", "share of what lies between K and G K that may not be, with 95 % confidence", may_fail},
+       {"runs", "1", "simulations in all", &Row::runs},
+       metric("settled\ninside [mm]", "inside_settled_m", 1e3),
+       metric("vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0),
+       metric("largest\nstep [N]", "settled_force_step_max_N", 1.0),
+       {"binding", "", "of tune: what a larger K does not keep", &Row::binding, only_printed()}});
   return columns;
 }
 
 Columns<TuneTrial> trial_columns() {
-  Columns<TuneTrial> columns;
-  columns.add("algorithm", "", "force algorithm", &TuneTrial::algorithm);
-  columns.add("stiffness_N_per_m", "N/m", "K", &TuneTrial::stiffness);
-  columns.add(kRatioColumn, "1", "zeta; empty where it has no part", &TuneTrial::damping_ratio);
-  columns.add("mass_kg", "kg", "virtual mass; empty where it is not searched", &TuneTrial::mass);
-  columns.add("velocity_filter", "", "of the device, as JSON; empty: the scene's", &TuneTrial::filter);
-  columns.add("feasible", "", "true when every constraint is kept", &TuneTrial::feasible);
-  columns.add("binding", "",
-              "the first constraint that is not: settled (at K), margin (up to G K), a limited metric, or runs, the "
-              "bound on them",
-              &TuneTrial::binding);
-  columns.add("why", "", "the same in words", &TuneTrial::why);
+  using Row = TuneTrial;
+  Columns<Row> columns = {
+      {"algorithm", "", "force algorithm", &Row::algorithm},
+      {"stiffness_N_per_m", "N/m", "K", &Row::stiffness},
+      {kRatioColumn, "1", "zeta; empty where it has no part", &Row::damping_ratio},
+      {"mass_kg", "kg", "virtual mass; empty where it is not searched", &Row::mass},
+      {"velocity_filter", "", "of the device, as JSON; empty: the scene's", &Row::filter},
+      {"feasible", "", "true when every constraint is kept", &Row::feasible},
+      {"binding", "",
+       "the first constraint that is not: settled (at K), margin (up to G K), a limited metric, or runs, the bound on "
+       "them",
+       &Row::binding},
+      {"why", "", "the same in words", &Row::why}};
   for (const char* name : {kTuneMetrics[0], kTuneMetrics[1], kTuneMetrics[2]}) {
-    columns.add(name, name == kTuneMetrics[0] ? "m" : "N",
-                "of the scene's own run at K; empty where it was not asked for",
-                [name](const TuneTrial& trial) { return value_in(trial.metrics, name); });
+    columns.add(
+        {{name, name == kTuneMetrics[0] ? "m" : "N", "of the scene's own run at K; empty where it was not asked for",
+          [name](const Row& r) { return value_in(r.metrics, name); }}});
   }
   return columns;
 }
 
 Json law_json(const TunedLaw& law) {
   Json json = tuned_columns().json(law);
-  for (const Margin& margin : kMargins) json["margins"][margin.key] = or_null(law.margins.*margin.of);
+  for (const Margin& margin : kMargins) json["margins"][margin.key] = cell_json(cell_if(law.margins.*margin.of));
   json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
   json["error"] = law.error;
-  json["linear_edge"] = law.choice ? or_null(law.edge.linear_edge()) : Json();
-  json["edge_in_runs"] = law.choice ? or_null(law.edge.value) : Json();
+  json["linear_edge"] = law.choice ? cell_json(cell_if(law.edge.linear_edge())) : Json();
+  json["edge_in_runs"] = law.choice ? cell_json(cell_if(law.edge.value)) : Json();
   return json;
 }
 
@@ -183,10 +173,9 @@ Json tuning_json(const Tuning& tuning, const fs::path& tuned) {
           {"runner_up", name_of(1)},
           {"limits", limits_json(tuning.question)},
           {"scenario", tuned.empty() ? Json() : Json(tuned.string())},
-          {"runs", tuning.runs()}};
+          {"runs", tuning.runs}};
 }
 
-/// The choice in full.
 Json tuned_scenario(const Tuning& tuning, const TunedLaw& law, const fs::path& out) {
   const Scenario choice = load_scenario(tuning.question.scenario, law.overrides).scenario;
   Json json = effective_scenario(choice, out);
@@ -194,8 +183,6 @@ Json tuned_scenario(const Tuning& tuning, const TunedLaw& law, const fs::path& o
   json["description"] = fmt::format("{} tuned by hapbench tune: {}", choice.name, law.algorithm);
   return json;
 }
-
-// ---- Text
 
 std::string limits_text(const Tuning& tuning) {
   std::string text = fmt::format("largest K that is settled up to {:g} K{}", tuning.question.margin,
@@ -243,7 +230,7 @@ std::string recommendation_text(const Tuning& tuning) {
   line("verified",
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of what lies "
                    "between may not be (95 %); {} runs in all",
-                   best->verified, tuning.question.margin, 100.0 * may_fail_share(kTriedBetween), tuning.runs()));
+                   best->verified, tuning.question.margin, 100.0 * may_fail_share(kTriedBetween), tuning.runs));
   line("expect", "+-: how far half the step, half the distance of the points or a look at every row move it");
   for (const auto& [name, value] : best->choice->metrics)
     line("", fmt::format("{} {}", name, with_error_text(value, value_in(best->error, name))));
@@ -259,8 +246,6 @@ std::string tuning_text(const Tuning& tuning) {
   }
   return text;
 }
-
-// ---- Command
 
 std::string device_text(const std::string& name, TuneQuestion& question) {
   if (name.empty()) return "";
@@ -305,7 +290,7 @@ void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& t
   const WaitNotice notice(now, !quiet);
   tuning.question.on_runs = [&](std::size_t count) { runs = count; };
   for (law = 0; law < algorithms.size(); ++law) {
-    tuning.laws.push_back(tuned_law(tuning.question, algorithms[law]));
+    tuning.runs += tuning.laws.emplace_back(tuned_law(tuning.question, algorithms[law])).runs;
     tell_progress("tune", law + 1, algorithms.size());
   }
   tuning.question.on_runs = {};
@@ -318,11 +303,10 @@ int tune(const TuneOptions& options) {
   tuning.question = tune_question(options, file);
   const std::string device = device_text(options.device, tuning.question);
   const LoadedScenario loaded = checked(load_scenario(tuning.question.scenario, tuning.question.overrides));
-  const std::vector<std::string> algorithms =
-      options.algorithms.empty() ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
-                                 : chosen_names("--algorithms: got", options.algorithms, algorithm_names());
-  print_warnings(loaded, loaded.warnings);
-  print_warnings(loaded, loaded.file_warnings);
+  const std::vector<std::string> algorithms = options.algorithms.empty()
+                                                  ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
+                                                  : chosen_algorithms(options.algorithms);
+  print_warnings(loaded);
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
   Report report(options, "tune_" + file.stem().string());

@@ -8,11 +8,11 @@
 #include "scenarios/format/mesh_file.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/limits/stability/scene_devices.hpp"
+#include "scenarios/limits/stability/field_limit.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/result_folder.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/tool/mesh_tool.hpp"
@@ -27,9 +27,10 @@ struct ValidateOptions : CommonOptions {
 
 std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool> is_closed) {
   const std::string closed = is_closed ? (*is_closed ? ", closed" : ", open") : "";
-  const std::string start = surface.touching > 0 ? fmt::format("starts in contact: {} points in it, the deepest by {}",
-                                                               surface.touching, length_text(std::abs(surface.gap)))
-                                                 : fmt::format("starts {} from the surface", length_text(surface.gap));
+  const auto& [gap, touching] = surface.start;
+  const std::string start = touching > 0 ? fmt::format("starts in contact: {} points in it, the deepest by {}",
+                                                       touching, length_text(std::abs(gap)))
+                                         : fmt::format("starts {} from the surface", length_text(gap));
   return fmt::format("  environment  {} ({}), {} points{}\n  start        {}\n", size_text(surface.box),
                      place_text(surface.box), surface.points, closed, start);
 }
@@ -98,7 +99,7 @@ Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
   if (!facts.surface) return json;
   json["environment"] = {{"box_m", box_json(facts.surface->box)}, {"points", facts.surface->points}};
   if (facts.is_closed) json["environment"]["closed"] = *facts.is_closed;
-  json["start"] = {{"gap_m", facts.surface->gap}, {"touching", facts.surface->touching}};
+  json["start"] = {{"gap_m", facts.surface->start.distance}, {"touching", facts.surface->start.touching}};
   return json;
 }
 
@@ -142,10 +143,9 @@ int validate(const ValidateOptions& options) {
         continue;
       }
       const LoadedScenario loaded = checked(load_scenario(file, options.overrides));
-      print_warnings(loaded, loaded.warnings);
-      print_warnings(loaded, loaded.file_warnings);
+      print_warnings(loaded);
       const SceneFacts facts = scene_facts(loaded);
-      print_warnings(loaded, facts.warnings);
+      print_warnings(with_files(loaded, facts.warnings));
       if (!options.points.empty()) write_points(loaded, options.points);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded, facts));
       verdict.update(facts_json(loaded, facts));

@@ -1,4 +1,4 @@
-#include "scenarios/program/table.hpp"
+#include "scenarios/program/report.hpp"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <numeric>
 #include <sstream>
 
 #include "sim/core/math.hpp"
@@ -28,6 +29,44 @@ std::array<std::string, 2> title_lines(const std::string& title) {
   const std::size_t end = title.find('\n');
   if (end == std::string::npos) return {"", title};
   return {title.substr(0, end), title.substr(end + 1)};
+}
+
+std::vector<std::size_t> widths_of(const Table& table) {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const auto [upper, lower] = title_lines(table.columns[c].title);
+    std::size_t width = std::max(upper.size(), lower.size());
+    for (const auto& row : table.rows) width = std::max(width, row[c].size());
+    widths.push_back(width);
+  }
+  return widths;
+}
+
+/// The columns of these places side by side, under their header. The last one is wrapped where it is wider.
+std::string block_text(const Table& table, const std::vector<std::size_t>& widths,
+                       const std::vector<std::size_t>& places) {
+  const auto line = [&](auto cell_of) {
+    std::string text;
+    for (const std::size_t c : places) {
+      const std::string cell = cell_of(c);
+      text += table.columns[c].number ? fmt::format("{:>{}}", cell, widths[c]) : fmt::format("{:<{}}", cell, widths[c]);
+      text.append(kGap, ' ');
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+    return text + "\n";
+  };
+  std::string text = line([&](std::size_t c) { return title_lines(table.columns[c].title)[0]; });
+  if (text == "\n") text.clear();
+  text += line([&](std::size_t c) { return title_lines(table.columns[c].title)[1]; });
+  text += line([&](std::size_t c) { return std::string(widths[c], '-'); });
+  for (const auto& row : table.rows) {
+    const std::size_t last = places.back();
+    std::istringstream prose(wrapped(row[last], 0, widths[last]));
+    bool first = true;
+    for (std::string part; std::getline(prose, part); first = false)
+      text += line([&](std::size_t c) { return c == last ? part : first ? row[c] : ""; });
+  }
+  return text;
 }
 
 }  // namespace
@@ -80,76 +119,29 @@ std::string bold(std::FILE* stream, std::string_view text) {
   return fmt::format("\033[1m{}\033[0m", text);
 }
 
-std::vector<std::size_t> Table::widths() const {
-  std::vector<std::size_t> widths;
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
-    const auto [upper, lower] = title_lines(columns_[c].title);
-    std::size_t width = std::max(upper.size(), lower.size());
-    for (const auto& row : rows_) width = std::max(width, row[c].size());
-    widths.push_back(width);
-  }
-  return widths;
-}
-
-std::size_t Table::width() const {
-  std::size_t sum = 0;
-  for (const std::size_t width : widths()) sum += width + kGap;
-  return sum - kGap;
-}
-
-std::string Table::block(const std::vector<std::size_t>& widths, const std::vector<std::size_t>& columns) const {
-  const auto line = [&](auto cell_of) {
-    std::string text;
-    for (const std::size_t c : columns) {
-      const std::string cell = cell_of(c);
-      text += columns_[c].number ? fmt::format("{:>{}}", cell, widths[c]) : fmt::format("{:<{}}", cell, widths[c]);
-      text.append(kGap, ' ');
-    }
-    text.erase(text.find_last_not_of(' ') + 1);
-    return text + "\n";
-  };
-  std::string text = line([&](std::size_t c) { return title_lines(columns_[c].title)[0]; });
-  if (text == "\n") text.clear();
-  text += line([&](std::size_t c) { return title_lines(columns_[c].title)[1]; });
-  text += line([&](std::size_t c) { return std::string(widths[c], '-'); });
-  for (const auto& row : rows_) {
-    const std::size_t last = columns.back();
-    if (row[last].size() <= widths[last]) {
-      text += line([&](std::size_t c) { return row[c]; });
-      continue;
-    }
-    std::istringstream prose(wrapped(row[last], 0, widths[last]));
-    bool first = true;
-    for (std::string part; std::getline(prose, part); first = false)
-      text += line([&](std::size_t c) { return c == last ? part : first ? row[c] : ""; });
-  }
-  return text;
-}
-
 std::string Table::text(std::size_t most_width) const {
   constexpr std::size_t kNarrowestProse = 24;
-  std::vector<std::size_t> width_of = widths();
-  const std::size_t full = width();
-  if (full > most_width && columns_.size() > 1 && !columns_.back().number) {
-    const std::size_t others = full - width_of.back();
+  std::vector<std::size_t> widths = widths_of(*this);
+  const std::size_t others = std::accumulate(widths.begin(), widths.end() - 1, kGap * (widths.size() - 1));
+  if (others + widths.back() > most_width && columns.size() > 1 && !columns.back().number) {
     // In a block of its own the last column stands beside the first.
-    const std::size_t beside = others + kNarrowestProse <= most_width ? others : width_of[0] + kGap;
+    const std::size_t beside = others + kNarrowestProse <= most_width ? others : widths[0] + kGap;
     const std::size_t rest = std::max(kNarrowestProse, most_width - std::min(most_width, beside));
-    width_of.back() = std::min(width_of.back(), rest);
+    widths.back() = std::min(widths.back(), rest);
   }
   std::string text;
-  std::vector<std::size_t> columns = {0};
-  std::size_t width = width_of[0];
-  for (std::size_t c = 1; c < columns_.size(); ++c) {
-    if (columns.size() > 1 && width + kGap + width_of[c] > most_width) {
-      text += block(width_of, columns) + "\n";
-      columns = {0};
-      width = width_of[0];
+  std::vector<std::size_t> places = {0};
+  std::size_t width = widths[0];
+  for (std::size_t c = 1; c < columns.size(); ++c) {
+    if (places.size() > 1 && width + kGap + widths[c] > most_width) {
+      text += block_text(*this, widths, places) + "\n";
+      places = {0};
+      width = widths[0];
     }
-    columns.push_back(c);
-    width += kGap + width_of[c];
+    places.push_back(c);
+    width += kGap + widths[c];
   }
-  return text + block(width_of, columns);
+  return text + block_text(*this, widths, places);
 }
 
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {
@@ -186,10 +178,6 @@ std::string entry(std::string_view name, std::string_view meaning, std::size_t i
 
 std::string significant(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
-}
-
-std::string significant(const std::optional<double>& value, int digits) {
-  return value ? significant(*value, digits) : "-";
 }
 
 int deserved_digits(double value, const std::optional<double>& tolerance, int most) {
