@@ -11,6 +11,7 @@ import sys
 import textwrap
 import threading
 import time
+from contextlib import contextmanager
 
 from hapbench.errors import InputError
 
@@ -48,9 +49,6 @@ class CommandLine(Arguments):
         """Several values in one word, separated by commas."""
         self.text(name, meaning, metavar="TEXT,...", action="extend", default=[],
                   type=lambda text: [part.strip() for part in text.split(",") if part.strip()])
-
-    def number(self, name, meaning, default=None):
-        self.text(name, meaning, metavar="FLOAT", type=float, default=default)
 
     def one_of(self, names, name, meaning):
         def checked(word):
@@ -130,7 +128,7 @@ def exit_status(name, doing, work):
     """Does the work of a command, with a notice that says what it is `doing`, unless that is empty. Returns the exit status;
     what is refused is printed, each fault in a line."""
     try:
-        with Notice(doing):
+        with notice(doing):
             status = work()
         sys.stdout.flush()
         return status or SUCCESS
@@ -208,32 +206,29 @@ def unwritable(error):
     return BAD_INPUT
 
 
-class Notice:
+@contextmanager
+def notice(text):
     """A line with the seconds, for work that takes longer than two; lines after 2, 4, 8 s and so on where standard error is no
     terminal; silent without a text."""
+    ended = threading.Event()
+    thread = threading.Thread(target=show_seconds, args=(text, ended), daemon=True)
+    if text:
+        thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        if text:
+            thread.join()
 
-    def __init__(self, text):
-        self._text = text
-        self._ended = threading.Event()
-        self._thread = threading.Thread(target=self._show, daemon=True) if text else None
 
-    def __enter__(self):
-        if self._thread:
-            self._thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self._ended.set()
-        if self._thread:
-            self._thread.join()
-
-    def _show(self):
-        start, terminal = time.monotonic(), sys.stderr.isatty()
-        pause, shown = SILENCE, False
-        while not self._ended.wait(pause):
-            seconds = time.monotonic() - start
-            line = f"hapbench: {self._text} ... {seconds:.0f} s"
-            print(f"\r{line}\033[K" if terminal else line, end="" if terminal else "\n", file=sys.stderr, flush=True)
-            pause, shown = 0.5 if terminal else seconds, True
-        if shown and terminal:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)
+def show_seconds(text, ended):
+    start, terminal = time.monotonic(), sys.stderr.isatty()
+    pause = SILENCE
+    while not ended.wait(pause):
+        seconds = time.monotonic() - start
+        line = f"hapbench: {text} ... {seconds:.0f} s"
+        print(f"\r{line}\033[K" if terminal else line, end="" if terminal else "\n", file=sys.stderr, flush=True)
+        pause = 0.5 if terminal else seconds
+    if terminal and pause != SILENCE:
+        print("\r\033[K", end="", file=sys.stderr, flush=True)

@@ -31,34 +31,20 @@ PUBLISHED_LINE = {"color": RED, "lw": 1, "ls": (0, (1, 1.5))}
 # Behind a label that may stand on a line.
 PLATE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
 
-SETTINGS = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
-    "font.size": 8,
-    "axes.titlesize": 8.5,
-    "axes.labelsize": 8,
-    "xtick.labelsize": 7.5,
-    "ytick.labelsize": 7.5,
-    "legend.fontsize": 7.5,
-    "legend.frameon": False,
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.linewidth": 0.7,
-    "axes.grid": True,
-    "grid.color": "#E6E6E6",
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    "lines.linewidth": 1.3,
-    "lines.markersize": 3.5,
-    "figure.facecolor": "white",
-    "svg.fonttype": "none",
-    "pdf.fonttype": 42,
-    "path.simplify": True,
-    "path.simplify_threshold": 0.5,
-    "figure.constrained_layout.use": True,
-    "agg.path.chunksize": 10000,
-}
+# Of matplotlib, by their groups.
+SETTINGS = {f"{group}.{name}": value for group, settings in {
+    "font": {"sans-serif": ["DejaVu Sans"], "size": 8},
+    "axes": {"titlesize": 8.5, "titlelocation": "left", "labelsize": 8, "linewidth": 0.7, "spines.top": False, "spines.right": False,
+             "grid": True, "axisbelow": True},
+    "xtick": {"labelsize": 7.5},
+    "ytick": {"labelsize": 7.5},
+    "legend": {"fontsize": 7.5, "frameon": False},
+    "grid": {"color": "#E6E6E6", "linewidth": 0.6},
+    "lines": {"linewidth": 1.3, "markersize": 3.5},
+    "pdf": {"fonttype": 42},
+    "path": {"simplify_threshold": 0.5},
+    "agg": {"path.chunksize": 10000},
+    "figure": {"constrained_layout.use": True}}.items() for name, value in settings.items()}
 
 
 def panels(rows, columns, height, **keywords):
@@ -87,10 +73,11 @@ def legend_above(figure, handles, labels, columns=4):
     figure.legend(handles, labels, loc="upper left", ncol=columns, handlelength=2.6)
 
 
-def letter(axes):
-    """Puts (a), (b), … before the titles."""
+def lettered(figure, axes):
+    """The figure with (a), (b), … before the titles of the axes."""
     for i, ax in enumerate(axes):
         ax.set_title(f"({chr(ord('a') + i)}) {ax.get_title(loc='left')}", loc="left")
+    return figure
 
 
 def note(ax, x, y, text, colour=BLACK, ha="left", va="top"):
@@ -112,14 +99,14 @@ def fix_layout(figure):
         figure.set_layout_engine(None)
 
 
-def picture(figure, kind, salt="hapbench", dpi=DPI):
+def picture(figure, kind, salt="hapbench"):
     """The bytes of the figure as "svg", "pdf" or "png". Same figure, same bytes: no dates, and identifiers in an SVG that
     follow from `salt`."""
     fix_layout(figure)
     drawn = io.BytesIO()
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[kind]
     with matplotlib.rc_context({"svg.hashsalt": salt, "svg.fonttype": "none"}):
-        figure.savefig(drawn, format=kind, dpi=dpi, metadata=undated)
+        figure.savefig(drawn, format=kind, dpi=DPI, metadata=undated)
     return compact(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
 
 

@@ -1,7 +1,7 @@
 """What the program of commit 661d2580 answered is still answered: answers.txt, a table behind each line "# question table", with the
 columns by their names of today. A question whose answer has left the program leaves with its tables, in a commit that says why.
 
-    equivalence_test.py PROGRAM [NAME…]     all questions, or those of these names
+    python3 tests/scripts/fixture.py tests/equivalence/equivalence_test.py PROGRAM [NAME…]     all questions, or those of these names
 """
 import csv
 import json
@@ -13,10 +13,9 @@ import unittest
 from io import StringIO
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "scripts"))
-from fixture import PROGRAM, main, ran  # noqa: E402  (the path comes first)
+from fixture import PROGRAM, ran
 
+HERE = Path(__file__).resolve().parent
 NAMED = sys.argv[2:]
 KNOWN = {title: list(csv.DictReader(StringIO(text))) for title, _, text in
          (part.partition("\n") for part in (HERE / "answers.txt").read_text(encoding="utf-8").split("# ")[1:])}
@@ -144,7 +143,3 @@ class Equivalence(unittest.TestCase):
         self.assertEqual(list(differences("limit_of_springs", "limits", rows)), [])
         other = repr(math.nextafter(float(rows[0]["limit"]), math.inf))
         self.assertEqual(len(list(differences("limit_of_springs", "limits", [{**rows[0], "limit": other}, *rows[1:]]))), 1)
-
-
-if __name__ == "__main__":
-    main()

@@ -4,14 +4,12 @@ import csv
 import json
 import math
 import re
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from fixture import PROGRAM, SOURCE, must  # noqa: E402  (the path comes first)
+from fixture import PROGRAM, SOURCE, must
 
 SCENES = {}
 

@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 from answers import SCENES, Answer, Bench, Within
-from fixture import PROGRAM, main, must, scratch_folder
+from fixture import PROGRAM, must, scratch_folder
 
 for scenes in sorted(Path(__file__).parent.glob("of_*.py")):
     import_module(scenes.stem)
@@ -25,18 +25,19 @@ def described(what):
 
 
 def keys_of(data):
-    """Keys of values, and keys of objects and lists of objects, which only group them."""
-    if isinstance(data, list):
-        found = [keys_of(value) for value in data]
-        return set().union(*(keys for keys, _ in found)), set().union(*(groups for _, groups in found))
+    """Each key with whether its value, an object or a list of objects, only groups others."""
+    for part in data if isinstance(data, list) else ():
+        yield from keys_of(part)
     if not isinstance(data, dict):
-        return set(), set()
+        return
     members = {key: value for key, value in data.items() if key not in NO_ANSWERS and key not in (TOLERANCES, DIAGNOSIS)}
     members.update({f"{TOLERANCES}.{name}": value for name, value in data.get(TOLERANCES, {}).items()})  # beside the metrics' own
     members.update({f"{DIAGNOSIS}.{name}": value for finding in data.get(DIAGNOSIS, []) for name, value in finding.items()})  # words of other keys
-    groups = {key for key, value in members.items() if isinstance(value, dict) or isinstance(value, list) and any(isinstance(v, dict) for v in value)}
-    within = [keys_of(members[key]) for key in groups]
-    return (set(members) - groups).union(*(keys for keys, _ in within)), groups.union(*(more for _, more in within))
+    for key, value in members.items():
+        grouping = isinstance(value, dict) or isinstance(value, list) and any(isinstance(v, dict) for v in value)
+        yield key, grouping
+        if grouping:
+            yield from keys_of(value)
 
 
 def printed_fields():
@@ -51,9 +52,10 @@ def printed_fields():
         fields += [f"{table['name']}:{name.split('.')[0] if name.startswith(TOLERANCES) else name}" for name in names if not shared or name not in metrics]
         fields += [f"{table['name']}:metrics"] if shared else []
     fields += [f"{word['name']} ({word['kind']})" for word in described("words")["words"] if word["kind"] not in NO_WORDS]
-    found = [(command, *keys_of(data)) for bench in FOUND.values() for command, data in bench.printed]  # runs of compare are those of run
-    groups = {(command, key) for command, _, grouping in found for key in grouping}
-    keys = {(command, key) for command, leaves, _ in found for key in leaves if key not in parts or command != "run"} - groups
+    # Runs of compare are those of run.
+    printed = [(command, *key) for bench in FOUND.values() for command, data in bench.printed for key in keys_of(data)]
+    groups = {(command, key) for command, key, grouping in printed if grouping}
+    keys = {(command, key) for command, key, _ in printed if key not in parts or command != "run"} - groups
     of_runs = {key for command, key in keys if command == "run"}
     fields += [f"{command} --json: {key}" for command, key in sorted(keys) if command in NO_TABLES or key not in columns | of_runs]
     return list(dict.fromkeys(fields))
@@ -100,7 +102,3 @@ class KnownAnswers(unittest.TestCase):
         self.assertEqual(list(Answer("x", "y", "", within, 1.0, 1.0 + 1e-7, ("", 1.1)).faults()), [])
         self.assertEqual(len(list(Answer("x", "y", "", within, "stable", "vibrating").faults())), 1)
         self.assertEqual(len(list(Answer("x", "y", "", within, 1.0, None).faults())), 1)
-
-
-if __name__ == "__main__":
-    main()

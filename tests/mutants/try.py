@@ -20,10 +20,6 @@ HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parent.parent
 
 
-class Untried(Exception):
-    """Nothing can be said about a mutant."""
-
-
 def said(*words):
     """Status and output of a command."""
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -34,11 +30,11 @@ def make(build, regex):
     """Builds the programs that the tests run which the regular expression selects."""
     tests = json.loads(said("ctest", "--test-dir", build, "--show-only=json-v1", "-R", regex)[1])["tests"]
     if not tests or any("command" not in test for test in tests):
-        raise Untried(f"{build}: no built test is called {regex}; build all tests first")
+        raise RuntimeError(f"{build}: no built test is called {regex}; build all tests first")
     programs = {word for test in tests for word in test["command"] if Path(word).is_relative_to(build / "bin")}
     status, output = said("cmake", "--build", build, "--target", *sorted(str(Path(word).relative_to(build)) for word in programs))
     if status:
-        raise Untried("it does not compile:\n" + "\n".join(output.splitlines()[-20:]))
+        raise RuntimeError("it does not compile:\n" + "\n".join(output.splitlines()[-20:]))
 
 
 def failing(build, regex):
@@ -46,7 +42,7 @@ def failing(build, regex):
     status, output = said("ctest", "--test-dir", build, "--stop-on-failure", "--no-tests=error", "-R", regex)
     failed = re.search(r"^\s*\d+ - (\S+) \(", output, re.MULTILINE)
     if status and not failed:
-        raise Untried("ctest failed without a test:\n" + output[-2000:])
+        raise RuntimeError("ctest failed without a test:\n" + output[-2000:])
     return failed[1] if status else ""
 
 
@@ -55,7 +51,8 @@ def mutated(mutant):
     path = SOURCE / mutant["file"]
     text = path.read_text(encoding="utf-8") if path.is_file() else ""
     if text.count(mutant["find"]) != 1:
-        raise Untried(f"{mutant['name']}: {mutant['file']} has {text.count(mutant['find'])} times what is to be replaced: {mutant['find']!r}")
+        times = text.count(mutant["find"])
+        raise RuntimeError(f"{mutant['name']}: {mutant['file']} has {times} times what is to be replaced: {mutant['find']!r}")
     return text.replace(mutant["find"], mutant["replace"])
 
 
@@ -75,16 +72,16 @@ def tried(build, names):
     """How many mutants survive."""
     mutants = json.loads((HERE / "mutants.json").read_text(encoding="utf-8"))
     if unknown := set(names) - {mutant["name"] for mutant in mutants}:
-        raise Untried(f"no mutant is called {', '.join(sorted(unknown))}")
+        raise RuntimeError(f"no mutant is called {', '.join(sorted(unknown))}")
     mutants = [mutant for mutant in mutants if mutant["name"] in names or not names]
     if said("git", "-C", SOURCE, "status", "--porcelain", "--untracked-files=no")[1]:
-        raise Untried("the tree has changes that are not committed")
+        raise RuntimeError("the tree has changes that are not committed")
     for mutant in mutants:
         mutated(mutant)
     killers = "|".join(sorted({mutant["killed_by"] for mutant in mutants}))
     make(build, killers)
     if failed := failing(build, killers):
-        raise Untried(f"{failed} fails without a mutant")
+        raise RuntimeError(f"{failed} fails without a mutant")
     survivors = 0
     for mutant in mutants:
         began = time.monotonic()
@@ -105,7 +102,7 @@ def main():
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores the source
     try:
         return 1 if tried(options.build.resolve(), options.names) else 0
-    except Untried as problem:
+    except RuntimeError as problem:
         print(f"tests/mutants/try.py: {problem}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

@@ -1,12 +1,11 @@
 """Shows what it takes to add things: the edits that the manuals ask for, and no other.
 
-adding_test.py [--keep] [unittest options]
+    python3 tests/scripts/fixture.py tests/scripts/adding_test.py [--keep]
 
 Copies the tree to a scratch folder, adds a law, a tool, an environment, a named file, a device field, a metric, a section of
 metrics, a column of trajectory.csv and a command there, builds the program (minutes) and shows that reader, schema, describe, list,
-results, sweep, help and completion know each of them. `--keep` leaves the folder behind.
+results, sweep, help and completion know each of them. `--keep` leaves the folder behind, /tmp/hapbench_adding_….
 """
-import argparse
 import csv
 import json
 import os
@@ -17,9 +16,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from fixture import SOURCE, must, ran
-
-OPTIONS = argparse.Namespace(keep=False)
+from fixture import SOURCE, must, ran, scratch_folder
 
 
 class Tree:
@@ -36,22 +33,16 @@ class Tree:
 
     def edit(self, anchor, new, before=False):
         """Puts `new` behind the only place in a source that has `anchor`, or before it. Returns the file's name."""
-        found = [file for file in self.sources() if anchor in file.read_text()]
+        folders = [self.folder / name for name in ("sim", "algorithms", "device_model", "results", "scenarios")]
+        sources = [file for folder in folders for file in folder.rglob("*.[hc]pp")]
+        found = [str(file.relative_to(self.folder)) for file in sources for _ in range(file.read_text().count(anchor))]
         if len(found) != 1:
-            raise AssertionError(f"{anchor!r} stands in {[str(file) for file in found]}; wanted: one file")
-        text = found[0].read_text()
-        if text.count(anchor) != 1:
-            raise AssertionError(f"{anchor!r} stands in {found[0]} {text.count(anchor)} times")
-        found[0].write_text(text.replace(anchor, new + anchor if before else anchor + new))
-        return str(found[0].relative_to(self.folder))
-
-    def sources(self):
-        for part in ("sim", "algorithms", "device_model", "results", "scenarios"):
-            for end in ("*.hpp", "*.cpp"):
-                yield from (self.folder / part).rglob(end)
+            raise AssertionError(f"{anchor!r} stands in {found}; wanted: one place")
+        text = (self.folder / found[0]).read_text()
+        return self.write(found[0], text.replace(anchor, new + anchor if before else anchor + new))
 
     def write(self, name, text):
-        """Writes a new file. Returns its name."""
+        """Returns the file's name."""
         (self.folder / name).write_text(text)
         return name
 
@@ -73,10 +64,6 @@ class Halved final : public ForceLaw {
   }
 };
 
-double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
-  return 0.5 * static_cast<double>(n) * depth;
-}
-
 }  // namespace
 
 AlgorithmEntry halved_entry() {
@@ -86,7 +73,7 @@ AlgorithmEntry halved_entry() {
                                       .source = "a test",
                                       .known_failure = "none that is known",
                                       .parameters = kStiffnessAlone};
-  return {.info = &kInfo, .make_law = law_of<Halved>, .theory = {.force_bound = bound}, .creates_energy = true};
+  return {.info = &kInfo, .make_law = law_of<Halved>};
 }
 
 }  // namespace hapbench
@@ -171,8 +158,8 @@ def add_device_field(tree):
 
 def add_metric(tree):
     return {
-        tree.edit("void LostTorqueObserver::tell(Section& s) const {\n",
-                  """  s.metric("lost_sum_Nm", "Nm", "sum of ||tau|| over the rows in contact", sum_);\n"""),
+        tree.edit("""    s.metric("lost_mean_Nm", "Nm",\n""",
+                  """    s.metric("lost_sum_Nm", "Nm", "sum of ||tau|| over the rows in contact", sum_);\n""", before=True),
     }
 
 
@@ -215,10 +202,7 @@ void add_twice(CommandLine& line) {
 }  // namespace hapbench
 """),
         tree.edit("add_validate;", "add_twice, ", before=True),
-        tree.edit("constexpr AddCommand* kCommands[] = {", "add_twice, "),
-        tree.edit("constexpr CommandGuide kGuides[] = {",
-                  '\n    {"look", "twice", "what is a word two times?"},'),
-        tree.edit("constexpr std::string_view kExamples[] = {", '"twice this", '),
+        tree.edit("constexpr CommandGuide kCommands[] = {", '\n    {"look", "twice", "what is a word two times?", add_twice, "twice this"},'),
     }
 
 
@@ -272,7 +256,7 @@ class Adding(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.scratch = Path(tempfile.mkdtemp(prefix="hapbench_adding_"))
+        cls.scratch = Path(tempfile.mkdtemp(prefix="hapbench_adding_")) if "--keep" in sys.argv else scratch_folder(cls)
         tree = Tree(cls.scratch / "tree")
         cls.touched = {thing: add(tree) for thing, (add, _) in ADDITIONS.items()}
         build = cls.scratch / "build"
@@ -282,13 +266,6 @@ class Adding(unittest.TestCase):
         must(*configure)
         must("cmake", "--build", build, "--target", "bin/hapbench")
         cls.program = build / "bin" / "hapbench"
-
-    @classmethod
-    def tearDownClass(cls):
-        if OPTIONS.keep:
-            print(f"kept: {cls.scratch}", file=sys.stderr)
-        else:
-            shutil.rmtree(cls.scratch)
 
     def setUp(self):
         self.folder = self.scratch / self.id().rpartition(".")[2]
@@ -303,14 +280,22 @@ class Adding(unittest.TestCase):
     def write(self, **parts):
         (self.folder / "scene.json").write_text(json.dumps(SCENARIO | parts))
 
+    def run_scene(self, *words, status=0):
+        """Summary and effective scenario of a run of it, in the folder out."""
+        self.hapbench("run", "scene.json", *words, "--out", "out", "--quiet", status=status)
+        return [json.loads((self.folder / "out" / name).read_text()) for name in ("summary.json", "scenario.effective.json")]
+
+    def first_row(self):
+        header, row = (line.split(",") for line in (self.folder / "out/trajectory.csv").read_text().splitlines()[:2])
+        return dict(zip(header, row, strict=True))
+
     def test_each_thing_takes_few_files(self):
         for thing, (_, most) in ADDITIONS.items():
             self.assertLessEqual(len(self.touched[thing]), most, f"{thing}: {sorted(self.touched[thing])}")
 
     def test_the_reader_accepts_and_refuses(self):
         self.write()
-        self.hapbench("run", "scene.json", "--out", "out", "--quiet")
-        effective = json.loads((self.folder / "out" / "scenario.effective.json").read_text())
+        _, effective = self.run_scene()
         self.assertEqual(effective["environment"], {"type": "ridge", "height_m": 0.001, "spacing_m": 0.0005})
         self.assertEqual(effective["tool"], {"type": "taper", "width_m": 0.003})
         for field, value, problem in (
@@ -339,8 +324,7 @@ class Adding(unittest.TestCase):
 
     def test_an_environment_says_what_its_inside_is(self):
         self.write()
-        self.hapbench("run", "scene.json", "--out", "out", "--quiet")
-        summary = json.loads((self.folder / "out/summary.json").read_text())
+        summary, _ = self.run_scene()
         self.assertAlmostEqual(summary["metrics"]["inside_max_m"], 1e-5, delta=1e-6)
         self.assertIn("went_through", self.hapbench("run", "scene.json", "--set", "environment.height_m=0.003", "--out", "deep", status=3))
         silent = (self.scratch / "tree/scenarios/format/environments.cpp").read_text().replace(INSIDE, "")
@@ -360,14 +344,13 @@ class Adding(unittest.TestCase):
     def test_a_named_file_is_read_checked_hashed_and_moved(self):
         self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
         self.assertIn("scene.json: /hand/file: stroke.csv: ", self.hapbench("validate", "scene.json", status=2))
-        summaries = []
+        hashes = set()
         for more in ("", "1,0,0,0,0,0,-1\n"):
             (self.folder / "stroke.csv").write_text(STROKE + more)
-            self.hapbench("run", "scene.json", "--out", "out/deep", "--quiet")
-            summaries.append(json.loads((self.folder / "out/deep/summary.json").read_text()))
-        self.assertEqual(len({summary["provenance"]["scenario_hash"] for summary in summaries}), 2)
-        effective = json.loads((self.folder / "out/deep/scenario.effective.json").read_text())
-        self.assertEqual(effective["hand"]["file"], "../../stroke.csv")
+            summary, effective = self.run_scene()
+            hashes.add(summary["provenance"]["scenario_hash"])
+            self.assertEqual(effective["hand"]["file"], "../stroke.csv")
+        self.assertEqual(len(hashes), 2)
         (self.folder / "below").mkdir()
         (self.folder / "below/other.json").write_text('{"extends": "../scene.json"}')
         self.hapbench("validate", "below/other.json")
@@ -378,9 +361,8 @@ class Adding(unittest.TestCase):
         self.write()
         first = {}
         for law in ("halved", "summation"):
-            self.hapbench("run", "scene.json", "--set", f"rendering.algorithm={law}", "--out", law, "--quiet")
-            header, row = (line.split(",") for line in (self.folder / law / "trajectory.csv").read_text().splitlines()[:2])
-            first[law] = float(dict(zip(header, row))["fspring_z_N"])
+            self.run_scene("--set", f"rendering.algorithm={law}")
+            first[law] = float(self.first_row()["fspring_z_N"])
         self.assertGreater(first["halved"], 0)
         self.assertEqual(first["halved"], first["summation"] / 2)
         self.assertIn("c_i = 1/2", self.hapbench("describe", "halved"))
@@ -397,21 +379,18 @@ class Adding(unittest.TestCase):
     def test_a_column_of_the_trajectory_has_a_field_that_adds_it(self):
         self.assertIn("add the tip's speed", self.hapbench("describe", "record.speed"))
         self.assertIn("norm of its velocity", self.hapbench("describe", "speed_m_per_s"))
+        self.write()
         for speed, found in (("true", True), ("false", False)):
-            self.write()
-            self.hapbench("run", "scene.json", "--set", f"record.speed={speed}", "--set", "record.pose=true", "--out", "out", "--quiet")
-            header, row = (line.split(",") for line in (self.folder / "out/trajectory.csv").read_text().splitlines()[:2])
-            self.assertEqual(header[-5:] == ["speed_m_per_s", "qw", "qx", "qy", "qz"], found)
-            self.assertEqual(len(row), len(header))
+            self.run_scene("--set", f"record.speed={speed}", "--set", "record.pose=true")
+            self.assertEqual(list(self.first_row())[-5:] == ["speed_m_per_s", "qw", "qx", "qy", "qz"], found)
             self.assertEqual("speed_m_per_s" in (self.folder / "out/columns.json").read_text(), found)
 
     def test_a_section_of_metrics_is_in_all_results(self):
         self.write(record={"pose": True}, expect={"outcome": ["completes", "no_contact", "lost_contact"],
                                                   "metrics": {"stillness.still": {"min": 100}}})
-        self.hapbench("run", "scene.json", "--out", "out", "--quiet", status=3)
-        summary, columns = (json.loads((self.folder / "out" / name).read_text()) for name in ("summary.json", "columns.json"))
+        summary, _ = self.run_scene(status=3)
         self.assertIn("still", summary["stillness"])
-        self.assertIn("stillness.still", json.dumps(columns))
+        self.assertIn("stillness.still", (self.folder / "out/columns.json").read_text())
         self.assertIn("rows in which the tool did not move", self.hapbench("describe", "stillness.still"))
         self.assertIn("stillness.still", self.hapbench("describe", "metrics"))
         self.assertIn("stillness.still", json.dumps(json.loads(self.hapbench("describe", "schema"))["else"]["properties"]["expect"]))
@@ -432,10 +411,3 @@ class Adding(unittest.TestCase):
         (self.folder / "stroke.csv").write_text(STROKE + "1,0,0,0,0,0,-1\n")
         self.hapbench("sweep", "scene.json", *vary, "--shard", "1/2", "--out", "sweep", "--quiet")
         self.assertIn("is of another sweep", self.hapbench("sweep", "sweep", status=2))
-
-
-if __name__ == "__main__":
-    parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--keep", action="store_true")
-    OPTIONS, rest = parser.parse_known_args()
-    unittest.main(argv=[sys.argv[0], *rest])

@@ -6,7 +6,7 @@ import unittest
 from functools import partial
 from pathlib import Path
 
-from fixture import ENVIRONMENT, PROGRAM, SOURCE, main, must, ran, scratch_folder
+from fixture import ENVIRONMENT, PROGRAM, SOURCE, must, ran, scratch_folder
 
 CMAKE, BUILD = sys.argv[2:4]
 CONSUMER = SOURCE / "tests" / "consumer"
@@ -52,7 +52,3 @@ class Consumer(unittest.TestCase):
             self.assertIn(word, own)
         for word in ("-Wconversion", "-march", "-Werror", "HAPBENCH_SIMD"):
             self.assertNotIn(word, own)
-
-
-if __name__ == "__main__":
-    main()

@@ -8,9 +8,9 @@ from functools import partial
 from pathlib import Path
 from unittest import mock
 
-from fixture import PROGRAM, SOURCE, in_process, main, must, ran, scratch_folder
+from fixture import PROGRAM, SOURCE, in_process, must, ran, scratch_folder
 
-from hapbench_figures import __main__ as command, catalogue  # below scripts/python, which the fixture adds
+from hapbench_figures import __main__ as command  # below scripts/python, which the fixture adds
 
 SVG = "{http://www.w3.org/2000/svg}"
 REFERENCE = SOURCE / "results" / "reference"
@@ -36,7 +36,7 @@ figures = partial(ran, SOURCE / "scripts" / "figures")
 
 
 def ids():
-    return [figure.id for figure in catalogue.FIGURES]
+    return [figure.id for figure in command.FIGURES]
 
 
 def make_results(directory):
@@ -123,7 +123,7 @@ class Figures(unittest.TestCase):
     def test_those_on_record_show_what_the_ledger_says(self):
         claims = json.loads((REFERENCE / "claims.json").read_text(encoding="utf-8"))["claims"]
         drawn = json.loads((RECORD / command.ROWS).read_text(encoding="utf-8"))
-        for figure in catalogue.FIGURES:
+        for figure in command.FIGURES:
             if figure.id in drawn:
                 self.assertEqual(drawn[figure.id], command.measured(figure, claims), f"{figure.id}: draw it with scripts/figures --record")
         self.assertEqual(set(drawn["D.7"]), {"D1", "D2"})
@@ -175,7 +175,3 @@ class Figures(unittest.TestCase):
             status, _, said = in_process(command.main, *words)
             self.assertEqual((status, said.count("\n")), (2, 1), said)
             self.assertTrue(said.startswith("hapbench: error: "), said)
-
-
-if __name__ == "__main__":
-    main()

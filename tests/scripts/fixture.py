@@ -1,4 +1,7 @@
-"""Shared by the tests of scripts: the tree, the built program (their first argument), and commands to run."""
+"""Shared by the tests of scripts: the tree, the built program, and commands to run. As a script it runs the tests of a file:
+
+    python3 tests/scripts/fixture.py FILE_test.py PROGRAM [WORD...]     the words are the file's own
+"""
 import os
 import re
 import subprocess
@@ -6,6 +9,7 @@ import sys
 import tempfile
 import unittest
 from contextlib import redirect_stderr, redirect_stdout
+from importlib import import_module
 from io import StringIO
 from pathlib import Path
 from unittest import mock
@@ -72,5 +76,8 @@ def scratch_folder(of):
     return Path(scratch.name).resolve()
 
 
-def main():
-    unittest.main(argv=sys.argv[:1])
+if __name__ == "__main__":
+    del sys.argv[0]
+    file = Path(sys.argv[0]).resolve()
+    sys.path.insert(0, str(file.parent))
+    unittest.main(import_module(file.stem), argv=sys.argv[:1])

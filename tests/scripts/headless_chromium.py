@@ -35,40 +35,57 @@ PALE = """(() => {
 })()"""
 
 
-class Chromium:
-    """One browser with one page, without network."""
+def started(program):
+    """A browser without network."""
+    options = webdriver.ChromeOptions()
+    options.binary_location = program
+    # The sandbox does not start for root, and the page is our own.
+    sandbox = ["--no-sandbox"] if os.geteuid() == 0 else []
+    for option in ["--headless=new", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", *sandbox]:
+        options.add_argument(option)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(service=Service("chromedriver"), options=options)
+    driver.set_script_timeout(PATIENCE_S)
+    driver.set_network_conditions(offline=True, latency=0, throughput=0)
+    return driver
 
-    def __init__(self, program):
-        options = webdriver.ChromeOptions()
-        options.binary_location = program
-        # The sandbox does not start for root, and the page is our own.
-        sandbox = ["--no-sandbox"] if os.geteuid() == 0 else []
-        for option in ["--headless=new", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", *sandbox]:
-            options.add_argument(option)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        self.driver = webdriver.Chrome(service=Service("chromedriver"), options=options)
-        self.driver.set_script_timeout(PATIENCE_S)
-        self.driver.set_network_conditions(offline=True, latency=0, throughput=0)
 
-    def close(self):
-        self.driver.quit()
+class Page(unittest.TestCase):
+    """Tests of one page, opened from its file without network."""
+
+    @classmethod
+    def show(cls, file):
+        """Opens the file for the tests of a module, in its setUpModule."""
+        cls.url, cls.driver = file.as_uri(), started(os.environ["HAPBENCH_CHROMIUM"])
+        unittest.addModuleCleanup(cls.driver.quit)
+
+    def setUp(self):
+        self.complaints()
+        self.size(1280, 900)
+        self.dark(False)
+        self.open()
+
+    def tearDown(self):
+        self.assertEqual(self.complaints(), [])
 
     def call(self, method, **parameters):
         """A method of the DevTools protocol."""
         return self.driver.execute_cdp_cmd(method, parameters)
 
-    def open(self, url):
-        self.driver.get(url)
-        self.wait_for(f"document.readyState === 'complete' && location.href === {json.dumps(url)}")
+    def open(self, hash_=""):
+        for url in ("about:blank", self.url + hash_):
+            self.driver.get(url)
+            self.wait_for(f"document.readyState === 'complete' && location.href === {json.dumps(url)}")
+        self.js("document.documentElement.style.scrollBehavior = 'auto'")
 
     def wait_for(self, expression):
         deadline = time.monotonic() + PATIENCE_S
-        while not self.evaluate(expression):
+        while not self.js(expression):
             if time.monotonic() > deadline:
                 raise TimeoutError(expression)
             time.sleep(0.05)
 
-    def evaluate(self, expression):
+    def js(self, expression):
         """Its value, of a promise the one that it keeps."""
         return self.driver.execute_script(f"return ({expression})")
 
@@ -91,37 +108,6 @@ class Chromium:
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
-    def screenshot(self):
-        """The visible part, as PNG in base 64."""
-        return self.driver.get_screenshot_as_base64()
-
-
-class Page(unittest.TestCase):
-    """Tests of one page, opened from its file without network."""
-
-    @classmethod
-    def show(cls, file):
-        """Opens the file for the tests of a module, in its setUpModule."""
-        cls.url, cls.browser = file.as_uri(), Chromium(os.environ["HAPBENCH_CHROMIUM"])
-        unittest.addModuleCleanup(cls.browser.close)
-
-    def setUp(self):
-        self.browser.complaints()
-        self.browser.size(1280, 900)
-        self.browser.dark(False)
-        self.open()
-
-    def tearDown(self):
-        self.assertEqual(self.browser.complaints(), [])
-
-    def open(self, hash_=""):
-        self.browser.open("about:blank")
-        self.browser.open(self.url + hash_)
-        self.js("document.documentElement.style.scrollBehavior = 'auto'")
-
-    def js(self, expression):
-        return self.browser.evaluate(expression)
-
     def centre(self, selector):
         return self.js(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center'}});"
                        "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
@@ -130,20 +116,17 @@ class Page(unittest.TestCase):
         """Clicks by the mouse, because browsers allow sound only then."""
         x, y = self.centre(selector)
         for kind in ("mousePressed", "mouseReleased"):
-            self.browser.mouse(kind, x, y, button="left", clickCount=1)
+            self.mouse(kind, x, y, button="left", clickCount=1)
 
     def choose(self, selector, value):
         self.js(f"(() => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
                 "menu.dispatchEvent(new Event('change')); })()")
 
-    def time(self):
-        return float(self.js("document.getElementById('replay-player').dataset.time"))
-
     def check_every_page(self):
         """It fits a telephone, every control has a name, and every text can be read in both themes."""
         self.assertEqual(self.js(UNNAMED), [])
         for dark in (True, False):
-            self.browser.dark(dark)
+            self.dark(dark)
             self.assertEqual(self.js(PALE), [], "dark" if dark else "light")
-        self.browser.size(360, 740, 2)
+        self.size(360, 740, 2)
         self.assertLessEqual(self.js("document.documentElement.scrollWidth"), 360)

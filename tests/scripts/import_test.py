@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from fixture import PROGRAM, SOURCE, hapbench, main, ran, scratch_folder
+from fixture import PROGRAM, SOURCE, hapbench, ran, scratch_folder
 from scipy import signal
 from scipy.spatial.transform import Rotation, Slerp
 
@@ -317,7 +317,3 @@ class Command(Given):
                               ('{"colums": {}}', 'nearest valid name: "columns"'), ('{"floats": 1}', "floats: got 1; allowed: true, false")):
             self.assertIn("bad.json: ", found := refusal_of(LOG, "--preset", self.write(text, "bad.json")))
             self.assertIn(problem, found)
-
-
-if __name__ == "__main__":
-    main()

@@ -4,7 +4,7 @@ import re
 import time
 import unittest
 
-from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
+from fixture import PROGRAM, SOURCE, hapbench, must, ran, scratch_folder
 from headless_chromium import Page
 
 SCENES = ("peg", "hole", "task2", "wedge", "molar", "friction")
@@ -29,12 +29,12 @@ def setUpModule():
 class Live(Page):
     def open(self, hash_=""):
         super().open(hash_)
-        self.browser.wait_for(READY)
+        self.wait_for(READY)
 
     def choose(self, selector, value):
         self.js(f"(async () => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
                 "live.begun = null; menu.dispatchEvent(new Event('change')); })()")
-        self.browser.wait_for(READY)
+        self.wait_for(READY)
 
     def move(self, way, rows):
         self.js(MOVE.format(way=json.dumps(list(way)), rows=rows))
@@ -65,7 +65,7 @@ class Live(Page):
         before = self.js("live.pointer")
         x, y = self.centre(".view")
         self.drag([(x, y), (x + 10, y + 30), (x + 10, y + 60)])
-        self.browser.wait_for("live.shown.rows > 1000")
+        self.wait_for("live.shown.rows > 1000")
         self.assertTrue(self.js("live.running"))
         self.assertLess(self.js("live.pointer")[1], before[1])
         self.js("live.toggle(false)")
@@ -76,14 +76,14 @@ class Live(Page):
         self.js("document.getElementById('scale').value = '1'")
         self.js(f"(() => {{ live.begun = null; const given = new DataTransfer(); given.items.add(new File([{json.dumps(cube)}], 'own.obj'));"
                 "document.getElementById('live').dispatchEvent(new DragEvent('drop', {dataTransfer: given, bubbles: true, cancelable: true})); })()")
-        self.browser.wait_for("live.begun && live.scene.id === 'own_obj' ? true : false")
+        self.wait_for("live.begun && live.scene.id === 'own_obj' ? true : false")
         depth = self.js("2 * live.begun[0].half_width_m")
         self.move((0, 0, -2 * depth, 0, 0), 800)
         self.assertGreater(self.assert_program_agrees(own__obj=cube)["steps_in_contact"], 0)
 
     def test_faults_are_told_and_left(self):
         self.js("live.takeScenario('wrong.json', '{\"extends\": \"tap_wall\", \"tool\": {\"diameter_m\": -1}}')")
-        self.browser.wait_for("document.getElementById('said').classList.contains('failed')")
+        self.wait_for("document.getElementById('said').classList.contains('failed')")
         self.assertIn("diameter_m", self.js("document.getElementById('said').textContent"))
         self.choose("#scene", "0")
         self.move((0, -1e-4, 0, 0, 0), 50)
@@ -110,11 +110,11 @@ class Live(Page):
 
     def drag(self, places):
         x, y = places[0]
-        self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
+        self.mouse("mousePressed", x, y, button="left", clickCount=1)
         for x, y in places[1:]:
-            self.browser.mouse("mouseMoved", x, y, button="left", buttons=1)
+            self.mouse("mouseMoved", x, y, button="left", buttons=1)
             time.sleep(0.05)
-        self.browser.mouse("mouseReleased", x, y, button="left", clickCount=1)
+        self.mouse("mouseReleased", x, y, button="left", clickCount=1)
 
     def test_every_law_and_stage_is_the_program_s(self):
         self.choose("#views", "1")
@@ -150,7 +150,3 @@ class Live(Page):
           }}
         }})""")
         self.assertEqual({name: value for name, value in found if single[name] != value}, {})
-
-
-if __name__ == "__main__":
-    main()

@@ -8,8 +8,8 @@ import shlex
 import numpy as np
 from scipy import stats
 
-from fixture import assert_whole, hapbench, main
-from pictures_fixture import Given, drawn, make_runs
+from fixture import assert_whole, hapbench
+from pictures_test import Given, drawn, made, make_runs
 
 from hapbench_pictures.differences import are_equal, differences
 
@@ -45,9 +45,8 @@ class Page(Given):
         assert_whole(self, self.page(self.root / "mesh"))
 
     def test_a_comparison_over_seeds_says_what_lies_between_laws(self):
-        out = self.root / "seeds"
-        hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", "mean,shaped_stiffness,summation", "--set", "time.steps=200", "--seeds", "4",
-                 "--jitter", "1e-6", "--by", "force_max_N", "--out", out, "--quiet")
+        out = made("seeds", "compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", "mean,shaped_stiffness,summation", "--set", "time.steps=200",
+                   "--seeds", "4", "--jitter", "1e-6", "--by", "force_max_N")
         said = re.findall(r"<code>force_max_N</code>: (\w+) has (\S+) ± (\S+) more than (\w+) over 4 seeds, which (\w+)",
                           re.search(r'<section id="seeds".*?</section>', self.page(out), re.S)[0])
         self.assertEqual(len(said), 2)
@@ -61,8 +60,7 @@ class Page(Given):
 
     def test_the_commands_repeat_the_run(self):
         command = re.search(r"hapbench (run [^\n<]*scenario.effective.json\S*) --out", self.page(self.root / "springs"))[1]
-        again = self.root / "again"
-        hapbench(*shlex.split(html.unescape(command)), "--out", again, "--quiet")
+        again = made("again", *shlex.split(html.unescape(command)))
         self.assertEqual((again / "trajectory.csv").read_bytes(), (self.root / "springs" / "trajectory.csv").read_bytes())
 
     def test_the_replay_has_every_run_and_a_scene_for_each_surface(self):
@@ -87,8 +85,7 @@ class Regression(Given):
         return drawn("report", a, b, "--tolerance", tolerance, expected=expected)
 
     def repeated(self, name, *more):
-        hapbench("run", "peg_in_hole_2d_shaped_stiffness", "--set", "time.steps=300", *more, "--out", self.root / name, "--quiet")
-        return self.root / name
+        return made(name, "run", "peg_in_hole_2d_shaped_stiffness", "--set", "time.steps=300", *more)
 
     def test_what_differs_is_named_and_measured_as_numpy_does(self):
         a, b = self.repeated("once"), self.repeated("nudged", "--set", f"rendering.stiffness_N_per_m={np.nextafter(20000, 30000)!r}")
@@ -109,12 +106,10 @@ class Regression(Given):
         self.assertTrue("force_max_N" in said and "not equal" in said, said)
 
     def test_runs_and_sweeps_are_paired_by_their_paths(self):
-        a, b = self.root / "pairs_a", self.root / "pairs_b"
-        for out, law, start in ((a, "summation", "0.005"), (b, "proxy", "0.006")):
-            hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", f"mean,{law}", "--set", "time.steps=50", "--out", out, "--quiet")
-            hapbench("sweep", "single_spring", "--vary", "rendering.stiffness_N_per_m=100,200", "--set", f"initial.position_m=[{start},0,0]", "--out", out / "sweep",
-                     "--quiet")
-        found = differences(a, b)
+        for out, law, start in (("a", "summation", "0.005"), ("b", "proxy", "0.006")):
+            made(out, "compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", f"mean,{law}", "--set", "time.steps=50")
+            made(f"{out}/sweep", "sweep", "single_spring", "--vary", "rendering.stiffness_N_per_m=100,200", "--set", f"initial.position_m=[{start},0,0]")
+        found = differences(self.root / "a", self.root / "b")
         self.assertEqual(list(found), ["mean/summary.json", "sweep/sweep.csv", ""])
         self.assertEqual([found["mean/summary.json"][kind] for kind in ("result", "state hash", "trajectory.csv")], [[], [], []])
         self.assertIn("force_max_N, row", " ".join(name for name, *_ in found["sweep/sweep.csv"]["sweep.csv"]))
@@ -125,7 +120,3 @@ class Regression(Given):
         run = self.repeated("once")
         for other, tolerance in ((self.root / "none", "0"), (run / "summary.json", "0"), (run, "-1"), (run, "nan")):
             self.assertEqual(self.told(run, other, tolerance, 2).count("\n"), 1)
-
-
-if __name__ == "__main__":
-    main()

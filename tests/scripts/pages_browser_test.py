@@ -2,9 +2,9 @@
 nothing to the console; its replay, tables and figures answer the hand."""
 import unittest
 
-from fixture import hapbench, main, scratch_folder
+from fixture import hapbench, scratch_folder
 from headless_chromium import Page
-from report_fixture import make_claims, make_figures, make_results, report
+from report_test import make_claims, make_figures, make_results, report
 
 # Decodes a screenshot in the page and counts its colours.
 COUNT_COLOURS = """(async () => {
@@ -31,7 +31,7 @@ def setUpModule():
     done = report(root / "results", "--figures", root / "figures", "--claims", root / "claims.json", "--out", root / "report.html")
     assert done.returncode == 0, done.stderr
     OwnPage.show(root / "page.html")
-    OfThesis.url, OfThesis.browser = (root / "report.html").as_uri(), OwnPage.browser
+    OfThesis.url, OfThesis.driver = (root / "report.html").as_uri(), OwnPage.driver
 
 
 class EveryPage:
@@ -39,27 +39,30 @@ class EveryPage:
         self.check_every_page()
         for width in (400, 1400):
             for dark in (False, True):
-                self.browser.size(width, 900)
-                self.browser.dark(dark)
+                self.size(width, 900)
+                self.dark(dark)
                 self.assertLessEqual(self.js("document.documentElement.scrollWidth"), width)
                 for part in self.PARTS:
                     self.js(f"document.getElementById('{part}').scrollIntoView()")
                     # Text alone has tens of shades of grey.
-                    self.assertGreater(self.js(COUNT_COLOURS % self.browser.screenshot()), 20, part)
+                    self.assertGreater(self.js(COUNT_COLOURS % self.driver.get_screenshot_as_base64()), 20, part)
         self.assertEqual(self.js("[...document.images].filter((i) => !(i.complete && i.naturalWidth > 0)).length"), 0)
 
 
 class OwnPage(EveryPage, Page):
     PARTS = ("summary", "replay", "curves", "pareto", "metrics")
 
+    def time(self):
+        return float(self.js("document.getElementById('replay-player').dataset.time"))
+
     def test_it_plays_with_sound(self):
         self.choose("#replay-views", "3")
         self.assertEqual(self.js("[...document.querySelectorAll('.side:not([hidden])')].length"), 3)
         self.choose("#replay-speed", "0.05")
         self.click("#replay-sound")
-        self.browser.wait_for("player.sound.grains > 5")
+        self.wait_for("player.sound.grains > 5")
         self.click("#replay-play")
-        self.browser.wait_for(f"{PLAYING} === 'false'")
+        self.wait_for(f"{PLAYING} === 'false'")
         self.assertGreater(self.time(), 0)
 
     def test_a_link_leads_back(self):
@@ -99,14 +102,10 @@ class OfThesis(EveryPage, Page):
             self.click("#ledger-table thead th:nth-child(1) button")
             self.assertEqual(self.js(ids), sorted((f"C{i}" for i in range(5)), reverse=turned))
         self.js("document.querySelector('[data-filters=ledger-table] input').focus()")
-        self.browser.call("Input.insertText", text="not_among_these")
+        self.call("Input.insertText", text="not_among_these")
         self.assertEqual(self.js(ids), ["C2"])
 
     def test_a_figure_enlarges(self):
         self.click(".enlarge")
         self.assertTrue(self.js("document.getElementById('enlarged').open"))
-        self.browser.wait_for("document.getElementById('enlarged').querySelector('img').naturalWidth > 0")
-
-
-if __name__ == "__main__":
-    main()
+        self.wait_for("document.getElementById('enlarged').querySelector('img').naturalWidth > 0")

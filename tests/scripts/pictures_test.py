@@ -2,24 +2,71 @@
 light and dark. Needs numpy."""
 import json
 import re
+import shutil
 import sys
+import tempfile
 import unittest
+from functools import partial
+from pathlib import Path
 from unittest import mock
 
 import numpy as np
 
-from fixture import SOURCE, hapbench, main, must
-from pictures_fixture import Given, make_runs
+from fixture import PROGRAM, SOURCE, hapbench, in_process, must, scratch_folder
 
 import hapbench_looks
 import hapbench_style as style
 from hapbench import columns
 from hapbench.errors import InputError
+from hapbench_pictures.__main__ import main as pictures
 from hapbench_pictures.panels import draw_over_time, looks
 from hapbench_pictures.given import given_runs, labels
 from hapbench_pictures.over_axes import Axis, over_axes
 from hapbench_pictures.quantities import SHORT, Samples, settled_range
 from hapbench_report.recording import force_steps, forces, rows_to_show, settled_rows, sound, strongest, tool_profile
+
+def drawn(command, *words, expected=0):
+    """What `hapbench plot` or `report` prints, from this process, which has matplotlib loaded; on standard error if input is refused."""
+    status, said, error = in_process(pictures, command, *words, HAPBENCH_PROGRAM=str(PROGRAM))
+    assert status == expected, (words, status, error)
+    return error if expected == 2 else said
+
+
+plotted = partial(drawn, "plot")
+
+
+def make_runs():
+    """Short runs, a comparison and a sweep, once for a module, as its setUpModule."""
+    Given.root = scratch_folder(unittest)
+    made("mesh", "run", "mesh_molar", "--set", "time.duration_s=0.25", "--set", "record.contacts=true", "--set", "expect={}")
+    made("springs", "run", "springs_limited_mean", "--set", "time.steps=300", "--set", "expect={}")
+    made("peg", "compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", "mean,proxy,shaped_stiffness,summation")
+    made("sweep", "sweep", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m=1e3:1e4:4:log", "--vary", "rendering.mass_kg=0.1:0.2:3",
+         "--set", "expect={}")
+
+
+def made(name, *words):
+    """A folder, in which the program writes what these words ask for."""
+    hapbench(*words, "--out", Given.root / name, "--quiet")
+    return Given.root / name
+
+
+class Given(unittest.TestCase):
+    def assert_shows(self, picture, *texts):
+        drawn = picture.read_text()
+        for text in texts:
+            self.assertIn(text, drawn)
+
+    def assert_plot_shows(self, folder, *texts):
+        self.assertEqual(plotted(folder), f"picture in {folder}/plot.svg\n")
+        self.assert_shows(folder / "plot.svg", *texts)
+
+    def copy(self, name):
+        """A copy of a run to spoil."""
+        directory = Path(tempfile.mkdtemp(dir=self.root)) / name
+        shutil.copytree(self.root / name, directory)
+        return directory
+
 
 setUpModule = make_runs
 
@@ -96,8 +143,9 @@ class Moments(unittest.TestCase):
         t = np.arange(100) / 10
         touching = ((1 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7)).astype(int)
         # A gap shorter than the settling time is no landing.
-        np.testing.assert_array_equal(settled_rows(t, touching, 0.5, None), (1.5 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7.5))
-        np.testing.assert_array_equal(settled_rows(t, touching, 0.5, 4.0), (4 <= t) & (t < 5) | (t >= 7))
+        rows = {"time_s": t, "colliding": touching}
+        for metrics, settled in (({"settling_s": 0.5}, (1.5 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7.5)), ({"from_s": 4.0}, (4 <= t) & (t < 5) | (t >= 7))):
+            np.testing.assert_array_equal(settled_rows(rows, {"metrics": metrics}), settled)
 
     def test_a_landing_sets_no_scale(self):
         force = np.array([0.0, 10.3, *np.linspace(0.9, 1.1, 500)])
@@ -163,7 +211,3 @@ class Looks(unittest.TestCase):
             for colour, grounds in ((look.colour, light), (look.dark, dark)):
                 for ground in grounds:
                     self.assertGreaterEqual(contrast(colour, ground), 4.5, (look.label, colour, ground))  # WCAG 2.1, level AA, of text
-
-
-if __name__ == "__main__":
-    main()

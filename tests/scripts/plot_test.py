@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fixture import SOURCE, hapbench, main
-from pictures_fixture import Given, make_runs, plotted
+from fixture import SOURCE, hapbench
+from pictures_test import Given, made, make_runs, plotted
 
 from hapbench.columns import header
 from hapbench_looks import CLASSES
@@ -17,6 +17,7 @@ from hapbench_pictures.plot import legend_columns, legend_of
 from hapbench_pictures.sweep_plot import Sweep, sensitivity
 
 setUpModule = make_runs
+FEW_STEPS = ("--set", "time.steps=20", "--set", "expect={}")
 
 
 class Plot(Given):
@@ -97,9 +98,8 @@ class Plot(Given):
 
     def test_what_matters_in_a_sample(self):
         """Of a spring's oscillation the first force goes with the start alone."""
-        folder = self.root / "sampled"
-        hapbench("sweep", "springs_limited_mean", "--vary", "rendering.mass_kg=0.1:0.2", "--vary", "rendering.stiffness_N_per_m=1e3:1e5:log", "--vary",
-                 "seed=1:9", "--sample", "lhs:40", "--set", "time.steps=20", "--set", "expect={}", "--out", folder, "--quiet")
+        folder = made("sampled", "sweep", "springs_limited_mean", "--vary", "rendering.mass_kg=0.1:0.2", "--vary",
+                      "rendering.stiffness_N_per_m=1e3:1e5:log", "--vary", "seed=1:9", "--sample", "lhs:40", *FEW_STEPS)
         said = plotted(folder, "--metric", "force_max_N")
         found = {line.split()[0]: line.split()[1:] for line in said.splitlines() if line.startswith(("rendering.", "seed")) and len(line.split()) == 4}
         self.assertGreater(float(found["rendering.stiffness_N_per_m"][0]), 0.5)
@@ -129,23 +129,17 @@ class Plot(Given):
     def test_axes_are_as_they_were_varied(self):
         for values, logarithmic, *sample in (("1e3:1e5:5", False), ("1e3:4e3:5:log", True), ("1000,2000,3000", False), ("10,100,50000", True),
                                              ("1e3:1e5", False, "--sample", "random:9")):
-            folder = self.root / "varied"
-            hapbench("sweep", "springs_limited_mean", "--vary", f"rendering.stiffness_N_per_m={values}", *sample, "--set", "time.steps=20",
-                     "--set", "expect={}", "--out", folder, "--quiet")
+            folder = made("varied", "sweep", "springs_limited_mean", "--vary", f"rendering.stiffness_N_per_m={values}", *sample, *FEW_STEPS)
             self.assertEqual(Sweep(folder, None).is_logarithmic(0), logarithmic, values)
 
     def test_maps_and_limits(self):
-        over, limit = self.root / "over", self.root / "limit"
-        hapbench("limit", "stability_z_width", "--resolution", 0.5, "--algorithms", "mean,proxy", "--out", over, "--quiet")
-        self.assertEqual(plotted(over), f"picture in {over}/plot.svg\n")
-        self.assert_shows(over / "plot.svg", "limit, theory", "limit, bisection", "damping [N s/m]", "stiffness K [N/m]", "diverged", "stable (Gil, Hulin)")
-        hapbench("limit", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=300", "--set", "expect={}",
-                 "--resolution", 0.1, "--out", limit, "--quiet")
-        plotted(limit, "--quiet")
-        self.assert_shows(limit / "plot.svg", "limit, bisection", "stiffness K [N/m]", "mean")
+        over = made("over", "limit", "stability_z_width", "--resolution", 0.5, "--algorithms", "mean,proxy")
+        self.assert_plot_shows(over, "limit, theory", "limit, bisection", "damping [N s/m]", "stiffness K [N/m]", "diverged", "stable (Gil, Hulin)")
+        limit = made("limit", "limit", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=300", "--set", "expect={}",
+                     "--resolution", 0.1)
+        self.assert_plot_shows(limit, "limit, bisection", "stiffness K [N/m]", "mean")
         # Without a linear edge no closed form of it is drawn.
-        rubbed = self.root / "rubbed"
-        hapbench("limit", "stability_z_width", "--resolution", 0.5, "--algorithms", "mean", "--set", "device.coulomb_N=0.1", "--out", rubbed, "--quiet")
+        rubbed = made("rubbed", "limit", "stability_z_width", "--resolution", 0.5, "--algorithms", "mean", "--set", "device.coulomb_N=0.1")
         plotted(rubbed)
         for text in ("limit, theory", "stable (Gil, Hulin)", "exact, undamped handle"):
             self.assertNotIn(text, (rubbed / "plot.svg").read_text())
@@ -155,30 +149,24 @@ class Plot(Given):
         self.assertIn("is not a table that hapbench wrote", plotted(limit, expected=2))
 
     def test_convergence(self):
-        folder = self.root / "converge"
-        hapbench("converge", "springs_oscillation", "--metric", "force_max_N,inside_max_m,final_position_m.x", "--levels", 4, "--out", folder, "--quiet")
-        self.assertEqual(plotted(folder), f"picture in {folder}/plot.svg\n")
-        self.assert_shows(folder / "plot.svg", "force max, order 1.0", "inside max, no order", "final position m.x, order 1.", "formal order 1",
-                          "time step [s]", "relative error", "processor time of the run [s]")
-        hapbench("converge", "springs_oscillation", "--metric", "inside_max_m", "--out", folder, "--quiet")
+        folder = made("converge", "converge", "springs_oscillation", "--metric", "force_max_N,inside_max_m,final_position_m.x", "--levels", 4)
+        self.assert_plot_shows(folder, "force max, order 1.0", "inside max, no order", "final position m.x, order 1.", "formal order 1",
+                               "time step [s]", "relative error", "processor time of the run [s]")
+        made("converge", "converge", "springs_oscillation", "--metric", "inside_max_m")
         self.assertIn("nothing to draw: no level has an error above 0", plotted(folder, expected=2))
 
     def test_tuning(self):
-        folder = self.root / "tune"
-        hapbench("tune", "impedance_at_wall", "--algorithms", "mean,shaped_stiffness", "--damping-ratio", "0.2:0.3", "--out", folder, "--quiet")
-        self.assertEqual(plotted(folder), f"picture in {folder}/plot.svg\n")
-        self.assert_shows(folder / "plot.svg", "stiffness [N/m]", "deepest inside [mm]", "force above 30 Hz [N rms]", "the choice", "not feasible", "mean")
+        folder = made("tune", "tune", "impedance_at_wall", "--algorithms", "mean,shaped_stiffness", "--damping-ratio", "0.2:0.3")
+        self.assert_plot_shows(folder, "stiffness [N/m]", "deepest inside [mm]", "force above 30 Hz [N rms]", "the choice", "not feasible", "mean")
         table = folder / "tune_trials.csv"
         table.write_text(table.read_text().splitlines()[0] + "\nmean,1,1,,,false,settled,vibrating,,,\n")
         self.assertIn("nothing to draw: no trial is settled", plotted(folder, expected=2))
 
     def test_devices(self):
-        folder = self.root / "devices"
         own = self.root / "my$own$.json"
         own.write_text('{"type": "impedance", "handle_mass_kg": 0.1}')
-        hapbench("limit", "tap_wall", "--device", f"touch,{own}", "--algorithms", "summation", "--set", "time.steps=200", "--resolution", 0.5, "--out", folder, "--quiet")
-        self.assertEqual(plotted(folder), f"picture in {folder}/plot.svg\n")
-        self.assert_shows(folder / "plot.svg", "tap wall", "touch", "my$own$", "summation", "published, of a wall", "largest stable stiffness K [N/m]")
+        folder = made("devices", "limit", "tap_wall", "--device", f"touch,{own}", "--algorithms", "summation", "--set", "time.steps=200", "--resolution", 0.5)
+        self.assert_plot_shows(folder, "tap wall", "touch", "my$own$", "summation", "published, of a wall", "largest stable stiffness K [N/m]")
 
     def test_new_draws_a_preview(self):
         bur = self.root / "bur.json"
@@ -197,7 +185,3 @@ class Plot(Given):
                 ((sweep, mesh), "is a sweep; allowed: one such folder alone"), ((mesh, "--metric", "x"), "is for a sweep")):
             error = plotted(*words, expected=2)
             self.assertTrue(error.startswith("hapbench: error: ") and said in error and error.count("\n") == 1, error)
-
-
-if __name__ == "__main__":
-    main()

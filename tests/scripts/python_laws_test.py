@@ -1,11 +1,11 @@
-"""Force laws in Python, and modules beside them. Arguments: those of python_fixture.py."""
+"""Force laws in Python, and modules beside them. Arguments: those of python_test.py."""
 import json
 import threading
 import traceback
 
 import numpy as np
-from fixture import must
-from python_fixture import PEG, SHORT, SOURCE, WEDGE, Scratch, main, python, words_of
+from fixture import SOURCE, must
+from python_test import PEG, SHORT, WEDGE, Scratch, python, words_of
 
 import hapbench
 
@@ -216,7 +216,3 @@ class Plugins(Scratch):
         self.assertNotIn("other_law", hapbench.algorithms())
         hapbench.load_plugin(self.root / "other.so")
         self.assertIn("other_law", hapbench.algorithms())
-
-
-if __name__ == "__main__":
-    main()

@@ -1,19 +1,45 @@
-"""Runs, studies and results by the Python package. Arguments: those of python_fixture.py."""
+"""Runs, studies and results by the Python package with its compiled module. Arguments: the program, the folder of the
+built package."""
 import json
 import os
 import re
 import sys
 import threading
 import time
+import unittest
+import warnings
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import numpy as np
-from fixture import PROGRAM, must, ran
-from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, WEDGE, Scratch, main, program, python, words_of
+from fixture import ENVIRONMENT as OF_TESTS
+from fixture import PROGRAM, SOURCE, hapbench as program, must, ran, scratch_folder
 
-import hapbench
-from hapbench.columns import read_columns
+PACKAGES = Path(sys.argv[-1]).resolve()
+sys.path.insert(0, str(PACKAGES))
+
+import hapbench  # noqa: E402  (the path comes first)
+from hapbench.columns import read_columns  # noqa: E402
+
+PEG = "peg_in_hole_2d_shaped_stiffness"
+WEDGE = "wedge_stiffness"  # in which a hand is free, so that --jitter may shift it
+# Short, and with contact from the first step on.
+SHORT = {"time.steps": 300, "expect": "{}"}
+EVERYTHING = {"record.contacts": True, "record.stiffness_tensor": True, "record.energy": True, "record.torque": True,
+              "record.pose": True, "record.ratio_iterations": "[0,3]"}
+ENVIRONMENT = {**OF_TESTS, "PYTHONPATH": str(PACKAGES)}
+python = partial(ran, sys.executable, env=ENVIRONMENT)
+
+
+def words_of(overrides):
+    return [word for field, value in overrides.items() for word in ("--set", f"{field}={value if isinstance(value, str) else json.dumps(value)}")]
+
+
+class Scratch(unittest.TestCase):
+    def setUp(self):
+        self.root = scratch_folder(self)
+        warnings.simplefilter("ignore", hapbench.ScenarioWarning)
 
 
 def without_diagnosis(run):
@@ -247,7 +273,3 @@ class Program(Scratch):
         *seconds, rows = map(float, done.stdout.split())
         self.assertEqual((len(seconds), rows), (2, 10), done.stderr)
         self.assertLess(max(seconds), 0.2)
-
-
-if __name__ == "__main__":
-    main()

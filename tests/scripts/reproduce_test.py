@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from fixture import SOURCE, main, must, scratch_folder
+from fixture import SOURCE, must, scratch_folder
 
 NOTHING = "#!/bin/sh\nexit 0\n"
 
@@ -123,7 +123,3 @@ class Readings(unittest.TestCase):
             scale = math.log if choice.get("scale") == "log" else float
             low, high = map(scale, choice["range"])
             self.assertEqual(sorted(int(8 * (scale(float(value)) - low) / (high - low)) for value in values), list(range(8)), choice["id"])
-
-
-if __name__ == "__main__":
-    main()

@@ -6,7 +6,7 @@ import sys
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 
-from fixture import ENVIRONMENT, PROGRAM, SOURCE, main, ran, scratch_folder
+from fixture import ENVIRONMENT, PROGRAM, SOURCE, ran, scratch_folder
 
 TUTORIALS = [file for file in sorted((SOURCE / "scenarios" / "library" / "tutorials").glob("*.md")) if file.name != "README.md"]
 CODE = re.compile(r"^```(bash|python)\n(.*?)^```\n", re.M | re.S)
@@ -60,7 +60,3 @@ class Tutorials(unittest.TestCase):
         for name, text in texts.items():
             with self.subTest(name):
                 self.assertEqual(unproven_numbers(text, printed[name].result()), [])
-
-
-if __name__ == "__main__":
-    main()

@@ -4,7 +4,7 @@ import math
 import os
 import re
 from collections.abc import Mapping
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 from .columns import read_columns, read_mixed, read_records
@@ -79,13 +79,10 @@ class Tables(Mapping):
     """Tables by name, each read when it is first asked for."""
 
     def __init__(self, readers):
-        self._readers = dict(readers)
-        self._read = {}
+        self._readers = {name: cache(read) for name, read in readers.items()}
 
     def __getitem__(self, name):
-        if name not in self._read:
-            self._read[name] = self._readers[name]()
-        return self._read[name]
+        return self._readers[name]()
 
     def __iter__(self):
         return iter(self._readers)

@@ -60,12 +60,11 @@ class Table(Mapping):
 
     def where(self, **chosen):
         """The rows whose columns have these values: `table.where(algorithm="mean")`."""
-        kept = None
+        found = self
         for column, value in chosen.items():
-            same = self[column] == value
-            kept = same if kept is None else kept & same
-        columns = self._columns if kept is None else {name: values[kept] for name, values in self._columns.items()}
-        return Table(columns, self.units, self.meanings, self.name)
+            rows = found[column] == value
+            found = Table({name: values[rows] for name, values in found.items()}, self.units, self.meanings, self.name)
+        return found
 
     def __repr__(self):
         names = list(self._columns)

@@ -61,11 +61,7 @@ class Manual:
 
     def anchors(self):
         """Anchors of its headings, as GitHub makes them."""
-        return {anchor(title) for title in HEADING.findall(self.text)}
-
-
-def anchor(title):
-    return re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
+        return {re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-") for title in HEADING.findall(self.text)}
 
 
 def broken_links(manual):

@@ -3,6 +3,8 @@ import json
 import re
 import sys
 import time
+from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
 import hapbench_style as style
@@ -10,9 +12,10 @@ from hapbench.errors import InputError, ResultError
 from hapbench.results import Files, MissingResult, read_json
 from hapbench_command import BAD_INPUT, SUCCESS, Arguments, exit_status, say_error, write
 
-from . import catalogue
 from .published import LEDGER
 
+CAPTIONS = Path(__file__).parent / "captions.txt"
+HEAD = re.compile(r"(\S+)\] (.+) · (\w+)\.(\w+)(?:\((\w+)\))? · (.+)")
 NOTHING_DRAWN = 1
 ROWS = "rows.json"
 NUMBER = re.compile(r"(?:[A-F]\.)?\d+")  # of a figure
@@ -22,6 +25,46 @@ PAGE = """# Figures on record
 See every figure of the thesis that a simulation can draw, and some of ours: made by `scripts/figures RESULTS --out DIR
 --record results/reference/figures` from what `scripts/reproduce` leaves.
 """
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure as captions.txt has it."""
+
+    id: str
+    thesis: str  # the thesis's figure that it redraws; empty for ours
+    module: str
+    function: str
+    argument: str | None
+    title: str
+    caption: str
+    differs: str  # from the thesis's figure, and why
+    rows: tuple  # claims that it draws, besides those whose place names the thesis's figure
+
+    @property
+    def stem(self):
+        return "figure_" + self.id.replace("-", "_")
+
+    def draw(self, results):
+        """The drawing and the values of its caption. Raises MissingResult when its data is not there."""
+        function = getattr(import_module(f".{self.module}", __package__), self.function)
+        return function(results, self.argument) if self.argument else function(results)
+
+
+def catalogue():
+    """Every figure, in the order of captions.txt; without a caption one has that of the one before it."""
+    found = []
+    for text in CAPTIONS.read_text(encoding="utf-8").split("\n\n[")[1:]:
+        head, *lines = text.strip().split("\n")
+        id_, thesis, module, function, argument, title = HEAD.fullmatch(head).groups()
+        text, _, rows = " ".join(lines).partition(" Rows: ")
+        caption, _, differs = text.partition(" Differs: ")
+        found.append(Figure(id_, thesis.removeprefix("-"), module, function, argument, title, caption or found[-1].caption, differs,
+                            tuple(rows.rstrip(".").split())))
+    return found
+
+
+FIGURES = catalogue()
 
 
 def arguments(argv):
@@ -43,11 +86,11 @@ def selection(only):
     """The figures that are asked for."""
     chosen = []
     for id_ in only.split(",") if only else ():
-        found = [f for f in catalogue.FIGURES if f.id == id_ or f.id.startswith(id_ + "-")]
+        found = [f for f in FIGURES if f.id == id_ or f.id.startswith(id_ + "-")]
         if not found:
-            raise InputError(f"--only: no figure {id_!r}; there are {', '.join(f.id for f in catalogue.FIGURES)}")
+            raise InputError(f"--only: no figure {id_!r}; there are {', '.join(f.id for f in FIGURES)}")
         chosen += [f for f in found if f not in chosen]
-    return chosen or catalogue.FIGURES
+    return chosen or FIGURES
 
 
 def draw(figure, results, directory):
@@ -66,7 +109,7 @@ def write_index(directory, entries):
     file = directory / "figures.json"
     known = {entry["id"]: entry for entry in read_json(file)["figures"]} if file.is_file() else {}
     known |= {entry["id"]: entry for entry in entries}
-    known = {f.id: known[f.id] for f in catalogue.FIGURES if f.id in known and (directory / f"{f.stem}.svg").is_file()}
+    known = {f.id: known[f.id] for f in FIGURES if f.id in known and (directory / f"{f.stem}.svg").is_file()}
     write(file, json.dumps({"figures": list(known.values())}, indent=2, ensure_ascii=False) + "\n")
     return known
 
@@ -86,7 +129,7 @@ def record(directory, page, drawn, claims):
     """Copies figures into the directory `page` and writes figures.md about all that lie there, and rows.json with what the ledger
     measured for the claims that they draw."""
     text, rows = PAGE, {}
-    for figure in catalogue.FIGURES:
+    for figure in FIGURES:
         on_record = page / f"{figure.stem}.svg"
         if figure.id not in drawn or not (figure.thesis or on_record.is_file()):
             continue

@@ -19,20 +19,16 @@ def damping_coefficient(scenario):
     return 2 * r["damping_ratio"] * np.sqrt(r["stiffness_N_per_m"] * r["mass_kg"])
 
 
-def original_forces(direction, spring, damping):
-    """Normal and tangential damping of the original algorithm (B.2): one direction for all contacts."""
-    normal = (VELOCITY @ direction) * direction
-    return -damping * normal, -(FRICTION[0] + FRICTION[1] * spring) * (VELOCITY - normal)
-
-
 def draw_forces(ax, at, direction, spring, damping, named_at):
-    """Implicit plane, its name, velocity and damping forces at the tip (scene in millimetres)."""
+    """Implicit plane, its name, velocity, and damping forces of the original algorithm (B.2: one direction for all contacts) at the tip (scene
+    in millimetres)."""
     along = np.array([-direction[1], direction[0]])
     ends = np.stack([at - 2 * along, at + 2 * along])
     ax.plot(*ends.T, color=style.PLUM, lw=1.6, zorder=4)
-    normal, tangential = original_forces(direction, spring, damping)
+    normal = (VELOCITY @ direction) * direction
+    tangential = -(FRICTION[0] + FRICTION[1] * spring) * (VELOCITY - normal)
     scene.draw_arrow(ax, at, 90 * VELOCITY, style.AMBER, "velocity", at=(-14, -9))
-    scene.draw_arrow(ax, at, MM_PER_N * normal, style.BLACK, "normal")
+    scene.draw_arrow(ax, at, MM_PER_N * (-damping * normal), style.BLACK, "normal")
     upright = abs(direction[0]) < 0.1
     scene.draw_arrow(ax, at, MM_PER_N * tangential, style.PETROL, "tangential", at=(-30, -18) if upright else (6, -10))
     ax.text(*named_at, "implicit\nplane", color=style.PLUM, fontsize=7, va="bottom", zorder=7)
@@ -67,19 +63,15 @@ def draw_distributed(ax, sweep):
     ax.set_title("peg in hole")
 
 
-def line_of(algorithm):
-    return {"color": style.look(algorithm).colour, "lw": 1.1}
-
-
 def wall_damping(ax, results):
     """Damping against motion along the wall's normal, in units of B."""
     dp, hs = scene.Sweep(results, DP), scene.Sweep(results, HS)
     pick = np.arange(1, len(dp.tilt))
     forces = np.stack([dp.rows["fspring_x_N"], dp.rows["fspring_y_N"]], 1)[pick]
     along = forces[:, 0] ** 2 / np.maximum(np.einsum("ij,ij->i", forces, forces), 1e-300)
-    ax.plot(dp.tilt[pick], along, **line_of("original_averaging"))
+    ax.plot(dp.tilt[pick], along, color=style.look("original_averaging").colour, lw=1.1)
     tensor = results.table("stiffness_peg/shaped_stiffness/stiffness_tensor.csv")
-    ax.plot(hs.tilt[pick], tensor["sxx"][pick], **line_of("shaped_stiffness"))
+    ax.plot(hs.tilt[pick], tensor["sxx"][pick], color=style.look("shaped_stiffness").colour, lw=1.1)
     ax.text(0.6, 1.06, "stiffness shaping", ha="right")
     ax.text(0.05, 0.3, "original", color=style.look("original_averaging").colour)
     ax.set(xlabel="tilt [rad]", ylabel="damping across the walls / B", ylim=(-0.03, 1.25), title="damping across the walls")
@@ -91,8 +83,7 @@ def implicit_plane(results):
     draw_flat(axes[0, 0], sweep.scenario)
     draw_distributed(axes[0, 1], sweep)
     wall_damping(axes[0, 2], results)
-    style.letter(axes[0])
-    return figure, {}
+    return style.lettered(figure, axes[0]), {}
 
 
 def force_limit(results):

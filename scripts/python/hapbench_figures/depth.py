@@ -10,6 +10,7 @@ from . import published, scene
 SHORTEST, NORMAL = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
 DEEP = 0.42  # tilt [rad] at which many points lie beyond the median line
 SHALLOW = 0.12
+FRAME = (-1.9, 1.9), (-4.3, 1.0)  # of the contacts [mm]
 # Without the yellow end, which white paper swallows.
 TILT_COLOURS = ListedColormap(style.plt.get_cmap("viridis")(np.linspace(0, 0.75, 256)))
 # Directory, algorithm, name of its depth; the wide line shows below the one that covers it.
@@ -20,34 +21,24 @@ CONTINUOUS = (
     "run_beyond/corner_continuous_normal_projection", "continuous_normal_projection", "continuous (ours)", {"lw": 1.1})
 
 
-def draw_contacts(ax, sweep, tilt):
-    """The peg and its depths, those with flipped gradients in petrol."""
-    step = sweep.step_at(tilt)
-    contacts, peg = sweep.contacts(step), sweep.peg(step)
-    scene.draw_hole(ax, sweep.scenario["environment"])
-    scene.draw_peg(ax, peg, median=True)
-    scene.draw_segments(ax, contacts, np.where(contacts.flipped(), style.PETROL, style.AMBER))
-    scene.frame(ax, (-1.9, 1.9), (-4.3, 1.0))
-    return step
-
-
 def shortest_distance_and_normal(results):
     figure, axes = style.panels(1, 2, 4.3)
     for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
-        draw_contacts(ax, scene.Sweep(results, name), DEEP)
+        sweep = scene.Sweep(results, name)
+        scene.draw_contacts(ax, sweep, sweep.step_at(DEEP), *FRAME, flips=True)
         ax.set_title(title)
     style.note(axes[0, 0], 0.02, 0.98, "flipped gradients", style.PETROL)
     style.note(axes[0, 0], 0.98, 0.04, "dashed: median line", style.GREY, ha="right", va="bottom")
     style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.AMBER, ha="right")
-    style.letter(axes[0])
-    return figure, {"tilt": DEEP}
+    return style.lettered(figure, axes[0]), {"tilt": DEEP}
 
 
 def gradient_flipping(results):
     figure, axes = style.panels(1, 3, 3.2, gridspec_kw={"width_ratios": [1, 1, 1.15]})
     sweep = scene.Sweep(results, SHORTEST)
     for ax, tilt, title in ((axes[0, 0], SHALLOW, "shallow"), (axes[0, 1], DEEP, "beyond the median line")):
-        step = draw_contacts(ax, sweep, tilt)
+        step = sweep.step_at(tilt)
+        scene.draw_contacts(ax, sweep, step, *FRAME, flips=True)
         force = sweep.force(step)
         scene.draw_arrow(ax, scene.MM * sweep.peg(step).tip, 1.2 * force / np.linalg.norm(force), style.BLACK)
         style.note(ax, 0.03, 0.03, f"{np.linalg.norm(force):.1f} N", va="bottom")
@@ -55,8 +46,7 @@ def gradient_flipping(results):
     axes[0, 1].set_ylabel("")
     draw_flip_count(axes[0, 2], sweep)
     axes[0, 2].set_title("over the tilt")
-    style.letter(axes[0])
-    return figure, {}
+    return style.lettered(figure, axes[0]), {}
 
 
 def draw_flip_count(ax, sweep):
@@ -81,12 +71,12 @@ def draw_flip_count(ax, sweep):
 def underestimation(results):
     figure, axes = style.panels(1, 3, 3.0, gridspec_kw={"width_ratios": [0.85, 0.85, 1.3]})
     for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
-        draw_contacts(ax, scene.Sweep(results, name), 0.3)
+        sweep = scene.Sweep(results, name)
+        scene.draw_contacts(ax, sweep, sweep.step_at(0.3), *FRAME, flips=True)
         ax.set_title(title)
     axes[0, 1].set_ylabel("")
     draw_error(axes[0, 2], scene.Sweep(results, NORMAL))
-    style.letter(axes[0])
-    return figure, {}
+    return style.lettered(figure, axes[0]), {}
 
 
 def draw_error(ax, sweep):
@@ -122,8 +112,7 @@ def corner(results):
     axes[0, 0].set(title="force", ylabel="model force [N]")
     axes[0, 1].set(title="greatest depth", ylabel="depth [mm]")
     axes[0, 2].set(title="change in one step", ylabel="|Δ model force| [N]")
-    for ax in axes[0]:
-        ax.set_xlabel("tip's way towards the wall [mm]")
+    style.plt.setp(axes[0], xlabel="tip's way towards the wall [mm]")
     axes[0, 1].legend(loc="upper left", handlelength=1.5, fontsize=6.5, borderaxespad=0.1)
-    style.letter(axes[0])
-    return figure, {"continuous": ', and so it does with continuous normal projection (brown), which nearly covers it' if ours else ''}
+    said = ", and so it does with continuous normal projection (brown), which nearly covers it"
+    return style.lettered(figure, axes[0]), {"continuous": said if ours else ""}

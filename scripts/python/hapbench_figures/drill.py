@@ -14,19 +14,16 @@ SETTLED = 0.5  # seconds: the drill starts above its place
 
 
 def samples(results, run):
-    """Rows of a hand, settled and within the compared tilts, lengths in millimetres."""
+    """Rows of a hand, settled, within the compared tilts, and on the wall: not those in which the drill has slid towards the axis. Lengths in
+    millimetres."""
     rows = results.table(f"{HANDS}/runs/{run:06d}/ideal_trajectory.csv")
     range_ = published.entries()["J1.tilt"]
     own = (rows["time_s"] > SETTLED) & (rows["tilt_rad"] >= range_["at_least"]) & (rows["tilt_rad"] <= range_["at_most"])
     if not own.any():
         raise MissingResult(f"no row at the compared tilts in {HANDS}/runs/{run:06d}")
-    return {key: column[own] * (1 if key in ("time_s", "tilt_rad", "hand_force_N") else 1e3) for key, column in rows.items()}
-
-
-def on_the_wall(rows):
-    """Without the rows in which the drill has slid off the wall, towards the axis."""
-    own = np.abs(rows["lateral_m"]) > np.abs(rows["ideal_lateral_m"]) - SLID
-    return {key: column[own] for key, column in rows.items()}
+    rows = {key: column[own] * (1 if key in ("time_s", "tilt_rad", "hand_force_N") else 1e3) for key, column in rows.items()}
+    on_wall = np.abs(rows["lateral_m"]) > np.abs(rows["ideal_lateral_m"]) - SLID
+    return {key: column[on_wall] for key, column in rows.items()}
 
 
 def ideal(rows_list):
@@ -58,7 +55,7 @@ def trajectory(results):
     drawn, errors = [], []
     for run, (hand, own) in enumerate(zip(hands, style.SERIES)):
         force = float(hand["hand.force_N"])
-        rows = on_the_wall(samples(results, run))
+        rows = samples(results, run)
         drawn.append(rows)
         errors.append(f"{force:.2g} N {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f}/"
                       f"{rows['interpenetration_m'].max():.2f} mm")
@@ -85,5 +82,4 @@ def trajectory(results):
     height.legend(loc="upper left", markerscale=1.8, fontsize=6.5)
     height.margins(y=0.12)
     style.note(distance, 0.03, 0.3, "shaded: published,\nerror up to about\n0.25 mm", style.RED)
-    style.letter(axes[0])
-    return figure, {"errors": ', '.join(errors)}
+    return style.lettered(figure, axes[0]), {"errors": ', '.join(errors)}

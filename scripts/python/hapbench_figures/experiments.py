@@ -95,8 +95,7 @@ def experiment(results, task):
     # One subject who is thrown about is a hundred times as fast as the others.
     axes[0, 3].set_yscale("log")
     style.number_ticks(axes[0, 3].yaxis, (1, 2, 5))
-    style.letter(axes[0])
-    return figure, {}
+    return style.lettered(figure, axes[0]), {}
 
 
 CHECKED = (("vertical", 0, "D2", "centre"), ("vertical", 1, "D1", "0.52 mm aside"), ("rotational", 0, "D3", "3 mm high"),
@@ -140,5 +139,4 @@ def threshold(results):
         said.append(f"{title} {every:.2f}, {graces[-1][1]:.2f} and {max(success for _, success in slow):.2f}")
     axes[0, 0].set_ylabel("success rate")
     axes[0, 3].legend(loc="lower right", fontsize=6)
-    style.letter(axes[0])
-    return figure, {"success": ", ".join(said)}
+    return style.lettered(figure, axes[0]), {"success": ", ".join(said)}

@@ -28,12 +28,9 @@ RUNS = (("original_averaging", "original algorithm"), ("shaped_stiffness", "stif
 def draw_snapshots(axes, scenario, rows, colour):
     """The peg at equally spaced times, each with the way of its tip so far."""
     steps = np.linspace(0, len(rows["px_m"]) - 1, len(axes)).astype(int)
-    tool = scenario["tool"]
     for ax, step in zip(axes, steps):
-        tip = np.array([rows["px_m"][step], rows["py_m"][step]])
-        axis = np.array([rows["axis_x"][step], rows["axis_y"][step]])
         scene.draw_hole(ax, scenario["environment"])
-        scene.draw_peg(ax, scene.Peg(tip, axis, tool["diameter_m"], tool["length_m"]))
+        scene.draw_peg(ax, scene.peg_of(scenario["tool"], rows, step))
         ax.plot(1e3 * rows["px_m"][: step + 1], 1e3 * rows["py_m"][: step + 1], color=colour, lw=1.3, zorder=6)
         scene.frame(ax, (-1.7, 1.7), (-5.4, 3.4))
         ax.set_title(f"{1e3 * rows['time_s'][step]:.0f} ms", fontsize=7.5)
@@ -103,5 +100,4 @@ def redistribution(results):
     style.note(axes[0, 0], 0.02, 0.97, "pushing out", style.AMBER)
     style.note(axes[0, 0], 0.02, 0.91, "pushing sideways", style.GREY)
     axes[0, 1].set_ylabel("")
-    style.letter(axes[0])
-    return figure, {"growth": outward[1] / outward[0]}
+    return style.lettered(figure, axes[0]), {"growth": outward[1] / outward[0]}

@@ -84,7 +84,6 @@ def run_time_against_error(results):
     figure, axes = style.panels(3, 3, 6.4, gridspec_kw={"height_ratios": [1, 1, 0.4]})
     drawn = axes[:2].ravel()
     knees = [draw_panel(ax, results, *panel) for ax, panel in zip(drawn, PANELS)]
-    style.letter(drawn)
     for ax in axes[2]:
         ax.axis("off")
     # The names of (b) below everything: they would cover its marks.
@@ -97,4 +96,4 @@ def run_time_against_error(results):
     said = "; ".join(f"({letter}) {found.name}" for letter, found in zip("abcdef", knees))
     time = {row["name"].split("/")[1]: row["seconds_per_step"] for row in results.json(ACCURACY)["benchmarks"] if row["name"].startswith("skips/")}
     skipped = f" Testing every point in every step takes {time['off'] / time['taken']:.0f} times as long, for the same contacts." if len(time) == 2 else ""
-    return figure, {"factor": KNEE, "knees": said, "skipped": skipped}
+    return style.lettered(figure, drawn), {"factor": KNEE, "knees": said, "skipped": skipped}

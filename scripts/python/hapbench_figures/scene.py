@@ -57,6 +57,12 @@ class Peg:
         return low
 
 
+def peg_of(tool, rows, step):
+    """The tool of a scenario in a row of its trajectory."""
+    tip, axis = (np.array([rows[name][step] for name in names]) for names in (("px_m", "py_m"), ("axis_x", "axis_y")))
+    return Peg(tip, axis, tool["diameter_m"], tool["length_m"])
+
+
 class Sweep:
     """A run that recorded its contacts."""
 
@@ -76,10 +82,7 @@ class Sweep:
                         np.stack([pick["gradient_x"], pick["gradient_y"]], 1), pick["weight"])
 
     def peg(self, step):
-        row = {name: column[step] for name, column in self.rows.items()}
-        tool = self.scenario["tool"]
-        return Peg(np.array([row["px_m"], row["py_m"]]), np.array([row["axis_x"], row["axis_y"]]), tool["diameter_m"],
-                   tool["length_m"])
+        return peg_of(self.scenario["tool"], self.rows, step)
 
     def force(self, step, name="fspring_"):
         return np.array([self.rows[f"{name}x_N"][step], self.rows[f"{name}y_N"][step]])
@@ -134,11 +137,12 @@ def frame(ax, x, y):
     ax.set(xlim=x, ylim=y, xlabel="x [mm]", ylabel="y [mm]")
 
 
-def draw_contacts(ax, sweep, step, x, y):
-    """Hole, peg, and the contacts with their depths, which it returns, in this part of the scene."""
+def draw_contacts(ax, sweep, step, x, y, flips=False):
+    """Hole, peg, and the contacts with their depths, which it returns, in this part of the scene; with `flips` the median line in place of
+    the hole's points, and flipped gradients in petrol."""
     contacts = sweep.contacts(step)
-    draw_hole(ax, sweep.scenario["environment"], points=True)
-    draw_peg(ax, sweep.peg(step))
-    draw_segments(ax, contacts, [style.AMBER] * len(contacts.depth))
+    draw_hole(ax, sweep.scenario["environment"], points=not flips)
+    draw_peg(ax, sweep.peg(step), median=flips)
+    draw_segments(ax, contacts, np.where(contacts.flipped() & flips, style.PETROL, style.AMBER))
     frame(ax, x, y)
     return contacts

@@ -64,8 +64,7 @@ def of_four_laws(results, tilts, height):
         if len(tilts) > 1:
             row[0].set_ylabel(f"tilt {sweep.tilt[step]:.2f} rad\ny [mm]")
     axes[0, 0].set_title("contacts")
-    style.letter(axes[0])
-    return figure, axes, drawn
+    return style.lettered(figure, axes[0]), axes, drawn
 
 
 def excessive_stiffness(results):

@@ -94,8 +94,7 @@ def point_counts(results):
                 ax.set_title(title)
                 loads.append(loop_load(ax, results, task, end))
         row[0].set_ylabel(f"{density_name}\npoints in contact")
-    for ax in axes[1]:
-        ax.set_xlabel("time [s]")
+    style.plt.setp(axes[1], xlabel="time [s]")
     for load in filter(None, loads[:-1]):
         load.set_yticklabels([])
     if loads[-1]:
@@ -130,8 +129,7 @@ def count_distribution(results):
     axes[0, 1].legend(*axes[0, 0].get_legend_handles_labels(), loc="upper right", bbox_to_anchor=(1, 0.93))
     style.note(axes[0, 1], 0.98, 0.68, "thick: ± SD\nthin: 5 to 95 %", style.PETROL, ha="right")
     style.note(axes[0, 1], 0.98, 0.44, "◇ published, 3.3 and C.3\n(mean ± SD)", style.RED, ha="right")
-    style.letter(axes[0])
-    return figure, {}
+    return style.lettered(figure, axes[0]), {}
 
 
 def draw_distribution(ax, y, values, marker, label):
@@ -187,8 +185,7 @@ def convergence(results):
     axes[0, 0].set_ylabel("stiffness ratio")
     style.note(axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.PETROL, ha="right")
     style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", style.AMBER, ha="right", va="bottom")
-    style.letter(axes[0])
-    return figure, {}
+    return style.lettered(figure, axes[0]), {}
 
 
 def over_time(draw, label, height=2.6, rows=1):

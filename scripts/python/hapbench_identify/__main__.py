@@ -10,10 +10,9 @@ from hapbench_command import CommandLine, answer, exit_status, shell_line, table
 from hapbench_import.faults import fail, finite_number, refuse_source, require_name
 from hapbench_import.stroke import number_text
 
-from .design import FRICTION_TOLD, KINDS, design, force_to_ask, travel_of
 from .fit import fit
 from .log import read_log
-from .model import NAMES
+from .model import FRICTION_TOLD, KINDS, NAMES, design, force_to_ask, travel_of
 
 FOOTER = """\
 Fits m x'' = u(t - delay) + offset - b x' - c sign(x') to the positions by least squares, integrated exactly. The delay is found in \

@@ -1,13 +1,16 @@
 """The handle of an impedance device under held forces that come late: m x'' = u(t - delay) + offset - b x' - c sign(x'),
-integrated exactly by the program, stops included."""
+integrated exactly by the program, stops included; and the signal of force to play to it for an identification."""
 import os
 import shutil
 import subprocess
 
 import numpy as np
-from hapbench_import.faults import fail
+from hapbench_import.faults import Faults, fail
 
 NAMES = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "offset_N", "start_m_per_s")
+KINDS = {"chirp": "a sine from slow to fast", "steps": "pushes to and fro, from short to long", "multisine": "thirty sines at once"}
+FRICTION_TOLD = 0.6  # of the largest force; more dry friction leaves too little motion
+HIGHEST = 100.0  # frequency [Hz]; more tells little of a handle's mass and friction
 
 
 class Simulator:
@@ -47,3 +50,59 @@ def positions(time, force, parameters):
     """One simulation."""
     with Simulator(time, force) as simulate:
         return simulate(parameters)
+
+
+def design(kind, force, travel, rate, duration, mass):
+    """(time, force): no larger than `force` [N]; a handle of `mass` [kg] or more without friction keeps within `travel` [m]."""
+    steps = int(round(duration * rate))
+    if steps < 100:
+        fail(f"--design: duration: got {duration:g} s, {steps} samples; allowed: at least 100 of them")
+    time = np.arange(steps) / rate
+    # From rest, F cos(w t) moves a mass between 0 and 2 F / (m w^2): no drift.
+    slowest = max(np.sqrt(2.0 * force / (mass * travel)) / (2.0 * np.pi), 2.0 / duration)
+    fastest = min(0.1 * rate, HIGHEST)
+    if slowest > 0.5 * fastest:
+        fail(f"--design: travel: a handle of {mass:g} kg moves further than {travel:g} m at {force:g} N below {slowest:.3g} Hz; allowed: less "
+             "force, or more travel")
+    if kind == "chirp":
+        growth = np.log(fastest / slowest) / duration
+        values = np.cos(2.0 * np.pi * slowest * np.expm1(growth * time) / growth)
+    elif kind == "multisine":
+        lines = np.unique(np.rint(np.geomspace(slowest, fastest, 30) * duration)) / duration
+        signs = np.where(np.random.default_rng(1).random(len(lines)) < 0.5, -1.0, 1.0)
+        values = sum(sign * np.cos(2.0 * np.pi * f * time) for f, sign in zip(lines, signs))
+    else:
+        values = _steps(steps, rate, slowest, fastest)
+    values *= force / np.abs(values).max()
+    return time, values * min(1.0, travel / travel_of(time, values, mass))
+
+
+def _steps(steps, rate, slowest, fastest):
+    """+ for n samples, - for 2 n, + for n, which brings a handle without friction back to rest where it was; n grows."""
+    values = []
+    lengths = np.geomspace(rate / (4.0 * fastest), rate / (4.0 * slowest), 8)
+    while len(values) < steps:
+        for length in np.maximum(1, np.rint(lengths)).astype(int):
+            values += [1.0] * length + [-1.0] * (2 * length) + [1.0] * length + [0.0] * length
+    return np.array(values[:steps])
+
+
+def travel_of(time, force, mass):
+    """The way between the ends of the motion [m] of a handle without friction, and with the friction that it moves in oil."""
+    return max(np.ptp(positions(time, force, (mass, rate * mass, 0.0, 0.0, 0.0, 0.0))) for rate in (0.0, 1.0, 10.0))
+
+
+def force_to_ask(kind, numbers):
+    """The --force with which the signal reaches numbers["force"] [N], rounded up to two digits, though travel limits it: a larger one begins
+    at a higher frequency. Empty where there is none."""
+    wanted = asked = numbers["force"]
+    try:
+        for _ in range(8):
+            peak = np.abs(design(kind, **(numbers | {"force": asked}))[1]).max()
+            if peak >= 0.99 * wanted:
+                return asked
+            digit = 10.0**(np.floor(np.log10(asked * wanted / peak)) - 1.0)
+            asked = float(digit * np.ceil(1.001 * asked * wanted / peak / digit))
+    except Faults:
+        pass
+    return None

@@ -34,7 +34,7 @@ def command_line():
     line.texts("--scale", "what units are: time [s], position [m], angle [rad], force [N] (below)")
     line.one_of(list(ORIENTATIONS), "--orientation", "what its columns hold; default none: the tool never turns")
     line.texts("--frame", "recorded directions that are the scenario's x, y, z; y up: x,-z,y")
-    line.number("--rate", "[Hz] of the stroke; default: as recorded, or the median's if irregular")
+    line.text("--rate", "[Hz] of the stroke; default: as recorded, or the median's if irregular", metavar="FLOAT", type=float)
     line.texts("--smooth", "window=N,order=M: Savitzky-Golay over N samples, an odd number")
     line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
     line.text("--out", "the stroke; default: FILE_stroke.csv here")

@@ -1,5 +1,6 @@
 """python -m hapbench_pictures plot|report WORDS…; the program calls it for `hapbench plot` and `hapbench report`."""
 import sys
+from importlib import import_module
 from pathlib import Path
 
 from hapbench_command import SHARED, CommandLine, exit_status
@@ -54,16 +55,10 @@ def report_line():
 
 def main(words):
     command, *rest = words
-    options = (plot_line() if command == "plot" else report_line()).parse(rest)
-
-    def work():  # what it imports loads matplotlib, which the help does without
-        if command == "plot":
-            from .plot import plot as run
-        else:
-            from .report import report as run
-        return run(options)
-    doing = "" if options.quiet else "drawing" if command == "plot" else "writing the report"
-    return exit_status(command, doing, work)
+    line, doing = {"plot": (plot_line, "drawing"), "report": (report_line, "writing the report")}[command]
+    options = line().parse(rest)
+    # The module loads matplotlib, which the help does without.
+    return exit_status(command, "" if options.quiet else doing, lambda: getattr(import_module(f"hapbench_pictures.{command}"), command)(options))
 
 
 if __name__ == "__main__":

@@ -9,10 +9,9 @@ import numpy as np
 
 from hapbench.columns import header, read_columns
 from hapbench.errors import InputError
-from hapbench.results import at, number_or_none
 from hapbench_command import nearest
 from hapbench_report.markup import column
-from hapbench_report.recording import SETTLING_S, settled_rows
+from hapbench_report.recording import settled_rows
 
 TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
@@ -132,7 +131,7 @@ class Samples:
         touching = time[tables[TRAJECTORY]["colliding"] > 0]
         # Time of the first recorded row in contact; None without one, and outside the window.
         self.first_touch_s = float(touching[0]) if touching.size and window[0] <= touching[0] <= window[1] else None
-        settled = settled_of(run, tables[TRAJECTORY])
+        settled = settled_rows(tables[TRAJECTORY], run.scenario)
         self.tables, self.settled = {}, {}
         for file, table in tables.items():
             rows = (table["time_s"] >= window[0]) & (table["time_s"] <= window[1])
@@ -157,13 +156,6 @@ def range_of(quantity, samples):
     """The range that settled contact takes, where its peaks are cut off; else None."""
     drawn = [(s.settled[quantity.file], *s.of(quantity)[1:]) for s in samples if s.of(quantity) is not None]
     return settled_range(drawn)
-
-
-def settled_of(run, trajectory):
-    """These rows of a run, by the settings of its metrics."""
-    settling_s = number_or_none(at(run.scenario, "/metrics/settling_s"))
-    return settled_rows(trajectory["time_s"], trajectory["colliding"], SETTLING_S if settling_s is None else settling_s,
-                        number_or_none(at(run.scenario, "/metrics/from_s")))
 
 
 def settled_range(curves):

@@ -78,8 +78,8 @@ def sections(runs, names, words):
     drawn = [(run, name) for run, name in zip(runs, names) if TRAJECTORY in tables_of(run)]
     found = (
         ("summary", "Summary", "Summary", summary_section(runs, names)),
-        ("warnings", "Warnings", "Warnings", warnings_section(runs, names)),
-        ("diagnosis", "Diagnosis", "What is wrong, and what to try", diagnosis_section(runs, names)),
+        ("warnings", "Warnings", "Warnings", said_section(runs, names, lambda run: map(text, run.warnings))),
+        ("diagnosis", "Diagnosis", "What is wrong, and what to try", said_section(runs, names, diagnosed)),
         ("replay", "Replay", "Replay", drawn and player(replays(*zip(*drawn)))),
         ("curves", "Curves", "Curves", drawn and curves_section(*zip(*drawn))),
         ("pareto", "Depth, vibration", "Depth against vibration", pareto_section(runs)),
@@ -197,15 +197,14 @@ def contact_text(run):
     return f"{'–' if share is None else f'{number(100 * share, 3)} %'} of {number(at(run.summary, '/duration_s'), 4)} s"
 
 
-def warnings_section(runs, labels):
-    said = [(label, warning) for run, label in zip(runs, labels) for warning in run.warnings]
-    return said and "<ul>" + "".join(f"<li><b>{text(label)}:</b> {text(warning)}</li>" for label, warning in said) + "</ul>"
+def said_section(runs, labels, of_run):
+    """What is said of each run, by its label: warnings; what is wrong by the rules of the program, and what to try."""
+    said = "".join(f"<li><b>{text(label)}:</b> {words}</li>" for run, label in zip(runs, labels) for words in of_run(run))
+    return said and f"<ul>{said}</ul>"
 
 
-def diagnosis_section(runs, labels):
-    """What is wrong by the rules of the program, and what to try; of runs that were asked for it."""
-    said = [(label, found) for run, label in zip(runs, labels) for found in run.summary.get("diagnosis", ())]
-    return said and "<ul>" + "".join(f"<li><b>{text(label)}:</b> {text(found['says'])} <i>try: {text(found['try'])}</i></li>" for label, found in said) + "</ul>"
+def diagnosed(run):
+    return [f"{text(found['says'])} <i>try: {text(found['try'])}</i>" for found in run.summary.get("diagnosis", ())]
 
 
 def metrics_section(runs, labels):

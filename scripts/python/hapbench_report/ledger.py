@@ -5,7 +5,7 @@ from hapbench.errors import InputError
 from hapbench.results import at, objects, read_object, shown
 
 from .figures import claim_link
-from .markup import cell, command, filters, folded, heading_cell, listed, table, text, typeset
+from .markup import cell, command, folded, heading_cell, listed, table, text, typeset
 
 # Verdict -> (mark, tone), what is contradicted first; the last two are of findings of ours. The mark tells verdicts apart without colour.
 VERDICTS = {
@@ -17,6 +17,8 @@ VERDICTS = {
     "does not hold": ("✗", "bad"),
     "holds": ("✓", "good"),
 }
+FILTER = ('<div class="bar" data-filters="ledger-table"><label>Filter <input type="search" placeholder="words"></label>'
+          '<label>Verdict <select data-column="1"><option value="">all</option></select></label><output></output></div>')
 SURENESS = ("steady", "fragile", "not sampled")
 
 
@@ -95,7 +97,7 @@ def ledger_section(claims, figures):
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
             "Steady: more than half of the samples spread over the plausible ranges of everything the thesis leaves open "
             '(<code>results/reference/choices.json</code>) have the verdict; else fragile, or not sampled.</p>'
-            + filters("ledger-table", [("Verdict", 1)])
+            + FILTER
             + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table")
             + (table(headings, ours, "<b>Found on the way, and no claims of the thesis</b>", "sortable stack", "findings-table")
                if ours else ""))

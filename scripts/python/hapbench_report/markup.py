@@ -148,11 +148,3 @@ def fill(file, values):
 def listed(title, links):
     """A line of links; nothing where there are none."""
     return f"<p class=links><b>{title}</b> {', '.join(links)}</p>" if links else ""
-
-
-def filters(table_id, menus):
-    """Controls of a filtered table: a text and menus over columns."""
-    options = "".join(f'<label>{text(title)} <select data-column="{column}"><option value="">all</option></select></label>'
-                      for title, column in menus)
-    return (f'<div class="bar" data-filters="{table_id}"><label>Filter <input type="search" placeholder="words"></label>'
-            f"{options}<output></output></div>")

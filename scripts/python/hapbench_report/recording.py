@@ -72,10 +72,12 @@ def rows_to_show(columns):
     return np.unique(kept)
 
 
-def settled_rows(time, colliding, settling_s, from_s):
-    """Which rows are in contact and no landing: not within the settling time after a first touch, which is a contact at the
-    start or after at least that time without one. `from_s`, if not None, replaces that rule."""
-    touching = np.flatnonzero(colliding > 0)
+def settled_rows(columns, scenario):
+    """Which rows are in contact and no landing, by the settings of the run's metrics: not within settling_s after a first touch, which is a
+    contact at the start or after at least that time without one; from_s, if there is one, replaces that rule."""
+    settling_s, from_s = (number_or_none(at(scenario, f"/metrics/{key}")) for key in ("settling_s", "from_s"))
+    settling_s = SETTLING_S if settling_s is None else settling_s
+    time, touching = columns["time_s"], np.flatnonzero(columns["colliding"] > 0)
     found = np.zeros(len(time), bool)
     if from_s is not None:
         found[touching] = time[touching] >= from_s
@@ -89,9 +91,8 @@ def settled_rows(time, colliding, settling_s, from_s):
 def worst_moments(columns, scenario):
     """Where the settled force steps most (in a run that hardly settles: the force of all its rows), and where the tool is
     deepest: title, time, value, unit."""
-    chosen = scenario.get("metrics") if isinstance(scenario.get("metrics"), dict) else {}
     times, step, depth = columns["time_s"], force_steps(columns), columns["depth_max_m"]
-    rows = np.flatnonzero(settled_rows(times, columns["colliding"], chosen.get("settling_s", SETTLING_S), chosen.get("from_s")))
+    rows = np.flatnonzero(settled_rows(columns, scenario))
     is_settled = len(times) > 1 and len(rows) * (times[1] - times[0]) >= LEAST_SETTLED_S
     rows = rows if is_settled else np.arange(len(times))
     jump, deepest = rows[step[rows].argmax()], depth.argmax()
