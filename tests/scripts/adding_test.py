@@ -97,9 +97,8 @@ def add_environment(tree):
 };
 """, before=True),
         tree.edit("using Environment = std::variant<SpringsEnvironment, ", "RidgeEnvironment, "),
-        tree.edit("""constexpr TypeName kEnvironmentTypes[] = {
-    {"springs", "springs on the tool's tip, without a surface"},
-""", """    {"ridge", "a row of points"},
+        tree.edit("""{"springs", "springs on the tool's tip, without a surface"},
+""", """             {"ridge", "a row of points"},
 """),
         tree.edit("void describe(Fields& f, Environment& environment) {", """static void describe(Fields& f, RidgeEnvironment& ridge) {
   f.number("height_m", ridge.height, kLength, "height of the row");
