@@ -183,7 +183,7 @@ Condition condition_of(const std::string& text, const SweepTable& table) {
         "as inside_max_m<3e-4 or outcome=completes",
         text));
   }
-  require_valid_name("--where: got", name, table.columns);
+  require_valid_name("--where: got", name, table.columns, "hapbench describe sweep.csv");
   return [=, compare = holds->second, column = table.place(name)](const SweepRow& row) {
     if (!number) return (row[column] == value) == (sign == "=");
     const auto found = finite_number(row[column]);
