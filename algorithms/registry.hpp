@@ -30,10 +30,10 @@ struct OwnParameter {
 /// The value in `config`, or the default.
 double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter);
 
-/// AlgorithmEntry::force_bound of springs that pull at most like `Most` of them.
-template <int Most>
+/// AlgorithmEntry::force_bound of springs that pull at most like `most` of them.
+template <int most>
 double bound_of_springs(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
-  return std::min<double>(Most, static_cast<double>(n)) * depth;
+  return std::min<double>(most, static_cast<double>(n)) * depth;
 }
 
 /// The file that an algorithm from outside was loaded from, for the provenance of results.
