@@ -47,7 +47,7 @@ FreeMotion free_motion(const MotionLaw& law, double time) noexcept;
 /// The first time after the start at which the velocity is zero [s], by the closed form; infinity if there is none.
 double time_of_rest(const MotionLaw& law, double v, double g) noexcept;
 
-/// What the motions below share: the friction of the device and the force of the hand on its handle.
+/// Common base of the two motions of a handle: the friction of the device and the force of the hand.
 class HeldHandle {
  public:
   /// Takes the force of the hand at a sample [N], which holds until the next call.

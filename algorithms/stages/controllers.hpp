@@ -14,11 +14,11 @@ extern const ModelInfo kEnergyTankInfo;
 extern const ModelInfo kActuatorLimitedPassivityInfo;
 extern const ModelInfo kPassivityControllerInfo;
 
-/// What a force stage sees of a row.
+/// Input of a force stage: the force and the motion of one row.
 struct StageStep {
   Vec3 force;     ///< that would be rendered without the stage, with damping, friction and limits [N]
   Vec3 velocity;  ///< of the tool [m/s]
-  /// What the stage has absorbed and can still give back [J], by the passivity observer: the energy of the springs in
+  /// Energy that the stage has absorbed and may give back [J], by the passivity observer: that of the springs in
   /// the first row, less the work that its answers have done on the tool since.
   double energy = 0.0;
 };

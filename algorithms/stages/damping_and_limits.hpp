@@ -109,7 +109,7 @@ class DampingAndLimits {
   /// -df_render/dv [N s/m] without the force limit: B S + (mu_s + mu_f |f_spring|)(I - S), or what stands for the two.
   Mat3 damping_matrix(const Vec3& spring, const Mat3& S) const noexcept;
 
-  /// That of the algorithm; none without angular damping.
+  /// Cut-off frequency of the low-pass on the tool's angular velocity [Hz]; empty without angular damping.
   const std::optional<double>& angular_velocity_cutoff() const noexcept { return angular_velocity_cutoff_; }
   double stored_energy() const noexcept { return dry_friction_ ? dry_friction_->energy() : 0.0; }  ///< of friction [J]
   Friction friction_state() const noexcept { return dry_friction_ ? dry_friction_->state() : Friction::none; }

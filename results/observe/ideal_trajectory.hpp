@@ -78,7 +78,7 @@ class IdealTrajectoryObserver final : public MetricObserver {
       max = std::max(max, value);
     }
   };
-  /// Of the compared rows of one kind of hand: of actual minus ideal place, and of the interpenetration.
+  /// Sums over the compared rows of one kind of hand: actual minus ideal place, and the interpenetration.
   struct Errors {
     std::uint64_t rows = 0;
     Spread height, lateral, interpenetration;
