@@ -297,7 +297,7 @@ std::vector<std::vector<std::string>> read_readings(const fs::path& file, const 
   std::vector<std::size_t> places;  // of the columns, among the choices
   for (const std::string_view column : csv.columns()) {
     const std::string id(column);
-    require_valid_name(file.string() + ": got the column", id, ids);
+    require_valid_name(file.string() + ": got the column", id, ids, "scripts/readings.py 1");
     const auto place = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
     if (std::find(places.begin(), places.end(), place) != places.end())
       fail_in_file(file, fmt::format("got the column \"{}\" twice; allowed: each once", id));
