@@ -49,9 +49,7 @@ class NeighbourListQuery final : public ContactQuery {
   std::size_t list_size_ = 0;
   /// Has room for one pack more, because searches write whole packs behind the last point.
   struct List : ShellColumns {
-    explicit List(std::size_t room) : ShellColumns(room), index(room) {
-      for (std::size_t k = 0; k < room; ++k) set(k, Vec3::Zero(), Vec3::Zero());
-    }
+    explicit List(std::size_t room) : ShellColumns(room), index(room) {}
     std::vector<std::uint32_t> index;
   };
   List list_;

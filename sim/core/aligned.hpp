@@ -25,32 +25,21 @@ inline void zero_pack(double* p) {
 
 }  // namespace simd
 
-/// Allocates on 64-byte boundaries, so that a pack of eight doubles never straddles a cache line. If `Unset`, a
-/// vector's `resize` leaves new elements uninitialised: several threads then fill a large column, and each touches the
-/// pages it fills first.
-template <class T, bool Unset = false>
+/// Allocates on 64-byte boundaries, so that a pack of eight doubles never straddles a cache line.
+template <class T>
 struct CacheLineAllocator {
   using value_type = T;
   static constexpr std::align_val_t alignment{64};
-  template <class U>
-  struct rebind {
-    using other = CacheLineAllocator<U, Unset>;
-  };
 
   CacheLineAllocator() = default;
   template <class U>
-  CacheLineAllocator(const CacheLineAllocator<U, Unset>&) noexcept {}
+  CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}
 
   T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
   void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, alignment); }
-  template <class U>
-  void construct(U* p) requires Unset {
-    ::new (static_cast<void*>(p)) U;
-  }
   bool operator==(const CacheLineAllocator&) const = default;
 };
 
 using AlignedDoubles = std::vector<double, CacheLineAllocator<double>>;
-using UnsetDoubles = std::vector<double, CacheLineAllocator<double, true>>;
 
 }  // namespace hapbench

@@ -1,10 +1,7 @@
 #pragma once
 
 /// Loops over indices on all processors, by oneTBB; one after the other without threads, as in a page's worker.
-#ifdef __wasm__
-#include <functional>
-#else
-#include <oneapi/tbb/enumerable_thread_specific.h>
+#ifndef __wasm__
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #endif
@@ -22,23 +19,12 @@ auto isolate(const Work& work) {
   return work();
 }
 
-template <class Value>
-struct PerThread {
-  explicit PerThread(const std::function<Value()>& make = [] { return Value(); }) : value(make()) {}
-  Value& local() { return value; }
-  Value value;
-};
-
 #else
 /// Calls body(i) for every index from first to last - 1.
 using oneapi::tbb::parallel_for;
 
 /// Calls work(), whose waiting takes up no work of others.
 using oneapi::tbb::this_task_arena::isolate;
-
-/// A value for each thread that asks for its own by local().
-template <class Value>
-using PerThread = oneapi::tbb::enumerable_thread_specific<Value>;
 
 #endif
 

@@ -6,15 +6,6 @@
 #include <utility>
 
 namespace hapbench {
-namespace {
-
-ShellColumns columns_of(const std::vector<SurfacePoint>& points) {
-  ShellColumns columns(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) columns.set(i, points[i].position, points[i].normal);
-  return columns;
-}
-
-}  // namespace
 
 Box bounds_of(const std::vector<SurfacePoint>& points) {
   if (points.empty()) return {};
@@ -23,18 +14,13 @@ Box bounds_of(const std::vector<SurfacePoint>& points) {
   return box;
 }
 
-ShellColumns::ShellColumns(std::size_t points) {
-  for (UnsetDoubles* column : {&x, &y, &z, &nx, &ny, &nz}) column->resize(simd::padded(points));
-}
-
-PointShell::PointShell(ShellColumns columns, std::size_t size, const Box& bounds, double cell_size)
-    : size_(size), cell_size_(cell_size), bounds_(bounds), columns_(std::move(columns)) {
-  for (std::size_t i = size; i < padded_size(); ++i) columns_.set(i, Vec3::Constant(kFarAway), Vec3::Zero());
-}
-
 PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells)
-    : PointShell(columns_of(points), points.size(), bounds_of(points), cell_size) {
-  cells_ = std::move(cells);
+    : size_(points.size()),
+      cell_size_(cell_size),
+      bounds_(bounds_of(points)),
+      columns_(points.size()),
+      cells_(std::move(cells)) {
+  for (std::size_t i = 0; i < size_; ++i) columns_.set(i, points[i].position, points[i].normal);
 }
 
 std::vector<SurfacePoint> PointShell::points() const {

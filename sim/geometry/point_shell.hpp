@@ -25,11 +25,15 @@ struct ShellPoints {
   std::vector<std::uint32_t> cells;
 };
 
-/// Coordinates and normals of points, each column padded to whole packs (simd::padded). Initially without values.
+/// Coordinates and normals of points, each column padded to whole packs (simd::padded).
 struct ShellColumns {
-  UnsetDoubles x, y, z, nx, ny, nz;
+  /// Coordinate of points that are not set [m], beyond every tool; finite, because infinities would produce NaN.
+  static constexpr double kFarAway = 1e9;
 
-  explicit ShellColumns(std::size_t points);
+  AlignedDoubles x, y, z, nx, ny, nz;
+
+  explicit ShellColumns(std::size_t points)
+      : x(simd::padded(points), kFarAway), y(x), z(x), nx(x.size()), ny(nx), nz(nx) {}
   void set(std::size_t i, const Vec3& position, const Vec3& normal) {
     x[i] = position.x();
     y[i] = position.y();
@@ -44,15 +48,11 @@ struct ShellColumns {
 /// aligned and padded to whole packs with points far outside any scene, so that no loop needs a tail.
 class PointShell {
  public:
-  /// Coordinate of the padding points [m], beyond every tool; finite, because infinities would produce NaN.
-  static constexpr double kFarAway = 1e9;
+  static constexpr double kFarAway = ShellColumns::kFarAway;  ///< coordinate of the padding points [m]
 
   /// cell_size is the edge [m] of the grid cells in which the local average merges points; 0 without a grid.
   /// `cells` is as in ShellPoints.
   PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells = {});
-
-  /// Takes columns whose first `size` values are set; `bounds` is the box of these points.
-  PointShell(ShellColumns columns, std::size_t size, const Box& bounds, double cell_size);
 
   std::size_t size() const { return size_; }
   std::size_t padded_size() const { return columns_.x.size(); }

@@ -9,9 +9,8 @@
 #include <numeric>
 #include <optional>
 #include <span>
-#include <unordered_map>
+#include <tuple>
 
-#include "sim/core/hash.hpp"
 #include "sim/tool/closed_surface.hpp"
 #include "sim/tool/refuse.hpp"
 
@@ -33,14 +32,6 @@ Vec3 unit_normal(const HalfEdgeMesh& mesh, OpenMesh::FaceHandle face) {
 /// Coordinates of a cube, and axis and sign of the normal's largest component.
 using Place = std::array<double, 5>;
 
-struct HashOfPlace {
-  std::size_t operator()(const Place& place) const noexcept {
-    Hash64 hash;
-    for (const double number : place) hash.real(number + 0.0);  // 0 and -0 are one coordinate
-    return static_cast<std::size_t>(hash.value());
-  }
-};
-
 Place place_of(const Vec3& cube, const Vec3& normal) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
@@ -54,15 +45,6 @@ SquaredLengths squared_lengths(const HalfEdgeMesh& mesh, OpenMesh::FaceHandle fa
   auto edge = mesh.cfe_begin(face);
   for (double& length : lengths) length = mesh.calc_edge_sqr_length(*edge++);
   return lengths;
-}
-
-/// Makes room for that many faces, of a mesh that is nearly closed. Growing step by step would cost a quarter of the
-/// time of `refine`.
-void reserve_faces(HalfEdgeMesh& mesh, double faces) {
-  constexpr double kOpen = 1.02;  // for edges with one face
-  const double more = kOpen * (faces - static_cast<double>(mesh.n_faces()));
-  const auto with = [more](std::size_t now, double each) { return now + static_cast<std::size_t>(each * more); };
-  mesh.reserve(with(mesh.n_vertices(), 0.5), with(mesh.n_edges(), 1.5), with(mesh.n_faces(), 1.0));
 }
 
 using Triangle = TriangleSoup::Triangle;
@@ -336,8 +318,6 @@ std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
 }
 
 void refine(HalfEdgeMesh& mesh, double longest_edge) {
-  constexpr double kMost = 1e7;  // faces that are worth counting
-  reserve_faces(mesh, std::min(kMost, refined_face_count(mesh, longest_edge, kMost)));
   OpenMesh::Subdivider::Uniform::LongestEdgeT<HalfEdgeMesh, double> subdivider;
   subdivider.set_max_edge_length(longest_edge);
   subdivider(mesh, 1);
@@ -373,24 +353,22 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 }
 
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing) {
-  struct Nearest {
-    std::size_t index;
-    double distance;  ///< from the centre of the cube [m]
-  };
-  std::unordered_map<Place, Nearest, HashOfPlace> nearest;
+  // Place, distance from the centre of the cube [m], and index.
+  std::vector<std::tuple<Place, double, std::size_t>> nearest;
+  nearest.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 cube = (points[i].position / spacing + Vec3::Constant(0.5)).array().floor();
-    const Nearest here{i, (points[i].position - spacing * cube).norm()};
-    const auto [entry, is_new] = nearest.try_emplace(place_of(cube, points[i].normal), here);
-    if (!is_new && here.distance < entry->second.distance) entry->second = here;
+    nearest.emplace_back(place_of(cube, points[i].normal), (points[i].position - spacing * cube).norm(), i);
   }
-  std::vector<bool> is_kept(points.size(), false);
-  for (const auto& [place, point] : nearest) is_kept[point.index] = true;
+  std::sort(nearest.begin(), nearest.end());
+  const auto same_place = [](const auto& a, const auto& b) { return std::get<Place>(a) == std::get<Place>(b); };
+  nearest.erase(std::unique(nearest.begin(), nearest.end(), same_place), nearest.end());
+  std::vector<std::size_t> kept;
+  for (const auto& [place, distance, index] : nearest) kept.push_back(index);
+  std::sort(kept.begin(), kept.end());
   std::vector<SurfacePoint> thin;
-  thin.reserve(nearest.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_kept[i]) thin.push_back(points[i]);
-  }
+  thin.reserve(kept.size());
+  for (const std::size_t index : kept) thin.push_back(points[index]);
   return thin;
 }
 

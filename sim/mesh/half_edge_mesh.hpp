@@ -30,7 +30,7 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 
 /// Keeps one point for each cube between half-integer multiples of `spacing` [m] and each of six main directions of the
 /// normal, so that both sides of a thin wall remain: the point nearest to the cube's centre, or the first of equals.
-/// Keeps the order. O(n).
+/// Keeps the order. O(n log n).
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing);
 
 /// Repairs and irregularities of triangles that make a surface.

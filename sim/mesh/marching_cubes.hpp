@@ -52,17 +52,17 @@ struct KeptOfSurface {
 /// manifold. On an ambiguous face of a cell the inside corners are separated, identically from both sides.
 ///
 /// Evaluates the field near the surface only: skips squares of nodes in a layer that are all inside or all outside by
-/// the distance at their middle. Cost and memory grow with the surface (some 100 ns and, besides the result, 40 bytes a
-/// vertex), apart from a few layers of the grid and a few operations for every 64 nodes. Runs on oneTBB's threads; the
-/// result does not depend on their number.
+/// the distance at their middle. Cost and memory grow with the surface, apart from a few layers of the grid and a few
+/// operations for every 64 nodes. A vertex takes 48 bytes, first in a slab of the grid, whose arrays grow, then in
+/// the result. Runs on oneTBB's threads; the result does not depend on their number.
 IsoSurface marching_cubes(const DensityField& field, KeptOfSurface kept = {});
 
 /// The block as a density field for marching cubes, with the spacing of its grid [m], > 0.
 DensityField density_field(const BlockWithHole& block, double spacing, Density density);
 
 /// The vertices of marching_cubes, without those that have no normal, as a shell in the order of its grid
-/// (in_grid_order). O(vertices); some 92 bytes a point are in use at the end, 48 of them for the shell. Runs on
-/// oneTBB's threads; the result does not depend on their number.
+/// (in_grid_order). O(vertices). A point takes 48 bytes in the shell and, while that is made, as many again and a few
+/// for the order.
 PointShell surface_shell(const DensityField& field);
 
 /// The vertices of a surface as the thesis stores them (2.1, C.2): repeated for each cell that has them on an edge,
