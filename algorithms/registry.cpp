@@ -28,12 +28,7 @@ struct Table {
   std::deque<AlgorithmEntry> entries = {HAPBENCH_ALGORITHMS(HAPBENCH_ENTRY)};
 #undef HAPBENCH_ENTRY
   std::size_t built_in_size = entries.size();
-  std::vector<std::string> names;
   std::size_t additions = 0;
-
-  Table() {
-    for (const AlgorithmEntry& entry : entries) names.emplace_back(entry.info->name);
-  }
 };
 
 Table& table() {
@@ -125,8 +120,10 @@ const std::deque<AlgorithmEntry>& algorithms() {
   return table().entries;
 }
 
-const std::vector<std::string>& algorithm_names() {
-  return table().names;
+std::vector<std::string> algorithm_names() {
+  std::vector<std::string> names;
+  for (const AlgorithmEntry& entry : table().entries) names.emplace_back(entry.info->name);
+  return names;
 }
 
 std::span<const ModelInfo* const> stages() {
@@ -158,13 +155,13 @@ AlgorithmEntry checked_copy(AlgorithmEntry entry) {
 
 void add_algorithm(AlgorithmEntry entry) {
   entry = checked_copy(std::move(entry));
-  auto& [entries, built_in_size, names, count] = table();
+  const std::vector<std::string> names = algorithm_names();
   const auto same = std::find(names.begin(), names.end(), entry.info->name);
   const auto place = static_cast<std::size_t>(same - names.begin());
+  auto& [entries, built_in_size, count] = table();
   if (place < built_in_size) refuse("\"" + *same + "\" is the name of a built-in algorithm");
   ++count;
-  if (same == names.end()) {
-    names.emplace_back(entry.info->name);
+  if (place == entries.size()) {
     entries.push_back(std::move(entry));
   } else {
     entries[place] = std::move(entry);

@@ -72,7 +72,7 @@ std::unique_ptr<ForceLaw> law_of(const RenderingConfig& config) {
 /// References stay valid when an algorithm is added.
 const std::deque<AlgorithmEntry>& algorithms();
 /// Names of the algorithms, in the order of algorithms().
-const std::vector<std::string>& algorithm_names();
+std::vector<std::string> algorithm_names();
 /// The optional stages of the penalty pipeline, for the documentation.
 std::span<const ModelInfo* const> stages();
 

@@ -197,13 +197,11 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
     if (last_turn_) largest_change_ = std::max(largest_change_, (turn - *last_turn_).norm());
     last_turn_ = turn;
   }
-  share_ = spring_share_ = 1.0;
+  share_ = 1.0;
   alpha_ = 0.0;
   if (acts(contacts, out)) {
     springs_ = algorithm_->spring_state(tool, contacts);
     control(tool, out.rendered);
-    springs_.energy *= spring_share_;
-    springs_.moment *= spring_share_;
     render(tool, out);
   } else {
     springs_ = {};
@@ -211,7 +209,7 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   observed_.answer(tool, out.rendered, springs_);
 }
 
-/// Computes share and damping for the step.
+/// Computes share and damping for the step, and weakens the springs.
 void PassivityController::control(const ToolState& tool, const Vec3& force) noexcept {
   // Energy that the scripted rotation draws from the moment over the last step and, at the same rate, over the next.
   const double drawn = springs_.moment.dot(observed_.turned());
@@ -225,17 +223,20 @@ void PassivityController::control(const ToolState& tool, const Vec3& force) noex
       0.5 * drawn + std::max(0.0, 0.5 * drawn + unforeseen) - (observed_.first() ? springs_.energy : 0.0);
   const double s =
       largest_share(0.5 * mass_ * u.squaredNorm(), weakened * taken, energy + 0.5 * mass_ * w.squaredNorm());
-  share_ = spring_share_ = weakened * s;
+  share_ = weakened * s;
   alpha_ = (1.0 - s) * mass_ / dt_;
   if (share_ == 1.0) return;
   ++steps_controlled_;
+  double spring_share = share_;
   // A force that the limit cuts absorbs less energy, so less is left for the moment.
   const Vec3 whole = share_ * force - alpha_ * w;
   if (const Vec3 rendered = cut_to(whole, max_force_); rendered != whole && taken > 0.0) {
     const Vec3 after = w + rendered * (dt_ / mass_);
     const double left = energy + 0.5 * mass_ * (w.squaredNorm() - after.squaredNorm());
-    spring_share_ = std::clamp(left / taken, 0.0, share_);
+    spring_share = std::clamp(left / taken, 0.0, share_);
   }
+  springs_.energy *= spring_share;
+  springs_.moment *= spring_share;
 }
 
 void PassivityController::render(const ToolState& tool, RenderedForce& out) const noexcept {

@@ -162,7 +162,6 @@ class PassivityController final : public ForceAlgorithm {
   std::optional<std::uint64_t> last_row_;  ///< row of the last `compute`
   SpringState springs_;                    ///< springs as rendered
   double share_ = 1.0;                     ///< rendered share of the algorithm's force
-  double spring_share_ = 1.0;              ///< share of energy and moment: share_, or less if the limit cuts the force
   double alpha_ = 0.0;                     ///< damping [N s/m]
   std::optional<Vec3> last_turn_;
   double largest_change_ = 0.0;  ///< largest change of the turn between two steps so far [rad]

@@ -17,15 +17,6 @@ namespace {
 
 using simd::Mask, simd::Pack;
 
-/// Weights of the three nodes along an axis at t in [-1/2, 1/2] from the middle one; never negative.
-struct QuadraticWeights {
-  Pack below, here, above;
-  explicit QuadraticWeights(const Pack& t)
-      : below(Pack(0.5) * (Pack(0.5) - t) * (Pack(0.5) - t)),
-        here(Pack(0.75) - t * t),
-        above(Pack(0.5) * (Pack(0.5) + t) * (Pack(0.5) + t)) {}
-};
-
 /// Maps the world to the coordinates of a grid's nodes at one pose: u = turn (x - position) + shift.
 struct GridFrame {
   Mat3 turn;
@@ -117,12 +108,12 @@ class GridSpline {
  public:
   GridSpline(const SignedDistanceGrid& grid, const GridPack& q, const NearestNodes& nearest)
       : values_(grid.values()), row_(grid.nodes().count[2]), layer_(grid.nodes().count[1] * row_) {
-    const Pack t[] = {q.u - nearest.i, q.v - nearest.j, q.w - nearest.k};
+    const Pack t[] = {q.u - nearest.i, q.v - nearest.j, q.w - nearest.k}, half(0.5);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const QuadraticWeights weights(t[axis]);
-      simd::store(weights.below, weights_[axis][0]);
-      simd::store(weights.here, weights_[axis][1]);
-      simd::store(weights.above, weights_[axis][2]);
+      const Pack below = half - t[axis], above = half + t[axis];
+      simd::store(half * below * below, weights_[axis][0]);
+      simd::store(Pack(0.75) - t[axis] * t[axis], weights_[axis][1]);
+      simd::store(half * above * above, weights_[axis][2]);
       simd::store(t[axis], t_[axis]);
     }
   }
@@ -174,8 +165,8 @@ class GridSpline {
 
   const double* values_;
   std::size_t row_, layer_;
-  alignas(64) double weights_[3][3][simd::lanes];  ///< by axis, node and point
-  alignas(64) double t_[3][simd::lanes];
+  alignas(64) double weights_[3][3][simd::lanes];  ///< by axis, node and point; never negative
+  alignas(64) double t_[3][simd::lanes];           ///< in [-1/2, 1/2] from the nearest node, by axis and point
 };
 
 /// Number of times that box_near shrinks its box; further passes hardly shrink it.

@@ -98,12 +98,11 @@ Vec3 node_counts(const Vec3& extent, double spacing) {
 }
 
 GridNodes nodes_around(const ClosedSurface& surface, double spacing) {
-  const Vec3 wanted = node_counts(surface.box().size(), spacing);
-  GridNodes nodes{surface.box().min - Vec3::Constant(kBorder * spacing), spacing, {}};
-  for (int k = 0; k < 3; ++k) nodes.count[static_cast<std::size_t>(k)] = static_cast<std::size_t>(wanted[k]);
+  const Box& box = surface.box();
+  const Vec3 wanted = node_counts(box.size(), spacing);
   // Centred, so that the nodes of a symmetric mesh are symmetric.
-  for (int k = 0; k < 3; ++k)
-    nodes.origin[k] = 0.5 * (surface.box().min[k] + surface.box().max[k] - (wanted[k] - 1.0) * spacing);
+  GridNodes nodes{0.5 * (box.min + box.max - (wanted - Vec3::Ones()) * spacing), spacing, {}};
+  for (int k = 0; k < 3; ++k) nodes.count[static_cast<std::size_t>(k)] = static_cast<std::size_t>(wanted[k]);
   return nodes;
 }
 
@@ -182,32 +181,23 @@ void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, dou
 
 }  // namespace
 
-SupportTable::SupportTable(std::vector<Vec3> points) : points_(std::move(points)), starts_{0} {
+SupportTable::SupportTable(std::vector<Vec3> points) : points_(std::move(points)), cells_(kCells) {
   tie_ = kTie * box_of(points_).size().norm();
-  std::vector<std::vector<std::uint32_t>> cells(kCells);
-  parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
-  for (const auto& cell : cells) {
-    listed_.insert(listed_.end(), cell.begin(), cell.end());
-    starts_.push_back(static_cast<std::uint32_t>(listed_.size()));
-  }
-}
-
-std::span<const std::uint32_t> SupportTable::candidates(const Vec3& direction) const noexcept {
-  const std::size_t cell = cell_of(direction);
-  return {listed_.data() + starts_[cell], listed_.data() + starts_[cell + 1]};
+  parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells_[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
 }
 
 double SupportTable::support(const Vec3& direction) const noexcept {
   double most = -std::numeric_limits<double>::infinity();
-  for (const std::uint32_t i : candidates(direction)) most = std::max(most, direction.dot(points_[i]));
+  for (const std::uint32_t i : cells_[cell_of(direction)]) most = std::max(most, direction.dot(points_[i]));
   return most;
 }
 
 Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const noexcept {
+  const std::vector<std::uint32_t>& candidates = cells_[cell_of(direction)];
   const double least = support(direction) - tie_;
   const Vec3* nearest = nullptr;
   double distance2 = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t i : candidates(direction)) {
+  for (const std::uint32_t i : candidates) {
     if (direction.dot(points_[i]) < least) continue;
     const double d2 = (points_[i] - abreast).squaredNorm();
     if (nearest == nullptr || d2 < distance2) {
@@ -220,7 +210,7 @@ Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const no
   // places are foremost as well.
   Vec3 place = *nearest;
   for (int pass = 0; pass < 2; ++pass) {
-    for (const std::uint32_t i : candidates(direction)) {
+    for (const std::uint32_t i : candidates) {
       if (direction.dot(points_[i]) < least) continue;
       const Vec3 way = points_[i] - place;
       const double length2 = way.squaredNorm();

@@ -28,11 +28,9 @@ class SupportTable {
   Vec3 foremost(const Vec3& direction, const Vec3& abreast) const noexcept;
 
  private:
-  std::span<const std::uint32_t> candidates(const Vec3& direction) const noexcept;
-
   std::vector<Vec3> points_;
   double tie_;  ///< points up to this far behind the foremost one count as foremost [m]
-  std::vector<std::uint32_t> starts_, listed_;
+  std::vector<std::vector<std::uint32_t>> cells_;
 };
 
 /// A solid as the signed distance to its surface, negative inside, smooth between the nodes of a regular grid: the body
