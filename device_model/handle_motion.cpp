@@ -231,7 +231,7 @@ void ElasticMotion::advance(const Vec3& motors, const Stretch& stretch) noexcept
     if (coulomb_ == 0.0) {
       take(axis, stretch.moving[0]);
     } else {
-      start(axis);
+      start(axis, true);
       double left = advance_to_change(axis, stretch, 1.0, 0);
       while (left > 0.0) left = advance_to_change(axis, stretch, left, kGrain);
     }
@@ -247,10 +247,10 @@ double ElasticMotion::on_resting_motors(const Axis& axis, const State& z) const 
   return axis.motors - transmission_.stiffness * (z[kMotor] - z[kHandle]) + transmission_.damping * z[kHandleSpeed];
 }
 
-/// Chooses whether the motors stick, and which way their friction points.
-void ElasticMotion::start(Axis& axis) const noexcept {
+/// Chooses whether the motors stick, if they may, and which way their friction points.
+void ElasticMotion::start(Axis& axis, bool may_stick) const noexcept {
   const double v = axis.z[kMotorSpeed], force = on_resting_motors(axis, axis.z);
-  axis.sticks = v == 0.0 && std::abs(force) <= coulomb_;
+  axis.sticks = may_stick && v == 0.0 && std::abs(force) <= coulomb_;
   axis.friction = axis.sticks ? 0.0 : std::copysign(coulomb_, v == 0.0 ? -force : -v);
   axis.z[kForce] = axis.motors + axis.friction;
 }
@@ -297,13 +297,7 @@ double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, doub
       left -= share(level);
     }
     if (!axis.sticks) axis.z[kMotorSpeed] = 0.0;
-    const bool broke_loose = axis.sticks;
-    start(axis);
-    if (broke_loose && axis.sticks) {  // the force is c, to rounding
-      axis.sticks = false;
-      axis.friction = -std::copysign(coulomb_, on_resting_motors(axis, axis.z));
-      axis.z[kForce] = axis.motors + axis.friction;
-    }
+    start(axis, !axis.sticks);  // where motors break loose, the force is c, to rounding
     return left;
   }
   return 0.0;

@@ -159,7 +159,7 @@ class ElasticMotion : public HeldHandle {
   };
 
   Matrix rates(bool sticking) const;
-  void start(Axis& axis) const noexcept;
+  void start(Axis& axis, bool may_stick) const noexcept;
   bool changes(const Axis& axis, const State& next) const noexcept;
   double on_resting_motors(const Axis& axis, const State& z) const noexcept;
   void take(Axis& axis, const Piece& piece) noexcept;

@@ -86,8 +86,7 @@ VelocityFilter::VelocityFilter(const VelocityFilterConfig& config, double dt) : 
 void VelocityFilter::reset(const Vec3& position) noexcept {
   samples_[0] = position;
   next_ = known_ = 1;
-  velocity_.setZero();
-  if (low_pass_) low_pass_->settle_at(velocity_);
+  if (low_pass_) low_pass_->settle_at(Vec3::Zero());
 }
 
 Vec3 VelocityFilter::read(const Vec3& position) noexcept {
@@ -95,12 +94,11 @@ Vec3 VelocityFilter::read(const Vec3& position) noexcept {
   next_ = (next_ + 1) % samples_.size();
   known_ = std::min(known_ + 1, samples_.size());
   if (const auto* window = std::get_if<AdaptiveWindowFilter>(&config_)) {
-    for (Eigen::Index axis = 0; axis < 3; ++axis) velocity_[axis] = end_fit(axis, window->noise);
-    return velocity_;
+    const double noise = window->noise;
+    return {end_fit(0, noise), end_fit(1, noise), end_fit(2, noise)};
   }
   const Vec3 difference = (position - sample(1)) / dt_;
-  velocity_ = low_pass_ ? low_pass_->filter(difference) : difference;
-  return velocity_;
+  return low_pass_ ? low_pass_->filter(difference) : difference;
 }
 
 double VelocityFilter::end_fit(Eigen::Index axis, double noise) const noexcept {

@@ -95,7 +95,6 @@ class VelocityFilter {
   std::array<Vec3, AdaptiveWindowFilter::kLongest + 1> samples_{};  ///< ring
   std::size_t next_ = 0;                                            ///< index of the next sample
   std::size_t known_ = 0;  ///< samples since the reset, at most the size of the ring
-  Vec3 velocity_ = Vec3::Zero();
 };
 
 /// An impedance display: a light handle with motors, which measures positions and renders forces.

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -67,10 +68,18 @@ inline constexpr Column kTimeColumn = {"time_s", "s", "time of the row, k times 
 /// One cell of a table: nothing (empty in CSV, null in JSON), a count, a number, true or false, or text.
 using Cell = std::variant<std::monostate, std::uint64_t, double, bool, std::string>;
 
-/// The cell of a value that need not exist.
+/// The cell of a number, a count, a truth, a text, one of them that need not exist, or of what is a cell already.
 template <class Value>
-Cell cell_if(const std::optional<Value>& value) {
-  return value ? Cell(*value) : Cell();
+Cell cell_of(const Value& value) {
+  if constexpr (requires { value.has_value(); }) {
+    return value ? cell_of(*value) : Cell();
+  } else if constexpr (std::is_convertible_v<Value, std::string_view>) {
+    return std::string(std::string_view(value));
+  } else if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
+    return static_cast<std::uint64_t>(value);
+  } else {
+    return value;
+  }
 }
 
 nlohmann::ordered_json cell_json(const Cell& cell);

@@ -4,20 +4,11 @@
 #include <cmath>
 #include <numeric>
 #include <span>
-#include <stdexcept>
 
 #include "sim/core/math.hpp"
 #include "sim/loop/simulation.hpp"
 
 namespace hapbench {
-
-ReferenceForce::ReferenceForce(std::vector<Sample> samples) {
-  if (samples.empty()) throw std::invalid_argument("a recorded force needs at least one sample");
-  const auto out_of_order = [](const Sample& before, const Sample& after) { return !(before.time < after.time); };
-  if (std::ranges::adjacent_find(samples, out_of_order) != samples.end())
-    throw std::invalid_argument("the times of a recorded force must increase strictly");
-  force_ = std::move(samples);
-}
 
 std::optional<Vec3> ReferenceForce::at(double t) const noexcept {
   if (const Ideal* ideal = std::get_if<Ideal>(&force_)) return Vec3((*ideal)[0](t), (*ideal)[1](t), (*ideal)[2](t));

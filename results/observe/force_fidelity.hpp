@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -21,8 +22,8 @@ class ReferenceForce {
   };
   using Ideal = std::array<Profile, 3>;  ///< x, y, z over time
 
-  /// Measured. Throws std::invalid_argument when there is no sample or times do not increase.
-  explicit ReferenceForce(std::vector<Sample> samples);
+  /// Measured. Precondition: there is a sample, and times increase.
+  explicit ReferenceForce(std::vector<Sample> samples) : force_(std::move(samples)) {}
   explicit ReferenceForce(Ideal ideal) : force_(std::move(ideal)) {}
 
   /// The force at a time [s]: linear between samples; nothing before the first and after the last. O(log n).

@@ -32,6 +32,7 @@ constexpr double kLookFrom = 0.8;
 /// The core ends where the axis comes so close to the body's surface, in half widths, as in a bent body.
 constexpr double kThinnest = 0.05;
 constexpr std::size_t kCoreSamples = 256;  ///< of the tool's thickness
+constexpr std::size_t kMostStretches = 8;  ///< of the core that are inside at one time
 constexpr double kMostStepsOfWay = 256.0;  ///< in which the way of a row is followed through a solid
 
 SolidSide side_of(const SurfaceDistance& phi) noexcept {
@@ -87,17 +88,17 @@ double way_to_core(const ToolShape& tool) {
   return std::clamp(tool.half_width() - tip.depth[0], 0.0, tool.half_width());
 }
 
-CorePassage::CorePassage(std::shared_ptr<const ToolShape> tool, std::shared_ptr<const Solid> solid)
-    : tool_(std::move(tool)), solid_(std::move(solid)), width_(tool_->half_width()) {
-  const double back = way_to_core(*tool_);
+CorePassage::CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> solid)
+    : solid_(std::move(solid)), width_(tool.half_width()) {
+  const double back = way_to_core(tool);
   shallow_ = -kDeep * back;
   far_ = 0.0;
-  for (const ProfilePoint& p : tool_->outline()) far_ = std::min(far_, p.s);
+  for (const ProfilePoint& p : tool.outline()) far_ = std::min(far_, p.s);
   const ToolPose pose;
   ContactBuffer axis(kCoreSamples);
   const auto place = [this](std::size_t i) { return far_ * static_cast<double>(i) / (kCoreSamples - 1); };
   for (std::size_t i = 0; i < kCoreSamples; ++i) axis.push(0, place(i) * pose.axis, Vec3::UnitZ());
-  tool_->surface_constraints(pose, Vec3::Zero(), 0.0, axis);
+  tool.surface_constraints(pose, Vec3::Zero(), 0.0, axis);
   double thinnest = width_;
   const double end = far_ + width_;  // behind it, the far end is nearest
   for (std::size_t i = 0; i < kCoreSamples; ++i) {
@@ -111,6 +112,8 @@ CorePassage::CorePassage(std::shared_ptr<const ToolShape> tool, std::shared_ptr<
   }
   looks_from_ = kLookFrom * thinnest;
   looks_from_way_ = (1.0 - kDeep) * thinnest;
+  now_.reserve(kMostStretches);
+  inside_.reserve(kMostStretches);
 }
 
 Vec3 CorePassage::normal_at(const Vec3& place) const noexcept {
@@ -133,10 +136,9 @@ void CorePassage::look(const ToolPose& pose, double deepest_contact, double time
   for (;;) {
     const double rest = way > 0.0 ? 1.0 - done / way : 0.0;
     const Vec3 position = pose.position - rest * moved, axis = (pose.axis - rest * turned).normalized();
-    Stretches now;
-    const double clear = find_inside(position, axis, front, now);
-    compare(position, axis, now, time);
-    inside_ = now;
+    const double clear = find_inside(position, axis, front);
+    compare(position, axis, time);
+    std::swap(inside_, now_);
     follows_ = true;
     if (event_ || done >= way) {
       free_way_ = std::max(clear, kCoreStep * width_);
@@ -146,8 +148,9 @@ void CorePassage::look(const ToolPose& pose, double deepest_contact, double time
   }
 }
 
-/// Returns a way on which the core cannot meet the surface [m].
-double CorePassage::find_inside(const Vec3& position, const Vec3& axis, double front, Stretches& found) const noexcept {
+/// Finds the stretches of this look and returns a way on which the core cannot meet the surface [m].
+double CorePassage::find_inside(const Vec3& position, const Vec3& axis, double front) noexcept {
+  now_.clear();
   SolidSide before = SolidSide::unknown;
   double s = front, nearest = std::numeric_limits<double>::infinity();
   Vec3 last = position + s * axis;
@@ -158,19 +161,18 @@ double CorePassage::find_inside(const Vec3& position, const Vec3& axis, double f
     nearest = std::min(nearest, std::abs(phi.value));
     if (side == SolidSide::inside) {
       if (before != SolidSide::inside) {
-        if (found.count == found.of.size()) break;
-        Stretch& next = found.of[found.count++];
-        next = {s, s, {}, {}, phi.value, place};
-        if (before == SolidSide::outside) next.face_high = normal_at(last);
+        if (now_.size() == kMostStretches) break;
+        now_.push_back({s, s, {}, {}, phi.value, place});
+        if (before == SolidSide::outside) now_.back().face_high = normal_at(last);
       }
-      Stretch& stretch = found.of[found.count - 1];
+      Stretch& stretch = now_.back();
       stretch.low = s;
       if (phi.value < stretch.deepest) {
         stretch.deepest = phi.value;
         stretch.deepest_place = place;
       }
     } else if (before == SolidSide::inside && side == SolidSide::outside) {
-      found.of[found.count - 1].face_low = normal_at(place);
+      now_.back().face_low = normal_at(place);
     }
     if (!(s > far_)) break;
     before = side;
@@ -181,21 +183,18 @@ double CorePassage::find_inside(const Vec3& position, const Vec3& axis, double f
 }
 
 /// Matches the stretches that are inside now with those of the look before, which hand on the face of their entry.
-void CorePassage::compare(const Vec3& position, const Vec3& axis, Stretches& now, double time) noexcept {
-  std::array<bool, std::tuple_size_v<decltype(inside_.of)>> stays{};
+void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) noexcept {
   const auto through = [this, time](const Vec3& entered, const Vec3& left, bool at_once) {
     if (!event_) event_ = {time, entered, left, at_once};
   };
-  for (std::size_t i = 0; i < now.count; ++i) {
-    Stretch& next = now.of[i];
+  for (Stretch& next : now_) {
     const auto place = [&](double s) { return Vec3(position + s * axis); };
     if (next.face_low && next.face_high && look_away(*next.face_low, *next.face_high))
       through(place(next.high), place(next.low), true);
     const Stretch* was = nullptr;
-    for (std::size_t k = 0; k < inside_.count; ++k) {
-      const Stretch& old = inside_.of[k];
+    for (Stretch& old : inside_) {
       if (old.low > next.high || next.low > old.high) continue;
-      stays[k] = true;
+      old.goes_on = true;
       if (was == nullptr) was = &old;
     }
     if (was == nullptr) {
@@ -216,10 +215,9 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, Stretches& now
     next.own_high = away_high ? std::min(was->own_high, next.high) : next.high;
   }
   if (!follows_) return;
-  for (std::size_t k = 0; k < inside_.count; ++k) {
-    const Stretch& old = inside_.of[k];
+  for (const Stretch& old : inside_) {
+    if (old.goes_on) continue;
     const Vec3 middle = position + 0.5 * (old.own_low + old.own_high) * axis;
-    if (stays[k]) continue;
     const SurfaceDistance phi = solid_->at(middle);
     if (phi.known && phi.value > 0.0 && look_away(normal_at(middle), old.normal)) through(old.entered, middle, false);
   }
@@ -248,7 +246,7 @@ InsideObserver::InsideObserver(std::shared_ptr<const ToolShape> tool, std::share
       every_(every),
       search_(*tool_, *solid_),
       back_(way_to_core(*tool_)),
-      core_passage_(tool_, solid_),
+      core_passage_(*tool_, solid_),
       deepest_(kParts, *tool_),
       settled_(kSettled, *tool_) {
   if (every_ > 0) depths_.settled.reserve(steps / every_ + 1);

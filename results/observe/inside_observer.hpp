@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -72,7 +71,7 @@ class CorePassage {
     bool at_once;        ///< from face to face
   };
 
-  CorePassage(std::shared_ptr<const ToolShape> tool, std::shared_ptr<const Solid> solid);
+  CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> solid);
 
   /// A row: its deepest contact, and how far the tip centre or a place near it moved [m].
   void add(const ToolPose& pose, double deepest_contact, double moved, double time) noexcept {
@@ -100,18 +99,14 @@ class CorePassage {
     /// The face by which it entered, where, and the part that did.
     Vec3 normal = Vec3::Zero(), entered = Vec3::Zero();
     double own_low = 0.0, own_high = 0.0;
-  };
-  struct Stretches {
-    std::array<Stretch, 8> of;
-    std::size_t count = 0;
+    bool goes_on = false;  ///< a stretch of the next look meets it
   };
 
   void look(const ToolPose& pose, double deepest_contact, double time) noexcept;
-  double find_inside(const Vec3& position, const Vec3& axis, double front, Stretches& found) const noexcept;
-  void compare(const Vec3& position, const Vec3& axis, Stretches& now, double time) noexcept;
+  double find_inside(const Vec3& position, const Vec3& axis, double front) noexcept;
+  void compare(const Vec3& position, const Vec3& axis, double time) noexcept;
   Vec3 normal_at(const Vec3& place) const noexcept;
 
-  std::shared_ptr<const ToolShape> tool_;
   std::shared_ptr<const Solid> solid_;
   double width_;                        ///< half the tool's [m]
   double far_;                          ///< the core's far end on the axis [m]
@@ -121,7 +116,7 @@ class CorePassage {
   Vec3 position_ = Vec3::Zero(), axis_ = Vec3::Zero();  ///< in the row before
   bool began_ = false, follows_ = false;                ///< there was a row before; it was also looked at
   double free_way_ = 0.0;                               ///< of the core, on which nothing changes [m]
-  Stretches inside_;
+  std::vector<Stretch> now_, inside_;                   ///< of this look and of the one before
   std::optional<Event> event_;
 };
 

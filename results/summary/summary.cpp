@@ -121,6 +121,10 @@ ordered_json provenance_json(const Provenance& p, const std::string& scenario_ha
 
 }  // namespace
 
+bool Result::has_section(const char* section) const {
+  return sections.contains(section);
+}
+
 std::span<const OutcomeInfo> outcome_infos() noexcept {
   return kOutcomes;
 }
@@ -171,10 +175,6 @@ ordered_json summary_json(const Result& run) {
   json["work"] = work_json(run.work);
   json["provenance"] = provenance_json(run.provenance, run.scenario_hash);
   return json;
-}
-
-std::string summary_text(const Result& run) {
-  return json_text(summary_json(run));
 }
 
 ordered_json step_latency_json(const StepLatency& latency) {

@@ -114,8 +114,8 @@ struct Result {
   /// "energy.created_sum_J" or "targets.0.success_rate.mean".
   MetricList metrics;
   /// The sections, passivity and others for which the scenario asks, each with an object of what is not a metric, such
-  /// as the events of the energy.
-  nlohmann::ordered_json sections = nlohmann::ordered_json::object();
+  /// as the events of the energy; null without sections.
+  nlohmann::ordered_json sections;
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
   nlohmann::ordered_json tool;                      ///< tool_json of a tool that is not a cylinder; else null
   std::vector<Warning> warnings;                    ///< about the files that the scenario names, then about the run
@@ -127,7 +127,7 @@ struct Result {
   std::string scenario_hash;    ///< of the effective scenario
   bool replaces_other = false;  ///< its directory had the results of another scenario
 
-  bool has_section(const char* section) const { return sections.contains(section); }
+  bool has_section(const char* section) const;
 };
 
 /// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers that do not
@@ -136,9 +136,6 @@ nlohmann::ordered_json summary_json(const Result& run);
 
 /// Shape of a tool that the scenario's fields do not show, for drawings: half width, reach and outline [m].
 nlohmann::ordered_json tool_json(const ToolShape& tool);
-
-/// summary.json as text.
-std::string summary_text(const Result& run);
 
 /// A distribution for timing.json, in seconds; percentiles and maximum are null without steps.
 nlohmann::ordered_json step_latency_json(const StepLatency& latency);

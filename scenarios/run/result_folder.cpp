@@ -187,7 +187,7 @@ bool ResultFolder::write(const RecordFields& record, const WrittenScenario& scen
   add("columns.json", json_text(columns_json(tables, result.metrics)));
   if (record.timing) add("timing.json", timing_text(result));
   // The summary, which says that a run is there, is the first to go and the last to come.
-  add("summary.json", summary_text(result));
+  add("summary.json", json_text(summary_json(result)));
   files.commit();
   remove_empty_trials(directory_);
   return !before.empty() && before != effective;

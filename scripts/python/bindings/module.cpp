@@ -169,7 +169,7 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
     for (std::string& warning : run_warnings({&report, 1})) warnings.push_back(std::move(warning));
   });
   py::dict result;
-  result["summary"] = summary_text(report);
+  result["summary"] = json_text(summary_json(report));
   result["scenario"] = json_text(tables.effective);
   result["timing"] = timing_text(report);
   result["warnings"] = warnings;
