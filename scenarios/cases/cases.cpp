@@ -125,12 +125,6 @@ std::string range_text(const Axis& axis, double part, double whole) {
   return cell_text(axis.whole ? std::round(value) : value);
 }
 
-/// How slowly an axis varies in the order of runs, the slowest first: what a shell depends on before all else.
-int speed(const Axis& axis) {
-  if (axis.path == kSceneAxis) return 0;
-  return axis.path == "environment" || axis.path.starts_with("environment.") ? 1 : 2;
-}
-
 }  // namespace
 
 double Range::value_at(double part, double whole) const {
@@ -293,10 +287,13 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, st
 
 /// Each point of a sampled range has a value of its own, which no other case shares.
 void Cases::sort_runs() {
-  std::vector<std::size_t> slow;
-  for (const int slowest : {0, 1})
-    for (std::size_t a = 0; a < axes_.size(); ++a)
-      if (speed(axes_[a]) == slowest && axes_[a].size() > 0) slow.push_back(a);
+  std::vector<std::size_t> slow;  // what a shell depends on, the scene first
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const std::string& path = axes_[a].path;
+    if (axes_[a].size() == 0) continue;
+    if (path == kSceneAxis) slow.insert(slow.begin(), a);
+    if (path == "environment" || path.starts_with("environment.")) slow.push_back(a);
+  }
   if (slow.empty()) return;
   sorted_.resize(size_);
   std::iota(sorted_.begin(), sorted_.end(), std::size_t{0});

@@ -160,7 +160,7 @@ std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& s
   for (const std::string& name : plan.metrics) cells.push_back(cell_text(value_of(metrics, name)));
   for (const std::string& name : plan.bounded) {
     const Metric* metric = find_metric(metrics, name);
-    cells.push_back(metric == nullptr ? "" : cell_text(cell_if(metric->tolerance())));
+    cells.push_back(metric == nullptr ? "" : cell_text(cell_of(metric->tolerance())));
   }
   cells.push_back(hash_text(summary.state_hash));
   return line_of(plan, run, cells);
@@ -321,12 +321,6 @@ std::vector<std::string> SweepPlan::columns() const {
   return columns;
 }
 
-Json SweepPlan::description(const Shard& shard) const {
-  Json json = {{"definition", definition}, {"runs", cases.size()}, {"shard", shard_text(shard)}};
-  json.update(content);
-  return json;
-}
-
 std::vector<std::size_t> runs_to_check(const Cases& cases) {
   if (cases.size() <= kMostChecked || cases.sampling()) {
     std::vector<std::size_t> runs(std::min(cases.size(), kMostChecked));
@@ -385,9 +379,10 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
     return cells[1 + plan.cases.axes().size()] != kErrorOutcome &&
            (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
   };
-  TableFile table(
-      {options.table(), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
-      options.resume ? TableFile::Keep(keep) : nullptr);
+  Json about = {{"definition", plan.definition}, {"runs", plan.cases.size()}, {"shard", shard_text(part)}};
+  about.update(plan.content);
+  TableFile table({options.table(), fmt::format("{}", fmt::join(columns, ",")), about, plan.cases.size()},
+                  options.resume ? TableFile::Keep(keep) : nullptr);
   report.resumed = table.count();
   std::vector<std::size_t> left;  // in the order of runs
   for (std::size_t place = part.index; place < plan.cases.size(); place += part.count)

@@ -23,8 +23,6 @@ struct SweepPlan {
 
   /// The names of the columns of the table.
   std::vector<std::string> columns() const;
-  /// The JSON file next to the table of a shard, which says what it is about.
-  Json description(const Shard& shard) const;
 };
 
 /// Maximum number of runs of a sample, and of values of a field of a grid, that are checked before the first run.

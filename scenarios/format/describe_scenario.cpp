@@ -202,13 +202,47 @@ void check_relations(const Scenario& scenario, double steps) {
 
 constexpr const char* kNoEffect = "no_effect";  ///< of warnings: a given value that nothing reads
 
+/// Warnings about values in `json` that the scenario does not have, because the algorithm's definition fixes others,
+/// and about contacts that the algorithm does not have by its definition.
+void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vector<Warning>& warnings) {
+  const RenderingConfig& fixed = scenario.rendering;
+  const AlgorithmEntry& entry = *find_algorithm(fixed.algorithm);
+  const std::string depth_model = json.value(Json::json_pointer("/rendering/depth_model"), fixed.depth_model);
+  if (!is<SpringsEnvironment>(scenario.environment) && depth_model != fixed.depth_model) {
+    warnings.push_back({kNoEffect, "/rendering/depth_model",
+                        fmt::format("\"{}\" is not used: algorithm \"{}\" is defined with \"{}\"", depth_model,
+                                    fixed.algorithm, fixed.depth_model)});
+  }
+  if (has_other_contacts(scenario) && !entry.reported_depth_model.empty()) {
+    warnings.push_back({kNoEffect, "/rendering/contact_source",
+                        fmt::format("not used: algorithm \"{}\" finds its points itself", fixed.algorithm)});
+  } else if (has_other_contacts(scenario) && !entry.fixed_depth_model.empty()) {
+    warnings.push_back(
+        {"other_depths", "/rendering/contact_source",
+         fmt::format("algorithm \"{}\" is defined with depth model \"{}\"; here it has the depths of \"{}\"",
+                     fixed.algorithm, entry.fixed_depth_model, fixed.contact_source)});
+  }
+  const Json::json_pointer reduction("/rendering/reduction");
+  if (!fixed.reduction && json.contains(reduction) && !json.at(reduction).is_null()) {
+    warnings.push_back({kNoEffect, reduction.to_string(),
+                        fmt::format("not used: algorithm \"{}\" is defined without", fixed.algorithm)});
+  }
+}
+
+void warn_of_idle_integrator(const Scenario& scenario, std::vector<Warning>& warnings) {
+  if (!handle_moves_tool(scenario.device) || scenario.integrator.type == IntegratorFields{}.type) return;
+  warnings.push_back({kNoEffect, "/integrator/type",
+                      fmt::format("\"{}\" is not used: device \"impedance\" moves the tool, without a virtual mass",
+                                  scenario.integrator.type->info.name)});
+}
+
 /// A warning about an admittance device whose servo or mechanics differ from the usual ones under a hand that does not
 /// feel the handle. Sensor and limiter have an effect under any hand, so a device that changes only these is fine.
 void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warnings) {
-  const char* hand = std::holds_alternative<NoHandFields>(scenario.hand)      ? "none"
-                     : std::holds_alternative<ForceHandFields>(scenario.hand) ? "force"
-                     : std::holds_alternative<PushHandFields>(scenario.hand)  ? "push"
-                                                                              : nullptr;
+  const char* hand = is<NoHandFields>(scenario.hand)      ? "none"
+                     : is<ForceHandFields>(scenario.hand) ? "force"
+                     : is<PushHandFields>(scenario.hand)  ? "push"
+                                                          : nullptr;
   const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
   if (hand == nullptr || device == nullptr) return;
   const AdmittanceDeviceConfig usual;
@@ -313,6 +347,8 @@ void require_at_most(double most, double count, const std::string& at, const cha
 
 std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& json) {
   std::vector<Warning> warnings;
+  warn_of_fixed_stages(scenario, json, warnings);
+  warn_of_idle_integrator(scenario, warnings);
   warn_of_idle_device(scenario, warnings);
   warn_of_unread_rendering(scenario, json, warnings);
   warn_of_stiff_bristle(scenario, warnings);
@@ -374,41 +410,6 @@ void set_scene_defaults(Scenario& scenario) {
     scenario.motion.orientation->up = {0.0, 0.0, 1.0};
     rendering.mass = 0.1;
   }
-}
-
-/// Overwrites the settings that the algorithm's definition fixes, with a warning where the scenario has others.
-void fix_stages(Fields& f, Scenario& scenario) {
-  RenderingConfig& given = scenario.rendering;
-  const RenderingConfig fixed = with_fixed_stages(given);
-  const bool has_depth_model = !std::holds_alternative<SpringsEnvironment>(scenario.environment);
-  if (has_depth_model && given.depth_model != fixed.depth_model) {
-    f.warn({kNoEffect, "/rendering/depth_model",
-            fmt::format("\"{}\" is not used: algorithm \"{}\" is defined with \"{}\"", given.depth_model,
-                        given.algorithm, fixed.depth_model)});
-  }
-  if (given.contact_source != kOwnContacts) {
-    const AlgorithmEntry& entry = *find_algorithm(given.algorithm);
-    if (!entry.reported_depth_model.empty()) {
-      f.warn({kNoEffect, "/rendering/contact_source",
-              fmt::format("not used: algorithm \"{}\" finds its points itself", given.algorithm)});
-    } else if (!entry.fixed_depth_model.empty()) {
-      f.warn({"other_depths", "/rendering/contact_source",
-              fmt::format("algorithm \"{}\" is defined with depth model \"{}\"; here it has the depths of \"{}\"",
-                          given.algorithm, entry.fixed_depth_model, given.contact_source)});
-    }
-  }
-  if (given.reduction && !fixed.reduction) {
-    f.warn({kNoEffect, "/rendering/reduction",
-            fmt::format("not used: algorithm \"{}\" is defined without", given.algorithm)});
-  }
-  given = fixed;
-}
-
-void warn_of_idle_integrator(Fields& f, const Scenario& scenario) {
-  if (!handle_moves_tool(scenario.device) || scenario.integrator.type == IntegratorFields{}.type) return;
-  f.warn({kNoEffect, "/integrator/type",
-          fmt::format("\"{}\" is not used: device \"impedance\" moves the tool, without a virtual mass",
-                      scenario.integrator.type->info.name)});
 }
 
 }  // namespace
@@ -533,8 +534,7 @@ void describe(Fields& f, Scenario& scenario) {
   resolve_delay(scenario);
   check_relations(scenario, steps);
   scenario.time.steps = static_cast<std::int64_t>(steps);
-  fix_stages(f, scenario);
-  warn_of_idle_integrator(f, scenario);
+  scenario.rendering = with_fixed_stages(scenario.rendering);
 }
 
 }  // namespace hapbench

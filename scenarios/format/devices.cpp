@@ -54,8 +54,6 @@ static void describe(Fields& f, AdmittanceDeviceConfig& device) {
   f.object("mechanics", device.mechanics, "the moving parts");
 }
 
-static void describe(Fields&, DifferenceFilter&) {}
-
 static void describe(Fields& f, LowPassFilter& filter) {
   f.number("cutoff_Hz", filter.cutoff, {0.0, 1e9, "Hz", true},
            "half power of the continuous Butterworth low-pass, whose input is held over the time step: the first order "

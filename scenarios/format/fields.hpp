@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -20,25 +22,9 @@
 /// read files (read_value), to write them and find the files that they name (json_of) and to explain them (guide_to).
 namespace hapbench {
 
-struct Warning;
-
-/// A reference to a function object that can be called with `Arguments`, for parameters that are called and not kept:
-/// unlike std::function it neither copies nor allocates. Valid as long as the object it refers to.
+/// A parameter that is called and not kept.
 template <class... Arguments>
-class FunctionRef {
- public:
-  template <class Function>
-  FunctionRef(const Function& function)  // NOLINT: a lambda stands for itself
-      : object_(&function), call_([](const void* object, Arguments... arguments) {
-          (*static_cast<const Function*>(object))(std::forward<Arguments>(arguments)...);
-        }) {}
-
-  void operator()(Arguments... arguments) const { call_(object_, std::forward<Arguments>(arguments)...); }
-
- private:
-  const void* object_;
-  void (*call_)(const void*, Arguments...);
-};
+using FunctionRef = const std::function<void(Arguments...)>&;
 
 /// Bounds of an integer, included.
 struct IntegerRange {
@@ -145,8 +131,6 @@ class Fields {
   virtual std::string at() const { return {}; }
   /// Returns true if the file being read has that field; always false for writers.
   virtual bool given(std::string_view) const { return false; }
-  /// Reports something odd that is not an error.
-  virtual void warn(const Warning&) {}
 
   // ---- The same for C++ types, by the primitives above. ----
 
@@ -198,11 +182,13 @@ class Fields {
       std::visit([&](auto& held) { each(f, held); }, i == value.index() ? value : example);
     });
   }
-  /// The same where a function `describe` is visible for each type.
+  /// The same where a function `describe` is visible for each type that has members.
   template <class... Ts>
   void variant(std::variant<Ts...>& value, const char* what, const TypeName (&types)[sizeof...(Ts)],
                Untyped untyped = Untyped::refused) {
-    variant(value, what, types, untyped, [](Fields& f, auto& held) { describe(f, held); });
+    variant(value, what, types, untyped, [](Fields& f, auto& held) {
+      if constexpr (!std::is_empty_v<std::decay_t<decltype(held)>>) describe(f, held);
+    });
   }
 
   // ---- Fields of the kinds above: a name, the member, its range, and what it means. ----
@@ -304,9 +290,9 @@ class Fields {
 };
 
 /// Reads and checks a JSON value, found at the JSON pointer `at`, into what `value` describes. Fields that the file
-/// does not have leave their members as they are. Adds warnings to `warnings`, if any. Throws InputError, of kind shape
-/// for what the schema refuses too, that names the place, the value and what is allowed. After a fault the remaining
-/// fields and entries are still read, so that one error reports the faults of all.
-void read_value(const Json& json, const std::string& at, Fields::Body value, std::vector<Warning>* warnings = nullptr);
+/// does not have leave their members as they are. Throws InputError, of kind shape for what the schema refuses too,
+/// that names the place, the value and what is allowed. After a fault the remaining fields and entries are still read,
+/// so that one error reports the faults of all.
+void read_value(const Json& json, const std::string& at, Fields::Body value);
 
 }  // namespace hapbench

@@ -93,8 +93,6 @@ static void describe(Fields& f, OrientationFields& orientation) {
           "up");
 }
 
-static void describe(Fields&, FreePosition&) {}
-
 static void describe(Fields& f, PrescribedPosition& position) {
   profiles(f, {"x_m", "y_m", "z_m"}, position.coordinates, "m", "tip centre over time", Presence::required);
 }
@@ -141,8 +139,6 @@ static std::unique_ptr<Motion> make_motion(const Scenario& scenario, const Named
 
 constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
 constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn either way
-
-static void describe(Fields&, NoHandFields&) {}
 
 static void describe(Fields& f, ForceHandFields& hand) {
   profiles(f, {"x_N", "y_N", "z_N"}, hand.force, "N", "force on the handle over time");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -154,15 +155,11 @@ std::string shown(std::string_view text) {
 }
 
 std::string member(const std::string& at, const std::string& name) {
-  std::string pointer = at + "/";
-  for (const char c : name.substr(0, 200))
-    if (c == '~')
-      pointer += "~0";
-    else if (c == '/')
-      pointer += "~1";
-    else
-      pointer += static_cast<unsigned char>(c) < 0x20 ? '?' : c;  // keep the message on one line
-  return pointer;
+  std::string key = name.substr(0, 200);
+  // Keep the message on one line.
+  std::ranges::replace_if(
+      key, [](unsigned char c) { return c < 0x20; }, '?');
+  return at + (Json::json_pointer() / key).to_string();
 }
 
 std::string element(const std::string& at, std::size_t index) {

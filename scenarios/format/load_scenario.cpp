@@ -200,26 +200,25 @@ void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
 LoadedScenario read_scenario(const Json& json, const fs::path& directory) {
   LoadedScenario loaded;
   loaded.scenario.directory = directory;
-  read_value(
-      json, "", [&](Fields& f) { f.object(loaded.scenario); }, &loaded.warnings);
-  std::ranges::move(relation_warnings(loaded.scenario, json), std::back_inserter(loaded.warnings));
+  read_value(json, "", [&](Fields& f) { f.object(loaded.scenario); });
+  loaded.warnings = relation_warnings(loaded.scenario, json);
   loaded.files = NamedFiles(loaded.scenario);
   return loaded;
 }
 
 ScenarioText read_scenario_text(const fs::path& file) {
-  auto layers = std::make_shared<std::vector<ScenarioLayer>>();
-  ScenarioText text{file, read_extended(file, *layers)};
-  if (layers->size() > 1) text.layers = std::move(layers);
-  return text;
+  std::vector<ScenarioLayer> layers;
+  Json json = read_extended(file, layers);
+  if (layers.size() == 1) layers.clear();
+  return {file, std::move(json), std::move(layers)};
 }
 
 fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
-  if (!loaded.layers || !pointer.starts_with('/')) return loaded.file;
+  if (!pointer.starts_with('/')) return loaded.file;
   try {
     // A field that no file has is at its default; the object around it is the nearest place to name.
     for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
-      for (const ScenarioLayer& layer : *loaded.layers)
+      for (const ScenarioLayer& layer : loaded.layers)
         if (layer.json.contains(at)) return layer.file;
     }
   } catch (const Json::exception&) {
@@ -244,14 +243,12 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
     const bool same_run = std::all_of(overrides.begin(), overrides.end(), leaves_run_alone);
     if (!same_run && json.is_object() && json.contains("expect")) expect_less(json["expect"]);
     for (const std::string& override : overrides) apply_override(json, override);
-    if (text.layers && !overrides.empty()) {
-      auto layers = std::make_shared<std::vector<ScenarioLayer>>(*text.layers);
-      for (const std::string& override : overrides) apply_override(layers->front().json, override);
-      loaded.layers = std::move(layers);
+    if (!loaded.layers.empty()) {
+      for (const std::string& override : overrides) apply_override(loaded.layers.front().json, override);
     }
     LoadedScenario read = read_scenario(json, text.file.parent_path());
     read.file = loaded.file;
-    read.layers = loaded.layers;
+    read.layers = std::move(loaded.layers);
     if (read.scenario.name.empty()) read.scenario.name = text.file.stem().string();
     return read;
   } catch (const InputError& error) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -29,8 +28,7 @@ struct ScenarioLayer {
 struct ScenarioText {
   std::filesystem::path file;
   Json json;
-  /// The file and those it extends; null when it extends none.
-  std::shared_ptr<const std::vector<ScenarioLayer>> layers = nullptr;
+  std::vector<ScenarioLayer> layers = {};  ///< the file and those it extends; empty when it extends none
 };
 
 /// A checked scenario.
@@ -40,8 +38,8 @@ struct LoadedScenario {
   NamedFiles files;                    ///< that the scenario names
   std::vector<Warning> warnings;       ///< about given values without effect
   std::vector<Warning> file_warnings;  ///< about the files, once they are checked (scenarios/run/assemble.hpp)
-  /// The file and those it extends as they stand, overrides in the first; null when it extends none.
-  std::shared_ptr<const std::vector<ScenarioLayer>> layers;
+  /// The file and those it extends as they stand, overrides in the first; empty when it extends none.
+  std::vector<ScenarioLayer> layers;
 };
 
 /// Reads a scenario file and, over and over, the one that its field "extends" names: a file, relative to the one that

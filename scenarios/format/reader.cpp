@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "results/summary/summary.hpp"
 #include "scenarios/format/fields.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/text_lines.hpp"
@@ -21,8 +20,7 @@ std::string text_of_file_hint(const Json& given) {
 
 class Reader final : public Fields {
  public:
-  Reader(const Json& json, const std::string& at, std::vector<Warning>* warnings)
-      : json_(json), at_(at), warnings_(warnings) {}
+  Reader(const Json& json, std::string at) : json_(json), at_(std::move(at)) {}
 
   void number(double& value, NumberRange range) override {
     const auto allowed = [&](Fields& f) { f.number(value, range); };
@@ -63,7 +61,7 @@ class Reader final : public Fields {
     const auto& given = json_.get_ref<const std::string&>();
     const auto found = std::find(names.begin(), names.end(), given);
     if (found == names.end()) {
-      const bool in_file_of_its_own = std::ranges::count(at(), '/') == 1;  // a device with its preset
+      const bool in_file_of_its_own = std::ranges::count(at_, '/') == 1;  // a device with its preset
       const std::string shown_by = in_file_of_its_own ? fmt::format("hapbench describe {}s", what) : described_by("");
       fail(fmt::format("got {}{}; allowed: {}{}: one of {}", shown(json_), nearest_name_hint(given, names), null_or(),
                        what, quoted_list(names, shown_by)));
@@ -74,14 +72,14 @@ class Reader final : public Fields {
   void vector3(Vec3& value, NumberRange component) override {
     if (!json_.is_array() || json_.size() != 3) refuse([&](Fields& f) { f.vector3(value, component); });
     for (std::size_t i = 0; i < 3; ++i)
-      Reader(json_[i], *this, i).number(value[static_cast<Eigen::Index>(i)], component);
+      Reader(json_[i], element(at_, i)).number(value[static_cast<Eigen::Index>(i)], component);
   }
 
   void pair(const char* allowed, double& first, NumberRange of_first, double& second, NumberRange of_second) override {
     if (!json_.is_array() || json_.size() != 2)
       refuse([&](Fields& f) { f.pair(allowed, first, of_first, second, of_second); });
-    Reader(json_[0], *this, 0).number(first, of_first);
-    Reader(json_[1], *this, 1).number(second, of_second);
+    Reader(json_[0], element(at_, 0)).number(first, of_first);
+    Reader(json_[1], element(at_, 1)).number(second, of_second);
   }
 
   void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
@@ -90,7 +88,7 @@ class Reader final : public Fields {
       refuse([&](Fields& f) { f.entries(length, size, resize, entry); });
     resize(json_.size());
     for (std::size_t i = 0; i < json_.size(); ++i) {
-      Reader reader(json_[i], *this, i);
+      Reader reader(json_[i], element(at_, i));
       collect([&] { entry(reader, i); });
     }
     throw_errors();
@@ -124,7 +122,7 @@ class Reader final : public Fields {
     if (type == json_.end() && untyped == Untyped::refused)
       fail(fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));
     std::size_t index = 0;
-    if (type != json_.end()) Reader(*type, *this, kTypeField).name(index, types, what);
+    if (type != json_.end()) Reader(*type, member(at_, kTypeField)).name(index, types, what);
     read_fields([&](Fields& f) { fields(f, index); }, {kTypeField}, what);
   }
 
@@ -137,7 +135,7 @@ class Reader final : public Fields {
     if (names_ != nullptr) return names_->push_back(name);
     const auto entry = json_.find(name);
     if (entry != json_.end()) {
-      Reader reader(*entry, *this, name);
+      Reader reader(*entry, member(at_, std::string(name)));
       return collect([&] { value(reader); });
     }
     // A misspelt name of this field has been reported already.
@@ -159,22 +157,11 @@ class Reader final : public Fields {
   }
 
   bool reads() const override { return names_ == nullptr && errors_.empty(); }
-  std::string at() const override {
-    if (parent_ == nullptr) return at_;
-    return index_ ? element(parent_->at(), *index_) : member(parent_->at(), std::string(name_));
-  }
+  std::string at() const override { return at_; }
   bool given(std::string_view name) const override { return names_ == nullptr && json_.contains(name); }
-  void warn(const Warning& warning) override {
-    if (warnings_ != nullptr) warnings_->push_back(warning);
-  }
 
  private:
-  /// Reads a field or an entry of the value that `parent` reads; both must outlive this reader, as must the name. The
-  /// JSON pointer is built lazily: only errors need it, and sweeps read scenarios by the million.
-  Reader(const Json& json, const Reader& parent, std::string_view name) : json_(json), parent_(&parent), name_(name) {}
-  Reader(const Json& json, const Reader& parent, std::size_t index) : json_(json), parent_(&parent), index_(index) {}
-
-  [[noreturn]] void fail(const std::string& problem) const { throw InputError(InputError::Kind::shape, at(), problem); }
+  [[noreturn]] void fail(const std::string& problem) const { throw InputError(InputError::Kind::shape, at_, problem); }
   /// Refuses the value: "got VALUE; allowed: ...", in the words that the schema writer has for `what`.
   [[noreturn]] void refuse(Body what, const std::string& hint = "") const {
     fail(fmt::format("got {}; allowed: {}{}{}", shown(json_), null_or(), guide_to(what).allowed, hint));
@@ -204,7 +191,7 @@ class Reader final : public Fields {
       const std::string hint = nearest_name_hint(entry.key(), allowed);
       collect([&] {
         throw InputError(
-            InputError::Kind::shape, member(at(), entry.key()),
+            InputError::Kind::shape, member(at_, entry.key()),
             fmt::format("unknown field{}; allowed here: {}", hint, quoted_list(allowed, described_by(root))));
       });
       meant_.push_back(nearest_name(entry.key(), allowed));
@@ -215,9 +202,8 @@ class Reader final : public Fields {
 
   /// The command that describes the object that is being read.
   std::string described_by(std::string_view root) const {
-    const std::string place = at();
     std::string section;
-    for (const std::string_view key : parts_of(place, '/')) {
+    for (const std::string_view key : parts_of(at_, '/')) {
       if (whole_number(key)) break;  // entries are described with their list
       if (!key.empty()) section += fmt::format("{}{}", section.empty() ? "" : ".", key);
     }
@@ -225,11 +211,7 @@ class Reader final : public Fields {
   }
 
   const Json& json_;
-  std::string at_;  ///< JSON pointer of the value, for a reader without a parent
-  const Reader* parent_ = nullptr;
-  std::string_view name_;
-  std::optional<std::size_t> index_;  ///< of an entry, which has no name
-  std::vector<Warning>* warnings_ = nullptr;
+  std::string at_;  ///< JSON pointer of the value
   bool null_allowed_ = false;
   /// When not null, the body of an object is called only to collect the names of its fields.
   std::vector<std::string_view>* names_ = nullptr;
@@ -239,8 +221,8 @@ class Reader final : public Fields {
 
 }  // namespace
 
-void read_value(const Json& json, const std::string& at, Fields::Body value, std::vector<Warning>* warnings) {
-  Reader reader(json, at, warnings);
+void read_value(const Json& json, const std::string& at, Fields::Body value) {
+  Reader reader(json, at);
   value(reader);
 }
 

@@ -27,11 +27,11 @@ namespace {
 /// Selects the fields to write: all that have a value, or only those whose default holds for every scenario.
 enum class Which { all, with_default };
 
-/// Writes a value as JSON, and notes the files that it names where they are asked for.
+/// Writes a value as JSON, and tells the files that it names where they are asked for.
 class Writer final : public Fields {
  public:
-  Writer(Which which, Body value, std::vector<FoundFile>* files = nullptr, std::string at = "")
-      : which_(which), files_(files), at_(std::move(at)) {
+  Writer(Which which, Body value, const OnFile& on_file = nullptr, std::string at = "")
+      : which_(which), on_file_(on_file), at_(std::move(at)) {
     value(*this);
   }
 
@@ -43,7 +43,7 @@ class Writer final : public Fields {
   void text(std::string& value, std::size_t) override { json_ = value; }
   void file(std::string& path, const FileContent& content) override {
     json_ = path;
-    if (files_ != nullptr) files_->push_back({at_, path, content});
+    if (on_file_) on_file_(at_, path, content);
   }
   void any_object(std::string& json) override { json_ = Json::parse(json); }
   void vector3(Vec3& value, NumberRange) override { json_ = {value.x(), value.y(), value.z()}; }
@@ -82,11 +82,11 @@ class Writer final : public Fields {
 
  private:
   Json written(std::string_view name, Body value) const {
-    return Writer(which_, value, files_, files_ == nullptr ? "" : fmt::format("{}/{}", at_, name)).json();
+    return Writer(which_, value, on_file_, on_file_ ? fmt::format("{}/{}", at_, name) : "").json();
   }
 
   Which which_;
-  std::vector<FoundFile>* files_;
+  const OnFile& on_file_;
   std::string at_;  ///< JSON pointer of the value, where files are asked for
   Json json_;
 };
@@ -223,8 +223,8 @@ class SchemaWriter final : public Fields {
 
 }  // namespace
 
-Json json_of(Fields::Body value, std::vector<FoundFile>* files) {
-  return Writer(Which::all, value, files).json();
+Json json_of(Fields::Body value, const OnFile& file) {
+  return Writer(Which::all, value, file).json();
 }
 
 ValueGuide guide_to(Fields::Body value, Json* definitions) {

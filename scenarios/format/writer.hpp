@@ -1,20 +1,19 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "scenarios/format/fields.hpp"
 
 namespace hapbench {
 
-/// A file that a value names.
-struct FoundFile {
-  std::string pointer;  ///< JSON pointer of the field
-  std::string path;     ///< as the field has it
-  FileContent content;
-};
+/// Is told a file that a value names: the JSON pointer of the field, the path as the field has it, and the content.
+using OnFile = std::function<void(const std::string& pointer, const std::string& path, const FileContent& content)>;
 
-/// The JSON of what `value` describes, and the files it names in order. Throws std::logic_error for one without a name.
-Json json_of(Fields::Body value, std::vector<FoundFile>* files = nullptr);
+/// The JSON of what `value` describes. Tells the files it names in order. Throws std::logic_error for one without a
+/// name.
+Json json_of(Fields::Body value, const OnFile& file = nullptr);
 
 /// The JSON of a value, by its `describe`, which says of what kind it is.
 template <class T>

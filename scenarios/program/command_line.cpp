@@ -29,7 +29,7 @@ AddCommand add_compare, add_converge, add_describe, add_limit, add_new, add_pyth
 
 namespace {
 
-constexpr const char *kProgramName = "hapbench", *kDescription = "an offline bench for haptic rendering";
+constexpr const char* kDescription = "an offline bench for haptic rendering";
 
 /// A command in the program's help, and in its own.
 struct CommandGuide {
@@ -182,13 +182,13 @@ std::string kind_of_value(const CLI::Option& option) {
 }
 
 std::string usage(const CLI::App& app) {
-  std::string words = fmt::format("{} {} [OPTIONS]", kProgramName, app.get_name());
+  std::string words = fmt::format("Usage: hapbench {} [OPTIONS]", app.get_name());
   for (const CLI::Option* option : app.get_options()) {
     if (!option->get_positional()) continue;
     const std::string name = name_of(*option) + (kind_of_value(*option).ends_with("...") ? "..." : "");
     words += option->get_required() ? " " + name : " [" + name + "]";
   }
-  return "Usage: " + words + "\n";
+  return words + "\n";
 }
 
 /// The arguments, or the options; those that say nothing of their own stand in one line.
@@ -207,7 +207,7 @@ std::string options_text(const CLI::App& app, bool arguments) {
     if (option->get_required() && !arguments) help += "; required";
     text += entry(name, help);
   }
-  if (!shared.empty()) text += entry(shared, fmt::format("as everywhere: {} --help", kProgramName));
+  if (!shared.empty()) text += entry(shared, "as everywhere: hapbench --help");
   return text.empty() ? "" : fmt::format("\n{}\n{}", bold(stdout, arguments ? "Arguments:" : "Options:"), text);
 }
 
@@ -217,25 +217,24 @@ std::string help_text(const CLI::App& app) {
       wrapped(app.get_description(), 0) + usage(app) + options_text(app, true) + options_text(app, false) + "\n";
   if (!app.get_footer().empty()) text += wrapped(app.get_footer(), 0) + "\n";
   LineReader examples(std::ranges::find(kCommands, app.get_name(), &CommandGuide::name)->examples);
-  while (const auto example = examples.next()) text += fmt::format("  {} {}\n", kProgramName, *example);
+  while (const auto example = examples.next()) text += fmt::format("  hapbench {}\n", *example);
   return text;
 }
 
 /// The commands in their groups, and what to do first.
 std::string front() {
-  std::string text = fmt::format("{}: {}\n\n", kProgramName, kDescription);
+  std::string text = fmt::format("hapbench: {}\n\n", kDescription);
   std::string_view group;
   for (const CommandGuide& guide : kCommands) {
     text += entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
     group = guide.group;
   }
-  return text + fmt::format(
-                    "\n"
-                    "first   {0} run drag_molar\n"
-                    "        {0} new drag --from my.stl --extent 12mm\n"
-                    "        {0} describe\n\n"
-                    "\"{0} COMMAND --help\" explains a command, \"{0} --help\" what all share.\n",
-                    kProgramName);
+  return text +
+         "\n"
+         "first   hapbench run drag_molar\n"
+         "        hapbench new drag --from my.stl --extent 12mm\n"
+         "        hapbench describe\n\n"
+         "\"hapbench COMMAND --help\" explains a command, \"hapbench --help\" what all share.\n";
 }
 
 std::string program_help() {
@@ -289,7 +288,7 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const std::vector<CLI::App*> chosen = program.get_subcommands();
   const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
   const std::string name = command ? command->get_name() + ": " : "", words = command ? command->get_name() + " " : "";
-  const std::string help = fmt::format("; \"{} {}--help\" explains", kProgramName, words);
+  const std::string help = fmt::format("; \"hapbench {}--help\" explains", words);
   ProgramWords extra = program.remaining(true);
   std::erase(extra, "--");
   refuse_old_words(program, command);
@@ -372,7 +371,7 @@ void Command::footer(const std::string& text) {
   app_->footer(text);
 }
 
-CommandLine::CommandLine() : app_(std::make_shared<CLI::App>(kDescription, kProgramName)) {
+CommandLine::CommandLine() : app_(std::make_shared<CLI::App>(kDescription, "hapbench")) {
   CLI::Option* json = app_->add_flag("--json");
   json->needs(app_->set_version_flag("--version", [json] { return version_text(json->count() > 0); }));
   add_module_option(*app_);
@@ -451,7 +450,7 @@ int CommandLine::parse_and_run(ProgramWords words) {
   for (const auto& [app, output] : outputs_) {
     app->add_flag("--quiet", output->quiet, shared_option_help("--quiet"));
     app->add_flag("--json", output->json, shared_option_help("--json"));
-    app->add_flag_callback("--wide", output_in_full, shared_option_help("--wide"));
+    app->add_flag("--wide", output_in_full(), shared_option_help("--wide"));
   }
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them

@@ -10,7 +10,6 @@
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/limits/convergence/convergence.hpp"
-#include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"
 
 namespace hapbench {
@@ -34,11 +33,11 @@ struct ComparedRun {
 /// Without times, so that equal comparisons give equal bytes; several seeds get a column in front.
 Columns<ComparedRun> comparison_columns(bool seeds) {
   using Row = ComparedRun;
-  Columns<Row> columns;
-  if (seeds) columns.add({{"seed", "1", "number of the repetition", &Row::seed}});
-  columns.add({{"algorithm", "", "force algorithm", [](const Row& r) { return r.run.algorithm; }},
-               {"outcome", "", "how the run ended", [](const Row& r) { return outcome_name(r.run.end.outcome); }},
-               {"steps", "1", "rows of the run", [](const Row& r) { return r.run.end.rows; }}});
+  Columns<Row> columns = {
+      {"seed", "1", "number of the repetition", &Row::seed, when(seeds)},
+      {"algorithm", "", "force algorithm", [](const Row& r) { return r.run.algorithm; }},
+      {"outcome", "", "how the run ended", [](const Row& r) { return outcome_name(r.run.end.outcome); }},
+      {"steps", "1", "rows of the run", [](const Row& r) { return r.run.end.rows; }}};
   for (const std::string_view name : words_of(kComparedMetrics)) {
     const Metric& metric = *find_metric(all_metrics(), name);
     columns.add(
@@ -154,7 +153,7 @@ Columns<Standing> league_columns(bool seeds) {
 std::string league_text(const League& league) {
   constexpr std::size_t kMostPrinted = 60;
   const std::string table =
-      league.standings.size() <= kMostPrinted || output_is_in_full()
+      league.standings.size() <= kMostPrinted || output_in_full()
           ? league_columns(league.seeds > 1).table(ranked(league)).text()
           : fmt::format("{} standings are in league.csv; --wide prints them\n", league.standings.size());
   return fmt::format("{}\n{}\n{}", table, law_columns().table(league.laws).text(), verdict(league));
@@ -198,10 +197,10 @@ std::vector<NumberWithError> numbers_of(const League& league, const FinerRuns& f
     const auto& [value, error] =
         numbers.emplace_back(NumberWithError{standing.failed > 0 ? std::nullopt : standing.mean, known.sum()});
     rows.push_back({{"algorithm", standing.algorithm},
-                    {"value", cell_json(cell_if(value))},
-                    {"error_estimate", cell_json(cell_if(error))},
-                    {"error_of_step", cell_json(cell_if(known.step))},
-                    {"error_of_spacing", cell_json(cell_if(known.spacing))}});
+                    {"value", cell_json(cell_of(value))},
+                    {"error_estimate", cell_json(cell_of(error))},
+                    {"error_of_step", cell_json(cell_of(known.step))},
+                    {"error_of_spacing", cell_json(cell_of(known.spacing))}});
   }
   for (const auto& group : held_order(numbers).groups) {
     Json& names = order.emplace_back(Json::array());
@@ -347,7 +346,7 @@ int compare(const CompareOptions& options) {
   const JobOptions jobs = job_options(options, "compare");
   JobOptions timed = jobs;
   // The wide table of a single comparison shows times, which concurrent runs would lengthen.
-  if (options.jobs == 0 && !asked.league && output_is_in_full()) timed.threads = 1;
+  if (options.jobs == 0 && !asked.league && output_in_full()) timed.threads = 1;
   const std::vector<Result> reports =
       run_all(comparison.scenes, timed, [&](std::size_t run) { return asked.out / comparison.folder(run); });
   const League league = league_of(comparison, reports, compared(asked, reports));
@@ -368,12 +367,12 @@ int compare(const CompareOptions& options) {
   } else {
     report.say(fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
                            options.errors ? "" : vibration_text(league),
-                           output_is_in_full() ? step_time_text(reports) : ""));
+                           output_in_full() ? step_time_text(reports) : ""));
   }
   if (options.errors) {
     const FinerRuns finer(comparison, reports, jobs);
     for (std::size_t s = 0; s < league.scenarios.size(); ++s)
-      report_errors(league, finer, s, asked.league || output_is_in_full(), report);
+      report_errors(league, finer, s, asked.league || output_in_full(), report);
     report.say("\n" + wrapped("<: less by more than both errors; ~: not so; ?: a finer run ends otherwise", 0));
   }
   report.say(fmt::format("\nresults in {}\n", asked.out.string()));

@@ -9,7 +9,6 @@
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/limits/convergence/convergence.hpp"
 #include "scenarios/limits/stability/field_limit.hpp"
-#include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/core/math.hpp"

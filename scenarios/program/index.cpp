@@ -274,25 +274,6 @@ void add_types(Index& index) {
   }
 }
 
-/// The object of the value's type; null when the value is not an object with fields.
-const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
-  if (!value.is_object()) return nullptr;
-  if (guide.choices.empty()) return &guide;
-  for (const ValueGuide& choice : guide.choices)
-    if (value.value(kTypeField, choice.may_be_untyped ? choice.type : "") == choice.type) return &choice;
-  return nullptr;
-}
-
-void add_meanings(Json& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
-  for (const auto& entry : value.items()) {
-    const auto field = std::ranges::find(object.fields, entry.key(), &FieldGuide::name);
-    if (field == object.fields.end()) continue;  // the type
-    meanings[prefix + entry.key()] = field->meaning;
-    if (const ValueGuide* nested = object_of(entry.value(), field->value))
-      add_meanings(meanings, prefix + entry.key() + ".", entry.value(), *nested);
-  }
-}
-
 // ---- Names that results and printed tables have: metrics, files, columns, words, headings
 
 const std::vector<Column> kShellColumns = {
@@ -491,12 +472,6 @@ const FieldGuide* find_field(const std::string& path) {
   const std::vector<PlacedField> all = placed_fields();
   const auto found = std::ranges::find(all, path, &PlacedField::path);
   return found == all.end() ? nullptr : found->field;
-}
-
-Json field_meanings(const Json& scenario) {
-  Json meanings = Json::object();
-  add_meanings(meanings, "", scenario, scenario_guide());
-  return meanings;
 }
 
 }  // namespace hapbench

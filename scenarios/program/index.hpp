@@ -39,16 +39,10 @@ using Index = std::vector<Named>;
 Index program_index();
 /// Every table among the results of this program, and those that are only printed, without a file.
 std::vector<DescribedTable> result_tables();
-/// Those of single commands, from the columns that these write and print.
-using CommandTables = std::vector<DescribedTable>();
-CommandTables claim_tables, converge_tables, league_tables, limit_tables, run_tables, single_run_tables, stress_tables,
-    sweep_tables, tune_tables;
 
 // ---- The fields of scenario files. Their names are dotted paths, as "rendering.limits".
 
 /// The field at that path, of the first type that has it where types choose the fields; null when there is none.
 const FieldGuide* find_field(const std::string& path);
-/// The meaning of each field that a scenario's JSON has, by its path, objects before their fields.
-Json field_meanings(const Json& scenario);
 
 }  // namespace hapbench

@@ -12,7 +12,6 @@
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"

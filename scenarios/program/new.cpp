@@ -12,7 +12,7 @@
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/program/index.hpp"
+#include "scenarios/format/writer.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -466,6 +466,26 @@ class Start {
 
 // ---- The command
 
+/// The object of the value's type; null when the value is not an object with fields.
+const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
+  if (!value.is_object()) return nullptr;
+  if (guide.choices.empty()) return &guide;
+  for (const ValueGuide& choice : guide.choices)
+    if (value.value(kTypeField, choice.may_be_untyped ? choice.type : "") == choice.type) return &choice;
+  return nullptr;
+}
+
+/// Adds the meaning of each field that a value has, by its path, objects before their fields.
+void add_meanings(Json& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
+  for (const auto& entry : value.items()) {
+    const auto field = std::ranges::find(object.fields, entry.key(), &FieldGuide::name);
+    if (field == object.fields.end()) continue;  // the type
+    meanings[prefix + entry.key()] = field->meaning;
+    if (const ValueGuide* nested = object_of(entry.value(), field->value))
+      add_meanings(meanings, prefix + entry.key() + ".", entry.value(), *nested);
+  }
+}
+
 int list_kinds(const OutputOptions& output) {
   const Columns<StartKind> columns = {{"kind", "", "", &StartKind::name, under("KIND")},
                                       {"summary", "", "", &StartKind::summary, under("what it starts with")}};
@@ -510,7 +530,8 @@ int write_new(const NewOptions& options) {
   for (const std::string& note : start.notes) text += note + "\n";
   if (options.preview) text += fmt::format("picture of a run in {}\n", picture.string());
   text += "\n";
-  const Json fields = field_meanings(start.scene);
+  Json fields = Json::object();
+  add_meanings(fields, "", start.scene, scenario_guide());
   for (const auto& [path, meaning] : fields.items()) text += entry(path, meaning.get<std::string>(), 0, 34);
   text += fmt::format("\n\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
   Json said = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};

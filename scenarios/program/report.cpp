@@ -22,8 +22,6 @@ constexpr std::size_t kNarrowest = 40;
 constexpr std::size_t kWidestProse = 100;
 constexpr std::size_t kGap = 2;  ///< blanks between columns
 
-bool in_full = false;
-
 /// The upper and the lower line of a title; a single line is the lower one.
 std::array<std::string, 2> title_lines(const std::string& title) {
   const std::size_t end = title.find('\n');
@@ -72,7 +70,7 @@ std::string block_text(const Table& table, const std::vector<std::size_t>& width
 }  // namespace
 
 std::size_t output_width() {
-  if (in_full) return std::string::npos;
+  if (output_in_full()) return std::string::npos;
   const char* columns = std::getenv("COLUMNS");
   if (const long given = columns == nullptr ? 0 : std::atol(columns); given > 0)
     return std::max(kNarrowest, static_cast<std::size_t>(given));
@@ -86,11 +84,8 @@ std::size_t prose_width() {
   return std::min(output_width(), kWidestProse);
 }
 
-void output_in_full() {
-  in_full = true;
-}
-
-bool output_is_in_full() {
+bool& output_in_full() {
+  static bool in_full = false;
   return in_full;
 }
 

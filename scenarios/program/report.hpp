@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -23,10 +22,10 @@ namespace hapbench {
 // ---- Text
 
 /// The width of standard output [characters]: COLUMNS of the environment, else that of the terminal; unbounded in a
-/// pipe or a file, and after `output_in_full` (--wide).
+/// pipe or a file, and when `output_in_full`.
 std::size_t output_width();
-void output_in_full();
-bool output_is_in_full();
+/// The option --wide.
+bool& output_in_full();
 /// The width of prose: that of the output, but at most 100.
 std::size_t prose_width();
 
@@ -93,20 +92,6 @@ inline Shown when(bool has_it, Shown where = {}) {
   return has_it ? std::move(where) : Shown{.csv = false, .json = false};
 }
 
-/// The cell of a number, a count, a truth, a text, one of them that need not exist, or of what is a cell already.
-template <class Value>
-Cell cell_of(const Value& value) {
-  if constexpr (requires { value.has_value(); }) {
-    return value ? cell_of(*value) : Cell();
-  } else if constexpr (std::is_convertible_v<Value, std::string_view>) {
-    return std::string(std::string_view(value));
-  } else if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
-    return static_cast<std::uint64_t>(value);
-  } else {
-    return value;
-  }
-}
-
 /// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
 inline std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance) {
   if (const auto* number = std::get_if<double>(&cell)) return deserved(*number, tolerance, shown.digits);
@@ -125,6 +110,10 @@ struct DescribedTable {
   std::vector<Entry> columns = {};           ///< of the CSV file
   std::vector<Table::Column> headings = {};  ///< of the printed table
 };
+/// Those of single commands, from the columns that these write and print.
+using CommandTables = std::vector<DescribedTable>();
+CommandTables claim_tables, converge_tables, league_tables, limit_tables, run_tables, single_run_tables, stress_tables,
+    sweep_tables, tune_tables;
 
 /// The columns of a table with rows of type `Row`: those known when the program is written, and those that depend on
 /// the question, such as the fields that vary.
@@ -182,11 +171,11 @@ class Columns {
   /// As wide as the output is to be; `rows`: rows, or references to them.
   template <class Rows>
   Table table(const Rows& rows) const {
-    Table table{headings(output_is_in_full())};
+    Table table{headings(output_in_full())};
     for (const Row& row : rows) {
       std::vector<std::string> cells;
       for (const Entry& entry : entries_) {
-        if (!entry.is_printed(output_is_in_full())) continue;
+        if (!entry.is_printed(output_in_full())) continue;
         cells.push_back(printed(entry.cell(row), entry.shown, entry.tolerance ? entry.tolerance(row) : std::nullopt));
       }
       table.rows.push_back(std::move(cells));

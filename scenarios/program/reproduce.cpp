@@ -7,7 +7,6 @@
 #include "results/io/columns.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"

@@ -4,7 +4,6 @@
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 

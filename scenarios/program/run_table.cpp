@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/program/index.hpp"
 
 namespace hapbench {
 namespace {

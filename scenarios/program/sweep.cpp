@@ -8,7 +8,6 @@
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/load_module.hpp"
 

@@ -17,17 +17,23 @@ std::filesystem::path contact_library(const Scenario& scenario) {
   return scenario.directory / scenario.rendering.contact_file;
 }
 
+/// The numbers of all elements, one after the other; null without elements.
+template <class Element>
+const auto* numbers_in(const std::vector<Element>& elements) {
+  return elements.empty() ? nullptr : elements.front().data();
+}
+
 std::unique_ptr<ContactSource> make_module_contacts(const Scenario& scenario, const NamedFiles& files) {
   const auto* drill = std::get_if<CylinderFields>(&scenario.tool);
   const bool is_flat = drill != nullptr && drill->tip == Tip::flat;
-  const SurfaceArrays surface = surface_arrays(scenario, files);
+  const TriangleSoup surface = environment_surface(scenario, files);
   const HapbenchRun run = {.data = nullptr,
                            .stiffness = scenario.rendering.stiffness,
                            .capacity = kMostModuleContacts,
-                           .vertices = surface.vertices.data(),
-                           .vertex_count = surface.vertices.size() / 3,
-                           .triangles = surface.triangles.data(),
-                           .triangle_count = surface.triangles.size() / 3,
+                           .vertices = numbers_in(surface.vertices),
+                           .vertex_count = surface.vertices.size(),
+                           .triangles = numbers_in(surface.triangles),
+                           .triangle_count = surface.triangles.size(),
                            .tool_radius = make_tool(scenario, files)->half_width(),
                            .tool_length = is_flat ? drill->length : 0.0};
   return module_contacts(contact_library(scenario), scenario.rendering.contact_config, run);
@@ -56,25 +62,17 @@ std::optional<Warning> clock_warning(const Stroke& stroke, const TimeFields& tim
 
 }  // namespace
 
-SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files) {
-  SurfaceArrays surface;
-  const auto add = [&surface](const Vec3& p) { surface.vertices.insert(surface.vertices.end(), p.begin(), p.end()); };
-  const auto take = [&surface](const auto& triangles) {
-    for (const auto& triangle : triangles)
-      surface.triangles.insert(surface.triangles.end(), triangle.begin(), triangle.end());
-  };
+TriangleSoup environment_surface(const Scenario& scenario, const NamedFiles& files) {
+  if (std::holds_alternative<MeshEnvironment>(scenario.environment))
+    return files.at(kEnvironmentFile).mesh().triangles();
+  TriangleSoup surface;
   if (const auto* block = std::get_if<BlockEnvironment>(&scenario.environment)) {
-    const IsoSurface mesh =
-        marching_cubes(density_field(block->block, block->grid, block->density), {.triangles = true});
-    for (const SurfacePoint& vertex : mesh.vertices) add(vertex.position);
-    take(mesh.triangles);
-  } else if (std::holds_alternative<MeshEnvironment>(scenario.environment)) {
-    const TriangleSoup mesh = files.at(kEnvironmentFile).mesh().triangles();
-    for (const Vec3& vertex : mesh.vertices) add(vertex);
-    take(mesh.triangles);
+    IsoSurface mesh = marching_cubes(density_field(block->block, block->grid, block->density), {.triangles = true});
+    for (const SurfacePoint& vertex : mesh.vertices) surface.vertices.push_back(vertex.position);
+    surface.triangles = std::move(mesh.triangles);
   } else {
     const auto shell = make_shell(scenario, files);
-    for (std::size_t i = 0; i < shell->size(); ++i) add(shell->point(i).position);
+    for (std::size_t i = 0; i < shell->size(); ++i) surface.vertices.push_back(shell->point(i).position);
   }
   return surface;
 }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/parts.hpp"
+#include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {
 
@@ -22,14 +22,8 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
 /// The only or first run, with a shell of its own.
 SimulationParts assemble(const Scenario& scenario);
 
-/// An environment as triangles.
-struct SurfaceArrays {
-  std::vector<double> vertices;          ///< x, y, z of each [m]
-  std::vector<std::uint32_t> triangles;  ///< three vertices of each
-};
-
 /// The scenario's environment as triangles: those whose vertices our shell has, or those of its mesh file; without
 /// triangles, the points of other environments. Throws InputError when the file cannot be used.
-SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files);
+TriangleSoup environment_surface(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

@@ -165,6 +165,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
 
 constexpr const char* kSpring = "single_spring";
 constexpr double kLimitResolution = 1e-4;
+constexpr const char* kUndamped = "rendering.damping_ratio=0";
 constexpr double kSameEnergy = 1e-9;  // in the rule
 
 /// The largest value of a field at which the run of the spring, struck once, stays bounded.
@@ -182,9 +183,6 @@ double largest_bounded(const Evidence& e, const std::string& field, const Range&
 double largest_stiffness(const Evidence& e, std::vector<std::string> overrides = {}) {
   return largest_bounded(e, kStiffnessPath, {1e3, 1e9, true}, std::move(overrides));
 }
-double largest_undamped_stiffness(const Evidence& e) {
-  return largest_stiffness(e, {"rendering.damping_ratio=0"});
-}
 double largest_damping_alone(const Evidence& e) {
   return largest_bounded(e, "rendering.damping_N_s_per_m", {1.0, 1e5, true}, {"rendering.stiffness_N_per_m=0"});
 }
@@ -197,7 +195,7 @@ double damping_at(const Evidence& e, double stiffness) {
 
 Measured measure_stability_limits(const Evidence& e) {
   const double damped = largest_stiffness(e);
-  return {{"K_max (B = 0)", {{"limit", {largest_undamped_stiffness(e)}}}},
+  return {{"K_max (B = 0)", {{"limit", {largest_stiffness(e, {kUndamped})}}}},
           {"B_max (K = 0)", {{"limit", {largest_damping_alone(e)}}}},
           {"K_max (B from zeta)", {{"limit", {damped}}}},
           {"B there", {{"limit", {damping_at(e, damped)}}}}};
@@ -214,7 +212,7 @@ Finding judge_stability_limits(const Measured& measured, const PublishedNumbers&
 
 /// The damping that the largest stiffness without damping would have, and the largest one alone [N s/m].
 MeasuredValues measure_damping_at_limit(const Evidence& e) {
-  return {{"alone", {largest_damping_alone(e)}}, {"there", {damping_at(e, largest_undamped_stiffness(e))}}};
+  return {{"alone", {largest_damping_alone(e)}}, {"there", {damping_at(e, largest_stiffness(e, {kUndamped}))}}};
 }
 
 Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p) {
@@ -228,7 +226,7 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
 // ---- A6: the largest energy of an undamped mass on a spring, in units of that at its release.
 
 MeasuredValues measure_energy(const Evidence& e) {
-  const LoadedScenario loaded = e.load(kSpring, {"rendering.damping_ratio=0"});
+  const LoadedScenario loaded = e.load(kSpring, {kUndamped});
   const RenderingConfig& rendering = loaded.scenario.rendering;
   double start = 0.0, most = 0.0;
   for_each_row(loaded, [&](const StepRecord& row) {

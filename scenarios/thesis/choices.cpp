@@ -23,7 +23,8 @@ OpenChoice choice_of(const Json& json) {
   const Json& value = json.at("value");
   OpenChoice choice{.id = json.at("id"),
                     .value = value.is_number() ? cell_text(value.get<double>()) : value.get<std::string>(),
-                    .options = json.value("options", std::vector<std::string>())};
+                    .options = json.value("options", std::vector<std::string>()),
+                    .text = json_text(json)};
   if (json.contains("range")) choice.range = json.at("range").get<std::pair<double, double>>();
   for (const Json& field : json.value("fields", Json::array()))
     choice.fields.push_back({field.at("scenarios"), field.at("path"), field.value("times", false)});
@@ -31,7 +32,9 @@ OpenChoice choice_of(const Json& json) {
 }
 
 bool concerns(const ChosenField& field, const std::string& scenario) {
-  return std::ranges::any_of(field.scenarios, [&](const auto& pattern) { return names_scenario(pattern, scenario); });
+  return std::ranges::any_of(field.scenarios, [&](const std::string& pattern) {
+    return ::fnmatch(pattern.c_str(), scenario.c_str(), 0) == 0;
+  });
 }
 
 using Place = std::pair<std::string, Json*>;  ///< a dotted path, and the value there
@@ -68,10 +71,6 @@ std::string chosen_text(const Place& place, const ChosenField& field, const std:
 
 }  // namespace
 
-bool names_scenario(const std::string& pattern, const std::string& scenario) {
-  return ::fnmatch(pattern.c_str(), scenario.c_str(), 0) == 0;
-}
-
 Choices::Choices(const fs::path& file) {
   std::string at = "/choices";
   try {
@@ -80,7 +79,6 @@ Choices::Choices(const fs::path& file) {
     for (const Json& choice : json.at("choices")) {
       at = element("/choices", all_.size());
       all_.push_back(choice_of(choice));
-      texts_.push_back(json_text(choice));
     }
   } catch (const InputError& error) {
     rethrow_with_file(error, file);
@@ -124,13 +122,13 @@ PublishedNumbers Choices::with_numbers(PublishedNumbers published, std::span<con
 
 std::string Choices::reach(std::span<const std::string> scenarios, const std::string& rule) const {
   std::string reaching;
-  for (std::size_t i = 0; i < all_.size(); ++i) {
-    const std::string name = "<" + all_[i].id;
-    const bool sets = std::ranges::any_of(all_[i].fields, [&](const ChosenField& field) {
+  for (const OpenChoice& choice : all_) {
+    const std::string name = "<" + choice.id;
+    const bool sets = std::ranges::any_of(choice.fields, [&](const ChosenField& field) {
       return std::ranges::any_of(scenarios, [&](const auto& scenario) { return concerns(field, scenario); });
     });
     const bool named = rule.find(name + ">") != std::string::npos || rule.find(name + ".mean") != std::string::npos;
-    if (sets || (all_[i].fields.empty() && named)) reaching += texts_[i];
+    if (sets || (choice.fields.empty() && named)) reaching += choice.text;
   }
   return reaching.empty() ? "" : hash_text(hash_of(reaching));
 }

@@ -25,10 +25,8 @@ struct OpenChoice {
   std::optional<std::pair<double, double>> range = {};  ///< plausible values of a number; exactly one of this …
   std::vector<std::string> options = {};                ///< … and these, texts as in --set
   std::vector<ChosenField> fields = {};                 ///< none for a number that rules read by the choice's id
+  std::string text = {};                                ///< all of it, as in the file
 };
-
-/// True when a pattern of a choice's scenarios matches this scenario's name.
-bool names_scenario(const std::string& pattern, const std::string& scenario);
 
 /// All choices on record.
 class Choices {
@@ -57,7 +55,6 @@ class Choices {
 
  private:
   std::vector<OpenChoice> all_;
-  std::vector<std::string> texts_;  ///< of the choices, as in the file
   std::string hash_;
 };
 

@@ -46,18 +46,15 @@ std::vector<Library> libraries() {
 }
 
 /// The block with a hole as points or triangles, as the library takes it.
-const SurfaceArrays& surface_for(const Library& library) {
-  static const SurfaceArrays points = [] {
-    SurfaceArrays surface;
+const TriangleSoup& surface_for(const Library& library) {
+  static const TriangleSoup points = [] {
+    TriangleSoup surface;
     const auto shell = block_shell();
-    for (std::size_t i = 0; i < shell->size(); ++i) {
-      const Vec3& p = shell->point(i).position;
-      surface.vertices.insert(surface.vertices.end(), {p.x(), p.y(), p.z()});
-    }
+    for (std::size_t i = 0; i < shell->size(); ++i) surface.vertices.push_back(shell->point(i).position);
     return surface;
   }();
-  static const SurfaceArrays triangles =
-      surface_arrays(task_scene("T1").loaded.scenario, NamedFiles(task_scene("T1").loaded.scenario));
+  static const TriangleSoup triangles =
+      environment_surface(task_scene("T1").loaded.scenario, NamedFiles(task_scene("T1").loaded.scenario));
   return library.same_question ? points : triangles;
 }
 
@@ -67,10 +64,10 @@ std::unique_ptr<Peer> made(const Library& library, const std::string& task) {
   return library.make({.data = nullptr,
                        .stiffness = 0.0,
                        .capacity = kRoom,
-                       .vertices = vertices.data(),
-                       .vertex_count = vertices.size() / 3,
-                       .triangles = triangles.data(),
-                       .triangle_count = triangles.size() / 3,
+                       .vertices = vertices.front().data(),
+                       .vertex_count = vertices.size(),
+                       .triangles = triangles.empty() ? nullptr : triangles.front().data(),
+                       .triangle_count = triangles.size(),
                        .tool_radius = drill.radius(),
                        .tool_length = drill.length()});
 }
