@@ -4,7 +4,9 @@ import argparse
 import difflib
 import errno
 import json
+import math
 import os
+import re
 import shlex
 import shutil
 import sys
@@ -17,6 +19,7 @@ from hapbench.errors import InputError
 
 SHARED = "as everywhere: hapbench --help"  # the help of an option that means the same in every command
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
+MOST_FAULTS = 20  # reported at once
 SILENCE = 2.0  # before a notice [s]
 
 
@@ -179,6 +182,57 @@ def nearest(name, names):
     longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [n for n in lower if name.lower() in n]
     close = longer or difflib.get_close_matches(name.lower(), lower, 1)
     return f"; nearest valid name: \"{lower[close[0]]}\"" if close else ""
+
+
+class Faults(InputError):
+    """A list of (place, problem)."""
+
+    def __init__(self, faults):
+        super().__init__(faults)
+        self.list = faults
+
+    @property
+    def lines(self):
+        lines = [f"{place}: {problem}" if place else problem for place, problem in self.list]
+        return lines + ([f"no more than {MOST_FAULTS} are shown"] if len(lines) == MOST_FAULTS else [])
+
+
+def fail(problem, place=""):
+    raise Faults([(place, problem)])
+
+
+def require_name(got, name, valid):
+    if name not in valid:
+        names = ", ".join(f'"{v}"' for v in valid)
+        fail(f'{got} "{name}"; allowed: {names}{nearest(name, valid)}')
+
+
+def finite_number(word):
+    """The whole word (bytes) as a finite number, or NaN. Stricter than float(), which accepts "1_0", "+1" and " 1"."""
+    value = float(word) if re.fullmatch(rb"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", word) else math.nan
+    return value if math.isfinite(value) else math.nan
+
+
+def shown(value):
+    """A JSON value as a message shows it: on one line, cut when long."""
+    text = json.dumps(value, separators=(",", ":")).replace("\x7f", "\\u007f")
+    return text if len(text) <= 80 else text[:80] + "..."
+
+
+def quoted(word):
+    """A word (bytes or text) as a message shows it."""
+    data = word if isinstance(word, bytes) else word.encode("utf-8", "surrogateescape")
+    return shown(data[:60].decode("utf-8", "replace"))
+
+
+def plain(number):
+    return repr(float(number)).removesuffix(".0")
+
+
+def refuse_source(out, source, what):
+    """Refuses to write over the file that is read."""
+    if os.path.exists(out) and os.path.exists(source) and os.path.samefile(out, source):
+        fail(f"--out {out}: is the {what} itself; allowed: another file")
 
 
 def write(file, data):

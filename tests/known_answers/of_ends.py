@@ -118,7 +118,6 @@ def limit_of_spring(bench):
     coarse = ["stable" if radius(K) < 1 else "diverged" for K in values]
     bench.add("limit_runs.csv:class", runs["class"], classes, "rule on the recurrence", EXACT, ("stable where the eigenvalues are", coarse))
     bench.add("limit_runs.csv:{field}", len(set(values)), len(values), "each value once", EXACT, ("both ends twice", len(values) - 1))
-    bench.add("limit_runs.csv:algorithm", set(runs["algorithm"]) == {"summation"}, True, "as in the scenario", EXACT, ("all", False))
     for word in ("stable", "dying_out", "vibrating", "diverged"):
         at = [i for i, name in enumerate(classes) if name == word]
         bench.add(f"{word} (class of motion, of limit and stability)", [runs["class"][i] for i in at], [word] * len(at), "rule on the recurrence",

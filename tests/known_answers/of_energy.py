@@ -197,8 +197,7 @@ def turned_into_point(bench):
         ("energy.rotation_J", works.sum(), "trapezoidal rule of the torque over the turn", shape, "the stored energy", wedge[-1]),
         ("energy.created_J", wedge[-1] - works.sum(), "stored less work", Within("two hundred roundings", absolute=1e-16),
          "none, as the force is conservative", 0.0),
-        ("passivity.energy_end_J", works.sum(), "the turn's work, as the tip stands still", shape, "the stored energy", wedge[-1]),
-        ("steps_in_contact", int(touching.sum()), "rows with r > distance to the axis", EXACT, "all rows", n)])
+        ("passivity.energy_end_J", works.sum(), "the turn's work, as the tip stands still", shape, "the stored energy", wedge[-1])])
     bench.columns(run.table("energy.csv"), [("rotation_J", np.r_[0, np.cumsum(works)], "trapezoidal rule of the torque over the turn",
                                                            shape, "the stored energy", wedge)])
     k = np.flatnonzero(touching)

@@ -232,7 +232,6 @@ def devices(bench):
     bench.add("limit.csv:class_beyond", [cell[key]["class_beyond"] for key in keys], classes, how, EXACT, ("diverged", ["diverged"] * 2))
     bench.add("limit_runs.csv:class", says[0] + says[1], judged[0] + judged[1], how, EXACT, ("by the eigenvalues", [
         "stable" if K < edge else "diverged" for values, edge in zip(tried, theory) for K in values]))
-    bench.add("limit_runs.csv:{field}", [len(set(v)) for v in tried], [len(v) for v in tried], "each once", EXACT, ("of the scan", [17, 17]))
     order = [(d, s, a) for d in ("mine", "omega.3") for s in ("both_ways", "pushes") for a in ("summation", "mean")]
     for i, name in enumerate(("device", "scenario", "algorithm")):
         bench.add(f"limit.csv:{name}", table[name], [key[i] for key in order], "devices, scenes, algorithms", EXACT, ("reversed", [key[i] for key in order[::-1]]))

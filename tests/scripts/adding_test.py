@@ -2,8 +2,8 @@
 
     python3 tests/scripts/fixture.py tests/scripts/adding_test.py [--keep]
 
-Copies the tree to a scratch folder, adds a law, a tool, an environment, a named file, a device field, a metric, a section of
-metrics, a column of trajectory.csv and a command there, builds the program (minutes) and shows that reader, schema, describe, list,
+Copies the tree to a scratch folder, adds a law, a tool, an environment, a named file, a device field, a section of metrics,
+a column of trajectory.csv and a command there, builds the program (minutes) and shows that reader, schema, describe, list,
 results, sweep, help and completion know each of them. `--keep` leaves the folder behind, /tmp/hapbench_adding_….
 """
 import csv
@@ -155,13 +155,6 @@ def add_device_field(tree):
     }
 
 
-def add_metric(tree):
-    return {
-        tree.edit("""    s.metric("lost_mean_Nm", "Nm",\n""",
-                  """    s.metric("lost_sum_Nm", "Nm", "sum of ||tau|| over the rows in contact", sum_);\n""", before=True),
-    }
-
-
 def add_trajectory_column(tree):
     return {
         tree.edit("struct TrajectoryExtras {\n", "  bool speed = false;\n"),
@@ -235,7 +228,7 @@ class StillnessObserver final : public MetricObserver {
 
 # Each addition with the most files that it may touch.
 ADDITIONS = {"law": (add_law, 3), "tool": (add_tool, 3), "environment": (add_environment, 3), "named file": (add_named_file, 2),
-             "device field": (add_device_field, 2), "metric": (add_metric, 1), "metric section": (add_metric_section, 2),
+             "device field": (add_device_field, 2), "metric section": (add_metric_section, 2),
              "trajectory column": (add_trajectory_column, 2), "command": (add_command, 3)}
 
 
@@ -397,16 +390,3 @@ class Adding(unittest.TestCase):
             self.hapbench("sweep", "scene.json", "--vary", "seed=1,2", "--set", f"record.pose={pose}", "--out", f"sweep_{pose}", "--quiet")
             header = (self.folder / f"sweep_{pose}/sweep.csv").read_text().splitlines()[0]
             self.assertEqual("stillness.still" in header, found)
-
-    def test_a_sweep_varies_them_and_is_defined_by_their_files(self):
-        self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
-        (self.folder / "stroke.csv").write_text(STROKE)
-        vary = ["--vary", "environment.height_m=0.001,0.0011", "--vary", "tool.width_m=0.002,0.003"]
-        self.hapbench("sweep", "scene.json", *vary, "--shard", "0/2", "--out", "sweep", "--quiet")
-        header, *rows = (self.folder / "sweep/sweep.0_of_2.csv").read_text().splitlines()
-        self.assertIn("environment.height_m,tool.width_m", header)
-        self.assertEqual(len(rows), 2)
-        self.assertIn("missing.csv", self.hapbench("sweep", "scene.json", "--vary", "hand.file=stroke.csv,missing.csv", "--out", "bad", status=2))
-        (self.folder / "stroke.csv").write_text(STROKE + "1,0,0,0,0,0,-1\n")
-        self.hapbench("sweep", "scene.json", *vary, "--shard", "1/2", "--out", "sweep", "--quiet")
-        self.assertIn("is of another sweep", self.hapbench("sweep", "sweep", status=2))

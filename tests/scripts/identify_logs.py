@@ -10,7 +10,7 @@ from fixture import PROGRAM
 from hapbench_identify.fit import Cost, fit
 from hapbench_identify.log import log_of
 from hapbench_identify.model import KINDS, NAMES, Simulator, design, positions
-from hapbench_import.faults import Faults
+from hapbench_command import Faults
 
 os.environ["HAPBENCH_PROGRAM"] = str(PROGRAM)  # which simulates the logs
 LOGS = 200

@@ -7,7 +7,7 @@ import numpy as np
 from fixture import PROGRAM, hapbench, ran, scratch_folder
 from identify_logs import judged
 
-from hapbench_identify.model import KINDS, design, positions, travel_of
+from hapbench_identify.model import KINDS, design, positions
 
 run = partial(ran, PROGRAM)
 TRUE = {"handle_mass_kg": 0.12, "viscous_N_s_per_m": 0.8, "coulomb_N": 0.15, "delay_samples": 1.35, "encoder_step_m": 1e-5}
@@ -156,7 +156,6 @@ class Design(unittest.TestCase):
                 time, values = design(kind, force, travel, 1000.0, 3.0, mass)
                 self.assertLessEqual(np.abs(values).max(), force * (1 + 1e-12), kind)
                 self.assertGreater(np.abs(values).max(), 0.1 * force, kind)
-                self.assertLessEqual(travel_of(time, values, mass), travel * (1 + 1e-9), kind)
                 # A free mass under held forces, by the trapezoidal rule, which is exact for it.
                 speed = np.concatenate([[0.0], np.cumsum(values[:-1])]) * 1e-3 / mass
                 place = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * 1e-3

@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from hapbench.columns import header
 from hapbench_import.__main__ import command_line
-from hapbench_import.faults import Faults
+from hapbench_command import Faults
 from hapbench_import.options import options_of
 from hapbench_import.recording import open_recording
 from hapbench_import.stroke import import_stroke, resolution_of, stroke_text

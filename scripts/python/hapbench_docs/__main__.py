@@ -8,8 +8,7 @@ from pathlib import Path
 
 from hapbench_command import FAILED, SUCCESS, Arguments, exit_status, say_error, write
 
-from . import blocks
-from .manuals import ROOT, Manual, manuals
+from .manuals import MAKERS, ROOT, Manual, Program, manuals, renewed, session
 
 GALLERY = ROOT / "results" / "reference" / "gallery"
 # Commands, the last of which plots, and below them the picture.
@@ -42,13 +41,13 @@ def draw_gallery(program, scratch):
 
 
 def run(chosen):
-    program, stale = None if chosen.tables else blocks.Program(chosen.program), False
+    program, stale = None if chosen.tables else Program(chosen.program), False
     with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
         if chosen.gallery and program:
             draw_gallery(program, Path(scratch))
-        of_program = {"session": lambda old: blocks.session(old, program, Path(scratch))} if program else {}
+        of_program = {"session": lambda old: session(old, program, Path(scratch))} if program else {}
         for manual in map(Manual, manuals()):
-            text = blocks.renewed(manual.text, blocks.MAKERS | of_program)
+            text = renewed(manual.text, MAKERS | of_program)
             if text == manual.text:
                 continue
             name = str(manual.file.relative_to(ROOT))

@@ -1,8 +1,17 @@
-"""The manuals: where they are, the commands they document, their links."""
+"""The manuals: where they are, the commands they document, their links, and their generated parts, which stand between
+`<!-- generated: NAME -->` and `<!-- /generated -->`: sessions, and tables of the ledger (claims.json) and of its robustness as
+results/reference holds them."""
+import datetime
+import json
+import os
 import re
 import shlex
+import subprocess
+import textwrap
 from dataclasses import dataclass
 from pathlib import Path
+
+from hapbench.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[3]
 NOT_OURS = ("build", "results/out")
@@ -11,6 +20,12 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#{1,6} (.+)$", re.M)
 # Words that end a command of the shell.
 ENDS = re.compile(r"^(?:\||&&|;|\d?>.*|<.*)$")
+BLOCK = re.compile(r"(<!-- generated: (\S+)[^\n]*-->\n)(.*?)(<!-- /generated -->)", re.S)
+BEGIN = "<!-- generated:"
+COLUMNS = 100  # of a session in a manual
+REFERENCE = ROOT / "results" / "reference"
+TASKS = {"D1": "upright, 0.52 mm aside", "D2": "upright, centre", "D3": "turning, 3 mm high", "D4": "turning, 4 mm high"}
+PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 
 
 def manuals():
@@ -73,3 +88,119 @@ def broken_links(manual):
         target = (manual.file.parent / path) if path else manual.file
         if not target.exists() or fragment and target.suffix == ".md" and fragment not in Manual(target).anchors():
             yield link
+
+
+def renewed(text, makers):
+    """The text with each block made anew by `makers[NAME](old)`; blocks without a maker stay."""
+    if text.count(BEGIN) != len(BLOCK.findall(text)):
+        raise InputError('a block that begins with "<!-- generated: NAME -->" lacks its end "<!-- /generated -->"')
+
+    def replaced(found):
+        head, name, old, tail = found.groups()
+        return f"{head}{makers[name](old).strip(chr(10))}\n{tail}" if name in makers else found[0]
+
+    return BLOCK.sub(replaced, text)
+
+
+def session(old, program, directory):
+    """A command in a manual with what it printed, on which commit and machine: the block with the output of its first command."""
+    line = next((line.strip() for line in old.splitlines() if line.strip().startswith("$ hapbench ")), None)
+    if line is None:
+        raise InputError("a session begins with an indented line: $ hapbench …")
+    output = program.run(shlex.split(line)[2:], directory)
+    shown = "\n".join(f"    {text}".rstrip() for text in [line, "", *output.strip("\n").splitlines()])
+    return program.stamped(shown, old)
+
+
+def read(name):
+    return json.loads((REFERENCE / name).read_text(encoding="utf-8"))
+
+
+def main_results(_old=""):
+    """The main results, as the ledger opens with them."""
+    return (REFERENCE / "claims.md").read_text(encoding="utf-8").split("\n\n")[0]
+
+
+def experiments(_old=""):
+    """Success in the thesis's experiments, measured with simulated subjects and published with people."""
+    by_id = {claim["id"]: claim for claim in read("claims.json")["claims"]}
+    lines = ["| task and target | original algorithm, ours (published) | stiffness shaping, ours (published) |", "|---|---|---|"]
+    for id_, task in TASKS.items():
+        published = PAIR.search(re.sub(r" \(printed [^)]*\)", "", by_id[id_]["published"]))
+        measured = PAIR.search(by_id[id_]["measured"])
+        cells = (f"{measured[i].strip()} ({published[i].strip()})" for i in (1, 2))
+        lines.append(f"| {task} ({id_}) | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def robustness(_old=""):
+    """How firmly the verdicts hold over the choices on record: and the fragile ones."""
+    claims = read("claims.json")["claims"]
+    sampled = [claim for claim in claims if claim["robustness"]]
+    always = [claim for claim in sampled if claim["robustness"]["holds"] == claim["robustness"]["judged"]]
+    fragile = [claim for claim in sampled if claim["sureness"] == "fragile"]
+    untouched = [claim["id"] for claim in claims if not claim["choices_reach_it"] and claim["verdict"] != "not reproducible"]
+    judged = [claim["robustness"]["judged"] for claim in sampled]
+    lines = [f"Of {len(sampled)} verdicts that were sampled, in {min(judged)} to {max(judged)} readings, "
+             f" {len(always)} are the same in every sample. No recorded choice reaches {' '.join(untouched)}. Fragile are "
+             "these; the ledger has the others:",
+             "", "| claim | recorded | recorded verdict in | decided by (first-order Sobol index) |", "|---|---|---|---|"]
+    for claim in fragile:
+        counts = claim["robustness"]
+        by = counts["decided_by"]
+        decided = f"`{by['choice']}` ({by['index']:.2f})" if by else "no single choice"
+        lines.append(f"| {claim['id']} | {claim['verdict']} | {counts['holds']} of {counts['judged']} | {decided} |")
+    return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, 110)) for line in lines)
+
+
+class Program:
+    def __init__(self, file):
+        if not file.is_file():
+            raise InputError(f"{file}: no such file; build it, or name another with --program")
+        self.file = file.resolve()
+
+    def run(self, words, directory):
+        """Standard output. A run that ends other than expected (3) has output, too."""
+        # The tables are over the algorithms of this tree.
+        environment = {name: value for name, value in os.environ.items() if name != "HAPBENCH_MODULE_PATH"}
+        done = subprocess.run([self.file, *words], cwd=directory, capture_output=True, text=True, encoding="utf-8",
+                              env={**environment, "COLUMNS": str(COLUMNS), "LC_ALL": "C.UTF-8"}, stdin=subprocess.DEVNULL)
+        if done.returncode not in (0, 3):
+            raise InputError(f"hapbench {' '.join(map(str, words))}: exit status {done.returncode}: {done.stderr.strip()}")
+        return done.stdout
+
+    def stamped(self, text, old):
+        """The text and where it comes from; the old block where the text says the same, since a date or a time is no news."""
+        known = old.rpartition("\n\nPrinted by ")[0]
+        return old if same_but_for_times(text, known) else f"{text}\n\nPrinted by {self.provenance()}."
+
+    def provenance(self):
+        """Commit, date and processor: "commit 5e60010bc2c9, 2026-11-21, AMD EPYC"."""
+        commit = re.search(r"\(([^)]+)\)", self.run(["--version"], "."))
+        return f"commit {commit[1] if commit else 'unknown'}, {datetime.date.today()}, {processor()}"
+
+
+def same_but_for_times(a, b):
+    """Whether two outputs have the same words, apart from times in microseconds, which differ from run to run."""
+    return _words(a) == _words(b)
+
+
+def _words(text):
+    text = re.sub(r"\S+ us( \(\w+\)|$)", "TIME us", text, flags=re.M)
+    text = re.sub(r"\S+\s+(s\s+a\s+run|times\s+the\s+first)", r"TIME \1", text)
+    if re.search(r" (us/|run s)$", text, re.M):  # a table whose last column is a time
+        text = re.sub(r" [\d.e+-]+$", " TIME", text, flags=re.M)
+    return re.sub(r"-{3,}", "---", text).split()
+
+
+def processor():
+    """The processor's name without what it says of its cores."""
+    try:
+        found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
+    except OSError:
+        found = None
+    return re.sub(r"\s+\d+-Core.*|\s*@.*|\(R\)|\(TM\)", "", found[1]).strip() if found else "unknown processor"
+
+
+# The tables that need no program.
+MAKERS = {"main_results": main_results, "experiments": experiments, "robustness": robustness}

@@ -6,8 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from hapbench_command import CommandLine, answer, exit_status, shell_line, table_text, write
-from hapbench_import.faults import fail, finite_number, refuse_source, require_name
+from hapbench_command import CommandLine, answer, exit_status, fail, finite_number, refuse_source, require_name, shell_line, table_text, write
 from hapbench_import.stroke import number_text
 
 from .fit import fit

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
-from hapbench_import.faults import MOST_FAULTS, Faults, fail, finite_number, quoted, require_name
+from hapbench_command import MOST_FAULTS, Faults, fail, finite_number, quoted, require_name
 from hapbench_import.recording import open_recording
 
 NAMES = {"time": "time_s", "force": "force_N", "position": "position_m"}  # of the columns unless --columns says otherwise

@@ -5,7 +5,7 @@ import shutil
 import subprocess
 
 import numpy as np
-from hapbench_import.faults import Faults, fail
+from hapbench_command import Faults, fail
 
 NAMES = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "offset_N", "start_m_per_s")
 KINDS = {"chirp": "a sine from slow to fast", "steps": "pushes to and fro, from short to long", "multisine": "thirty sines at once"}

@@ -2,9 +2,8 @@
 import sys
 from pathlib import Path
 
-from hapbench_command import CommandLine, answer, exit_status, shell_line, table_text, write
+from hapbench_command import CommandLine, answer, exit_status, fail, refuse_source, shell_line, table_text, write
 
-from .faults import fail, refuse_source
 from .options import FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
 
 STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
@@ -50,8 +49,7 @@ def run(options):
     if not options.preset and not options.columns:
         fail("--columns or --preset is missing: which columns hold time and position?")
     from .recording import open_recording  # loads numpy and scipy, which the help does without
-    from .report import json_of, table_of
-    from .stroke import import_stroke, stroke_text
+    from .stroke import import_stroke, json_of, stroke_text, table_of
     out = options.out or f"{Path(options.file).stem}_stroke.csv"
     refuse_source(out, options.file, "recording")
     asked = options_of(options)

@@ -5,7 +5,7 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .faults import Faults, fail, finite_number, plain, quoted, require_name, shown
+from hapbench_command import Faults, fail, finite_number, plain, quoted, require_name, shown
 
 PRESETS = Path(__file__).resolve().parents[3] / "scenarios" / "library" / "presets"
 FORMATS = ("csv", "traj", "hapi", "hapi-binary")

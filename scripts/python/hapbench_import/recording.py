@@ -2,9 +2,8 @@
 import math
 
 import numpy as np
-from hapbench_command import nearest
+from hapbench_command import fail, finite_number, nearest, plain, quoted
 
-from .faults import fail, finite_number, plain, quoted
 
 MOST_COLUMNS = 1000
 LARGEST_FILE = 4 << 30  # bytes

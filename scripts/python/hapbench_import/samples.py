@@ -3,10 +3,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from hapbench_command import nearest
+from hapbench_command import MOST_FAULTS, Faults, fail, nearest, quoted
 from scipy.spatial.transform import Rotation
 
-from .faults import MOST_FAULTS, Faults, fail, quoted
 from .options import ORIENTATIONS
 
 MOST_SAMPLES = 10_000_000
