@@ -48,7 +48,8 @@ def lines_of(notes):
 
 def counted(build):
     """Lines, and lines that were run, of each folder."""
-    notes = [file for library in sorted({folder.split("/")[0] for folder in FOLDERS}) for file in (build / library).rglob("*.gcno")]
+    libraries = sorted({folder.split("/")[0] for folder in FOLDERS})
+    notes = [file for library in libraries for file in (build / library).rglob("hapbench_*.dir/**/*.gcno")]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = set().union(*pool.map(lines_of, notes))
     for folder in FOLDERS:

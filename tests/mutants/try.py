@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Tries the faults of mutants.json on a build of the tests: each is put in and has to fail a test of its `killed_by`.
 
-    tests/mutants/try.py BUILD [NAME ...]
+    tests/mutants/try.py [BUILD [NAME ...]]
 
 For each mutant, or those named: replaces its text, builds what these tests run, and runs them. Before that they have to pass without
 any mutant. The source is restored after each, also if interrupted, and the build at the end. Exit status 1 if a mutant survives, 2 if
-one could not be tried.
+one could not be tried. Without a build it only checks that the text of each stands once in its file.
 """
 import argparse
 import json
@@ -74,10 +74,12 @@ def tried(build, names):
     if unknown := set(names) - {mutant["name"] for mutant in mutants}:
         raise RuntimeError(f"no mutant is called {', '.join(sorted(unknown))}")
     mutants = [mutant for mutant in mutants if mutant["name"] in names or not names]
-    if said("git", "-C", SOURCE, "status", "--porcelain", "--untracked-files=no")[1]:
-        raise RuntimeError("the tree has changes that are not committed")
     for mutant in mutants:
         mutated(mutant)
+    if build is None:
+        return 0
+    if said("git", "-C", SOURCE, "status", "--porcelain", "--untracked-files=no")[1]:
+        raise RuntimeError("the tree has changes that are not committed")
     killers = "|".join(sorted({mutant["killed_by"] for mutant in mutants}))
     make(build, killers)
     if failed := failing(build, killers):
@@ -96,12 +98,12 @@ def tried(build, names):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=Path, help="a build folder with all tests, such as build/release")
+    parser.add_argument("build", type=Path, nargs="?", help="a build folder with all tests, such as build/release")
     parser.add_argument("names", nargs="*", metavar="NAME", help="mutants to try instead of all")
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores the source
     try:
-        return 1 if tried(options.build.resolve(), options.names) else 0
+        return 1 if tried(options.build and options.build.resolve(), options.names) else 0
     except RuntimeError as problem:
         print(f"tests/mutants/try.py: {problem}", file=sys.stderr)
         return 2
