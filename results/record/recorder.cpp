@@ -8,6 +8,7 @@
 #include <cassert>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "results/observe/energy.hpp"
@@ -20,39 +21,56 @@
 namespace hapbench {
 namespace {
 
+/// Columns of trajectory.csv and what fills them in a row: a number, or a vector of as many.
+template <std::size_t n, class Cells>
+constexpr std::pair<std::array<Column, n>, Cells> filled(const Column (&columns)[n], Cells cells) {
+  return {std::to_array(columns), cells};
+}
+
 /// The columns that every trajectory.csv has.
-constexpr Column kUsualColumns[] = {
-    kStepColumn,
-    kTimeColumn,
-    {"px_m", "m", "x of the tip's centre"},
-    {"py_m", "m", "y of the tip's centre"},
-    {"pz_m", "m", "z of the tip's centre"},
-    {"vx_m_per_s", "m/s", "x of its velocity"},
-    {"vy_m_per_s", "m/s", "y of its velocity"},
-    {"vz_m_per_s", "m/s", "z of its velocity"},
-    {"axis_x", "1", "x of the tool's axis, the unit vector out of the tip"},
-    {"axis_y", "1", "y of the tool's axis"},
-    {"axis_z", "1", "z of the tool's axis"},
-    {"fx_N", "N", "x of f = f_render, the rendered force on the tool"},
-    {"fy_N", "N", "y of f"},
-    {"fz_N", "N", "z of f"},
-    {"fspring_x_N", "N", "x of f_spring, the part of f before damping, friction and limits"},
-    {"fspring_y_N", "N", "y of f_spring"},
-    {"fspring_z_N", "N", "z of f_spring"},
-    {"fmeas_x_N", "N", "x of f_meas, what the force sensor read of the hand"},
-    {"fmeas_y_N", "N", "y of f_meas"},
-    {"fmeas_z_N", "N", "z of f_meas"},
-    {"fin_x_N", "N", "x of f_in, what the input-force limiter made of f_meas: it moves the tool with f"},
-    {"fin_y_N", "N", "y of f_in"},
-    {"fin_z_N", "N", "z of f_in"},
-    {"hx_m", "m", "x of the handle"},
-    {"hy_m", "m", "y of the handle"},
-    {"hz_m", "m", "z of the handle"},
-    {"colliding", "1", "points in the tool or on its surface, before local average and reduction"},
-    {"rendered", "1", "points that the force law saw"},
-    {"depth_max_m", "m", "largest penetration depth of a colliding point; 0 without contact"},
-    {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact; empty without contact"},
-    {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"}};
+constexpr auto kUsual = std::tuple{
+    filled({kStepColumn}, [](const StepRecord& r) { return r.step; }),
+    filled({kTimeColumn}, [](const StepRecord& r) { return r.time; }),
+    filled({{"px_m", "m", "x of the tip's centre"},
+            {"py_m", "m", "y of the tip's centre"},
+            {"pz_m", "m", "z of the tip's centre"}},
+           [](const StepRecord& r) -> const Vec3& { return r.tool.pose.position; }),
+    filled({{"vx_m_per_s", "m/s", "x of its velocity"},
+            {"vy_m_per_s", "m/s", "y of its velocity"},
+            {"vz_m_per_s", "m/s", "z of its velocity"}},
+           [](const StepRecord& r) -> const Vec3& { return r.tool.velocity; }),
+    filled({{"axis_x", "1", "x of the tool's axis, the unit vector out of the tip"},
+            {"axis_y", "1", "y of the tool's axis"},
+            {"axis_z", "1", "z of the tool's axis"}},
+           [](const StepRecord& r) -> const Vec3& { return r.tool.pose.axis; }),
+    filled({{"fx_N", "N", "x of f = f_render, the rendered force on the tool"},
+            {"fy_N", "N", "y of f"},
+            {"fz_N", "N", "z of f"}},
+           [](const StepRecord& r) -> const Vec3& { return r.force.rendered; }),
+    filled({{"fspring_x_N", "N", "x of f_spring, the part of f before damping, friction and limits"},
+            {"fspring_y_N", "N", "y of f_spring"},
+            {"fspring_z_N", "N", "z of f_spring"}},
+           [](const StepRecord& r) -> const Vec3& { return r.force.spring; }),
+    filled({{"fmeas_x_N", "N", "x of f_meas, what the force sensor read of the hand"},
+            {"fmeas_y_N", "N", "y of f_meas"},
+            {"fmeas_z_N", "N", "z of f_meas"}},
+           [](const StepRecord& r) -> const Vec3& { return r.hand.measured; }),
+    filled({{"fin_x_N", "N", "x of f_in, what the input-force limiter made of f_meas: it moves the tool with f"},
+            {"fin_y_N", "N", "y of f_in"},
+            {"fin_z_N", "N", "z of f_in"}},
+           [](const StepRecord& r) -> const Vec3& { return r.hand.input; }),
+    filled({{"hx_m", "m", "x of the handle"}, {"hy_m", "m", "y of the handle"}, {"hz_m", "m", "z of the handle"}},
+           [](const StepRecord& r) -> const Vec3& { return r.handle.position; }),
+    filled({{"colliding", "1", "points in the tool or on its surface, before local average and reduction"}},
+           [](const StepRecord& r) { return r.colliding; }),
+    filled({{"rendered", "1", "points that the force law saw"}},
+           [](const StepRecord& r) { return r.rendered->size(); }),
+    filled({{"depth_max_m", "m", "largest penetration depth of a colliding point; 0 without contact"}},
+           [](const StepRecord& r) { return r.force.depth_max; }),
+    filled({{"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact; empty without contact"}},
+           [](const StepRecord& r) { return if_any(!r.rendered->empty(), r.ratio.min); }),
+    filled({{"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"}},
+           [](const StepRecord& r) { return if_any(!r.rendered->empty(), r.ratio.max); })};
 
 /// w, x, y, z; of the two quaternions of one rotation the one with w >= 0.
 std::array<double, 4> quaternion(const Mat3& rotation) noexcept {
@@ -102,9 +120,11 @@ constexpr TrajectoryGroup kGroups[] = {
 
 /// The columns of trajectory.csv with these fields.
 std::vector<Column> trajectory_columns(const TrajectoryExtras& extras) {
-  std::vector<Column> columns(std::begin(kUsualColumns), std::end(kUsualColumns));
+  std::vector<Column> columns;
+  const auto add = [&columns](const auto& more) { columns.insert(columns.end(), more.begin(), more.end()); };
+  std::apply([&](const auto&... part) { (add(part.first), ...); }, kUsual);
   for (const TrajectoryGroup& group : kGroups)
-    if (extras.*group.is_wanted) columns.insert(columns.end(), group.columns.begin(), group.columns.end());
+    if (extras.*group.is_wanted) add(group.columns);
   return columns;
 }
 
@@ -253,16 +273,13 @@ RowSource trajectory_rows(const TrajectoryExtras& extras, const InsideObserver* 
     source.wants_roll |= group.wants_roll;
     source.wants_springs |= group.wants_springs;
   }
-  source.write = [groups, inside, more](const StepRecord& r, TableWriter& table) mutable {
+  source.write = [groups, inside, more](const StepRecord& record, TableWriter& table) mutable {
     std::optional<double>* cells = more.data();
     for (const TrajectoryGroup* group : groups) {
-      group->fill(r, inside, cells);
+      group->fill(record, inside, cells);
       cells += group->columns.size();
     }
-    const bool any = !r.rendered->empty();
-    table.row(r.step, r.time, r.tool.pose.position, r.tool.velocity, r.tool.pose.axis, r.force.rendered, r.force.spring,
-              r.hand.measured, r.hand.input, r.handle.position, r.colliding, r.rendered->size(), r.force.depth_max,
-              if_any(any, r.ratio.min), if_any(any, r.ratio.max), more);
+    std::apply([&](const auto&... part) { table.row(part.second(record)..., more); }, kUsual);
   };
   return source;
 }
