@@ -294,7 +294,7 @@ void Revolved::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) co
 }
 
 void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
-  const PackVector axis(pose.axis);
+  const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
   const Pack ball(meridian_.ball), zero(0.0), one(1.0), sideways(1e-6);
   const Pack undefined_rho(kOnAxis * meridian_.widest), undefined_x(kOnAxis * meridian_.ball);
   const bool round = meridian_.tip == Tip::round;
@@ -306,19 +306,23 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
     const Pack vs = nearest.vs * scale, vr = nearest.vr * scale;
     const Mask on_axis = rho < undefined_rho;
     const Pack radial = select(on_axis, zero, vr / select(on_axis, one, rho));
-    PackVector towards = combined(vs, axis, radial, {q.rho_x, q.rho_y, q.rho_z});
+    Pack x = vs * ax + radial * q.rho_x, y = vs * ay + radial * q.rho_y, z = vs * az + radial * q.rho_z;
     Mask undefined = on_axis && simd::abs(vr) > sideways;
     if (round) {
       const Pack from_centre = simd::sqrt(q.distance2());
       const Pack to_ball = ball - from_centre;
       const Mask at_ball = q.s > zero && (to_ball <= zero || to_ball * to_ball <= nearest.distance2);
-      towards = select(at_ball, {q.x, q.y, q.z}, towards);
+      x = select(at_ball, q.x, x);
+      y = select(at_ball, q.y, y);
+      z = select(at_ball, q.z, z);
       undefined = (at_ball && from_centre < undefined_x) || (undefined && !at_ball);
     }
     // Normalises again, because rounding of s gives a small radial vector a large axial component.
-    const PackVector n(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
-    const PackVector unit = unit_or(!undefined, towards, simd::sqrt(towards.dot(towards)), {-n.x, -n.y, -n.z});
-    unit.store(&contacts.ux[i], &contacts.uy[i], &contacts.uz[i]);
+    const Pack length = simd::sqrt(x * x + y * y + z * z);
+    const Pack unit = one / select(undefined, one, length);
+    simd::store(select(undefined, -simd::load(&contacts.nx[i]), x * unit), &contacts.ux[i]);
+    simd::store(select(undefined, -simd::load(&contacts.ny[i]), y * unit), &contacts.uy[i]);
+    simd::store(select(undefined, -simd::load(&contacts.nz[i]), z * unit), &contacts.uz[i]);
   }
 }
 
