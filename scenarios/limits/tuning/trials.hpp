@@ -12,7 +12,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_loop.hpp"
 
-/// What the search of tune.cpp asks: whether a setting at a stiffness holds in all runs of the family.
+/// The trials of tune: a setting at a stiffness, run with each member of a family and judged by stability and limits.
 namespace hapbench {
 
 inline std::string with(const FamilyMember& member) {
@@ -55,7 +55,7 @@ struct Trials {
   /// The family has other hands.
   bool over_hands = std::ranges::find(question.families, "hands") != question.families.end();
   bool is_quiet = question.limits.empty();  ///< the limits are those of a quiet run
-  /// What is allowed: the limits of the question less what is known of errors.
+  /// Allowed bounds of metrics: the limits of the question, tightened by the known errors.
   std::map<std::string, MetricBound> limits = question.limits;
   std::vector<FamilyMember> family = {{"the scene's own run"}};
   std::shared_ptr<const PointShell> shell = {};
@@ -188,7 +188,7 @@ struct Trials {
     for (const auto& [name, times] : broken_limits(trial)) found = {found.first + 1, std::max(found.second, times)};
     return found;
   }
-  /// Of the trials that only limits are in the way of, the one with the least excess; null without one.
+  /// The trial with the least excess among those that fail nothing but limits; null if there is none.
   const TuneTrial* nearest() const {
     const TuneTrial* nearest = nullptr;
     for (const auto& [key, trial] : all)
@@ -252,14 +252,14 @@ struct Trials {
       trial.settled = true;
       if (!is_stable(at_GK.verdict))
         return trial.fail("margin", fmt::format("at {:g} K {}", question.margin, verdict_with(at_GK, family[i])));
-      // Of springs it was asked before the runs.
+      // With springs the loop was judged before the runs (tried).
       if (!springs_lambda && !judge_loop(trial, family[i], at_K.settled.lambda_max, family[i].name)) return;
     }
   }
 
   /// Runs the family for the metrics that are limited, and finds the first limit that is not kept.
   void judge_limits(TuneTrial& trial) {
-    // What is quiet is asked of the scene's own run, a user's metrics of all.
+    // Whether a run is quiet is judged by the scene's own run, limits that the user gives by those of all members.
     std::vector<TuneMetrics> metrics(is_quiet ? 1 : family.size());
     in_parallel(metrics.size(), [&](std::size_t i) {
       const LoadedScenario loaded = load(trial, trial.stiffness, family[i]);
