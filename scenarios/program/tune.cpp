@@ -49,6 +49,19 @@ std::string stiffness_text(const TuneTrial& choice) {
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
 
+struct Margin {
+  const char *column, *unit, *meaning, *heading, *key, *words;
+  std::optional<double> TuneMargins::*of;
+  double most;
+};
+constexpr Margin kMargins[] = {
+    {"gain_margin", "1", "largest factor on K, up to 64, at which all runs and the loop in contact are settled", "gain",
+     "gain", "gain {}", &TuneMargins::gain, 0.99 * kMostGain},
+    {"delay_margin_samples", "time steps", "likewise of further delay of the device, up to 64; empty without device",
+     "delay", "delay_samples", "{} samples more delay", &TuneMargins::delay_samples, kMostDelay},
+    {"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one", "",
+     "damping_ratio", "least damped mode {}", &TuneMargins::damping_ratio, 2.0}};
+
 /// What was chosen, and why not more; nothing where nothing is feasible.
 Columns<TunedLaw> choice_columns() {
   using Row = TunedLaw;
@@ -82,8 +95,11 @@ Columns<TunedLaw> choice_columns() {
 Columns<TunedLaw> tuned_columns() {
   using Row = TunedLaw;
   Columns<Row> columns = choice_columns();
+  for (const Margin& margin : kMargins) {
+    columns.add({{margin.column, margin.unit, margin.meaning, [of = margin.of](const Row& r) { return r.margins.*of; },
+                  under(margin.heading, 3, kOnlyCsv)}});
+  }
   const auto may_fail = [](const Row& r) { return r.verified > 0 ? Cell(may_fail_share(kTriedBetween)) : Cell(); };
-  const auto margin = [](auto member) { return [member](const Row& r) { return r.margins.*member; }; };
   const auto metric = [](const char* heading, const char* name, double factor) {
     const auto text = [=](const Row& r) {
       const auto value = r.choice ? value_in(r.choice->metrics, name, factor) : std::nullopt;
@@ -92,13 +108,7 @@ Columns<TunedLaw> tuned_columns() {
     return Columns<Row>::Entry(heading, "by name", name, text, only_printed());
   };
   columns.add(
-      {{"gain_margin", "1", "largest factor on K, up to 64, at which all runs and the loop in contact are settled",
-        margin(&TuneMargins::gain), under("gain", 3, kOnlyCsv)},
-       {"delay_margin_samples", "time steps", "likewise of further delay of the device, up to 64; empty without device",
-        margin(&TuneMargins::delay_samples), under("delay", 3, kOnlyCsv)},
-       {"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one",
-        margin(&TuneMargins::damping_ratio), kOnlyCsv},
-       {"verified", "1",
+      {{"verified", "1",
         fmt::format("full-length runs between K and G K, all settled, {} of them just below G K", kTriedNear),
         &Row::verified},
        {"may_fail_share", "1", "share of what lies between K and G K that may not be, with 95 % confidence", may_fail},
@@ -134,9 +144,7 @@ Columns<TuneTrial> trial_columns() {
 
 Json law_json(const TunedLaw& law) {
   Json json = tuned_columns().json(law);
-  json["margins"] = {{"gain", cell_json(cell_of(law.margins.gain))},
-                     {"delay_samples", cell_json(cell_of(law.margins.delay_samples))},
-                     {"damping_ratio", cell_json(cell_of(law.margins.damping_ratio))}};
+  for (const Margin& margin : kMargins) json["margins"][margin.key] = cell_json(cell_of(law.margins.*margin.of));
   json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
   json["error"] = law.error;
   json["linear_edge"] = law.choice ? cell_json(cell_of(law.edge.linear_edge())) : Json();
@@ -196,13 +204,11 @@ std::string choice_text(const TuneTrial& choice) {
 
 std::string margins_text(const TuneMargins& margins) {
   std::vector<std::string> texts;
-  const auto add = [&texts](const char* words, const std::optional<double>& found, double most) {
-    if (!found) return;
-    texts.push_back(fmt::format(fmt::runtime(words), (*found >= most ? "over " : "") + significant(*found, 3)));
-  };
-  add("gain {}", margins.gain, 0.99 * kMostGain);
-  add("{} samples more delay", margins.delay_samples, kMostDelay);
-  add("least damped mode {}", margins.damping_ratio, 2.0);
+  for (const Margin& margin : kMargins) {
+    if (const auto& found = margins.*margin.of)
+      texts.push_back(
+          fmt::format(fmt::runtime(margin.words), (*found >= margin.most ? "over " : "") + significant(*found, 3)));
+  }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
