@@ -9,8 +9,10 @@
 #include <numeric>
 #include <optional>
 #include <span>
-#include <tuple>
+#include <unordered_map>
+#include <utility>
 
+#include "sim/core/hash.hpp"
 #include "sim/tool/closed_surface.hpp"
 #include "sim/tool/refuse.hpp"
 
@@ -22,29 +24,21 @@ Vec3 position(const HalfEdgeMesh& mesh, OpenMesh::VertexHandle vertex) {
   return {p[0], p[1], p[2]};
 }
 
-/// Unit normal; zero for a face without area.
-Vec3 unit_normal(const HalfEdgeMesh& mesh, OpenMesh::FaceHandle face) {
-  auto corner = mesh.cfv_begin(face);
-  const Vec3 a = position(mesh, *corner++), b = position(mesh, *corner++), c = position(mesh, *corner);
-  return triangle_normal(a, b, c);
-}
-
 /// Coordinates of a cube, and axis and sign of the normal's largest component.
 using Place = std::array<double, 5>;
+
+struct HashOfPlace {
+  std::size_t operator()(const Place& place) const noexcept {
+    Hash64 hash;
+    for (const double number : place) hash.real(number + 0.0);  // 0 and -0 are one coordinate
+    return static_cast<std::size_t>(hash.value());
+  }
+};
 
 Place place_of(const Vec3& cube, const Vec3& normal) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   return {cube.x(), cube.y(), cube.z(), static_cast<double>(axis), normal[axis] < 0.0 ? -1.0 : 1.0};
-}
-
-using SquaredLengths = std::array<double, 3>;
-
-SquaredLengths squared_lengths(const HalfEdgeMesh& mesh, OpenMesh::FaceHandle face) {
-  SquaredLengths lengths;
-  auto edge = mesh.cfe_begin(face);
-  for (double& length : lengths) length = mesh.calc_edge_sqr_length(*edge++);
-  return lengths;
 }
 
 using Triangle = TriangleSoup::Triangle;
@@ -128,9 +122,8 @@ class MeshParts {
   std::size_t follow_majority() {
     std::vector<std::int64_t> balance(count(), 0);  // turned minus kept
     for (std::size_t t = 0; t < part_.size(); ++t) balance[part_[t]] += turned_[t] ? 1 : -1;
-    std::vector<bool> mostly_turned;
-    mostly_turned.reserve(count());
-    for (const std::int64_t b : balance) mostly_turned.push_back(b > 0);
+    std::vector<bool> mostly_turned(count());
+    std::transform(balance.begin(), balance.end(), mostly_turned.begin(), [](std::int64_t b) { return b > 0; });
     turn(mostly_turned);
     return static_cast<std::size_t>(std::count(turned_.begin(), turned_.end(), true));
   }
@@ -187,12 +180,6 @@ constexpr std::size_t kMostTrianglesAtVertex = 10'000;
 
 std::string text(const Vec3& place) {
   return "(" + coordinates(place) + ") m";
-}
-
-void require_finite(const TriangleSoup& soup) {
-  for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
-    if (!soup.vertices[i].allFinite()) throw MeshError("vertex " + std::to_string(i) + " is not finite");
-  }
 }
 
 /// Returns for each vertex the first one at its position.
@@ -300,10 +287,49 @@ HalfEdgeMesh connected(const std::vector<Vec3>& vertices, const std::vector<Tria
 
 }  // namespace
 
+void HalfEdgeMesh::split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middle) {
+  const auto triangle = [this](OpenMesh::FaceHandle face, const std::array<OpenMesh::HalfedgeHandle, 3>& sides) {
+    set_halfedge_handle(face, sides[0]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      set_face_handle(sides[i], face);
+      set_next_halfedge_handle(sides[i], sides[(i + 1) % 3]);
+    }
+  };
+  const auto forth = halfedge_handle(edge, 0), back = halfedge_handle(edge, 1);
+  const auto start = to_vertex_handle(back);
+  const auto to_start = new_edge(middle, start), from_start = opposite_halfedge_handle(to_start);
+  set_halfedge_handle(middle, forth);
+  set_vertex_handle(back, middle);
+  if (is_boundary(forth)) {
+    set_next_halfedge_handle(prev_halfedge_handle(forth), from_start);
+    set_next_halfedge_handle(from_start, forth);
+  } else {
+    const auto second = next_halfedge_handle(forth), third = next_halfedge_handle(second);
+    const auto out = new_edge(middle, to_vertex_handle(second));
+    triangle(face_handle(forth), {forth, second, opposite_halfedge_handle(out)});
+    triangle(new_face(), {third, from_start, out});
+  }
+  if (is_boundary(back)) {
+    set_next_halfedge_handle(to_start, next_halfedge_handle(back));
+    set_next_halfedge_handle(back, to_start);
+    set_halfedge_handle(middle, to_start);
+  } else {
+    const auto second = next_halfedge_handle(back), third = next_halfedge_handle(second);
+    const auto out = new_edge(middle, to_vertex_handle(second));
+    triangle(new_face(), {second, opposite_halfedge_handle(out), to_start});
+    triangle(face_handle(back), {back, out, third});
+  }
+  if (halfedge_handle(start) == forth) set_halfedge_handle(start, from_start);
+}
+
 std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
   std::vector<Vec3> face_normals;
   face_normals.reserve(mesh.n_faces());
-  for (const auto face : mesh.faces()) face_normals.push_back(unit_normal(mesh, face));
+  for (const auto face : mesh.faces()) {
+    auto corner = mesh.cfv_begin(face);
+    const Vec3 a = position(mesh, *corner++), b = position(mesh, *corner++), c = position(mesh, *corner);
+    face_normals.push_back(triangle_normal(a, b, c));
+  }
 
   std::vector<SurfacePoint> points;
   points.reserve(mesh.n_vertices());
@@ -330,9 +356,10 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
   // The equilateral triangle is the largest.
   const double fewest = area / (std::sqrt(3.0) / 4.0 * largest);
   if (fewest > most) return fewest;
-  std::vector<SquaredLengths> open;
+  std::vector<std::array<double, 3>> open;  // squared lengths of the sides of a triangle
   for (const auto face : mesh.faces()) {
-    open.push_back(squared_lengths(mesh, face));
+    auto edge = mesh.cfe_begin(face);
+    for (double& length : open.emplace_back()) length = mesh.calc_edge_sqr_length(*edge++);
     count += 1.0;
     while (!open.empty() && count <= most) {
       auto [a, b, c] = open.back();
@@ -353,18 +380,16 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 }
 
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing) {
-  // Place, distance from the centre of the cube [m], and index.
-  std::vector<std::tuple<Place, double, std::size_t>> nearest;
-  nearest.reserve(points.size());
+  using Nearest = std::pair<double, std::size_t>;  // distance from the centre of the cube [m], and index
+  std::unordered_map<Place, Nearest, HashOfPlace> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 cube = (points[i].position / spacing + Vec3::Constant(0.5)).array().floor();
-    nearest.emplace_back(place_of(cube, points[i].normal), (points[i].position - spacing * cube).norm(), i);
+    const Nearest here{(points[i].position - spacing * cube).norm(), i};
+    const auto [entry, is_new] = nearest.try_emplace(place_of(cube, points[i].normal), here);
+    if (!is_new) entry->second = std::min(entry->second, here);
   }
-  std::sort(nearest.begin(), nearest.end());
-  const auto same_place = [](const auto& a, const auto& b) { return std::get<Place>(a) == std::get<Place>(b); };
-  nearest.erase(std::unique(nearest.begin(), nearest.end(), same_place), nearest.end());
   std::vector<std::size_t> kept;
-  for (const auto& [place, distance, index] : nearest) kept.push_back(index);
+  for (const auto& [place, point] : nearest) kept.push_back(point.second);
   std::sort(kept.begin(), kept.end());
   std::vector<SurfacePoint> thin;
   thin.reserve(kept.size());
@@ -373,7 +398,9 @@ std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, doubl
 }
 
 CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
-  require_finite(soup);
+  for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
+    if (!soup.vertices[i].allFinite()) throw MeshError("vertex " + std::to_string(i) + " is not finite");
+  }
   CheckedMesh result;
   const std::vector<Triangle> triangles = welded_triangles(soup);
   if (triangles.empty()) throw MeshError("has no faces; allowed: at least one, with three different corners");

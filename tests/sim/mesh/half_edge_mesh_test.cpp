@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <OpenMesh/Tools/Subdivider/Uniform/LongestEdgeT.hh>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -283,6 +284,38 @@ TEST(Refine, LeavesNoLongerEdgeAndTheSameSurface) {
   // Sums of some 1e5 terms, each rounded when it is added: relative 1e5 * 2^-53.
   EXPECT_NEAR(surface_area(mesh) / area, 1.0, 3e-11);
   EXPECT_NEAR(enclosed_volume(mesh) / volume, 1.0, 3e-11);
+}
+
+/// Every handle: the order of points, and with it the last digits of a force, follows from them.
+TEST(Refine, SplitsAsOpenMeshDoes) {
+  using Base = OpenMesh::TriMesh_ArrayKernelT<HalfEdgeMeshTraits>;
+  Random random(7);
+  for (const bool with_holes : {false, true}) {
+    TriangleSoup sheet;
+    for (std::uint32_t i = 0; i < 64; ++i)
+      sheet.vertices.emplace_back(i / 8 + random.uniform(-0.3, 0.3), i % 8, random.uniform(-0.3, 0.3));
+    for (std::uint32_t i = 0; i < 55; ++i) {
+      if (i % 8 == 7 || (with_holes && i % 5 == 0)) continue;
+      sheet.triangles.push_back({i, i + 8, i + 1});
+      sheet.triangles.push_back({i + 1, i + 8, i + 9});
+    }
+    HalfEdgeMesh ours = mesh_from_triangles(sheet).mesh;
+    Base known = ours;
+    refine(ours, 0.15);
+    OpenMesh::Subdivider::Uniform::LongestEdgeT<Base, double> subdivider;
+    subdivider.set_max_edge_length(0.15);
+    subdivider(known, 1);
+    ASSERT_EQ(ours.n_halfedges(), known.n_halfedges());
+    for (const auto v : known.vertices())
+      EXPECT_TRUE(ours.point(v) == known.point(v) && ours.halfedge_handle(v) == known.halfedge_handle(v));
+    for (const auto f : known.faces()) EXPECT_EQ(ours.halfedge_handle(f), known.halfedge_handle(f));
+    for (const auto h : known.halfedges()) {
+      EXPECT_EQ(ours.next_halfedge_handle(h), known.next_halfedge_handle(h));
+      EXPECT_EQ(ours.prev_halfedge_handle(h), known.prev_halfedge_handle(h));
+      EXPECT_EQ(ours.to_vertex_handle(h), known.to_vertex_handle(h));
+      EXPECT_EQ(ours.face_handle(h), known.face_handle(h));
+    }
+  }
 }
 
 TEST(RefinedFaceCount, IsExactlyWhatRefineLeaves) {
