@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <set>
-#include <stdexcept>
 
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/stages/controllers.hpp"
+#include "sim/tool/refuse.hpp"
 
 /// The algorithms in the order of lists. For each row, a source file in laws/ or proxy/ defines
 /// `AlgorithmEntry <name>_entry()`.
@@ -41,11 +41,7 @@ constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionI
 
 const AlgorithmEntry& algorithm_entry(std::string_view name) {
   if (const AlgorithmEntry* entry = find_algorithm(name)) return *entry;
-  throw std::invalid_argument("unknown algorithm " + std::string(name));
-}
-
-[[noreturn]] void refuse(const std::string& problem) {
-  throw std::invalid_argument(problem);
+  refuse("unknown algorithm ", name);
 }
 
 /// A name can be a field and a word of a list on the command line.
@@ -55,12 +51,11 @@ void require_name(const std::string& what, const char* text) {
   const bool is_name = !name.empty() && name.size() <= kLongest && name[0] >= 'a' && name[0] <= 'z';
   if (!is_name ||
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") != name.npos)
-    refuse(what + " is called \"" + std::string(name) +
-           "\"; allowed: letters, digits and \"_\", a small letter first, at most 64");
+    refuse(what, " is called \"", name, "\"; allowed: letters, digits and \"_\", a small letter first, at most 64");
 }
 
 void require_text(const char* text, const std::string& what) {
-  if (text == nullptr || *text == '\0') refuse(what + " is missing");
+  if (text == nullptr || *text == '\0') refuse(what, " is missing");
 }
 
 void check(const OwnParameter& p) {
@@ -70,9 +65,9 @@ void check(const OwnParameter& p) {
   require_text(p.meaning, which + "its meaning");
   const auto& [min, max, unit, above_min] = p.range;
   if (!(std::isfinite(min) && std::isfinite(max) && min < max))
-    refuse(which + "a range needs two finite ends, the lower first");
+    refuse(which, "a range needs two finite ends, the lower first");
   if (!(p.initial <= max && (above_min ? p.initial > min : p.initial >= min)))
-    refuse(which + "its default is out of its range");
+    refuse(which, "its default is out of its range");
 }
 
 /// Throws std::invalid_argument.
@@ -89,7 +84,7 @@ void check(const AlgorithmEntry& entry) {
   std::set<std::string_view> seen;
   for (const OwnParameter& p : entry.own_parameters) {
     check(p);
-    if (!seen.insert(p.name).second) refuse("parameter \"" + std::string(p.name) + "\" is there twice");
+    if (!seen.insert(p.name).second) refuse("parameter \"", p.name, "\" is there twice");
   }
 }
 
@@ -159,7 +154,7 @@ void add_algorithm(AlgorithmEntry entry) {
   const auto same = std::find(names.begin(), names.end(), entry.info->name);
   const auto place = static_cast<std::size_t>(same - names.begin());
   auto& [entries, built_in_size, count] = table();
-  if (place < built_in_size) refuse("\"" + *same + "\" is the name of a built-in algorithm");
+  if (place < built_in_size) refuse("\"", *same, "\" is the name of a built-in algorithm");
   ++count;
   if (place == entries.size()) {
     entries.push_back(std::move(entry));
@@ -192,7 +187,7 @@ std::unique_ptr<DepthModel> make_depth_model(const RenderingConfig& config) {
 
 std::unique_ptr<ForceLaw> make_law(std::string_view name, const RenderingConfig& config) {
   const AlgorithmEntry& entry = algorithm_entry(name);
-  if (!entry.make_law) refuse(std::string(name) + " is not a force law");
+  if (!entry.make_law) refuse(name, " is not a force law");
   return entry.make_law(config);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -30,8 +31,9 @@ struct OwnParameter {
 /// The value in `config`, or the default.
 double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter);
 
-/// AlgorithmEntry::force_bound of springs that pull at most like `most` of them.
-template <int most>
+/// AlgorithmEntry::force_bound of springs that pull at most like `most` of them; without a number, of all that there
+/// are.
+template <int most = std::numeric_limits<int>::max()>
 double bound_of_springs(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return std::min<double>(most, static_cast<double>(n)) * depth;
 }

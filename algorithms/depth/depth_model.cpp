@@ -1,13 +1,12 @@
 #include "algorithms/depth/depth_model.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "sim/core/simd.hpp"
 #include "sim/tool/motion.hpp"
+#include "sim/tool/refuse.hpp"
 
 /// The depth models, each with its documentation, and the source that applies one.
 namespace hapbench {
@@ -163,7 +162,7 @@ const DepthModelEntry* find_depth_model(std::string_view name) {
 
 std::unique_ptr<DepthModel> make_depth_model(std::string_view name) {
   if (const DepthModelEntry* entry = find_depth_model(name)) return entry->make();
-  throw std::invalid_argument("unknown depth model " + std::string(name));
+  refuse("unknown depth model ", name);
 }
 
 ShellSource::ShellSource(const PointShell& shell, const ToolShape& tool, std::unique_ptr<ContactQuery> search,

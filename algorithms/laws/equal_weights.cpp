@@ -15,11 +15,6 @@ class Summation final : public ForceLaw {
   }
 };
 
-/// All springs may pull in one direction.
-double summation_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
-  return static_cast<double>(n) * depth;
-}
-
 class Mean final : public ForceLaw {
  public:
   using ForceLaw::ForceLaw;
@@ -69,7 +64,8 @@ AlgorithmEntry summation_entry() {
           "integrator's limit (thesis A.3)",
       .parameters = kStiffnessAlone,
   };
-  return {.info = &kInfo, .make_law = law_of<Summation>, .force_bound = summation_bound};
+  // All springs may pull in one direction.
+  return {.info = &kInfo, .make_law = law_of<Summation>, .force_bound = bound_of_springs<>};
 }
 
 AlgorithmEntry mean_entry() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "algorithms/laws/force_law.hpp"
 #include "algorithms/module/hapbench_module.h"
@@ -21,18 +22,12 @@ HapbenchModule law_module(const ModelInfo& info, std::span<const HapbenchParamet
     ContactBuffer contacts;
 
     int step(HapbenchContacts& given, HapbenchForce& answer) {
-      const auto copy = [n = given.n](const auto* from, auto& to) { std::copy_n(from, n, to.begin()); };
-      copy(given.index, contacts.index);
-      copy(given.depth, contacts.depth);
-      copy(given.gx, contacts.ux);
-      copy(given.gy, contacts.uy);
-      copy(given.gz, contacts.uz);
-      copy(given.x, contacts.x);
-      copy(given.y, contacts.y);
-      copy(given.z, contacts.z);
-      copy(given.nx, contacts.nx);
-      copy(given.ny, contacts.ny);
-      copy(given.nz, contacts.nz);
+      std::copy_n(given.index, given.n, contacts.index.begin());
+      const std::pair<const double*, AlignedDoubles&> columns[] = {
+          {given.depth, contacts.depth}, {given.gx, contacts.ux}, {given.gy, contacts.uy}, {given.gz, contacts.uz},
+          {given.x, contacts.x},         {given.y, contacts.y},   {given.z, contacts.z},   {given.nx, contacts.nx},
+          {given.ny, contacts.ny},       {given.nz, contacts.nz}};
+      for (const auto& [from, to] : columns) std::copy_n(from, given.n, to.begin());
       contacts.clear();
       contacts.extend(given.n);
       contacts.pad();

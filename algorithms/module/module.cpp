@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/tool/refuse.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -236,12 +238,10 @@ HapbenchPose module_pose(const ToolPose& pose, double tool_length) noexcept {
 
 AlgorithmEntry law_entry(Module module, std::string hash) {
   const HapbenchModule& table = *module.table;
-  if (table.step == nullptr) throw std::invalid_argument("its function \"step\" is missing");
+  if (table.step == nullptr) refuse("its function \"step\" is missing");
   if (table.parameter_count > kMostParameters)
-    throw std::invalid_argument("it has " + std::to_string(table.parameter_count) + " parameters; allowed: at most " +
-                                std::to_string(kMostParameters));
-  if (table.parameter_count > 0 && table.parameters == nullptr)
-    throw std::invalid_argument("its table of parameters is missing");
+    refuse("it has ", table.parameter_count, " parameters; allowed: at most ", kMostParameters);
+  if (table.parameter_count > 0 && table.parameters == nullptr) refuse("its table of parameters is missing");
   const ModelInfo info = {.name = table.name,
                           .summary = table.summary,
                           .formula = table.formula,

@@ -1,3 +1,5 @@
+#include "algorithms/proxy/proxy_constraints.hpp"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
@@ -6,7 +8,6 @@
 #include <vector>
 
 #include "algorithms/laws/force_law.hpp"
-#include "algorithms/proxy/proxy_rendering.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -258,6 +259,19 @@ double distance_to_second(const PointShell& shell, std::size_t from) {
   return std::sqrt(second2);
 }
 
+/// Typical distance from a shell point to its neighbours [m], 0 for fewer than three points: the median, over some of
+/// the points, of the distance to the second nearest place, hence the spacing of a square lattice as well as of a line.
+/// Points at the same place count as one. O(size), about a hundred distances for each point.
+double typical_spacing(const PointShell& shell) {
+  if (shell.size() < 3) return 0.0;
+  const std::size_t samples = std::min(kSampled, shell.size());
+  std::vector<double> distances;
+  for (std::size_t k = 0; k < samples; ++k) distances.push_back(distance_to_second(shell, k * shell.size() / samples));
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(samples / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
 }  // namespace
 
 AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept {
@@ -269,16 +283,6 @@ AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcep
     solve_least_squares(wanted, tolerance, contacts, out);
   }
   return out;
-}
-
-double typical_spacing(const PointShell& shell) {
-  if (shell.size() < 3) return 0.0;
-  const std::size_t samples = std::min(kSampled, shell.size());
-  std::vector<double> distances;
-  for (std::size_t k = 0; k < samples; ++k) distances.push_back(distance_to_second(shell, k * shell.size() / samples));
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(samples / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
 }
 
 ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& tool, Skips skips)

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
-#include <stdexcept>
 #include <vector>
 
 #include "algorithms/penalty_rendering.hpp"
 #include "sim/core/random.hpp"
 #include "sim/core/simd.hpp"
+#include "sim/tool/refuse.hpp"
 
 namespace hapbench {
 
@@ -48,9 +48,8 @@ namespace {
 class LocalAverage final : public PointStage {
  public:
   void prepare(const Scene& scene) override {
-    if (scene.shell == nullptr || !(scene.shell->cell_size() > 0.0)) {
-      throw std::invalid_argument("local_average needs a point shell with a grid");
-    }
+    if (scene.shell == nullptr || !(scene.shell->cell_size() > 0.0))
+      refuse("local_average needs a point shell with a grid");
     cell_of_point_ = scene.shell->cell_of_points();
     std::uint32_t cells = 0;
     for (const std::uint32_t cell : cell_of_point_) cells = std::max(cells, cell + 1);

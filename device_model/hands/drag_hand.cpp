@@ -25,12 +25,12 @@ std::size_t SmoothedSurface::nearest_point(const Vec3& at) const {
   std::size_t nearest = 0;
   double least2 = std::numeric_limits<double>::infinity();
   // Ends when the box contains the whole ball around `at` that has the nearest point found on its surface.
-  for (double half = distance_to(grid_.bounds(), at) + grid_.cell_size(); least2 > half * half; half *= 2.0) {
+  for (double half = distance_to(shell_.bounds(), at) + grid_.cell_size(); least2 > half * half; half *= 2.0) {
     for_each_near(grid_, at, half, [&](std::size_t i) {
       const double distance2 = (Vec3(grid_.x()[i], grid_.y()[i], grid_.z()[i]) - at).squaredNorm();
       if (distance2 >= least2) return;
       least2 = distance2;
-      nearest = grid_.shell_index(i);
+      nearest = grid_.shell_indices()[i];
     });
   }
   return nearest;
@@ -43,7 +43,7 @@ SurfacePoint SmoothedSurface::nearest(const Vec3& at) const {
     double weights = 0.0;
     Vec3 centre = Vec3::Zero(), normal = Vec3::Zero();
     for_each_near(grid_, place.position, radius_, [&](std::size_t i) {
-      const SurfacePoint point = shell_.point(grid_.shell_index(i));
+      const SurfacePoint point = shell_.point(grid_.shell_indices()[i]);
       const double nearness = 1.0 - (point.position - place.position).squaredNorm() / (radius_ * radius_);
       if (nearness <= 0.0 || point.normal.dot(start.normal) <= 0.0) return;
       const double weight = nearness * nearness;

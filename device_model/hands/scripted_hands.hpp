@@ -61,17 +61,11 @@ class Tremor {
   std::array<std::array<Tone, kTones>, 3> tones_;
 };
 
-/// A hand without force: nobody holds the handle.
-class NoHand final : public Hand {
- public:
-  Vec3 force(double, const HandView&) noexcept override { return Vec3::Zero(); }
-};
-
 /// A hand that pushes with a scripted force, independent of the handle's motion.
 class ForceHand final : public Hand {
  public:
-  /// Components x, y, z in the world frame [N] over time.
-  explicit ForceHand(std::array<Profile, 3> force) : force_(std::move(force)) {}
+  /// Components x, y, z in the world frame [N] over time; without force nobody holds the handle.
+  explicit ForceHand(std::array<Profile, 3> force = {}) : force_(std::move(force)) {}
 
   Vec3 force(double t, const HandView&) noexcept override { return {force_[0](t), force_[1](t), force_[2](t)}; }
 

@@ -107,12 +107,8 @@ std::string csv_cell(std::string_view text) {
   return quoted + "\"";
 }
 
-ordered_json columns_json(const MetricList& metrics) {
-  return entries_json(metrics);
-}
-
 ordered_json columns_json(std::span<const ResultTable> tables, const MetricList& metrics) {
-  ordered_json json = {{"summary.json", columns_json(metrics)}};
+  ordered_json json = {{"summary.json", entries_json(metrics)}};
   for (const ResultTable& table : tables) json[table.file] = entries_json(table.columns);
   return json;
 }

@@ -146,7 +146,5 @@ std::string csv_cell(std::string_view text);
 
 /// columns.json, for other programs: the columns of each file and the metrics of summary.json by name, unit, meaning.
 nlohmann::ordered_json columns_json(std::span<const ResultTable> tables, const MetricList& metrics);
-/// The entries of the metrics alone.
-nlohmann::ordered_json columns_json(const MetricList& metrics);
 
 }  // namespace hapbench

@@ -17,7 +17,6 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
-#include "sim/core/types.hpp"
 
 namespace hapbench {
 

@@ -8,7 +8,6 @@
 
 #include "results/observe/metric_observer.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "sim/loop/simulation.hpp"
 
 /// Metrics of contacts and of what is between them and the force on the tool.
 namespace hapbench {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sim/loop/simulation.hpp"
 #include "sim/tool/motion.hpp"
 
 namespace hapbench {

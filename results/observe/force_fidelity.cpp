@@ -6,7 +6,6 @@
 #include <span>
 
 #include "sim/core/math.hpp"
-#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 
@@ -174,10 +173,6 @@ void ForceFidelityObserver::tell(Section& s) const {
   s.metric("direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", direction_rows_);
   s.metric("force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
            per(direction_error_, direction_rows_), Better::less);
-  tell_lag(s);
-}
-
-void ForceFidelityObserver::tell_lag(Section& s) const {
   const double apart = dt_ * static_cast<double>(every_);  // time between kept rows
   const auto lag = lag_between(kept_reference_, kept_rendered_, apart, kMostLag);
   s.metric("force_lag_s", "s",

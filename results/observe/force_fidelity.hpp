@@ -67,8 +67,6 @@ class ForceFidelityObserver final : public MetricObserver {
   const std::optional<Vec3>& reference() const noexcept { return at_row_; }
 
  private:
-  void tell_lag(Section& section) const;
-
   const ReferenceForce* force_ = nullptr;
   double dt_ = 0.0;
   std::uint64_t every_ = 1;  ///< every so many rows, one is kept for the lag

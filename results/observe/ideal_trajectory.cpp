@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "sim/core/math.hpp"
-#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 namespace {

@@ -6,12 +6,10 @@
 #include <string_view>
 
 #include "results/io/columns.hpp"
-#include "sim/loop/observer.hpp"
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 
-struct SimulationConfig;
-struct SimulationParts;
 class ReferenceForce;
 
 /// A trial of a run before its first row. Nearly all runs have one trial.

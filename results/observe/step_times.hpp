@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/loop/observer.hpp"
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 

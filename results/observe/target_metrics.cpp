@@ -5,8 +5,6 @@
 #include <numeric>
 #include <string>
 
-#include "sim/loop/simulation.hpp"
-
 namespace hapbench {
 
 void TargetMetricsObserver::begin(const TrialParts& trial) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "results/io/table_writer.hpp"
-#include "sim/loop/observer.hpp"
+#include "sim/loop/simulation.hpp"
 
 /// The tables that a run writes row by row. Everything is that before the integrator moves the tool.
 namespace hapbench {

@@ -79,35 +79,37 @@ std::vector<std::size_t> seeds_without_failure(const League& league, std::size_t
   for (std::size_t k = 0; k < league.seeds; ++k) {
     bool failed = false;
     for (std::size_t a = 0; a < league.algorithms.size(); ++a)
-      failed |= league.runs_of(scenario, a)[k].failed && league.failures(scenario, a) <= most_failures;
+      failed |= league.failed[league.first_run(scenario, a) + k] && league.failures(scenario, a) <= most_failures;
     if (!failed) seeds.push_back(k);
   }
   return seeds;
 }
 
 /// "completes", or with counts "completes 3; diverges 2", in the order of their first appearance.
-std::string outcomes_text(std::span<const LeagueRun> runs) {
+std::string outcomes_text(std::span<const Result> runs) {
+  std::vector<std::string_view> outcomes;
+  for (const Result& run : runs) outcomes.push_back(outcome_name(run.end.outcome));
   std::vector<std::string> ways, texts;
-  for (const LeagueRun& run : runs)
-    if (std::ranges::find(ways, run.outcome) == ways.end()) ways.push_back(run.outcome);
+  append_new(ways, {outcomes.begin(), outcomes.end()});
   if (ways.size() == 1) return ways.front();
-  for (const std::string& way : ways)
-    texts.push_back(fmt::format("{} {}", way, std::ranges::count(runs, way, &LeagueRun::outcome)));
+  for (const std::string& way : ways) texts.push_back(fmt::format("{} {}", way, std::ranges::count(outcomes, way)));
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 
 /// Without a rank.
 Standing standing_of(const League& league, std::size_t s, std::size_t a, std::size_t m) {
-  Standing standing{league.scenarios[s], league.algorithms[a],  league.metrics[m],
-                    league.seeds,        league.failures(s, a), outcomes_text(league.runs_of(s, a))};
+  const std::size_t first = league.first_run(s, a);
+  Standing standing{league.scenarios[s],   league.algorithms[a],
+                    league.metrics[m],     league.seeds,
+                    league.failures(s, a), outcomes_text(league.runs.subspan(first, league.seeds))};
   standing.common_seeds = league.common[s].size();
   standing.better = league.better[m];
   std::vector<double> numbers, tolerances;  // of the runs in the common seeds that did not fail
   for (const std::size_t k : league.common[s]) {
-    const LeagueRun& run = league.runs_of(s, a)[k];
-    const auto& [value, tolerance] = run.metrics[m];
-    if (value && !run.failed) numbers.push_back(*value);
-    if (tolerance && !run.failed) tolerances.push_back(*tolerance);
+    const Metric* metric = find_metric(league.runs[first + k].metrics, standing.metric);
+    if (metric == nullptr || league.failed[first + k]) continue;
+    if (const auto value = number_of(metric->value)) numbers.push_back(*value);
+    if (const auto tolerance = metric->tolerance()) tolerances.push_back(*tolerance);
   }
   if (!numbers.empty()) standing.mean = mean_of(numbers);
   if (!tolerances.empty()) standing.tolerance = mean_of(tolerances);
@@ -259,14 +261,16 @@ bool is_less(const NumberWithError& a, const NumberWithError& b) {
 }
 
 std::size_t League::failures(std::size_t scenario, std::size_t algorithm) const {
-  return static_cast<std::size_t>(std::ranges::count_if(runs_of(scenario, algorithm), &LeagueRun::failed));
+  const auto first = failed.begin() + static_cast<std::ptrdiff_t>(first_run(scenario, algorithm));
+  return static_cast<std::size_t>(std::count(first, first + static_cast<std::ptrdiff_t>(seeds), true));
 }
 
 void League::rank() {
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
     bool matter = false;
     for (std::size_t a = 0; a < algorithms.size(); ++a)
-      for (const LeagueRun& run : runs_of(s, a)) matter |= run.state_hash != runs_of(s, a)[0].state_hash;
+      for (const Result& run : runs.subspan(first_run(s, a), seeds))
+        matter |= run.state_hash != runs[first_run(s, a)].state_hash;
     seeds_matter.push_back(matter);
     common.push_back(seeds_without_failure(*this, s, seeds - 1));
     if (common.back().empty()) common.back() = seeds_without_failure(*this, s, 0);
@@ -289,14 +293,14 @@ bool is_failure(std::string_view outcome) {
 }
 
 bool have_reference(std::span<const Result> runs) {
-  return std::ranges::all_of(runs, [](const Result& run) { return run.has_section("fidelity"); });
+  return std::ranges::all_of(runs, [](const Result& run) { return run.sections.contains("fidelity"); });
 }
 
 League league_of(const Comparison& comparison, std::span<const Result> reports,
                  const std::vector<std::string>& metrics) {
   const std::span<const std::string_view> usual =
       have_reference(reports) ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
-  League league{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, {}};
+  League league{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, reports, {}};
   if (metrics.empty()) league.metrics.assign(usual.begin(), usual.end());
   for (const std::string& name : league.metrics) {
     const Metric* metric = find_metric(all_metrics(), name);
@@ -304,17 +308,11 @@ League league_of(const Comparison& comparison, std::span<const Result> reports,
   }
   for (const Result& summary : reports) {
     const Outcome outcome = summary.end.outcome;
-    const Scenario scenario = comparison.load(league.runs.size()).scenario;
+    const Scenario scenario = comparison.load(league.failed.size()).scenario;
     // No law keeps a tool out that a script leads in: its force along the way is comparable all the same.
     const bool is_led = outcome == Outcome::went_through && !position_is_free(scenario.motion);
     const bool failed = is_failure(outcome_name(outcome)) || !outcome_is_expected(scenario.expect, outcome);
-    LeagueRun& run = league.runs.emplace_back(
-        LeagueRun{std::string(outcome_name(outcome)), failed && !is_led, summary.state_hash, {}});
-    for (const std::string& name : league.metrics) {
-      NumberWithError& number = run.metrics.emplace_back();
-      if (const Metric* metric = find_metric(summary.metrics, name))
-        number = {number_of(metric->value), metric->tolerance()};
-    }
+    league.failed.push_back(failed && !is_led);
   }
   league.rank();
   return league;

@@ -88,14 +88,6 @@ struct NumberWithError {
 /// Precondition: both have a value and an error.
 bool is_less(const NumberWithError& a, const NumberWithError& b);
 
-/// The data that the league takes from one run.
-struct LeagueRun {
-  std::string outcome;
-  bool failed = false;                   ///< its metrics do not count
-  std::uint64_t state_hash = 0;          ///< equal for runs that a seed does not change
-  std::vector<NumberWithError> metrics;  ///< and their tolerances
-};
-
 /// One algorithm in one scenario, judged by one metric over the common seeds of the scenario (League::common).
 struct Standing {
   std::string scenario, algorithm, metric;
@@ -127,7 +119,8 @@ struct League {
   std::vector<std::string> scenarios, algorithms, metrics;
   std::vector<Better> better;  ///< for each metric
   std::size_t seeds = 1;
-  std::vector<LeagueRun> runs;  ///< by scenario, then by algorithm, then by seed
+  std::span<const Result> runs;  ///< by scenario, then by algorithm, then by seed; they must outlive the league
+  std::vector<bool> failed;      ///< of each run: its metrics do not count
 
   std::vector<bool> seeds_matter = {};  ///< for each scenario: whether the seed changes the run
   /// For each scenario the seeds over which the means are: those in which no algorithm failed that has any success; if
@@ -136,11 +129,12 @@ struct League {
   std::vector<Standing> standings = {};  ///< by scenario, then by algorithm, then by metric
   std::vector<LawStanding> laws = {};    ///< best mean rank first
 
-  /// Precondition: there is a run for each scenario, algorithm and seed, each with all metrics.
+  /// Precondition: there is a run for each scenario, algorithm and seed.
   void rank();
 
-  std::span<const LeagueRun> runs_of(std::size_t scenario, std::size_t algorithm) const {
-    return std::span(runs).subspan((scenario * algorithms.size() + algorithm) * seeds, seeds);
+  /// The number of an algorithm's first run in a scenario; those of its other seeds follow.
+  std::size_t first_run(std::size_t scenario, std::size_t algorithm) const {
+    return (scenario * algorithms.size() + algorithm) * seeds;
   }
   const Standing& at(std::size_t scenario, std::size_t algorithm, std::size_t metric) const {
     return standings[(scenario * algorithms.size() + algorithm) * metrics.size() + metric];

@@ -193,13 +193,9 @@ Condition condition_of(const std::string& text, const SweepTable& table) {
 
 /// The JSON next to a table, which has a definition. Throws InputError.
 Json description_of(const fs::path& file) {
-  try {
-    Json about = read_json(file);
-    if (about.contains("definition")) return about;
-  } catch (const InputError& error) {
-    rethrow_with_file(error, file);
-  }
-  fail_in_file(file, "is not the description of a sweep");
+  Json about = with_file(file, [&] { return read_json(file); });
+  if (!about.contains("definition")) fail_in_file(file, "is not the description of a sweep");
+  return about;
 }
 
 // ---- The table while it grows
@@ -402,7 +398,10 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
     const bool failed = row.empty();
     const std::lock_guard lock(mutex);
     table.add(run, failed ? error_row(plan, run) : row);
-    if (failed && (!report.failed || run < report.failed->run)) report.failed = SweepReport::Failed{run, problem};
+    if (failed && (!report.failed || run < *report.failed)) {
+      report.failed = run;
+      report.problem = problem;
+    }
     if (!failed && options.added) options.added();
   });
   table.finish();

@@ -53,13 +53,9 @@ struct SweepOptions {
 };
 
 struct SweepReport {
-  /// A run that an exception ended.
-  struct Failed {
-    std::size_t run = 0;
-    std::string problem;
-  };
-  std::size_t resumed = 0;       ///< number of rows that were there before
-  std::optional<Failed> failed;  ///< the failed run with the lowest number
+  std::size_t resumed = 0;            ///< number of rows that were there before
+  std::optional<std::size_t> failed;  ///< the lowest number of a run that an exception ended
+  std::string problem;                ///< of that run
 };
 
 /// Runs the shard's part of a plan and writes its table and the JSON next to it, which depend neither on the jobs nor

@@ -162,13 +162,6 @@ constexpr Rule kRules[] = {
      }},
 };
 
-double drag_length(const DragHandFields& hand, double duration) {
-  if (!hand.path) return hand.drag.speed * duration;
-  double length = 0.0;
-  for (std::size_t i = 1; i < hand.path->size(); ++i) length += ((*hand.path)[i] - (*hand.path)[i - 1]).norm();
-  return length;
-}
-
 void check_drag_hand(const Scenario& scenario, double steps) {
   const auto* hand = std::get_if<DragHandFields>(&scenario.hand);
   if (hand == nullptr) return;
@@ -329,6 +322,13 @@ std::optional<Warning> first_unplayed(const Json& json, const std::string& at, d
 }
 
 }  // namespace
+
+double drag_length(const DragHandFields& hand, double duration) {
+  if (!hand.path) return hand.drag.speed * duration;
+  double length = 0.0;
+  for (std::size_t i = 1; i < hand.path->size(); ++i) length += ((*hand.path)[i] - (*hand.path)[i - 1]).norm();
+  return length;
+}
 
 bool records_rows(const RecordFields& record) {
   return record.trajectory || !record.ratio_iterations.empty() || record.contacts || record.stiffness_tensor ||

@@ -44,7 +44,7 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   const auto fail = [&at](const char* field, const std::string& problem) { fail_at(at + "/" + field, problem); };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
   const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  const double copies = environment.vertices == BlockVertices::per_cell ? 4.0 : 1.0;  // on an edge of four cells
+  const double copies = environment.per_cell ? 4.0 : 1.0;  // on an edge of four cells
   require_at_most(kMostPoints, copies * area / (grid * grid), at, "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
     fail("hole_diameter_m",
@@ -115,7 +115,7 @@ static void describe(Fields& f, BlockEnvironment& environment) {
   f.number("grid_m", environment.grid, kLength, "grid of the density field; its nodes lie at half-integer multiples");
   f.choice("density", environment.density, {"signed_distance", "binary"}, "density",
            "what the nodes store: minus the signed distance, or 1 and 0");
-  f.choice("vertices", environment.vertices, {"shared", "per_cell"}, "listing",
+  f.choice("vertices", environment.per_cell, {"shared", "per_cell"}, "listing",
            "points of the shell: each vertex once, or once for each grid cell that has it on an edge (the thesis)");
   if (f.reads()) check_block(environment, f.at());
 }
@@ -177,7 +177,7 @@ struct Build {
   }
   Shell operator()(const BlockEnvironment& block) const {
     const DensityField field = density_field(block.block, block.grid, block.density);
-    if (block.vertices == BlockVertices::shared) return std::make_shared<const PointShell>(surface_shell(field));
+    if (!block.per_cell) return std::make_shared<const PointShell>(surface_shell(field));
     ShellPoints points = points_by_cell(marching_cubes(field, {.cells = true}), block.grid);
     return std::make_shared<const PointShell>(points.points, block.grid, std::move(points.cells));
   }

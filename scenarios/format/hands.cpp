@@ -329,7 +329,7 @@ void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Tria
     if (spring->tremor) tremor.emplace(*spring->tremor, derived_seed(scenario, trial, RandomUse::tremor));
     parts.hand = std::make_unique<ImpedanceHand>(spring->stiffness, spring->damping, spring->target, tremor);
   } else {
-    parts.hand = std::make_unique<NoHand>();
+    parts.hand = std::make_unique<ForceHand>();
   }
   if (!parts.motion) parts.motion = make_motion(scenario, files);
 }

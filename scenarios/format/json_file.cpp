@@ -142,18 +142,6 @@ std::string shown(const Json& json) {
   return text;
 }
 
-std::string shown(double value) {
-  return shown(Json(value));
-}
-
-std::string shown(const Vec3& value) {
-  return shown(Json({value.x(), value.y(), value.z()}));
-}
-
-std::string shown(std::string_view text) {
-  return shown(Json(text));
-}
-
 std::string member(const std::string& at, const std::string& name) {
   std::string key = name.substr(0, 200);
   // Keep the message on one line.

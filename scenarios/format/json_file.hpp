@@ -3,9 +3,6 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <string_view>
-
-#include "sim/core/types.hpp"
 
 namespace hapbench {
 
@@ -28,9 +25,6 @@ Json read_json(const std::filesystem::path& file);
 
 /// The value as an error message shows it: JSON on one line, cut when long.
 std::string shown(const Json& json);
-std::string shown(double value);
-std::string shown(const Vec3& value);
-std::string shown(std::string_view text);
 
 /// JSON pointer of a member or an element of the value at `at`, escaped as in RFC 6901.
 std::string member(const std::string& at, const std::string& name);

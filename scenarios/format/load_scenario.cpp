@@ -81,15 +81,13 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
 Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
   Json json;
   fs::path base;
-  try {
+  with_file(file, [&] {
     json = read_json(file);
     layers.push_back({file, json});
     if (json.contains(kExtends)) base = base_file(json, file, layers);
     if (layers.size() > 1 && !json.is_object())
       throw InputError(fmt::format("got {}; allowed: a scenario, which is an object", shown(json)));
-  } catch (const InputError& error) {
-    rethrow_with_file(error, file);
-  }
+  });
   if (base.empty()) return json;
   Json merged = read_extended(base, layers);
   if (base.parent_path() != file.parent_path()) keep_files(merged, fs::current_path() / base.parent_path());
@@ -238,7 +236,7 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
   LoadedScenario loaded;
   loaded.file = text.file;
   loaded.layers = text.layers;
-  try {
+  return with_file(loaded, [&] {
     Json json = text.json;
     const bool same_run = std::all_of(overrides.begin(), overrides.end(), leaves_run_alone);
     if (!same_run && json.is_object() && json.contains("expect")) expect_less(json["expect"]);
@@ -251,17 +249,13 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
     read.layers = std::move(loaded.layers);
     if (read.scenario.name.empty()) read.scenario.name = text.file.stem().string();
     return read;
-  } catch (const InputError& error) {
-    rethrow_with_file(error, loaded);
-  }
+  });
 }
 
-WrittenScenario::WrittenScenario(const Scenario& scenario, NamedFiles files)
-    : json_(written_object(scenario)), files_(std::move(files)) {}
-
-Json WrittenScenario::effective(const fs::path& directory) const {
-  Json json = json_;
-  for (const auto& file : files_.all()) {
+Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
+  Json json = written_object(scenario);
+  const NamedFiles files(scenario);
+  for (const auto& file : files.all()) {
     const fs::path path = fs::current_path() / file->path();
     std::error_code error;
     const fs::path near = fs::proximate(path, fs::current_path() / directory, error);
@@ -270,9 +264,9 @@ Json WrittenScenario::effective(const fs::path& directory) const {
   return json;
 }
 
-std::string WrittenScenario::hash() const {
-  Json json = json_;
-  for (const auto& file : files_.all()) json.at(Json::json_pointer(file->pointer())) = file->hash();
+std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
+  Json json = written_object(scenario);
+  for (const auto& file : files.all()) json.at(Json::json_pointer(file->pointer())) = file->hash();
   return hash_text(hash_of(json_text(json)));
 }
 

@@ -79,38 +79,22 @@ std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vec
 /// The same with the scenario's file, or the one it extends that has the fault.
 [[noreturn]] void rethrow_with_file(const InputError& error, const LoadedScenario& loaded);
 
-/// Calls `work` and puts the scenario's file, or the one it extends, in front of the message of an InputError.
-template <class Work>
-auto with_file(const LoadedScenario& loaded, Work work) {
+/// Calls `work` and throws an InputError of it again as rethrow_with_file does with a file or a loaded scenario.
+template <class Place, class Work>
+auto with_file(const Place& place, Work work) {
   try {
     return work();
   } catch (const InputError& error) {
-    rethrow_with_file(error, loaded);
+    rethrow_with_file(error, place);
   }
 }
 
-/// A scenario with every default filled in, as JSON.
-class WrittenScenario {
- public:
-  WrittenScenario(const Scenario& scenario, NamedFiles files);
+/// The scenario with every default filled in, as JSON: reading it again gives the same run. Paths start from
+/// `directory`.
+Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory);
 
-  /// Reading it again gives the same run. Paths start from `directory`.
-  Json effective(const std::filesystem::path& directory) const;
-  /// Identifies what is simulated: FNV-1a over the scenario, with the contents of named files in place of their paths,
-  /// as 16 hexadecimal digits. Throws InputError.
-  std::string hash() const;
-
- private:
-  Json json_;
-  NamedFiles files_;
-};
-
-// The same of a scenario that is written once.
-inline Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory) {
-  return WrittenScenario(scenario, NamedFiles(scenario)).effective(directory);
-}
-inline std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
-  return WrittenScenario(scenario, files).hash();
-}
+/// Identifies what is simulated: FNV-1a over the scenario with every default filled in and the contents of `files`,
+/// which are the scenario's, in place of their paths, as 16 hexadecimal digits. Throws InputError.
+std::string scenario_hash(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

@@ -57,35 +57,6 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
   }
 }
 
-/// They name the file without its directory, because results, into which they go, must not depend on where it lies.
-std::vector<std::string> warnings_about(const MeshFindings& found, const fs::path& file) {
-  std::vector<std::string> warnings;
-  const auto warn = [&](const std::string& text) {
-    warnings.push_back(one_line(file.filename().string() + ": " + text));
-  };
-  if (!found.open_edges.empty()) {
-    Box box{found.open_edges[0], found.open_edges[0]};
-    for (const Vec3& p : found.open_edges) box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
-    const Vec3 a = 1e3 * box.min, b = 1e3 * box.max;
-    warn(fmt::format(
-        "the mesh is open: {} boundary edges, within x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} mm; "
-        "beyond them there is nothing to touch",
-        found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z()));
-  }
-  if (!found.crowded_edges.empty()) {
-    const Vec3 p = 1e3 * found.crowded_edges[0];
-    warn(fmt::format(
-        "the surface is cut along edges with more than two faces: {}, the first at ({:.3g}, {:.3g}, {:.3g}) mm",
-        found.crowded_edges.size(), p.x(), p.y(), p.z()));
-  }
-  for (const auto& [count, text] :
-       {std::pair{found.degenerate_triangles, "faces left out, two of their corners being the same"},
-        {found.rewound_triangles, "faces turned, which were wound against their neighbours"},
-        {found.inside_out_parts, "closed parts turned, which were inside out"}})
-    if (count > 0) warn(fmt::format("{}: {}", text, count));
-  return warnings;
-}
-
 /// A triangle mesh has half as many vertices as faces, more only in so far as it is open.
 constexpr double kMostFaces = 2.0 * kMostPoints;
 
@@ -179,9 +150,36 @@ std::string mesh_extension(const fs::path& file) {
 }
 
 MeshFile::MeshFile(std::string_view bytes, const fs::path& file, const MeshSampling& sampling)
-    : sampling_(sampling),
-      surface_(std::make_shared<const CheckedMesh>(surface_in(bytes, file, sampling))),
-      warnings_(warnings_about(surface_->findings, file)) {}
+    : sampling_(sampling), surface_(std::make_shared<const CheckedMesh>(surface_in(bytes, file, sampling))) {}
+
+std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
+  const MeshFindings& found = surface_->findings;
+  std::vector<std::string> warnings;
+  const auto warn = [&](const std::string& text) {
+    warnings.push_back(one_line(file.filename().string() + ": " + text));
+  };
+  if (!found.open_edges.empty()) {
+    Box box{found.open_edges[0], found.open_edges[0]};
+    for (const Vec3& p : found.open_edges) box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
+    const Vec3 a = 1e3 * box.min, b = 1e3 * box.max;
+    warn(fmt::format(
+        "the mesh is open: {} boundary edges, within x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} mm; "
+        "beyond them there is nothing to touch",
+        found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z()));
+  }
+  if (!found.crowded_edges.empty()) {
+    const Vec3 p = 1e3 * found.crowded_edges[0];
+    warn(fmt::format(
+        "the surface is cut along edges with more than two faces: {}, the first at ({:.3g}, {:.3g}, {:.3g}) mm",
+        found.crowded_edges.size(), p.x(), p.y(), p.z()));
+  }
+  for (const auto& [count, text] :
+       {std::pair{found.degenerate_triangles, "faces left out, two of their corners being the same"},
+        {found.rewound_triangles, "faces turned, which were wound against their neighbours"},
+        {found.inside_out_parts, "closed parts turned, which were inside out"}})
+    if (count > 0) warn(fmt::format("{}: {}", text, count));
+  return warnings;
+}
 
 const std::vector<Vec3>& MeshFile::open_edges() const {
   return surface_->findings.open_edges;

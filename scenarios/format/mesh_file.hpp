@@ -33,8 +33,9 @@ class MeshFile {
   /// `bytes` are the contents of the file, whose name tells the format. Checks all. Throws InputError that names it.
   MeshFile(std::string_view bytes, const std::filesystem::path& file, const MeshSampling& sampling);
 
-  /// Peculiarities of the mesh: it is open, or its winding was changed. Each names the file without its directory.
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Peculiarities of the mesh of this file: it is open, or its winding was changed. Each names the file without its
+  /// directory, because results, into which they go, must not depend on where it lies.
+  std::vector<std::string> warnings(const std::filesystem::path& file) const;
   /// Midpoints of the edges where the surface ends [m]; empty when it is closed.
   const std::vector<Vec3>& open_edges() const;
 
@@ -51,7 +52,6 @@ class MeshFile {
  private:
   MeshSampling sampling_;
   std::shared_ptr<const CheckedMesh> surface_;
-  std::vector<std::string> warnings_;
 };
 
 // ---- Readers of the formats: vertices and faces in the file's unit. Numbers of a text are read in double precision,

@@ -57,6 +57,13 @@ const SectionKind kSections[] = {
      make<ContactAgeObserver>},
     {"targets", target_places, observe_targets, true}};
 
+void tell_common(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
+  Section section(list, "");
+  metrics.tell(section);
+  (inside != nullptr ? *inside : InsideDepths()).tell(section, metrics.has_settled());
+  metrics.tell_end(section);
+}
+
 /// The metrics of every run and of each section of which `parts` says that there are some.
 template <class Parts>
 MetricList list_without_values(const Parts& parts) {
@@ -104,7 +111,8 @@ void SectionObservers::begin(const TrialParts& trial) {
   for (const auto& observer : observers_) observer->begin(trial);
 }
 
-void SectionObservers::tell(Result& result) const {
+void SectionObservers::tell(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const {
+  tell_common(metrics, inside, result.metrics);
   for (std::size_t i = 0; i < observers_.size(); ++i) {
     const SectionKind& kind = kSections[kinds_[i]];
     if (trials_ > 1 && !kind.merges) continue;
@@ -112,13 +120,6 @@ void SectionObservers::tell(Result& result) const {
     observers_[i]->tell(section);
     observers_[i]->add_members(result.sections[kind.name] = nlohmann::ordered_json::object());
   }
-}
-
-void tell_common(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
-  Section section(list, "");
-  metrics.tell(section);
-  (inside != nullptr ? *inside : InsideDepths()).tell(section, metrics.has_settled());
-  metrics.tell_end(section);
 }
 
 }  // namespace hapbench

@@ -40,16 +40,14 @@ class SectionObservers {
     return nullptr;
   }
 
-  /// Adds the sections and their metrics, but of several trials those that make no sense over them.
-  void tell(Result& result) const;
+  /// Adds the metrics of every run, then the sections with theirs, but of several trials not those that make no sense
+  /// over them. `inside`: null without a solid.
+  void tell(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const;
 
  private:
   std::vector<std::unique_ptr<MetricObserver>> observers_;
   std::vector<std::size_t> kinds_;  ///< place of each observer's section in the list
   std::size_t trials_ = 0;          ///< begun
 };
-
-/// Tells the metrics of every run. `inside`: null without a solid.
-void tell_common(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list);
 
 }  // namespace hapbench

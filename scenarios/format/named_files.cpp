@@ -115,7 +115,7 @@ NamedFile::Contents NamedFile::parsed(std::string_view bytes) const {
 std::vector<Warning> NamedFile::warnings() {
   std::vector<Warning> warnings;
   if (content_.kind != FileContent::Kind::mesh) return warnings;
-  for (const std::string& text : mesh().warnings()) warnings.push_back({"mesh_file", pointer_, text});
+  for (const std::string& text : mesh().warnings(path_)) warnings.push_back({"mesh_file", pointer_, text});
   return warnings;
 }
 

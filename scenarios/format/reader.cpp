@@ -22,122 +22,110 @@ class Reader final : public Fields {
  public:
   Reader(const Json& json, std::string at) : json_(json), at_(std::move(at)) {}
 
+  void read(Body value) {
+    value_ = &value;
+    value(*this);
+  }
+
   void number(double& value, NumberRange range) override {
-    const auto allowed = [&](Fields& f) { f.number(value, range); };
-    if (!json_.is_number()) refuse(allowed);
+    if (!json_.is_number()) refuse();
     const double given = json_.get<double>();
     const bool above = range.above_min ? given > range.min : given >= range.min;
-    if (!above || !(given <= range.max)) refuse(allowed);
+    if (!above || !(given <= range.max)) refuse();
     value = given;
   }
 
   void integer(std::int64_t& value, IntegerRange range) override {
-    const auto allowed = [&](Fields& f) { f.integer(value, range); };
-    if (!json_.is_number()) refuse(allowed);
+    if (!json_.is_number()) refuse();
     // Through double, which sees unsigned and 1e3 alike and is exact for every integer that a range allows.
     const double given = json_.get<double>();
     const auto min = static_cast<double>(range.min), max = static_cast<double>(range.max);
-    if (!(given >= min && given <= max) || given != std::floor(given)) refuse(allowed);
+    if (!(given >= min && given <= max) || given != std::floor(given)) refuse();
     const auto whole = static_cast<std::int64_t>(given);
     // 2^53 + 1 would round to 2^53.
-    if (json_.is_number_integer() && json_ != Json(whole)) refuse(allowed);
+    if (json_.is_number_integer() && json_ != Json(whole)) refuse();
     value = whole;
   }
 
   void boolean(bool& value) override {
-    if (!json_.is_boolean()) refuse([&](Fields& f) { f.boolean(value); });
+    if (!json_.is_boolean()) refuse();
     value = json_.get<bool>();
   }
 
   void text(std::string& value, std::size_t max_length) override {
-    if (!json_.is_string() || characters_of(json_.get_ref<const std::string&>()) > max_length)
-      refuse([&](Fields& f) { f.text(value, max_length); });
+    if (!json_.is_string() || characters_of(json_.get_ref<const std::string&>()) > max_length) refuse();
     value = json_.get<std::string>();
   }
 
   void name(std::size_t& index, const std::vector<std::string>& names, const char* what) override {
-    const auto allowed = [&](Fields& f) { f.name(index, names, what); };
-    if (!json_.is_string()) refuse(allowed);
+    if (!json_.is_string()) refuse();
     const auto& given = json_.get_ref<const std::string&>();
     const auto found = std::find(names.begin(), names.end(), given);
     if (found == names.end()) {
       const bool in_file_of_its_own = std::ranges::count(at_, '/') == 1;  // a device with its preset
       const std::string shown_by = in_file_of_its_own ? fmt::format("hapbench describe {}s", what) : described_by("");
-      fail(fmt::format("got {}{}; allowed: {}{}: one of {}", shown(json_), nearest_name_hint(given, names), null_or(),
-                       what, quoted_list(names, shown_by)));
+      fail(fmt::format("got {}{}; allowed: {}: one of {}", shown(json_), nearest_name_hint(given, names), what,
+                       quoted_list(names, shown_by)));
     }
     index = static_cast<std::size_t>(found - names.begin());
   }
 
   void vector3(Vec3& value, NumberRange component) override {
-    if (!json_.is_array() || json_.size() != 3) refuse([&](Fields& f) { f.vector3(value, component); });
-    for (std::size_t i = 0; i < 3; ++i)
-      Reader(json_[i], element(at_, i)).number(value[static_cast<Eigen::Index>(i)], component);
+    if (!json_.is_array() || json_.size() != 3) refuse();
+    for (std::size_t i = 0; i < 3; ++i) read_number(i, value[static_cast<Eigen::Index>(i)], component);
   }
 
-  void pair(const char* allowed, double& first, NumberRange of_first, double& second, NumberRange of_second) override {
-    if (!json_.is_array() || json_.size() != 2)
-      refuse([&](Fields& f) { f.pair(allowed, first, of_first, second, of_second); });
-    Reader(json_[0], element(at_, 0)).number(first, of_first);
-    Reader(json_[1], element(at_, 1)).number(second, of_second);
+  void pair(const char*, double& first, NumberRange of_first, double& second, NumberRange of_second) override {
+    if (!json_.is_array() || json_.size() != 2) refuse();
+    read_number(0, first, of_first);
+    read_number(1, second, of_second);
   }
 
-  void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
+  void entries(std::size_t, ListSize size, FunctionRef<std::size_t> resize,
                FunctionRef<Fields&, std::size_t> entry) override {
-    if (!json_.is_array() || json_.size() < size.min || json_.size() > size.max)
-      refuse([&](Fields& f) { f.entries(length, size, resize, entry); });
+    if (!json_.is_array() || json_.size() < size.min || json_.size() > size.max) refuse();
     resize(json_.size());
-    for (std::size_t i = 0; i < json_.size(); ++i) {
-      Reader reader(json_[i], element(at_, i));
-      collect([&] { entry(reader, i); });
-    }
+    for (std::size_t i = 0; i < json_.size(); ++i)
+      collect([&] { read_value(json_[i], element(at_, i), [&](Fields& f) { entry(f, i); }); });
     throw_errors();
   }
 
-  void or_null(bool, FunctionRef<> set_null, Body value) override {
-    if (json_.is_null()) return set_null();
-    null_allowed_ = true;
-    value(*this);
-  }
+  void or_null(bool, FunctionRef<> set_null, Body value) override { json_.is_null() ? set_null() : value(*this); }
 
-  void plain_or_object(bool is_object, Body plain, Body object) override {
-    if (json_.is_object()) return object(*this);
-    if (json_.is_number() || guide_to(plain).schema.at("type") == json_.type_name()) return plain(*this);
-    refuse([&](Fields& f) { f.plain_or_object(is_object, plain, object); });
+  void plain_or_object(bool, Body plain, Body object) override {
+    if (json_.is_object()) return read(object);
+    if (json_.is_number() || guide_to(plain).schema.at("type") == json_.type_name()) return read(plain);
+    refuse();
   }
 
   void any_object(std::string& json) override {
-    if (!json_.is_object()) refuse([&](Fields& f) { f.any_object(json); });
+    if (!json_.is_object()) refuse();
     json = json_.dump();
   }
 
-  void one_or_list(bool, Body one, Body list) override { (json_.is_array() ? list : one)(*this); }
+  void one_or_list(bool, Body one, Body list) override { read(json_.is_array() ? list : one); }
 
-  void alternatives(const char* what, std::span<const TypeName> choices, Untyped untyped, std::size_t held,
+  void alternatives(const char* what, std::span<const TypeName> choices, Untyped untyped, std::size_t,
                     FunctionRef<Fields&, std::size_t> fields) override {
-    if (!json_.is_object())
-      refuse([&](Fields& f) { f.alternatives(what, choices, untyped, held, fields); }, text_of_file_hint(json_));
+    if (!json_.is_object()) refuse(text_of_file_hint(json_));
     const std::vector<std::string> types = names_of(choices, &TypeName::name);
     const auto type = json_.find(kTypeField);
     if (type == json_.end() && untyped == Untyped::refused)
       fail(fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));
     std::size_t index = 0;
-    if (type != json_.end()) Reader(*type, member(at_, kTypeField)).name(index, types, what);
+    if (type != json_.end()) read_value(*type, member(at_, kTypeField), [&](Fields& f) { f.name(index, types, what); });
     read_fields([&](Fields& f) { fields(f, index); }, {kTypeField}, what);
   }
 
   void fields(Body body) override {
-    if (!json_.is_object()) refuse([&](Fields& f) { f.fields(body); });
+    if (!json_.is_object()) refuse();
     read_fields(body, {}, "scenario");
   }
 
   void field(std::string_view name, const char*, Presence presence, Body value) override {
     if (names_ != nullptr) return names_->push_back(name);
     const auto entry = json_.find(name);
-    if (entry != json_.end()) {
-      Reader reader(*entry, member(at_, std::string(name)));
-      return collect([&] { value(reader); });
-    }
+    if (entry != json_.end()) return collect([&] { read_value(*entry, member(at_, std::string(name)), value); });
     // A misspelt name of this field has been reported already.
     if (presence != Presence::required || std::ranges::count(meant_, name) > 0) return;
     collect([&] { fail(fmt::format("missing field \"{}\"; allowed: {}", name, guide_to(value).allowed)); });
@@ -162,11 +150,13 @@ class Reader final : public Fields {
 
  private:
   [[noreturn]] void fail(const std::string& problem) const { throw InputError(InputError::Kind::shape, at_, problem); }
-  /// Refuses the value: "got VALUE; allowed: ...", in the words that the schema writer has for `what`.
-  [[noreturn]] void refuse(Body what, const std::string& hint = "") const {
-    fail(fmt::format("got {}; allowed: {}{}{}", shown(json_), null_or(), guide_to(what).allowed, hint));
+  /// Refuses the value: "got VALUE; allowed: ...", in the words that the schema writer has for it.
+  [[noreturn]] void refuse(const std::string& hint = "") const {
+    fail(fmt::format("got {}; allowed: {}{}", shown(json_), guide_to(*value_).allowed, hint));
   }
-  const char* null_or() const { return null_allowed_ ? "null or " : ""; }
+  void read_number(std::size_t i, double& value, NumberRange range) const {
+    read_value(json_[i], element(at_, i), [&](Fields& f) { f.number(value, range); });
+  }
   /// Calls `read` and keeps the error that it may throw for `throw_errors`, which throws all that were kept.
   void collect(FunctionRef<> read) {
     try {
@@ -211,8 +201,8 @@ class Reader final : public Fields {
   }
 
   const Json& json_;
-  std::string at_;  ///< JSON pointer of the value
-  bool null_allowed_ = false;
+  std::string at_;                                       ///< JSON pointer of the value
+  const std::function<void(Fields&)>* value_ = nullptr;  ///< describes it
   /// When not null, the body of an object is called only to collect the names of its fields.
   std::vector<std::string_view>* names_ = nullptr;
   std::vector<InputError> errors_;  ///< of the fields or entries that were read
@@ -222,8 +212,7 @@ class Reader final : public Fields {
 }  // namespace
 
 void read_value(const Json& json, const std::string& at, Fields::Body value) {
-  Reader reader(json, at);
-  value(reader);
+  Reader(json, at).read(value);
 }
 
 }  // namespace hapbench

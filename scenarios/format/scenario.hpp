@@ -54,16 +54,11 @@ struct SpringsEnvironment {
   std::vector<SpringGroup> groups;
   RandomSprings random;
 };
-/// The number of times that the shell lists a vertex of the block's surface.
-enum class BlockVertices {
-  shared,   ///< once
-  per_cell  ///< once for each grid cell that has it on an edge, as thesis 2.1 and C.2 have it
-};
 struct BlockEnvironment {
   BlockWithHole block;
   double grid = 0.0001;  ///< of the density field [m]
   Density density = Density::signed_distance;
-  BlockVertices vertices = BlockVertices::shared;
+  bool per_cell = false;  ///< lists a vertex for each cell that has it on an edge, as thesis 2.1 and C.2; else once
 };
 struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file
@@ -162,6 +157,9 @@ struct DragHandFields {
   double azimuth = 0.0;              ///< [rad]
   double smoothing = 0.0005;         ///< radius of SmoothedSurface [m]
 };
+/// The length of the whole path, or of the way along the direction in `duration` [s] [m].
+double drag_length(const DragHandFields& hand, double duration);
+
 /// The man-machine experiments: every subject does every trial from the initial state.
 struct TrackingHandFields {
   static constexpr std::size_t kMostPlaces = 100;  ///< of targets

@@ -4,6 +4,7 @@
 
 #include <cctype>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"
@@ -79,18 +80,13 @@ CsvReader::CsvReader(LineReader lines, const std::filesystem::path& file) : line
 }
 
 bool CsvReader::next() {
-  const auto row = lines_.next();
+  auto row = lines_.next();
+  while (row && trimmed(*row).empty()) row = lines_.next();
   if (!row) return false;
   cells_ = cells_of(*row);
   if (cells_.size() != columns_.size())
     fail_in_line(file_, line(), fmt::format("got {} cells; allowed: {}", cells_.size(), columns_.size()));
   return true;
-}
-
-bool CsvReader::next_not_blank() {
-  for (LineReader after = lines_; const auto row = after.next(); lines_ = after)
-    if (!trimmed(*row).empty()) return next();
-  return false;
 }
 
 std::string read_named_file(const std::filesystem::path& file) {
@@ -110,7 +106,7 @@ NumberTable number_table_in(std::string_view text, const std::filesystem::path& 
     fail_in_line(file, 1, fmt::format("got header {}; allowed: {}", quoted_word(csv.header()), allowed()));
   NumberTable table;
   table.columns = csv.columns().size();
-  while (csv.next_not_blank()) {
+  while (csv.next()) {
     for (std::size_t i = 0; i < table.columns; ++i) {
       const auto value = finite_number(csv.cells()[i]);
       if (!value) {

@@ -88,10 +88,9 @@ class CsvReader {
   std::string_view header() const { return header_; }  ///< the line
   const Words& columns() const { return columns_; }
 
-  /// Goes to the next row; false at the end. Throws InputError when it has more or fewer cells than there are columns.
+  /// Goes to the next row; false at the end. Blank lines are skipped. Throws InputError when it has more or fewer cells
+  /// than there are columns.
   bool next();
-  /// Same as next(), but skips blank lines.
-  bool next_not_blank();
   const Words& cells() const { return cells_; }
   /// Number, from 1, of the row's line in the file.
   std::size_t line() const { return lines_.line(); }

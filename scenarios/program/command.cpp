@@ -1,15 +1,11 @@
 #include "scenarios/program/command.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <iterator>
-#include <set>
 
-#include "algorithms/registry.hpp"
 #include "results/io/columns.hpp"
 #include "scenarios/cases/comparison.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
@@ -72,7 +68,6 @@ std::string values_text(const Json& values) {
   return values.is_array() ? fmt::format("{}", fmt::join(names_of(values, text_of), ",")) : text_of(values);
 }
 
-/// The words for a key of a study.
 ProgramWords option_words(const std::string& option, const Json& value) {
   if (value.is_boolean()) return ProgramWords(value.get<bool>() ? 1 : 0, option);
   ProgramWords words;
@@ -144,18 +139,15 @@ std::optional<StudyWords> StudyWords::in(const ProgramWords& words) {
   if (!named) return std::nullopt;
   const auto& [file, text] = *named;
   const Json study = study_json(file, text);
-  if (study[kAsk] != words[0]) {
+  if (study[kAsk] != words[0])
     fail_in_line(file, line_of(text, kAsk),
                  fmt::format("is a question for \"hapbench {} {}\"", study[kAsk].get<std::string>(), words[place]));
-  }
   StudyWords found{file, {words[0]}, {}};
   for (const Json& scenario : study["scenarios"]) found.words.push_back(scenario_beside(file, text_of(scenario)));
   for (const auto& [key, value] : study.items()) {
     if (std::ranges::find(kNoOptions, key) != std::end(kNoOptions)) continue;
     const std::string option = "--" + key;
-    const auto is_given = [&option](const std::string& word) {
-      return word == option || word.starts_with(option + "=");
-    };
+    const auto is_given = [&](const std::string& word) { return word == option || word.starts_with(option + "="); };
     // What may be given several times adds up.
     if (!value.is_object() && std::ranges::any_of(words, is_given)) continue;
     found.lines[option] = line_of(text, key);
@@ -175,29 +167,6 @@ InputError StudyWords::located(const InputError& error) const {
     return InputError(fmt::format("{}:{}: {}", file.string(), line, text));
   }
   return error;
-}
-
-void add_overrides(Command& command, std::vector<std::string>& overrides) {
-  command.add("--set", overrides, shared_option_help("--set"), {.several = true});
-}
-
-void add_jobs(Command& command, unsigned& jobs) {
-  command.add("--jobs", jobs, shared_option_help("--jobs"), {.range = {{1, 1024}}});
-}
-
-void add_out(Command& command, std::string& out, const std::string& name) {
-  command.add("--out", out, fmt::format("directory of the results (default: results/out/{})", name));
-}
-
-void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise) {
-  command.add("--algorithms", algorithms, fmt::format("names separated by commas, or all (default: {})", otherwise),
-              {.comma_separated = true});
-}
-
-void add_common(Command& command, CommonOptions& options, const std::string& name) {
-  add_jobs(command, options.jobs);
-  add_out(command, options.out, name);
-  add_overrides(command, options.overrides);
 }
 
 void print(const OutputOptions& options, const std::string& text, const Json& json) {
@@ -232,38 +201,6 @@ void print_errors(const InputError& error) {
   if (faults.size() == kMostFaults) print_error(fmt::format("no more than {} are shown", kMostFaults));
 }
 
-std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most) {
-  if (texts.size() <= most) return texts;
-  const std::string rest = fmt::format("{} more like these", texts.size() - most);
-  texts.resize(most);
-  texts.push_back(rest);
-  return texts;
-}
-
-void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid,
-                   std::string_view shown_by) {
-  std::set<std::string> seen;
-  for (const std::string& name : names) {
-    require_valid_name(got, name, valid, shown_by);
-    if (!seen.insert(name).second) throw InputError(fmt::format("{} \"{}\" twice; allowed: once", got, name));
-  }
-}
-
-std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
-                                      const std::vector<std::string>& all, std::string_view shown_by) {
-  if (given == std::vector<std::string>{"all"}) return all;
-  if (std::find(given.begin(), given.end(), "all") != given.end())
-    throw InputError(fmt::format("{} \"all\" together with other names; allowed: \"all\" alone", got));
-  std::vector<std::string> valid = all;
-  valid.insert(valid.begin(), "all");
-  require_names(got, given, valid, shown_by);
-  return given;
-}
-
-std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given) {
-  return chosen_names("--algorithms: got", given, algorithm_names(), "hapbench describe algorithms");
-}
-
 std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for) {
   if (!asked_for.empty()) {
     require_valid_name("--metric: got", asked_for, metrics, "hapbench describe metrics");
@@ -271,10 +208,6 @@ std::string chosen_metric(const std::vector<std::string>& metrics, const std::st
   }
   const auto has = [&](std::string_view name) { return std::ranges::find(metrics, name) != metrics.end(); };
   return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
-}
-
-fs::path results_directory(const std::string& out, const std::string& name) {
-  return out.empty() ? fs::path("results") / "out" / name : fs::path(out);
 }
 
 void require_writable_directory(const fs::path& directory, std::string_view option) {
@@ -285,11 +218,6 @@ void require_writable_directory(const fs::path& directory, std::string_view opti
     throw InputError(fmt::format("{} {}: is not a directory", option, directory.string()));
   if (access(directory.c_str(), W_OK | X_OK) != 0)
     throw InputError(fmt::format("{} {}: cannot be written to", option, directory.string()));
-}
-
-JobOptions job_options(const CommonOptions& options, const std::string& label) {
-  return {options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
-          options.output.quiet ? "" : label};
 }
 
 std::string shell_line(const ProgramWords& words) {

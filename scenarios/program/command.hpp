@@ -1,5 +1,8 @@
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -7,12 +10,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "algorithms/registry.hpp"
 #include "scenarios/cases/cases.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
@@ -54,9 +59,8 @@ struct OutputOptions {
 /// An option that means the same in every command that has it; `hapbench --help` explains it.
 std::string shared_option_help(const std::string& name);
 
-/// Throws an InputError that says what to write instead of a word that earlier versions took, such as the command
-/// "suite" or the option "--search" of the command "stability", which may have a value as NAME=VALUE. `command` is that
-/// of an option; empty for a command.
+/// Throws an InputError that says what to write instead of a word that earlier versions took: of a command, or with
+/// `command` of one of its options, which may have a value as NAME=VALUE.
 void refuse_old_word(const std::string& command, const std::string& word);
 
 /// How an option or an argument may be given; its variable says of what kind the value is.
@@ -92,14 +96,13 @@ class Command {
 /// The error with what was typed as the place of each fault in a field that --set gave, and not the scene's file.
 InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides);
 
-/// The program's command line: every command adds itself, then `run` parses and runs the one that was chosen.
+/// The program's command line, to which every command adds itself; `run` parses and runs the one that was chosen.
 class CommandLine {
  public:
   CommandLine();
 
   /// Adds a command and the options that `action` is called with when it is chosen; they live as long as the command
-  /// line, and their `output` is what its last options write. `when_stopped`: a note on its results for when Ctrl-C
-  /// stops it.
+  /// line, and their `output` is what its last options write. `when_stopped`: a note on its results after Ctrl-C.
   template <class Options>
   std::pair<Command, Options&> command(const std::string& name, const std::string& summary,
                                        int (*action)(const Options&),
@@ -115,8 +118,6 @@ class CommandLine {
     };
     return {add(name, summary, options->output, run, when_stopped), *options};
   }
-  /// Adds a command whose words behind its name, options and --help included, all go to `action` as they are.
-  void pass_on(const std::string& name, std::function<int(const ProgramWords&)> action);
   /// Replaces a study by its words, loads the modules that the words and HAPBENCH_MODULE_PATH name, then runs the
   /// command. Returns its exit status; for a success during which a law from outside failed, kUnexpectedOutcome. Throws
   /// what the command throws, and InputError for a wrong usage and for modules.
@@ -134,7 +135,6 @@ class CommandLine {
   std::string when_stopped_;
   std::vector<std::pair<CLI::App*, OutputOptions*>> outputs_;
   std::vector<std::string> modules_;
-  std::map<std::string, std::function<int(const ProgramWords&)>> passed_on_;
 };
 
 // ---- Studies: questions as files. A study names a command, scenarios, and the command's options, and a command takes
@@ -181,13 +181,26 @@ struct CommonOptions {
 };
 
 // Each adds an option, add_common all three of CommonOptions.
-void add_overrides(Command& command, std::vector<std::string>& overrides);
-void add_jobs(Command& command, unsigned& jobs);
+inline void add_overrides(Command& command, std::vector<std::string>& overrides) {
+  command.add("--set", overrides, shared_option_help("--set"), {.several = true});
+}
+inline void add_jobs(Command& command, unsigned& jobs) {
+  command.add("--jobs", jobs, shared_option_help("--jobs"), {.range = {{1, 1024}}});
+}
 /// `name`: of the folder below results/out without the option.
-void add_out(Command& command, std::string& out, const std::string& name);
+inline void add_out(Command& command, std::string& out, const std::string& name) {
+  command.add("--out", out, "directory of the results (default: results/out/" + name + ")");
+}
 /// `otherwise`: those without the option.
-void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise);
-void add_common(Command& command, CommonOptions& options, const std::string& name);
+inline void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise) {
+  command.add("--algorithms", algorithms, "names separated by commas, or all (default: " + otherwise + ")",
+              {.comma_separated = true});
+}
+inline void add_common(Command& command, CommonOptions& options, const std::string& name) {
+  add_jobs(command, options.jobs);
+  add_out(command, options.out, name);
+  add_overrides(command, options.overrides);
+}
 
 /// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);
@@ -203,7 +216,13 @@ void print_error(std::string_view text);
 void print_errors(const InputError& error);
 
 /// The first texts, and behind them how many more there are.
-std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most);
+inline std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most) {
+  if (texts.size() <= most) return texts;
+  const std::string rest = std::to_string(texts.size() - most) + " more like these";
+  texts.resize(most);
+  texts.push_back(rest);
+  return texts;
+}
 
 /// The output of a command.
 struct CapturedOutput {
@@ -219,26 +238,47 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
 
 /// Throws InputError unless each name is among the valid ones and given once; `got` stands before the name in its
 /// message, as in "--only: got". `shown_by`: a command that shows the valid ones, see quoted_list.
-void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid,
-                   std::string_view shown_by = {});
+inline void require_names(std::string_view got, const std::vector<std::string>& names,
+                          const std::vector<std::string>& valid, std::string_view shown_by = {}) {
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    require_valid_name(got, name, valid, shown_by);
+    if (!seen.insert(name).second) throw InputError(fmt::format("{} \"{}\" twice; allowed: once", got, name));
+  }
+}
 /// Checks the same way and returns the names, where "all" alone stands for all of them.
-std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
-                                      const std::vector<std::string>& all, std::string_view shown_by = {});
+inline std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
+                                             const std::vector<std::string>& all, std::string_view shown_by = {}) {
+  if (given == std::vector<std::string>{"all"}) return all;
+  if (std::find(given.begin(), given.end(), "all") != given.end())
+    throw InputError(fmt::format("{} \"all\" together with other names; allowed: \"all\" alone", got));
+  std::vector<std::string> valid = all;
+  valid.insert(valid.begin(), "all");
+  require_names(got, given, valid, shown_by);
+  return given;
+}
 
 /// The algorithms of --algorithms.
-std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given);
+inline std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given) {
+  return chosen_names("--algorithms: got", given, algorithm_names(), "hapbench describe algorithms");
+}
 
 /// The metric to show: the one asked for, else the first of kDefaultMetrics. Throws InputError when it is not there.
 std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for);
 
 /// `out`, or results/out/`name` when it is empty.
-std::filesystem::path results_directory(const std::string& out, const std::string& name);
+inline std::filesystem::path results_directory(const std::string& out, const std::string& name) {
+  return out.empty() ? std::filesystem::path("results") / "out" / name : std::filesystem::path(out);
+}
 
 /// Throws InputError, which names the option, unless results can be written to `directory`. Creates it, and removes it
 /// again if it is still empty when the program ends.
 void require_writable_directory(const std::filesystem::path& directory, std::string_view option = "--out");
 /// The threads of --jobs, and a progress bar behind `label` unless quiet.
-JobOptions job_options(const CommonOptions& options, const std::string& label);
+inline JobOptions job_options(const CommonOptions& options, const std::string& label) {
+  return {options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
+          options.output.quiet ? "" : label};
+}
 
 /// Quotes words for a POSIX shell: those with anything but letters, digits and "_-./:=,+@%" in single quotes.
 std::string shell_line(const ProgramWords& words);

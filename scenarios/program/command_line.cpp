@@ -23,9 +23,11 @@ namespace hapbench {
 
 using AddCommand = void(CommandLine& line);
 
-/// Every command, each defined in a source file of its own subject; those of Python packages stand together.
-AddCommand add_compare, add_converge, add_describe, add_limit, add_new, add_python_commands, add_reproduce, add_run,
-    add_stress, add_sweep, add_tune, add_validate;
+/// Every command, each defined in a source file of its own subject.
+AddCommand add_compare, add_converge, add_describe, add_limit, add_new, add_reproduce, add_run, add_stress, add_sweep,
+    add_tune, add_validate;
+/// Those of Python packages, which take every word behind the name, --help included.
+int run_python_command(const ProgramWords& words);
 
 namespace {
 
@@ -34,7 +36,7 @@ constexpr const char* kDescription = "an offline bench for haptic rendering";
 /// A command in the program's help, and in its own.
 struct CommandGuide {
   std::string_view group, name, answers;  ///< the question that it answers
-  AddCommand* add;                        ///< null: another one adds it, too
+  AddCommand* add;                        ///< null: of a Python package
   std::string_view examples = {};         ///< a line each
 };
 
@@ -44,7 +46,7 @@ constexpr CommandGuide kCommands[] = {
      "new\n"
      "new drag --from my.stl --extent 12mm --preview\n"
      "new hole --out mine.json"},
-    {"make", "import", "my recording as a stroke; my device's log as a device", add_python_commands},
+    {"make", "import", "my recording as a stroke; my device's log as a device", nullptr},
     {"make", "validate", "is a scene right, and what is in it?", add_validate,
      "validate mine.json\n"
      "validate mine.json --set environment.spacing_m=1e-4\n"
@@ -183,8 +185,7 @@ std::string kind_of_value(const CLI::Option& option) {
 
 std::string usage(const CLI::App& app) {
   std::string words = fmt::format("Usage: hapbench {} [OPTIONS]", app.get_name());
-  for (const CLI::Option* option : app.get_options()) {
-    if (!option->get_positional()) continue;
+  for (const CLI::Option* option : app.get_options([](const CLI::Option* o) { return o->get_positional(); })) {
     const std::string name = name_of(*option) + (kind_of_value(*option).ends_with("...") ? "..." : "");
     words += option->get_required() ? " " + name : " [" + name + "]";
   }
@@ -376,6 +377,8 @@ CommandLine::CommandLine() : app_(std::make_shared<CLI::App>(kDescription, "hapb
   json->needs(app_->set_version_flag("--version", [json] { return version_text(json->count() > 0); }));
   add_module_option(*app_);
   app_->require_subcommand(1);
+  for (const CommandGuide& command : kCommands)
+    command.add != nullptr ? command.add(*this) : static_cast<void>(app_->add_subcommand(std::string(command.name)));
 }
 
 /// The program and each command have it, so that it may stand before or behind the command.
@@ -399,11 +402,6 @@ Command CommandLine::add(const std::string& name, const std::string& summary, Ou
   add_module_option(*app);
   outputs_.emplace_back(app, &output);
   return Command(app);
-}
-
-void CommandLine::pass_on(const std::string& name, std::function<int(const ProgramWords&)> action) {
-  app_->add_subcommand(name);
-  passed_on_[name] = std::move(action);
 }
 
 InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides) {
@@ -445,8 +443,8 @@ int CommandLine::parse_and_run(ProgramWords words) {
     fmt::print("{}", front());
     return kSuccess;
   }
-  if (const auto passed = passed_on_.find(words[0]); passed != passed_on_.end())
-    return passed->second({words.begin() + 1, words.end()});
+  const auto* guide = std::ranges::find(kCommands, words[0], &CommandGuide::name);
+  if (guide != std::end(kCommands) && guide->add == nullptr) return run_python_command(words);
   for (const auto& [app, output] : outputs_) {
     app->add_flag("--quiet", output->quiet, shared_option_help("--quiet"));
     app->add_flag("--json", output->json, shared_option_help("--json"));
@@ -479,8 +477,6 @@ int run_program(const ProgramWords& words) {
     ::freelocale(plain);
   });
   CommandLine line;
-  for (const CommandGuide& command : kCommands)
-    if (command.add != nullptr) command.add(line);
   try {
     return line.run(words);
   } catch (const Stopped& stop) {

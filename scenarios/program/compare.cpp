@@ -159,12 +159,6 @@ std::string league_text(const League& league) {
   return fmt::format("{}\n{}\n{}", table, law_columns().table(league.laws).text(), verdict(league));
 }
 
-Json league_json(const League& league) {
-  Json laws = law_columns().json_list(league.laws);
-  for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
-  return {{"standings", league_columns(false).json_list(league.standings)}, {"laws", std::move(laws)}};
-}
-
 // ---- How sure the numbers are, and which order of laws is larger than that
 
 /// The mean of an algorithm's errors over the common seeds, which bounds the error of their mean.
@@ -176,8 +170,7 @@ KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t 
     sum = sum && error ? std::optional(*sum + *error / static_cast<double>(seeds.size())) : std::nullopt;
   };
   for (const std::size_t seed : seeds) {
-    const std::size_t run = (scenario * league.algorithms.size() + algorithm) * league.seeds + seed;
-    const KnownError known = finer.known_error(run, metric);
+    const KnownError known = finer.known_error(league.first_run(scenario, algorithm) + seed, metric);
     add(mean.step, known.step);
     add(mean.spacing, known.spacing);
     mean.has_points = known.has_points;
@@ -288,42 +281,32 @@ Comparison planned(const CompareOptions& options) {
   return planned(question);
 }
 
-/// A comparison, where its files go, and whether there is something to rank over, or metrics to rank by.
-struct Asked {
-  const CompareOptions& options;
-  const Comparison comparison = planned(options);
-  const bool league = comparison.scenes.size() > 1 || comparison.seeds > 1 || !options.metrics.empty();
-  const std::filesystem::path out =
-      results_directory(options.out, comparison.scenes.size() > 1 ? "compare" : "compare_" + comparison.names[0]);
-};
-
-/// The metrics of the league, or without one those of the table with --wide.
-std::vector<std::string> compared(const Asked& asked, const std::vector<Result>& reports) {
-  if (asked.league) return asked.options.metrics;
+/// The metrics of the table with --wide.
+std::vector<std::string> printed_metrics(const std::vector<Result>& reports) {
   std::vector<std::string> metrics = {kToolVibrationPower};
   for (const RunHeading& heading : kRunHeadings) metrics.emplace_back(heading.metric);
   if (have_reference(reports)) metrics.insert(metrics.end(), kFidelityMetrics, std::end(kFidelityMetrics) - 1);
   return metrics;
 }
 
-Json summaries_json(const Asked& asked, const std::vector<Result>& reports) {
-  const Comparison& comparison = asked.comparison;
+/// `named`: with scenario and seed.
+Json summaries_json(const Comparison& comparison, const std::vector<Result>& reports, bool named) {
   Json summaries = Json::array();
   for (std::size_t i = 0; i < reports.size(); ++i) {
     Json& summary = summaries.emplace_back(Json::object());
-    if (asked.league) summary = {{"scenario", comparison.names[comparison.scene(i)]}, {"seed", i % comparison.seeds}};
+    if (named) summary = {{"scenario", comparison.names[comparison.scene(i)]}, {"seed", i % comparison.seeds}};
     summary.update(summary_json(reports[i]));
   }
   return summaries;
 }
 
 /// Reports runs that diverge unexpectedly; no other expectation of a scenario concerns every algorithm.
-void judge(const Asked& asked, const std::vector<Result>& reports, Report& report) {
+void judge(const Comparison& comparison, const std::vector<Result>& reports, Report& report) {
   constexpr std::size_t kMostShown = 15;
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < reports.size(); ++i) {
     if (reports[i].end.outcome != Outcome::diverges) continue;
-    const LoadedScenario loaded = asked.comparison.load(i);
+    const LoadedScenario loaded = comparison.load(i);
     if (outcome_is_expected(loaded.scenario.expect, Outcome::diverges)) continue;
     const Divergence& d = reports[i].end.divergence;
     texts.push_back(fmt::format("{}: {} diverges at step {}{}", loaded.file.string(), reports[i].algorithm, d.step,
@@ -336,21 +319,22 @@ int compare(const CompareOptions& options) {
   if (options.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
   // All input is checked before anything runs or is written.
-  const Asked asked{options};
-  const Comparison& comparison = asked.comparison;
+  const Comparison comparison = planned(options);
+  const bool several = comparison.scenes.size() > 1;
+  // Whether there is something to rank over, or metrics to rank by.
+  const bool ranks = several || comparison.seeds > 1 || !options.metrics.empty();
   print_warnings(comparison.warnings);
-  require_writable_directory(asked.out);
-  remove_earlier_comparison(asked.out, comparison);
-  for (std::size_t run = 0; run < comparison.size(); ++run)
-    require_writable_directory(asked.out / comparison.folder(run));
+  Report report(options, several ? "compare" : "compare_" + comparison.names[0]);
+  const std::filesystem::path& out = report.folder();
+  remove_earlier_comparison(out, comparison);
+  for (std::size_t run = 0; run < comparison.size(); ++run) require_writable_directory(out / comparison.folder(run));
   const JobOptions jobs = job_options(options, "compare");
   JobOptions timed = jobs;
   // The wide table of a single comparison shows times, which concurrent runs would lengthen.
-  if (options.jobs == 0 && !asked.league && output_in_full()) timed.threads = 1;
+  if (options.jobs == 0 && !ranks && output_in_full()) timed.threads = 1;
   const std::vector<Result> reports =
-      run_all(comparison.scenes, timed, [&](std::size_t run) { return asked.out / comparison.folder(run); });
-  const League league = league_of(comparison, reports, compared(asked, reports));
-  Report report(options.output, asked.out);
+      run_all(comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); });
+  const League league = league_of(comparison, reports, ranks ? options.metrics : printed_metrics(reports));
   for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
     const auto of_scene = std::span(reports).subspan(s * comparison.each(), comparison.each());
     print_warnings(run_warnings(of_scene));
@@ -358,12 +342,14 @@ int compare(const CompareOptions& options) {
     for (const Result& run : of_scene) runs.push_back({runs.size() % comparison.seeds, run});
     report.write(comparison.scene_folder(s) / "comparison.csv", comparison_columns(comparison.seeds > 1), runs);
   }
-  report.json() = summaries_json(asked, reports);
-  if (asked.league || options.errors) report.json() = {{"runs", std::move(report.json())}};
-  if (asked.league) {
+  report.json() = summaries_json(comparison, reports, ranks);
+  if (ranks || options.errors) report.json() = {{"runs", std::move(report.json())}};
+  if (ranks) {
     report.write("league.csv", league_columns(false), league.standings);
     report.say(league_text(league));
-    report.json().update(league_json(league));
+    report.json()["standings"] = league_columns(false).json_list(league.standings);
+    Json& laws = report.json()["laws"] = law_columns().json_list(league.laws);
+    for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
   } else {
     report.say(fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
                            options.errors ? "" : vibration_text(league),
@@ -372,11 +358,11 @@ int compare(const CompareOptions& options) {
   if (options.errors) {
     const FinerRuns finer(comparison, reports, jobs);
     for (std::size_t s = 0; s < league.scenarios.size(); ++s)
-      report_errors(league, finer, s, asked.league || output_in_full(), report);
+      report_errors(league, finer, s, ranks || output_in_full(), report);
     report.say("\n" + wrapped("<: less by more than both errors; ~: not so; ?: a finer run ends otherwise", 0));
   }
-  report.say(fmt::format("\nresults in {}\n", asked.out.string()));
-  judge(asked, reports, report);
+  report.say(fmt::format("\nresults in {}\n", out.string()));
+  judge(comparison, reports, report);
   return report.finish();
 }
 

@@ -77,11 +77,7 @@ Description describe_study(const BundledStudy& study) {
 
 Json list_on_record(const std::string& list) {
   const std::filesystem::path file = installed_folder("results/reference") / (list + ".json");
-  try {
-    return read_json(file).at(list);
-  } catch (const InputError& error) {
-    rethrow_with_file(error, file);
-  }
+  return with_file(file, [&] { return read_json(file).at(list); });
 }
 
 /// What is on record of a claim or a choice.

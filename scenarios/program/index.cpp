@@ -41,6 +41,13 @@ Description described(const Json& thing) {
   return {thing_text(thing), thing};
 }
 
+/// The field at that path, of the first type that has it where types choose the fields; null when there is none.
+const FieldGuide* find_field(const std::string& path) {
+  const std::vector<PlacedField> all = placed_fields();
+  const auto found = std::ranges::find(all, path, &PlacedField::path);
+  return found == all.end() ? nullptr : found->field;
+}
+
 Json model_json(const char* kind, const ModelInfo& info, std::span<const OwnParameter> own,
                 const AlgorithmOrigin& origin) {
   Json parameters = Json::array();
@@ -140,11 +147,11 @@ Description describe_stability() {
 
 Description describe_diagnosis() {
   Description d{"rules of the diagnosis, which run prints and writes to summary.json\n\n", Json::array()};
-  for (const DiagnosisRule& rule : diagnosis_rules()) {
-    const std::string unit = std::string_view(rule.unit) == "1" ? "" : std::string(" ") + rule.unit;
-    d.text += entry(rule.name, fmt::format("{} > {:g}{}", rule.number, rule.threshold, unit), 2, 14);
+  for (const Diagnosed& rule : diagnosis_rules()) {
+    const std::string unit = rule.unit == "1" ? "" : " " + rule.unit;
+    d.text += entry(rule.rule, fmt::format("{} > {:g}{}", rule.number, rule.threshold, unit), 2, 14);
     d.json.push_back(
-        {{"rule", rule.name}, {"number", rule.number}, {"unit", rule.unit}, {"threshold", rule.threshold}});
+        {{"rule", rule.rule}, {"number", rule.number}, {"unit", rule.unit}, {"threshold", rule.threshold}});
   }
   return d;
 }
@@ -282,7 +289,7 @@ const std::vector<Column> kShellColumns = {
     {"ny", "1", "y of the outward unit normal there"}, {"nz", "1", "z of the outward unit normal there"}};
 
 Description describe_metrics() {
-  const Json json = {{"kind", "metrics"}, {"metrics", columns_json(all_metrics())}};
+  const Json json = {{"kind", "metrics"}, {"metrics", columns_json({}, all_metrics())["summary.json"]}};
   return {"metrics of summary.json, which expect.metrics may bound; f is f_render, the force on the tool\n" +
               thing_text(json),
           json};
@@ -384,27 +391,7 @@ constexpr std::pair<const char*, Description (*)()> kSections[] = {
     {"diagnosis", describe_diagnosis},      {"schema", [] { return Description{"", scenario_schema()}; }},
     {"stability", describe_stability},      {"words", describe_words}};
 
-/// Headings of printed tables; the meaning of one is a name or a sentence.
-void add_headings(Index& index, const std::vector<DescribedTable>& tables) {
-  for (const DescribedTable& table : tables)
-    for (const Table::Column& heading : table.headings)
-      if (!heading.meaning.empty())
-        add_term(index, {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}});
-}
-
 }  // namespace
-
-Description joined(const std::vector<Description>& meanings) {
-  if (meanings.size() == 1) return meanings.front();
-  Description all{"", Json::array()};
-  for (const Description& meaning : meanings) {
-    all.text += (all.text.empty() ? "" : "\n") + meaning.text;
-    // A meaning that has several itself adds each.
-    const Json list = meaning.json.is_array() ? meaning.json : Json::array({meaning.json});
-    all.json.insert(all.json.end(), list.begin(), list.end());
-  }
-  return all;
-}
 
 std::string thing_text(const Json& thing, std::size_t indent) {
   std::string name = thing.value("name", "");
@@ -464,14 +451,11 @@ Index program_index() {
     index.push_back({"field", path, "", [path] { return describe_field(path); }});
   add_types(index);
   for (const Json& word : all_words()) add_term(index, word);
-  add_headings(index, tables);
+  for (const DescribedTable& table : tables)
+    for (const Table::Column& heading : table.headings)
+      if (!heading.meaning.empty())
+        add_term(index, {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}});
   return index;
-}
-
-const FieldGuide* find_field(const std::string& path) {
-  const std::vector<PlacedField> all = placed_fields();
-  const auto found = std::ranges::find(all, path, &PlacedField::path);
-  return found == all.end() ? nullptr : found->field;
 }
 
 }  // namespace hapbench

@@ -18,7 +18,17 @@ struct Description {
   Json json;
 };
 /// The meanings of a name, of which there is one, as one: their texts one after the other, their JSON as an array.
-Description joined(const std::vector<Description>& meanings);
+inline Description joined(const std::vector<Description>& meanings) {
+  if (meanings.size() == 1) return meanings.front();
+  Description all{"", Json::array()};
+  for (const Description& meaning : meanings) {
+    all.text += (all.text.empty() ? "" : "\n") + meaning.text;
+    // A meaning that has several itself adds each.
+    const Json list = meaning.json.is_array() ? meaning.json : Json::array({meaning.json});
+    all.json.insert(all.json.end(), list.begin(), list.end());
+  }
+  return all;
+}
 
 /// The text of a thing that is described by its JSON: name, unit and kind in its first line, below it what it is, and
 /// its other members by their names; an array of objects is a list of such things.
@@ -34,15 +44,9 @@ struct Named {
 };
 using Index = std::vector<Named>;
 
-/// What the program knows by itself, in the order in which it is told: models, presets, sections, metrics, files,
-/// columns, fields, types, words, headings.
+/// What the program knows by itself, in the order in which it is told: from models and presets to words and headings.
 Index program_index();
 /// Every table among the results of this program, and those that are only printed, without a file.
 std::vector<DescribedTable> result_tables();
-
-// ---- The fields of scenario files. Their names are dotted paths, as "rendering.limits".
-
-/// The field at that path, of the first type that has it where types choose the fields; null when there is none.
-const FieldGuide* find_field(const std::string& path);
 
 }  // namespace hapbench

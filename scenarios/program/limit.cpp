@@ -127,8 +127,16 @@ InputError on_device(const ComparedDevice& device, const InputError& error) {
   return InputError::all(faults);
 }
 
-/// The rule by which a run is stable; the default is that of `tune`.
-void set_rule(const LimitOptions& options, const Scenario& scenario, LimitQuestion& question) {
+/// By default a run is stable by the rule of `tune`.
+LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene, const Scenario& scenario,
+                          const std::vector<std::string>& overrides) {
+  if (options.field.find('=') != std::string::npos)
+    throw InputError(
+        fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
+  LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
+  question.smallest = options.smallest;
+  if (!options.resolution.empty()) question.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
+  question.between = options.devices.empty() && options.over.empty();
   question.bounded = options.stable == "bounded";
   if (!options.vibration.empty()) {
     if (!options.stable.empty() && options.stable != "still")
@@ -141,18 +149,6 @@ void set_rule(const LimitOptions& options, const Scenario& scenario, LimitQuesti
     question.most_vibration = kMostVibration;
   }
   for (const std::string& bound : options.bounds) add_bound(bound, question.bounds);
-}
-
-LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene, const Scenario& scenario,
-                          const std::vector<std::string>& overrides) {
-  if (options.field.find('=') != std::string::npos)
-    throw InputError(
-        fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
-  LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
-  question.smallest = options.smallest;
-  if (!options.resolution.empty()) question.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
-  question.between = options.devices.empty() && options.over.empty();
-  set_rule(options, scenario, question);
   return question;
 }
 
@@ -301,7 +297,6 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
   };
   const auto has_inequality = [](const LimitRow& row) { return row.closed_form.has_value(); };
   using Row = LimitRow;
-  using End = IntervalEnd;
   return {
       {"field", "", "path of the field", of(&Row::asked, &LimitQuestion::path), kOnlyCsv},
       {"side", "", "largest or smallest: the stable value that was asked for", of(&Row::asked, &LimitQuestion::side),
@@ -316,12 +311,12 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
       {"low", "by field",
        "the low end of the interval of stable values that the limit ends: its smallest stable value, to the "
        "resolution",
-       of(low_end, &End::value), under(is_printed(true) ? "low end" : "", 6),
+       of(low_end, &IntervalEnd::value), under(is_printed(true) ? "low end" : "", 6),
        [](const Row& r) { return low_end(r).tolerance(); }},
       {"below", "by field", "the first value below that is not stable; empty when the range begins stable",
        of(low_end, value_beyond)},
       {"class_below", "", "what became of the run there", of(low_end, class_beyond)},
-      {"high", "by field", "the high end of this interval", of(high_end, &End::value),
+      {"high", "by field", "the high end of this interval", of(high_end, &IntervalEnd::value),
        under(is_printed(false) ? "high end" : "", 6), [](const Row& r) { return high_end(r).tolerance(); }},
       {"above", "by field", "the first value above that is not stable; empty when the range ends stable",
        of(high_end, value_beyond)},
@@ -341,7 +336,6 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
 /// What is known of the answer, and in a table of cases numbers of the run at the limit, for these to be compared by.
 Columns<LimitRow> search_columns(bool devices, bool grid) {
   using Row = LimitRow;
-  using End = IntervalEnd;
   const auto may_fail = [](const Row& r) {
     return r.tried_between > 0 ? Cell(may_fail_share(r.tried_between)) : Cell();
   };
@@ -351,8 +345,8 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
   return {
       {"limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit", &Row::tolerance,
        kOnlyJson},
-      {"low_tolerance", "by field", "the same of the low end", of(low_end, &End::tolerance), kOnlyJson},
-      {"high_tolerance", "by field", "the same of the high end", of(high_end, &End::tolerance), kOnlyJson},
+      {"low_tolerance", "by field", "the same of the low end", of(low_end, &IntervalEnd::tolerance), kOnlyJson},
+      {"high_tolerance", "by field", "the same of the high end", of(high_end, &IntervalEnd::tolerance), kOnlyJson},
       {"undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened", &Row::undecided},
       {"unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
        &Row::unstable_alone, kOnlyJson},
@@ -487,20 +481,17 @@ std::string remarks_text(const LimitRow& row) {
 }
 
 std::string notes_text(const LimitTable& table) {
-  const auto any = [&](auto holds) { return std::ranges::any_of(table.rows, holds); };
-  const auto friction = [](const LimitRow& row) {  // none where the device is another
-    const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device);
-    return device == nullptr ? std::nullopt : std::optional(device->coulomb);
-  };
-  const auto is_on_device = [&](const LimitRow& row) { return friction(row).has_value(); };
-  const auto rubs = [&](const LimitRow& row) { return friction(row) > 0.0; };
+  std::optional<double> friction;  // the most of a handle; none where no row is on an impedance device
+  for (const LimitRow& row : table.rows)
+    if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device))
+      friction = std::max(friction, std::optional(device->coulomb));
   const auto is_beyond_linear = [](const LimitRow& row) { return row.is_beyond_linear(row.asked.resolution); };
   const auto is_published = [](const ComparedDevice& device) { return device.published_stiffness.has_value(); };
   std::string names;
   for (const ComparedDevice& device : table.devices) names += device.name + " ";
   const auto is_marked = [&names](const char* mark) { return names.find(mark) != std::string::npos; };
   const std::pair<bool, std::string> notes[] = {
-      {table.is_grid() && any(is_beyond_linear),
+      {table.is_grid() && std::ranges::any_of(table.rows, is_beyond_linear),
        fmt::format("linear edge: of the loop of device, hand and surface while they touch; {}", kBeyondLinear)},
       {table.is_grid(),
        "a table tries no values between those of its searches, as the limit of one scene does. inconsistent: values that "
@@ -511,9 +502,9 @@ std::string notes_text(const LimitTable& table) {
       {is_marked("[soft]"),
        fmt::format("[soft], [stiff]: the preset at either end of what nobody published of it ({})", kPresetRanges)},
       {is_marked("[friction*"), "[friction*2]: with its dry friction times a factor"},
-      {table.first().asked.path == kStiffnessPath && any(is_on_device),
+      {table.first().asked.path == kStiffnessPath && friction.has_value(),
        "which K to quote: device_model/README.md, \"Which K to quote?\""},
-      {any(rubs),
+      {friction > 0.0,
        "dry friction, which is ours in every preset, holds a hand that presses slowly: the limit is that of this approach, "
        "not of a device; --set device.coulomb_N=0 shows what is left without"}};
   std::string text;

@@ -186,13 +186,7 @@ double to_micrometres(double metres) {
 }
 
 /// Makes a start for a file in `directory`: its values are determined one after the other. Places are found in the
-/// frame of the side from which the tool comes, in which that is z.
-///
-/// A mesh has the size that is stated, or is in metres. Its points are a tenth of the tool's diameter apart. The tool
-/// is 1 mm thick, or a fiftieth of a longer object, and starts 1 mm above the middle of the highest places; a drag
-/// starts where it has room and covers most of it. Normals of an open mesh that point away from the tool are turned
-/// round. The tip of a tool from a mesh is the file's origin. Throws InputError when a file cannot be used, and for a
-/// mesh of no stated size that is not 1 mm to 1 m long in metres, with its length in metres and in millimetres.
+/// frame of the side from which the tool comes, in which that is z. Throws InputError when a file cannot be used.
 class Start {
  public:
   Start(const StartKind& kind, const NewOptions& options, const fs::path& directory)
@@ -267,7 +261,7 @@ class Start {
   }
 
   /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
-  /// stated is in metres. Throws InputError when it then is not an object to be worked on.
+  /// stated is in metres. Throws InputError when it then is not 1 mm to 1 m long, with its length in either unit.
   double choose_scale(const Box& box, const char* object) {
     const double longest = box.size().maxCoeff() / 0.001;
     if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
@@ -296,6 +290,7 @@ class Start {
       notes.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
   }
 
+  /// The tool is 1 mm thick, or a fiftieth of a longer object.
   void choose_tool(double longest) {
     diameter_ = std::max(0.001, rounded(longest / 50.0));
     for (const auto& [field, size] : {std::pair{"diameter_m", diameter_}, {"length_m", 10.0 * diameter_}})

@@ -17,7 +17,7 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
-/// Commands whose work packages in Python do, which take every word behind the name, --help included.
+/// Commands whose work packages in Python do.
 namespace hapbench {
 namespace {
 
@@ -134,10 +134,9 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
   if (status != 0) throw IoError("draw what is in", folder, std::make_error_code(std::errc::io_error));
 }
 
-void add_python_commands(CommandLine& line) {
-  line.pass_on("import", run_import);
-  for (const char* name : {"plot", "report"})
-    line.pass_on(name, [name](const ProgramWords& given) { return run(name, {"hapbench_pictures", name}, given); });
+int run_python_command(const ProgramWords& words) {
+  const ProgramWords given(words.begin() + 1, words.end());
+  return words[0] == "import" ? run_import(given) : run(words[0], {"hapbench_pictures", words[0]}, given);
 }
 
 }  // namespace hapbench

@@ -1,25 +1,19 @@
 #include "scenarios/program/report.hpp"
 
-#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
 #include <sstream>
-
-#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
 
 /// A narrower output would not hold a name and its meaning.
 constexpr std::size_t kNarrowest = 40;
-constexpr std::size_t kWidestProse = 100;
 constexpr std::size_t kGap = 2;  ///< blanks between columns
 
 /// The upper and the lower line of a title; a single line is the lower one.
@@ -78,15 +72,6 @@ std::size_t output_width() {
   if (isatty(STDOUT_FILENO) != 1 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
     return std::string::npos;
   return std::max<std::size_t>(kNarrowest, size.ws_col);
-}
-
-std::size_t prose_width() {
-  return std::min(output_width(), kWidestProse);
-}
-
-bool& output_in_full() {
-  static bool in_full = false;
-  return in_full;
 }
 
 std::string fitted(std::string_view text, std::size_t width) {
@@ -169,25 +154,6 @@ std::string entry(std::string_view name, std::string_view meaning, std::size_t i
   if (meaning.empty()) return head + "\n";
   if (head.size() + 2 > column) return head + "\n" + text;
   return text.replace(0, head.size(), head);
-}
-
-std::string significant(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
-}
-
-int deserved_digits(double value, const std::optional<double>& tolerance, int most) {
-  if (!tolerance || !(*tolerance > 0.0) || value == 0.0 || !std::isfinite(value)) return most;
-  const double digits = std::floor(math::log10(std::abs(value))) - std::floor(math::log10(*tolerance)) + 1.0;
-  return static_cast<int>(std::clamp(digits, 1.0, static_cast<double>(most)));
-}
-
-std::string deserved(double value, const std::optional<double>& tolerance, int digits) {
-  const double size = std::abs(value);
-  if (!tolerance || !(*tolerance > 0.0 && *tolerance < size) || !std::isfinite(size)) return significant(value, digits);
-  const int last = static_cast<int>(std::floor(math::log10(*tolerance)));
-  if (size < 1e-4 || last < -12) return significant(value, deserved_digits(value, tolerance, 12));
-  const double unit = math::pow(10.0, last);
-  return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
 }
 
 }  // namespace hapbench

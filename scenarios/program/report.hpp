@@ -1,5 +1,9 @@
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +18,7 @@
 
 #include "results/io/table_writer.hpp"
 #include "scenarios/program/command.hpp"
+#include "sim/core/math.hpp"
 
 /// What a command answers: text as wide as the terminal, and tables, of which one list of columns gives the CSV file,
 /// the JSON, the printed table and what `describe` says.
@@ -25,9 +30,14 @@ namespace hapbench {
 /// pipe or a file, and when `output_in_full`.
 std::size_t output_width();
 /// The option --wide.
-bool& output_in_full();
+inline bool& output_in_full() {
+  static bool in_full = false;
+  return in_full;
+}
 /// The width of prose: that of the output, but at most 100.
-std::size_t prose_width();
+inline std::size_t prose_width() {
+  return std::min<std::size_t>(output_width(), 100);
+}
 
 /// Breaks lines wider than the output at blanks, never within a word; continuations are indented by two more blanks.
 std::string fitted(std::string_view text, std::size_t width = output_width());
@@ -59,12 +69,25 @@ std::string entry(std::string_view name, std::string_view meaning, std::size_t i
                   std::size_t width = prose_width());
 
 /// A number with `digits` significant digits; "-" for NaN and infinities.
-std::string significant(double value, int digits = 4);
+inline std::string significant(double value, int digits = 4) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
+}
 /// How many of `most` significant digits a tolerance leaves a number, one at least: down to its own leading one.
-int deserved_digits(double value, const std::optional<double>& tolerance, int most);
+inline int deserved_digits(double value, const std::optional<double>& tolerance, int most) {
+  if (!tolerance || !(*tolerance > 0.0) || value == 0.0 || !std::isfinite(value)) return most;
+  const double digits = std::floor(math::log10(std::abs(value))) - std::floor(math::log10(*tolerance)) + 1.0;
+  return static_cast<int>(std::clamp(digits, 1.0, static_cast<double>(most)));
+}
 /// A number with the digits that its tolerance (> 0) leaves it: down to the tolerance's leading one, and without an
 /// exponent above 1e-4. `digits` significant ones where no tolerance is known, or it is larger than the number.
-std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4);
+inline std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4) {
+  const double size = std::abs(value);
+  if (!tolerance || !(*tolerance > 0.0 && *tolerance < size) || !std::isfinite(size)) return significant(value, digits);
+  const int last = static_cast<int>(std::floor(math::log10(*tolerance)));
+  if (size < 1e-4 || last < -12) return significant(value, deserved_digits(value, tolerance, 12));
+  const double unit = math::pow(10.0, last);
+  return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
+}
 
 // ---- Tables in files, JSON and terminal
 
@@ -115,8 +138,7 @@ using CommandTables = std::vector<DescribedTable>();
 CommandTables claim_tables, converge_tables, league_tables, limit_tables, run_tables, single_run_tables, stress_tables,
     sweep_tables, tune_tables;
 
-/// The columns of a table with rows of type `Row`: those known when the program is written, and those that depend on
-/// the question, such as the fields that vary.
+/// The columns of a table with rows of type `Row`: those that are always there, and those that depend on the question.
 template <class Row>
 class Columns {
  public:

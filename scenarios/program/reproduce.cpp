@@ -118,11 +118,6 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings, c
   return record;
 }
 
-/// Empty for single claims unless --ledger is given: they would replace the ledger of all claims.
-fs::path ledger_file(const ReproduceOptions& options) {
-  return options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);
-}
-
 std::string claims_text(const std::vector<JudgedClaim>& judged) {
   std::string text;
   for (const JudgedClaim& j : judged) {
@@ -164,7 +159,9 @@ int reproduce(const ReproduceOptions& options) {
                  [&](std::size_t i) { provide(runs[i], options.runs(), options.anew); });
 
   const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options);
-  const fs::path ledger = ledger_file(options);
+  // None of single claims unless --ledger is given: they would replace the ledger of all claims.
+  const fs::path ledger =
+      options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);
   const fs::path on_record = reference / "robustness.json";
   Json robustness = fs::exists(on_record) ? read_json(on_record) : Json{{"claims", Json::array()}};
   if (!readings.values.empty()) {

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
@@ -28,6 +27,7 @@ std::vector<fs::path> output_directories(const std::string& out, const std::vect
   return directories;
 }
 
+/// The table of thesis D.4.
 Columns<PlaceMetrics> place_columns() {
   const auto mean = [](SubjectMean PlaceMetrics::*of, double factor = 1.0) {
     return [=](const PlaceMetrics& p) {
@@ -43,13 +43,6 @@ Columns<PlaceMetrics> place_columns() {
       {"completion [s]", "1", "targets.0.completion_time_s.mean", mean(&PlaceMetrics::completion_time), only_printed()},
       {"model force [N]", "1", "targets.0.model_force_N.mean", mean(&PlaceMetrics::model_force), only_printed()},
       {"speed [mm/s]", "1", "targets.0.speed_m_per_s.mean", mean(&PlaceMetrics::speed, 1e3), only_printed()}};
-}
-
-/// The tables of thesis D.4 for a report with targets; empty for other reports.
-std::string targets_text(const Result& report) {
-  if (!report.has_section("targets")) return "";
-  return fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", report.name,
-                     place_columns().table(place_metrics(report.targets)).text());
 }
 
 /// The steps of runs that timed them.
@@ -125,7 +118,9 @@ int run(const RunOptions& options) {
     if (result.replaces_other && options.out.empty() && !options.overrides.empty())
       print_note(
           fmt::format("replaced the run of other fields in {}; --out DIRECTORY keeps both", directories[i].string()));
-    targets += targets_text(result);
+    if (result.sections.contains("targets"))
+      targets += fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", result.name,
+                             place_columns().table(place_metrics(result.targets)).text());
     print_warnings(run_warnings({&result, 1}));
     Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "results/summary/summary.hpp"
 
@@ -30,7 +29,7 @@ std::string ending_text(const Result& report) {
     case Outcome::leaves_hole:
     case Outcome::tool_horizontal:
       // Several trials have no time in common.
-      return !report.has_section("targets") ? fmt::format("{} at {:.3g} s", name, report.duration) : name;
+      return !report.sections.contains("targets") ? fmt::format("{} at {:.3g} s", name, report.duration) : name;
     case Outcome::diverges:
       return fmt::format("{} at {:.3g} s", name, report.end.divergence.time);
     case Outcome::lost_contact:
@@ -92,7 +91,7 @@ std::string run_table(std::span<const Result> reports, bool of_scenes) {
 std::string fidelity_text(std::span<const Result> reports) {
   std::vector<std::reference_wrapper<const Result>> with_reference;
   for (const Result& report : reports)
-    if (report.has_section("fidelity")) with_reference.emplace_back(report);
+    if (report.sections.contains("fidelity")) with_reference.emplace_back(report);
   if (with_reference.empty()) return "";
   const auto name = distinct_name(reports);
   Columns<Result> columns = {{name == &Result::algorithm ? "algorithm" : "scenario", "", "", name, only_printed()}};
@@ -136,15 +135,6 @@ std::vector<DescribedTable> run_tables() {
   Columns<Result> runs = run_columns(true);
   add_metrics(runs, kFidelityHeadings);
   return {runs.described()};
-}
-
-std::string number_text(double value, const std::optional<double>& error) {
-  if (error && *error == 0.0) return significant(value, 6);
-  return error && *error >= std::abs(value) ? significant(value, 1) : deserved(value, error);
-}
-
-std::string with_error_text(double value, const std::optional<double>& error) {
-  return fmt::format("{} +- {}", number_text(value, error), error ? significant(*error, 1) : "?");
 }
 
 }  // namespace hapbench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -7,7 +8,6 @@
 
 #include "scenarios/cases/comparison.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/run/run_scenario.hpp"
 
 /// Tables with a row for each run, as `run` and `compare` print and write them.
 namespace hapbench {
@@ -59,10 +59,14 @@ std::string fidelity_text(std::span<const Result> reports);
 /// the first run and with the names of the algorithms.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
-/// A number with the digits that its error leaves it: one where the error is larger, six where it is 0, four where it
-/// is not known.
-std::string number_text(double value, const std::optional<double>& error);
+/// A number with the digits that its error leaves: one where the error is larger, six where it is 0, four if unknown.
+inline std::string number_text(double value, const std::optional<double>& error) {
+  if (error && *error == 0.0) return significant(value, 6);
+  return error && *error >= std::abs(value) ? significant(value, 1) : deserved(value, error);
+}
 /// The same with the error behind: "1.234 +- 0.005".
-std::string with_error_text(double value, const std::optional<double>& error);
+inline std::string with_error_text(double value, const std::optional<double>& error) {
+  return number_text(value, error) + " +- " + (error ? significant(*error, 1) : "?");
+}
 
 }  // namespace hapbench

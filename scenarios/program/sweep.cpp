@@ -139,7 +139,7 @@ int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& co
   };
   if (report.failed) {
     print_error(fmt::format("{}: {} of {} runs failed, the first: {}: {}", scene, counts.failed, counts.runs,
-                            run_text(report.failed->run), one_line(report.failed->problem)));
+                            run_text(*report.failed), one_line(report.problem)));
     return kInternalFault;
   }
   if (counts.unexpected == 0) return kSuccess;

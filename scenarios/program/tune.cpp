@@ -204,11 +204,10 @@ std::string choice_text(const TuneTrial& choice) {
 
 std::string margins_text(const TuneMargins& margins) {
   std::vector<std::string> texts;
-  for (const Margin& margin : kMargins) {
+  for (const Margin& margin : kMargins)
     if (const auto& found = margins.*margin.of)
       texts.push_back(
           fmt::format(fmt::runtime(margin.words), (*found >= margin.most ? "over " : "") + significant(*found, 3)));
-  }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
@@ -239,10 +238,9 @@ std::string recommendation_text(const Tuning& tuning) {
 std::string tuning_text(const Tuning& tuning) {
   std::string text = wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
                      recommendation_text(tuning) + "\n" + tuned_columns().table(tuning.laws).text() + "\n";
-  for (const TunedLaw& law : tuning.laws) {
+  for (const TunedLaw& law : tuning.laws)
     if (!law.choice)
       text += wrapped(fmt::format("{}: nothing is feasible, {}; {}", law.algorithm, law.why, law.relax), 0);
-  }
   return text;
 }
 

@@ -35,7 +35,6 @@ std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool>
                      place_text(surface.box), surface.points, closed, start);
 }
 
-/// The tool as a mesh; null for others.
 const MeshTool* mesh_of(const SceneFacts& facts) {
   return dynamic_cast<const MeshTool*>(facts.tool.get());
 }

@@ -202,14 +202,15 @@ struct Sentence {
   std::string (*of_run)(const DiagnosedRun& run) = nullptr;
 };
 
+/// What it advises names no law that the run uses, and no cause that was not measured.
 struct Rule {
-  const char *name, *number, *unit;  ///< as those of DiagnosisRule
-  double threshold;
-  const char* says;  ///< what is wrong, {} for the number
+  const char *name, *number, *unit;  ///< number: what it is
+  double threshold;                  ///< something is wrong where the number is larger
+  const char* says;                  ///< what is wrong, {} for the number
   Number (*value)(const DiagnosedRun& run);
   Sentence attempt;
   Sentence more = "";  ///< further facts, behind what is wrong
-  bool quiet = false;  ///< as that of DiagnosisRule
+  bool quiet = false;  ///< one of diagnosis_rules(true)
   bool warns = false;  ///< told as a warning of a run without a diagnosis; by metrics alone
 };
 
@@ -347,9 +348,10 @@ void DiagnosisObserver::add_to_quarter(const StepRecord& record) noexcept {
   high_ = high;
 }
 
-std::vector<DiagnosisRule> diagnosis_rules() {
-  std::vector<DiagnosisRule> rules;
-  for (const Rule& rule : kRules) rules.push_back({rule.name, rule.number, rule.unit, rule.threshold, rule.quiet});
+std::vector<Diagnosed> diagnosis_rules(bool quiet) {
+  std::vector<Diagnosed> rules;
+  for (const Rule& rule : kRules)
+    if (rule.quiet || !quiet) rules.push_back({rule.name, rule.number, rule.unit, 0.0, rule.threshold, "", ""});
   return rules;
 }
 

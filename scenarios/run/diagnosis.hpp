@@ -9,23 +9,15 @@
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/format/load_scenario.hpp"
-#include "sim/loop/observer.hpp"
+#include "sim/loop/simulation.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 /// What is wrong with a run and what to try, by rules: a metric, or a number of an observer, above a threshold.
 namespace hapbench {
 
-/// A rule. What it advises names no law that the run uses, and no cause that was not measured.
-struct DiagnosisRule {
-  const char* name;
-  const char* number;  ///< what it is
-  const char* unit;    ///< "1" for pure numbers
-  double threshold;    ///< something is wrong where the number is larger
-  bool quiet;          ///< a quiet run keeps it: what is felt besides the force, told by metrics alone
-};
-
-/// In the order in which they are told: how the run ended, then why.
-std::vector<DiagnosisRule> diagnosis_rules();
+/// The rules without a value and texts, in the order in which they are told: how the run ended, then why. With `quiet`
+/// those that a quiet run keeps: what is felt besides the force, told by metrics alone.
+std::vector<Diagnosed> diagnosis_rules(bool quiet = false);
 
 /// What the rules of a quiet run find in this result, also below their thresholds; empty where they have no number.
 std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result);

@@ -11,8 +11,7 @@
 #include <utility>
 
 #include "algorithms/module/module.hpp"
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/json_file.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "sim/core/hash.hpp"
 
@@ -35,11 +34,7 @@ std::function<std::shared_ptr<void>()> guard_of_loading;
 
 /// Also refuses a directory or a pipe before it would be opened as a library.
 std::string hash_of_file(const fs::path& file) {
-  try {
-    return hash_text(hash_of(read_text_file(file, kLargestModule)));
-  } catch (const InputError& error) {
-    fail_in_file(file, error.problem());
-  }
+  return with_file(file, [&] { return hash_text(hash_of(read_text_file(file, kLargestModule))); });
 }
 
 const char* kind_name(std::uint32_t kind) {

@@ -27,7 +27,7 @@ RowSource ratios(const RecordedTrial& t) {
 
 struct RecorderEntry {
   const ResultTable& table;
-  bool (*is_wanted)(const RecordFields& fields);
+  std::function<bool(const RecordFields&)> is_wanted;
   RowSource (*rows)(const RecordedTrial& trial);
   bool has_every_row = false;  ///< which rows there are, says the source
 };
@@ -35,20 +35,17 @@ struct RecorderEntry {
 // The observers that a table is made from are there: the same fields ask for them, and checked() has refused a
 // reference that is not measured.
 const RecorderEntry kRecorders[] = {
-    {kTrajectoryTable, [](const RecordFields& f) { return f.trajectory; },
+    {kTrajectoryTable, &RecordFields::trajectory,
      [](const RecordedTrial& t) { return trajectory_rows(t.fields, t.inside); }},
-    {kContactTable, [](const RecordFields& f) { return f.contacts; },
-     [](const RecordedTrial&) { return contact_rows(); }},
-    {kContactTraceTable, [](const RecordFields& f) { return f.contacts; },
-     [](const RecordedTrial&) { return contact_trace_rows(); }},
-    {kStiffnessTable, [](const RecordFields& f) { return f.stiffness_tensor; },
-     [](const RecordedTrial&) { return stiffness_rows(); }},
+    {kContactTable, &RecordFields::contacts, [](const RecordedTrial&) { return contact_rows(); }},
+    {kContactTraceTable, &RecordFields::contacts, [](const RecordedTrial&) { return contact_trace_rows(); }},
+    {kStiffnessTable, &RecordFields::stiffness_tensor, [](const RecordedTrial&) { return stiffness_rows(); }},
     {kRatioTable, [](const RecordFields& f) { return !f.ratio_iterations.empty(); }, ratios},
-    {kEnergyTable, [](const RecordFields& f) { return f.energy; },
+    {kEnergyTable, &RecordFields::energy,
      [](const RecordedTrial& t) { return energy_rows(*t.sections.find<EnergyLedger>()); }},
-    {kIdealTrajectoryTable, [](const RecordFields& f) { return f.ideal_trajectory; },
+    {kIdealTrajectoryTable, &RecordFields::ideal_trajectory,
      [](const RecordedTrial& t) { return ideal_trajectory_rows(*t.sections.find<IdealTrajectoryObserver>()); }, true},
-    {kForceReferenceTable, [](const RecordFields& f) { return f.force_reference; },
+    {kForceReferenceTable, &RecordFields::force_reference,
      [](const RecordedTrial& t) { return force_reference_rows(*t.sections.find<ForceFidelityObserver>()); }}};
 
 /// The tables that a run with these fields writes.
@@ -151,15 +148,12 @@ NewDirectories::~NewDirectories() {
 
 ResultFolder::ResultFolder(const fs::path& directory) : directory_(directory) {
   create(directories_, directory);
-  descriptor_ = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  ::close(descriptor_);
+  const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  lock_ = {nullptr, [descriptor](void*) { ::close(descriptor); }};
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   throw IoError("write, because another run writes to", directory,
                 std::make_error_code(std::errc::device_or_resource_busy));
-}
-
-ResultFolder::~ResultFolder() {
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
@@ -169,23 +163,22 @@ fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
   return directory;
 }
 
-bool ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
-                         const Recorders& recorders) {
-  std::vector<ResultTable> tables = tables_with(record);
+bool ResultFolder::write(const Scenario& scenario, const Result& result, const Recorders& recorders) {
+  std::vector<ResultTable> tables = tables_with(scenario.record);
   FileSet files;
   remove_earlier_run(directory_, files);
   for (const auto& recorder : recorders) recorder->finish(&files);
-  if (result.has_section("targets")) {
+  if (result.sections.contains("targets")) {
     tables.push_back(kTargetTable);
     write_target_table(directory_ / kTargetTable.file, result.targets, &files);
   }
   const auto add = [&](const char* name, const std::string& text) { files.write(directory_ / name, text); };
-  const std::string effective = json_text(scenario.effective(directory_));
+  const std::string effective = json_text(effective_scenario(scenario, directory_));
   add(kEffectiveFile, effective);
   std::ifstream earlier(directory_ / kEffectiveFile, std::ios::binary);
   const std::string before{std::istreambuf_iterator<char>(earlier), {}};
   add("columns.json", json_text(columns_json(tables, result.metrics)));
-  if (record.timing) add("timing.json", timing_text(result));
+  if (scenario.record.timing) add("timing.json", timing_text(result));
   // The summary, which says that a run is there, is the first to go and the last to come.
   add("summary.json", json_text(summary_json(result)));
   files.commit();
@@ -193,10 +186,10 @@ bool ResultFolder::write(const RecordFields& record, const WrittenScenario& scen
   return !before.empty() && before != effective;
 }
 
-void RunTables::write(const WrittenScenario& scenario, const Result& result, const Recorders& recorders) {
-  effective = scenario.effective(fs::current_path());
+void RunTables::write(const Scenario& scenario, const Result& result, const Recorders& recorders) {
+  effective = effective_scenario(scenario, fs::current_path());
   for (const auto& recorder : recorders) recorder->finish();
-  if (result.has_section("targets")) write_target_table(&targets.emplace(kTargetTable.columns), result.targets);
+  if (result.sections.contains("targets")) write_target_table(&targets.emplace(kTargetTable.columns), result.targets);
 }
 
 void remove_run(const fs::path& directory) {

@@ -6,8 +6,8 @@
 #include <chrono>
 
 #include "algorithms/registry.hpp"
-#include "results/allocations/allocations.hpp"
 #include "results/observe/step_times.hpp"
+#include "results/summary/allocations.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
@@ -110,15 +110,12 @@ class Run {
 
   /// After the trials.
   Result result() {
-    Result result;
+    Result result = std::move(result_);
     result.name = scenario_.name;
     result.algorithm = scenario_.rendering.algorithm;
-    result.end = *worst_;
-    result.duration = static_cast<double>(worst_->rows) * scenario_.time.step;
-    tell_common(*metrics_, inside_ ? &*inside_ : nullptr, result.metrics);
-    sections_.tell(result);
+    result.duration = static_cast<double>(result.end.rows) * scenario_.time.step;
+    sections_.tell(*metrics_, inside_ ? &*inside_ : nullptr, result);
     result.state_hash = metrics_->state_hash();
-    result.work = work_;
     result.warnings = loaded_.file_warnings;
     if (trials_ > 1) {
       for (Warning& warning : warnings_)
@@ -132,7 +129,6 @@ class Run {
     if (!std::holds_alternative<CylinderFields>(scenario_.tool)) result.tool = tool_json(*tool_);
     if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
     if (diagnosis_) result.diagnosis = diagnosis_->findings(loaded_, result, *tool_);
-    result.timing = timing_;
     const StepLatency alone = step_latency(step_nanoseconds_, 0);
     result.timing.step_p50 = if_any(alone.steps > 0, 1e-9 * static_cast<double>(alone.p50));
     result.timing.step_p99 = if_any(alone.steps >= 100, 1e-9 * static_cast<double>(alone.p99));
@@ -156,9 +152,9 @@ class Run {
       for (std::uint64_t i = 0; i < kAskEvery && (more = simulation.step()); ++i) times_->lap();
       return more;
     });
-    timing_.loop += std::chrono::duration<double>(Clock::now() - start).count();
-    timing_.preemptions += involuntary_context_switches() - preemptions_before;
-    work_ += work_of(simulation, allocations.value());
+    result_.timing.loop += std::chrono::duration<double>(Clock::now() - start).count();
+    result_.timing.preemptions += involuntary_context_switches() - preemptions_before;
+    result_.work += work_of(simulation, allocations.value());
     return result;
   }
 
@@ -181,9 +177,9 @@ class Run {
     if (result.outcome == Outcome::diverges) {
       if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
     }
-    const std::uint64_t rows = result.rows + (worst_ ? worst_->rows : 0);
-    if (!worst_ || result.outcome > worst_->outcome) worst_ = std::move(result);
-    worst_->rows = rows;
+    const std::uint64_t rows = result.rows + result_.end.rows;
+    if (trials_ == 1 || result.outcome > result_.end.outcome) result_.end = std::move(result);
+    result_.end.rows = rows;
   }
 
   const LoadedScenario& loaded_;
@@ -197,11 +193,9 @@ class Run {
   std::optional<InsideDepths> inside_;
   std::optional<StepTimes> times_;               ///< of every step, if they are wanted
   std::vector<std::uint64_t> step_nanoseconds_;  ///< samples of the time of single steps (StepSampler)
-  std::optional<SimulationResult> worst_;
-  std::vector<Warning> warnings_;  ///< of the first trial that has some
+  std::vector<Warning> warnings_;                ///< of the first trial that has some
   std::size_t trials_ = 0, with_warnings_ = 0, first_with_warnings_ = 0;
-  RunWork work_;
-  RunTiming timing_;  ///< of the step loop
+  Result result_;  ///< so far: end, work, and the times of the step loop
   Recorders recorders_;
 };
 
@@ -253,14 +247,13 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
   result.unmet = unmet_expectations(scenario.expect, result);
   result.expected = result.unmet.empty();
   if (!folder && tables == nullptr) return result;
-  const WrittenScenario written(scenario, loaded.files);
   const AlgorithmOrigin& origin = find_algorithm(result.algorithm)->origin;
   result.provenance = provenance();
   result.provenance.plugin = origin.file;
   result.provenance.plugin_hash = origin.hash;
-  result.scenario_hash = written.hash();
-  if (folder) result.replaces_other = folder->write(scenario.record, written, result, run.recorders());
-  if (tables != nullptr) tables->write(written, result, run.recorders());
+  result.scenario_hash = scenario_hash(scenario, loaded.files);
+  if (folder) result.replaces_other = folder->write(scenario, result, run.recorders());
+  if (tables != nullptr) tables->write(scenario, result, run.recorders());
   return result;
 }
 

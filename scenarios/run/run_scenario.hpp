@@ -60,22 +60,18 @@ class ResultFolder {
  public:
   /// Creates the directory; it and those of trials leave if empty in the end. Throws IoError, also when a run holds it.
   explicit ResultFolder(const std::filesystem::path& directory);
-  ~ResultFolder();
-  ResultFolder(const ResultFolder&) = delete;
-  ResultFolder& operator=(const ResultFolder&) = delete;
 
   /// Creates the directory into which one of `trials` records: this one for a single trial. Throws IoError.
   std::filesystem::path of_trial(Trial trial, std::size_t trials);
 
   /// Writes the results in place of those of an earlier run: each file appears complete or not at all, the summary
   /// last. Returns true when that was another scenario. Throws IoError.
-  bool write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
-             const Recorders& recorders);
+  bool write(const Scenario& scenario, const Result& result, const Recorders& recorders);
 
  private:
   std::filesystem::path directory_;
   NewDirectories directories_;
-  int descriptor_ = -1;  ///< of the lock
+  std::shared_ptr<void> lock_;  ///< closes the descriptor that holds the lock
 };
 
 /// What a run would have written, in memory.
@@ -85,7 +81,7 @@ struct RunTables {
   Json effective;                      ///< scenario.effective.json, with paths from the working directory
 
   /// Ends the recorders, and adds what is not of one trial. Throws std::bad_alloc when rows were lost.
-  void write(const WrittenScenario& scenario, const Result& result, const Recorders& recorders);
+  void write(const Scenario& scenario, const Result& result, const Recorders& recorders);
 };
 
 /// Removes from a directory, if there is one, only what a run wrote. Throws IoError when it cannot be listed.

@@ -178,14 +178,6 @@ std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& 
 
 }  // namespace
 
-double way_to_cover(const DragHandFields& hand, double duration) {
-  const double way = hand.drag.speed * duration;
-  if (!hand.path) return way;
-  double legs = 0.0;
-  for (std::size_t i = 1; i < hand.path->size(); ++i) legs += ((*hand.path)[i] - (*hand.path)[i - 1]).norm();
-  return std::min(way, legs);
-}
-
 std::optional<Warning> short_path_warning(const DragHandFields& fields, const DragHand& hand, double duration,
                                           const ToolShape& tool) {
   const double path = hand.path().length(), to_cover = way_to_cover(fields, duration);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,7 +42,9 @@ inline constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
 
 /// The length of the way on which a scenario has the tool dragged in `duration` [s]: along a direction as far as the
 /// time allows, along points at most to the last one [m].
-double way_to_cover(const DragHandFields& hand, double duration);
+inline double way_to_cover(const DragHandFields& hand, double duration) {
+  return std::min(hand.drag.speed * duration, drag_length(hand, duration));
+}
 
 /// A warning for the path of a drag over the surface that falls short of the way to cover in `duration` [s] by more
 /// than the tool is wide: how long it is and what to change. It is known before the run.

@@ -42,11 +42,6 @@ inline const char* delay_path(const Scenario& scenario) {
   const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
   return has_servo ? "device.servo.delay_samples" : "device.delay_samples";
 }
-/// True for an impedance device whose delay is a number of samples, so that its time depends on the scene's step.
-inline bool has_delay_in_samples(const Scenario& scenario) {
-  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
-  return device != nullptr && !device->delay;
-}
 
 /// The map of a step of the tool at a wall of lambda K and lambda B: by the device's loop, of an ideal device by the
 /// integrator alone. Empty for a loop that is too large to solve, and for fields that are unknown_to_theory.

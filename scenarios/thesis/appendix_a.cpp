@@ -6,10 +6,8 @@
 
 #include "scenarios/limits/stability/field_limit.hpp"
 #include "scenarios/thesis/claims.hpp"
-#include "sim/core/math.hpp"
 
-/// Claims of appendix A: the planar peg (A.1), a mass on many springs (A.2), the stability limits of the integrator
-/// (A.3).
+/// Claims of appendix A: the planar peg (A.1), a mass on many springs (A.2), the integrator's stability limits (A.3).
 namespace hapbench {
 namespace {
 
@@ -109,10 +107,9 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
     if (smooth) append_item(pairs, plain(m["pairs"]), ", ");
   }
   std::string text;
-  for (const auto& [run, pairs] : smooth_with) {
+  for (const auto& [run, pairs] : smooth_with)
     append_item(text, fmt::format("{}, depths {}: {}", run.second, run.first ? "signed" : "≥ 0",
                                   pairs.empty() ? "none" : pairs));
-  }
   bool published = false, fewer = false;
   for (const auto& [run, all] : all_smooth)
     if (all) (run.second == static_cast<double>(kPairs) ? published : fewer) = true;
@@ -130,10 +127,9 @@ constexpr std::size_t kStablePairs = 4;
 Measured measure_springs_limited(const Evidence& e) {
   Measured measured;
   for (const std::size_t pairs : {kPairs, kStablePairs}) {
-    for (const char* algorithm : kAlgorithms) {
+    for (const char* algorithm : kAlgorithms)
       for (const char* scene : {"springs_unlimited", "springs_limited"})
         measured.push_back(approach(e, scene, pairs, algorithm));
-    }
   }
   return measured;
 }
@@ -253,14 +249,12 @@ Finding judge_energy(const MeasuredCase& m, const PublishedNumbers&) {
 }  // namespace
 
 std::vector<ClaimRule> appendix_a() {
-  return {
-      {"A1", measure_peg_motion, judge_peg_motion},
-      {"A2", measure_springs_unlimited, judge_springs_unlimited},
-      {"A3", measure_springs_limited, judge_springs_limited},
-      {"A4", measure_stability_limits, judge_stability_limits},
-      single_case<measure_damping_at_limit, judge_damping_at_limit>("A5"),
-      single_case<measure_energy, judge_energy>("A6"),
-  };
+  return {{"A1", measure_peg_motion, judge_peg_motion},
+          {"A2", measure_springs_unlimited, judge_springs_unlimited},
+          {"A3", measure_springs_limited, judge_springs_limited},
+          {"A4", measure_stability_limits, judge_stability_limits},
+          single_case<measure_damping_at_limit, judge_damping_at_limit>("A5"),
+          single_case<measure_energy, judge_energy>("A6")};
 }
 
 }  // namespace hapbench

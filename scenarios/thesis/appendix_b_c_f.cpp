@@ -325,15 +325,13 @@ Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
 }  // namespace
 
 std::vector<ClaimRule> appendix_b_c_f() {
-  return {
-      single_case<measure_flipped_gradient, judge_flipped_gradient>("B1"),
-      {"B2", measure_groove, judge_groove},
-      single_case<measure_added_points, judge_added_points>("B3"),
-      {"P1", measure_density, judge_density},
-      {"C6", measure_relative_damping, judge_relative_damping},
-      single_case<measure_normal_projection, judge_normal_projection>("F1"),
-      single_case<measure_tandpasta, judge_tandpasta>("F2"),
-  };
+  return {single_case<measure_flipped_gradient, judge_flipped_gradient>("B1"),
+          {"B2", measure_groove, judge_groove},
+          single_case<measure_added_points, judge_added_points>("B3"),
+          {"P1", measure_density, judge_density},
+          {"C6", measure_relative_damping, judge_relative_damping},
+          single_case<measure_normal_projection, judge_normal_projection>("F1"),
+          single_case<measure_tandpasta, judge_tandpasta>("F2")};
 }
 
 }  // namespace hapbench

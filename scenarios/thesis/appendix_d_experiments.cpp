@@ -163,8 +163,7 @@ Finding judge_wall(const Measured& measured, const PublishedNumbers& published) 
           text};
 }
 
-// ---- D6: success rates over places that the pilot experiments went through. A case for each place, with the subjects'
-// mean of both algorithms.
+// ---- D6: success rates over places of the pilot experiments. A case for each, with both algorithms' subject means.
 
 constexpr double kHardlyAny = 0.1;
 constexpr double kMostTrials = 0.5;
@@ -223,18 +222,16 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
 }  // namespace
 
 std::vector<ClaimRule> appendix_d_experiments() {
-  return {
-      {"D1", [](const Evidence& e) { return measure(e, kVertical, 1.0); },
-       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D1", true); }},
-      {"D2", [](const Evidence& e) { return measure(e, kVertical, 0.0); },
-       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D2", false); }},
-      {"D3", [](const Evidence& e) { return measure(e, kRotational, 0.0); },
-       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D3", true); }},
-      {"D4", [](const Evidence& e) { return measure(e, kRotational, 1.0); },
-       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D4", true); }},
-      {"D6", measure_pilots, judge_pilots},
-      {"D7", measure_wall, judge_wall},
-  };
+  return {{"D1", [](const Evidence& e) { return measure(e, kVertical, 1.0); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D1", true); }},
+          {"D2", [](const Evidence& e) { return measure(e, kVertical, 0.0); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D2", false); }},
+          {"D3", [](const Evidence& e) { return measure(e, kRotational, 0.0); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D3", true); }},
+          {"D4", [](const Evidence& e) { return measure(e, kRotational, 1.0); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D4", true); }},
+          {"D6", measure_pilots, judge_pilots},
+          {"D7", measure_wall, judge_wall}};
 }
 
 }  // namespace hapbench

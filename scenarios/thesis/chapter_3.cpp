@@ -60,15 +60,13 @@ Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& pub
           one ? "on a flat all gradients are equal, so one point is left" : "more than one point is left on the flat"};
 }
 
-/// The thesis gives two recordings of a task and no error of either: a number of ours is near one of them if it is no
-/// further from it than the other one is.
-bool is_near(double value, double published, double other) {
-  return std::abs(value - published) <= std::abs(published - other);
-}
-
-/// Whether mean and spread of some counts of a density are near those of one recording.
+/// Whether mean and spread of some counts of a density are near those of one recording. The thesis gives two of a task
+/// and no error of either: a number of ours is near one of them if it is no further from it than the other one is.
 std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
                                const PublishedNumber& other) {
+  const auto is_near = [](double value, double published, double elsewhere) {
+    return std::abs(value - published) <= std::abs(published - elsewhere);
+  };
   return {is_near(c[counts + "_mean"], one.mean, other.mean),
           is_near(c[counts + "_deviation"], one.spread, other.spread)};
 }
@@ -391,10 +389,9 @@ struct FlatRow {
 std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario) {
   const auto table = e.table(scenario, "trajectory.csv");
   std::vector<FlatRow> rows;
-  for (std::size_t i = 0; i < table.at("pz_m").size(); ++i) {
+  for (std::size_t i = 0; i < table.at("pz_m").size(); ++i)
     if (table.at("colliding")[i] != 0.0)
       rows.push_back({-table.at("pz_m")[i], -table.at("hz_m")[i], -table.at("fmeas_z_N")[i]});
-  }
   return rows;
 }
 
@@ -554,26 +551,24 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
 }  // namespace
 
 std::vector<ClaimRule> chapter_3() {
-  return {
-      {"T1", [](const Evidence& e) { return measure_counts(e, "task1_flat"); }, judge_flat_reduction},
-      {"T2", [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
-       [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
-      {"T3", [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
-       [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }},
-      {"J1", measure_hands, judge_ideal_trajectory},
-      {"C5", measure_hands, judge_local_average},
-      {"T2b", measure_hands, judge_hands},
-      single_case<measure_end_of_contact, judge_end_of_contact>("J2"),
-      {"R1", [](const Evidence& e) { return measure_ratios(e, e.published["ratios.one_iteration"].mean); },
-       judge_ratios},
-      {"R3", [](const Evidence& e) { return measure_ratios(e, e.published["R1.iterations"].mean); }, judge_ratios},
-      single_case<measure_convergence, judge_convergence>("R1b"),
-      {"R2", measure_guarantee, judge_guarantee},
-      single_case<measure_force_limit, judge_force_limit>("L1"),
-      {"L2", measure_saturated_motion, judge_saturated_motion},
-      {"L3", measure_shaking, judge_shaking},
-      single_case<measure_felt_stiffness, judge_felt_stiffness>("L4"),
-  };
+  return {{"T1", [](const Evidence& e) { return measure_counts(e, "task1_flat"); }, judge_flat_reduction},
+          {"T2", [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
+          {"T3", [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }},
+          {"J1", measure_hands, judge_ideal_trajectory},
+          {"C5", measure_hands, judge_local_average},
+          {"T2b", measure_hands, judge_hands},
+          single_case<measure_end_of_contact, judge_end_of_contact>("J2"),
+          {"R1", [](const Evidence& e) { return measure_ratios(e, e.published["ratios.one_iteration"].mean); },
+           judge_ratios},
+          {"R3", [](const Evidence& e) { return measure_ratios(e, e.published["R1.iterations"].mean); }, judge_ratios},
+          single_case<measure_convergence, judge_convergence>("R1b"),
+          {"R2", measure_guarantee, judge_guarantee},
+          single_case<measure_force_limit, judge_force_limit>("L1"),
+          {"L2", measure_saturated_motion, judge_saturated_motion},
+          {"L3", measure_shaking, judge_shaking},
+          single_case<measure_felt_stiffness, judge_felt_stiffness>("L4")};
 }
 
 }  // namespace hapbench

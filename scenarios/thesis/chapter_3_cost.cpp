@@ -38,19 +38,14 @@ class DenseShaping {
   std::vector<double> matrix_, ratio_;
 };
 
-// ---- T4, T4b: one step's work for the most contacts of a task [s].
+// ---- T4, T4b: one step's work for the most contacts of a task [s]: the extreme case of 2.8, almost a thousand, of
+// task 3 with the drill upright and pressed against the wall.
 
-/// Contacts of task 3 with the drill upright and pressed against the wall, of the row that has most: the extreme case
-/// of 2.8, almost a thousand.
-ContactBuffer extreme_contacts(const Evidence& e) {
+MeasuredValues measure_deadline(const Evidence& e) {
   const LoadedScenario loaded =
       e.load("task3_spin_signed_distance",
              {"motion.orientation.tilt_rad=0", "hand.target.x_m.amplitude=0.002", "hand.target.y_m.amplitude=0.002"});
-  return largest_of(contact_sets(loaded.scenario, 64));
-}
-
-MeasuredValues measure_deadline(const Evidence& e) {
-  const ContactBuffer all = extreme_contacts(e);
+  const ContactBuffer all = largest_of(contact_sets(loaded.scenario, 64));
   ContactBuffer contacts = all;
   DenseShaping dense(all.size());
   const auto reduction = make_gradient_reduction({});
@@ -148,13 +143,11 @@ Finding judge_other_cost(const MeasuredCase& m, const PublishedNumbers& p) {
 }  // namespace
 
 std::vector<ClaimRule> chapter_3_cost() {
-  return {
-      single_case<measure_deadline, judge_dense_deadline>("T4"),
-      single_case<measure_deadline, judge_tensor_deadline>("T4b"),
-      single_case<measure_loop_load, judge_loop_load>("T5"),
-      single_case<measure_proxy_cost, judge_other_cost>("P2"),
-      single_case<measure_tandpasta_cost, judge_other_cost>("F3"),
-  };
+  return {single_case<measure_deadline, judge_dense_deadline>("T4"),
+          single_case<measure_deadline, judge_tensor_deadline>("T4b"),
+          single_case<measure_loop_load, judge_loop_load>("T5"),
+          single_case<measure_proxy_cost, judge_other_cost>("P2"),
+          single_case<measure_tandpasta_cost, judge_other_cost>("F3")};
 }
 
 }  // namespace hapbench

@@ -8,8 +8,7 @@
 #include "scenarios/thesis/claims.hpp"
 
 /// Claims of chapters 1 and 4: how far a drill pressed into the hole sinks in under other ways to merge forces, and
-/// what their plain sum does (1.1, 1.2, B.3.1); the thesis's two depth models (4.2), and what else it discusses as
-/// limits.
+/// what their plain sum does (1.1, 1.2, B.3.1); both depth models (4.2), and what else is discussed as limits.
 namespace hapbench {
 namespace {
 
@@ -24,7 +23,7 @@ constexpr double kLanded = 0.5;
 /// The largest depth of the drill in the block after it has landed, at each tilt [m]. The largest one, because a drill
 /// that pops through has left the block at the end.
 MeasuredCase pressed(const Evidence& e, const std::string& name, const std::string& scene,
-                     std::vector<std::string> overrides) {
+                     std::vector<std::string> overrides = {}) {
   MeasuredCase m{name, {}};
   overrides.emplace_back();
   for (const double tilt : kPressedTilts) {
@@ -42,11 +41,6 @@ MeasuredCase pressed(const Evidence& e, const std::string& name, const std::stri
   return m;
 }
 
-/// Stiffness shaping with the reduction, as the thesis has it.
-MeasuredCase pressed_shaped(const Evidence& e) {
-  return pressed(e, kProposedLaw, "press_towards_rim", {});
-}
-
 /// True if at every tilt `a` is at least `factor` times as deep as `b`.
 bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
   return std::ranges::all_of(a.values, [&](const auto& depth) { return a[depth.first] >= factor * b[depth.first]; });
@@ -62,7 +56,7 @@ Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
 }
 
 Measured measure_averaging(const Evidence& e) {
-  return {pressed_shaped(e),
+  return {pressed(e, kProposedLaw, "press_towards_rim"),  // with the reduction, as the thesis has it
           pressed(e, "mean", "press_towards_rim", {"rendering.algorithm=mean", "rendering.reduction=null"}),
           pressed(e, "mean after the reduction", "press_towards_rim", {"rendering.algorithm=mean"})};
 }
@@ -231,8 +225,7 @@ Finding judge_underestimation(const MeasuredCase& m, const PublishedNumbers& pub
                       force ? "negligible" : "not negligible", way ? "negligible" : "not negligible")};
 }
 
-// ---- G2: the time that a contact's depth takes [s], for the contacts of task 2, along the normal and as the thesis
-// has it.
+// ---- G2: the time that a contact's depth takes [s], for contacts of task 2, along the normal and as in the thesis.
 
 MeasuredValues measure_depth_cost(const Evidence& e) {
   const std::vector<ContactBuffer> sets =
@@ -359,8 +352,9 @@ std::vector<ClaimRule> chapters_1_and_4() {
   return {
       {"V1", measure_averaging, judge_sinking},
       {"V2",
-       [](const Evidence& e) -> Measured {
-         return {pressed_shaped(e), pressed(e, "virtual coupling", "press_coupled", {})};
+       [](const Evidence& e) {
+         return Measured{pressed(e, kProposedLaw, "press_towards_rim"),
+                         pressed(e, "virtual coupling", "press_coupled")};
        },
        judge_sinking},
       {"S1",
@@ -385,8 +379,7 @@ std::vector<ClaimRule> chapters_1_and_4() {
          return measure_turn_into_wall(e, {"motion.orientation.tilt_rad.period_s=6", "time.duration_s=6"});
        },
        judge_slow_turn},
-      single_case<measure_parallel_faces, judge_parallel_faces>("C3"),
-  };
+      single_case<measure_parallel_faces, judge_parallel_faces>("C3")};
 }
 
 }  // namespace hapbench

@@ -9,8 +9,6 @@
 #include <numeric>
 
 #include "results/io/columns.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/core/random.hpp"
 
@@ -69,77 +67,7 @@ std::string chosen_text(const Place& place, const ChosenField& field, const std:
   return cell_text(finite_number(value).value_or(1.0) * place.second->get<double>());
 }
 
-}  // namespace
-
-Choices::Choices(const fs::path& file) {
-  std::string at = "/choices";
-  try {
-    const Json json = read_json(file);
-    hash_ = hash_text(hash_of(json_text(json)));
-    for (const Json& choice : json.at("choices")) {
-      at = element("/choices", all_.size());
-      all_.push_back(choice_of(choice));
-    }
-  } catch (const InputError& error) {
-    rethrow_with_file(error, file);
-  } catch (const Json::exception& problem) {
-    fail_in_file(file, fmt::format("{}: {}; allowed: what choices.schema.json says", at, problem.what()));
-  }
-}
-
-std::vector<std::string> Choices::values_on_record() const {
-  return names_of(all_, &OpenChoice::value);
-}
-
-std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<const std::string> values) const {
-  Json changed = effective_scenario(scenario, scenario.directory);  // with every default, so that every field exists
-  Json texts = Json::object();                                      // by path, in the order of their first change
-  for (std::size_t i = 0; i < all_.size(); ++i) {
-    for (const ChosenField& field : all_[i].fields) {
-      if (!concerns(field, scenario.name)) continue;
-      try {
-        for (const Place& place : places_of(changed, field.path)) {
-          const std::string text = chosen_text(place, field, values[i]);
-          *place.second = Json::accept(text) ? parse_json(text) : Json(text);
-          texts[place.first] = text;
-        }
-      } catch (const InputError& error) {
-        throw InputError(fmt::format("choice \"{}\": in scenario {}, {}", all_[i].id, scenario.name, error.what()));
-      }
-    }
-  }
-  std::vector<std::string> overrides;
-  for (const auto& [path, text] : texts.items()) overrides.push_back(path + "=" + text.get<std::string>());
-  return overrides;
-}
-
-PublishedNumbers Choices::with_numbers(PublishedNumbers published, std::span<const std::string> values) const {
-  for (std::size_t i = 0; i < all_.size(); ++i) {
-    if (all_[i].fields.empty()) published.set(all_[i].id, finite_number(values[i]).value());
-  }
-  return published;
-}
-
-std::string Choices::reach(std::span<const std::string> scenarios, const std::string& rule) const {
-  std::string reaching;
-  for (const OpenChoice& choice : all_) {
-    const std::string name = "<" + choice.id;
-    const bool sets = std::ranges::any_of(choice.fields, [&](const ChosenField& field) {
-      return std::ranges::any_of(scenarios, [&](const auto& scenario) { return concerns(field, scenario); });
-    });
-    const bool named = rule.find(name + ">") != std::string::npos || rule.find(name + ".mean") != std::string::npos;
-    if (sets || (choice.fields.empty() && named)) reaching += choice.text;
-  }
-  return reaching.empty() ? "" : hash_text(hash_of(reaching));
-}
-
-Json choices_schema() {
-  return read_json(installed_folder("results/reference") / "choices.schema.json");
-}
-
 // ---- Verdicts under other readings
-
-namespace {
 
 /// None when no input has one.
 std::optional<DecidingInput> largest_index(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
@@ -224,10 +152,8 @@ Json entry_of(const Readings& readings, const std::vector<ReadingVerdicts>& judg
     most = std::max(most, count);
   }
   Json decided_by = nullptr;
-  if (same > 0 && same < with_verdict.size()) {
-    if (const auto by = deciding_input(bins_of_choices(readings, with_verdict), holds, hash_of(claim.claim.id)))
-      decided_by = {{"choice", readings.choices.all()[by->input].id}, {"index", by->index}};
-  }
+  if (const auto by = deciding_input(bins_of_choices(readings, with_verdict), holds, hash_of(claim.claim.id)))
+    decided_by = {{"choice", readings.choices.all()[by->input].id}, {"index", by->index}};
   return {{"id", claim.claim.id},
           {"choices", claim.reach},
           {"on_record", on_record},
@@ -241,6 +167,55 @@ Json entry_of(const Readings& readings, const std::vector<ReadingVerdicts>& judg
 }
 
 }  // namespace
+
+Choices::Choices(const fs::path& file) {
+  std::string at = "/choices";
+  try {
+    const Json json = with_file(file, [&] { return read_json(file); });
+    hash_ = hash_text(hash_of(json_text(json)));
+    for (const Json& choice : json.at("choices")) {
+      at = element("/choices", all_.size());
+      all_.push_back(choice_of(choice));
+    }
+  } catch (const Json::exception& problem) {
+    fail_in_file(file, fmt::format("{}: {}; allowed: what choices.schema.json says", at, problem.what()));
+  }
+}
+
+std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<const std::string> values) const {
+  Json changed = effective_scenario(scenario, scenario.directory);  // with every default, so that every field exists
+  Json texts = Json::object();                                      // by path, in the order of their first change
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    for (const ChosenField& field : all_[i].fields) {
+      if (!concerns(field, scenario.name)) continue;
+      try {
+        for (const Place& place : places_of(changed, field.path)) {
+          const std::string text = chosen_text(place, field, values[i]);
+          *place.second = Json::accept(text) ? parse_json(text) : Json(text);
+          texts[place.first] = text;
+        }
+      } catch (const InputError& error) {
+        throw InputError(fmt::format("choice \"{}\": in scenario {}, {}", all_[i].id, scenario.name, error.what()));
+      }
+    }
+  }
+  std::vector<std::string> overrides;
+  for (const auto& [path, text] : texts.items()) overrides.push_back(path + "=" + text.get<std::string>());
+  return overrides;
+}
+
+std::string Choices::reach(std::span<const std::string> scenarios, const std::string& rule) const {
+  std::string reaching;
+  for (const OpenChoice& choice : all_) {
+    const std::string name = "<" + choice.id;
+    const bool sets = std::ranges::any_of(choice.fields, [&](const ChosenField& field) {
+      return std::ranges::any_of(scenarios, [&](const auto& scenario) { return concerns(field, scenario); });
+    });
+    const bool named = rule.find(name + ">") != std::string::npos || rule.find(name + ".mean") != std::string::npos;
+    if (sets || (choice.fields.empty() && named)) reaching += choice.text;
+  }
+  return reaching.empty() ? "" : hash_text(hash_of(reaching));
+}
 
 std::vector<std::size_t> equal_count_bins(std::span<const double> values, std::size_t bins) {
   std::vector<std::size_t> order(values.size());
@@ -302,7 +277,7 @@ std::vector<std::vector<std::string>> read_readings(const fs::path& file, const 
     places.push_back(place);
   }
   std::vector<std::vector<std::string>> readings;
-  while (csv.next_not_blank()) {
+  while (csv.next()) {
     std::vector<std::string>& values = readings.emplace_back(choices.values_on_record());
     for (std::size_t i = 0; i < places.size(); ++i)
       values[places[i]] = checked(choices.all()[places[i]], csv.cells()[i], file, csv.line());

@@ -39,7 +39,7 @@ class Choices {
   const std::string& hash() const { return hash_; }
 
   /// One for each choice, as texts for --set.
-  std::vector<std::string> values_on_record() const;
+  std::vector<std::string> values_on_record() const { return names_of(all_, &OpenChoice::value); }
 
   /// The changes that these values, one for each choice, make to a scenario, as overrides for load_scenario. Choices of
   /// one field are applied in order. Throws InputError when a choice's path is no field of a scenario that it names, or
@@ -47,7 +47,11 @@ class Choices {
   std::vector<std::string> overrides(const Scenario& scenario, std::span<const std::string> values) const;
 
   /// The published numbers and those of the choices without fields.
-  PublishedNumbers with_numbers(PublishedNumbers published, std::span<const std::string> values) const;
+  PublishedNumbers with_numbers(PublishedNumbers published, std::span<const std::string> values) const {
+    for (std::size_t i = 0; i < all_.size(); ++i)
+      if (all_[i].fields.empty()) published.set(all_[i].id, finite_number(values[i]).value());
+    return published;
+  }
 
   /// Hash of the choices that reach a claim: those that concern one of these scenarios, and numbers that the rule's
   /// text names, as in <rule.easily>. Empty when none does.
@@ -59,7 +63,9 @@ class Choices {
 };
 
 /// The JSON Schema (draft 7) of that file, results/reference/choices.schema.json. Throws InputError.
-Json choices_schema();
+inline Json choices_schema() {
+  return read_json(installed_folder("results/reference") / "choices.schema.json");
+}
 
 // ---- Which input of a sample decides a yes or no
 

@@ -1,51 +1,32 @@
 #include "scenarios/thesis/claims.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <numbers>
 #include <regex>
 
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
-namespace {
 
 namespace fs = std::filesystem;
 
-PublishedNumber number_of(const Json& value) {
-  PublishedNumber number;
-  for (const char* key : {"mean", "value"}) number.mean = value.value(key, number.mean);
-  for (const char* key : {"std", "standard_error"}) number.spread = value.value(key, number.spread);
-  number.at_least = value.value("at_least", number.at_least);
-  number.at_most = value.value("at_most", number.at_most);
-  return number;
-}
-
-}  // namespace
-
 PublishedNumbers::PublishedNumbers(const fs::path& file) {
   try {
-    const Json json = read_json(file);
-    for (const Json& value : json.at("values")) numbers_[value.at("id")] = number_of(value);
-  } catch (const InputError& error) {
-    rethrow_with_file(error, file);
+    const Json json = with_file(file, [&] { return read_json(file); });
+    for (const Json& value : json.at("values")) {
+      PublishedNumber& number = numbers_[value.at("id")];
+      for (const char* key : {"mean", "value"}) number.mean = value.value(key, number.mean);
+      for (const char* key : {"std", "standard_error"}) number.spread = value.value(key, number.spread);
+      number.at_least = value.value("at_least", number.at_least);
+      number.at_most = value.value("at_most", number.at_most);
+    }
   } catch (const Json::exception& problem) {
     throw InputError(fmt::format("{}: is no file of published numbers: {}", file.string(), problem.what()));
   }
-}
-
-const PublishedNumber& PublishedNumbers::operator[](const std::string& id) const {
-  const auto found = numbers_.find(id);
-  if (found == numbers_.end()) throw InputError(fmt::format("the published numbers hold no \"{}\"", id));
-  return found->second;
 }
 
 std::string PublishedNumbers::fill(const std::string& text) const {
@@ -76,40 +57,6 @@ std::string PublishedNumbers::fill(const std::string& text) const {
   return filled.append(end, text.end());
 }
 
-double Evidence::number(const std::string& scenario, const std::string& path) const {
-  provide(scenario);
-  std::string pointer = "/" + path;
-  std::replace(pointer.begin(), pointer.end(), '.', '/');
-  const Json summary = read_json(directory / scenario / "summary.json");
-  const Json value = summary.value(Json::json_pointer(pointer), Json());
-  return value.is_number() ? value.get<double>() : std::nan("");
-}
-
-std::map<std::string, std::vector<double>> Evidence::table(const std::string& scenario, const std::string& file) const {
-  provide(scenario);
-  const fs::path path = directory / scenario / file;
-  const std::string text = read_named_file(path);
-  if (text.empty()) fail_in_file(path, "is empty; allowed: a header and rows");
-  CsvReader csv{LineReader(text), path};
-  std::vector<std::vector<double>*> columns;
-  std::map<std::string, std::vector<double>> table;
-  for (const std::string_view name : csv.columns()) columns.push_back(&table[std::string(name)]);
-  while (csv.next()) {
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      columns[i]->push_back(finite_number(csv.cells()[i]).value_or(std::nan("")));
-  }
-  return table;
-}
-
-Cases Evidence::scene(const std::string& name, const std::vector<std::string>& more) const {
-  if (used) used(name);
-  const ScenarioText text = read_scenario_text(find_scenario(name));
-  std::vector<std::string> all;
-  if (overrides) all = overrides(load_scenario(text, {}).scenario);
-  all.insert(all.end(), more.begin(), more.end());
-  return {{text}, std::move(all), {}};
-}
-
 void for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row) {
   class RowObserver final : public Observer {
    public:
@@ -124,13 +71,6 @@ void for_each_row(const LoadedScenario& loaded, const std::function<void(const S
   Simulation simulation(simulation_config(loaded.scenario), assemble(loaded.scenario, loaded.files, shell, {}),
                         {&observer});
   run_to_end(simulation);
-}
-
-std::string plain(double number) {
-  std::string text = fmt::format("{:g}", number);
-  // An exponent without its leading zero.
-  if (const auto exponent = text.find("e-0"); exponent != std::string::npos) text.erase(exponent + 2, 1);
-  return text;
 }
 
 Finding Claim::finding(const Evidence& evidence) const {
@@ -188,15 +128,6 @@ std::vector<Claim> all_claims() {
 
 // ---- Measurements and scenes that several claims share
 
-Scenario drill_in_hole(Scenario scenario) {
-  scenario.device = IdealDeviceFields{input_force_limit(scenario.device)};
-  constexpr double kPeriod = 6.0;  // [s], of the tilt of task 2
-  const auto rows = static_cast<std::int64_t>(std::llround(kPeriod / scenario.time.step));
-  scenario.time.steps = std::min(scenario.time.steps, rows);
-  scenario.record = {};
-  return scenario;
-}
-
 std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride, Points points) {
   LoadedScenario loaded;
   loaded.scenario = drill_in_hole(scenario);
@@ -210,21 +141,6 @@ std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t 
     sets.emplace_back(row.rendered->size()).assign(*row.rendered);
   });
   return sets;
-}
-
-MeasuredCase vibration(const std::string& name, const Result& run) {
-  const auto number = [&](const char* metric) { return number_of(run.metrics, metric).value_or(0.0); };
-  return {name,
-          {{"velocity_variation", {number("velocity_total_variation_m_per_s")}},
-           {"vibration_power", {number("vibration_power_above_30Hz_m2_per_s2")}},
-           {"force_reversals", {number("force_reversals")}}}};
-}
-
-bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p) {
-  const double more = threshold(p, "vibrates");
-  const bool moves = a["velocity_variation"] >= more * b["velocity_variation"] &&
-                     a["vibration_power"] >= more * more * b["vibration_power"];
-  return moves || (vibrates_more(a, b) && a["force_reversals"] >= more * std::max(1.0, b["force_reversals"]));
 }
 
 std::optional<double> damping_ratio_of_swings(std::span<const double> x) {
@@ -364,8 +280,7 @@ std::string headline_of(const Json& claims) {
       all, counts, sure[kSteady], sure[kFragile], sure[kNotSampled]);
 }
 
-}  // namespace
-
+/// What robustness.json says of a claim; null where that is not about this verdict and the choices that reach it.
 Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
   try {
     for (const Json& claim : record.at("claims")) {
@@ -382,6 +297,8 @@ Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
     throw InputError(fmt::format("robustness.json: is no record of robustness: {}", problem.what()));
   }
 }
+
+}  // namespace
 
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness) {
   Json claims = Json::array();

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +18,8 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/cases/comparison.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "sim/tool/cylinder.hpp"
 
 /// The claims of the thesis, how each is judged, and the ledger of the verdicts. results/reference/rules.json has their
@@ -39,7 +44,11 @@ class PublishedNumbers {
   /// Reads the file. Throws InputError.
   explicit PublishedNumbers(const std::filesystem::path& file);
   /// Throws InputError for an id that is not there.
-  const PublishedNumber& operator[](const std::string& id) const;
+  const PublishedNumber& operator[](const std::string& id) const {
+    const auto found = numbers_.find(id);
+    if (found == numbers_.end()) throw InputError("the published numbers hold no \"" + id + "\"");
+    return found->second;
+  }
   /// The text with the numbers that it names by id: <T2.raw> becomes "37.8 ± 17.7", <T3.reduced.bound.at_most> "15".
   /// A part (mean, spread, at_least or at_most) may have a factor and a format, as <J1.depth.mean*1000:.2f>; without
   /// one it is `plain`; no number is "none". Throws InputError for an id that is not there.
@@ -65,11 +74,38 @@ struct Evidence {
   // All functions throw InputError, also when the file of a result is missing or none of ours.
 
   /// A number of a scenario's summary.json, as in "metrics.force_max_N"; NaN for null.
-  double number(const std::string& scenario, const std::string& path) const;
+  double number(const std::string& scenario, const std::string& path) const {
+    provide(scenario);
+    std::string pointer = "/" + path;
+    std::replace(pointer.begin(), pointer.end(), '.', '/');
+    const Json summary = read_json(directory / scenario / "summary.json");
+    const Json value = summary.value(Json::json_pointer(pointer), Json());
+    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+  }
   /// Columns of a CSV file among its results, by name; a cell without a number is NaN.
-  std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const;
+  std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const {
+    provide(scenario);
+    const std::filesystem::path path = directory / scenario / file;
+    const std::string text = read_named_file(path);
+    if (text.empty()) fail_in_file(path, "is empty; allowed: a header and rows");
+    CsvReader csv{LineReader(text), path};
+    std::vector<std::vector<double>*> columns;
+    std::map<std::string, std::vector<double>> table;
+    for (const std::string_view name : csv.columns()) columns.push_back(&table[std::string(name)]);
+    while (csv.next())
+      for (std::size_t i = 0; i < columns.size(); ++i)
+        columns[i]->push_back(finite_number(csv.cells()[i]).value_or(std::numeric_limits<double>::quiet_NaN()));
+    return table;
+  }
   /// A bundled scenario with `overrides`, and then with `more` overrides: a single case.
-  Cases scene(const std::string& name, const std::vector<std::string>& more = {}) const;
+  Cases scene(const std::string& name, const std::vector<std::string>& more = {}) const {
+    if (used) used(name);
+    const ScenarioText text = read_scenario_text(find_scenario(name));
+    std::vector<std::string> all;
+    if (overrides) all = overrides(load_scenario(text, {}).scenario);
+    all.insert(all.end(), more.begin(), more.end());
+    return {{text}, std::move(all), {}};
+  }
   LoadedScenario load(const std::string& name, const std::vector<std::string>& more = {}) const {
     return scene(name, more).load(0);
   }
@@ -159,7 +195,12 @@ inline void append_item(std::string& list, std::string_view item, std::string_vi
 }
 
 /// A number as the rules of claims write it, with six digits at most: "0.1", "15", "1e-9".
-std::string plain(double number);
+inline std::string plain(double number) {
+  std::string text = fmt::format("{:g}", number);
+  // An exponent without its leading zero.
+  if (const auto exponent = text.find("e-0"); exponent != std::string::npos) text.erase(exponent + 2, 1);
+  return text;
+}
 
 /// A row of rules.json with its rule. Texts hold published numbers by id, which PublishedNumbers::fill puts in. A
 /// threshold of ours is a choice on record without fields, such as rule.easily; the rule's text names it in the same
@@ -218,8 +259,8 @@ inline constexpr const char* kProposedLaw = "shaped_stiffness";
 template <MeasuredValues (*measure)(const Evidence&), Finding (*judge)(const MeasuredCase&, const PublishedNumbers&)>
 ClaimRule single_case(const char* id) {
   return {id,
-          [](const Evidence& e) -> Measured {
-            return {{"", measure(e)}};
+          [](const Evidence& e) {
+            return Measured{{"", measure(e)}};
           },
           [](const Measured& measured, const PublishedNumbers& p) { return judge(measured.at(0), p); }};
 }
@@ -258,7 +299,14 @@ double seconds_of(int repetitions, Work work) {
 
 /// A scenario in which a hand presses a drill into the block's hole, for measuring: with an ideal device of the same
 /// force limit, which adds no dynamics of its own, for one period of the tilt, and without records.
-Scenario drill_in_hole(Scenario scenario);
+inline Scenario drill_in_hole(Scenario scenario) {
+  scenario.device = IdealDeviceFields{input_force_limit(scenario.device)};
+  constexpr double kPeriod = 6.0;  // [s], of the tilt of task 2
+  const auto rows = static_cast<std::int64_t>(std::llround(kPeriod / scenario.time.step));
+  scenario.time.steps = std::min(scenario.time.steps, rows);
+  scenario.record = {};
+  return scenario;
+}
 
 /// Before or after the scenario's point stages.
 enum class Points { colliding, rendered };
@@ -288,14 +336,25 @@ double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Wor
 }
 
 /// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
-MeasuredCase vibration(const std::string& name, const Result& run);
+inline MeasuredCase vibration(const std::string& name, const Result& run) {
+  const auto number = [&](const char* metric) { return number_of(run.metrics, metric).value_or(0.0); };
+  return {name,
+          {{"velocity_variation", {number("velocity_total_variation_m_per_s")}},
+           {"vibration_power", {number("vibration_power_above_30Hz_m2_per_s2")}},
+           {"force_reversals", {number("force_reversals")}}}};
+}
 
-/// Whether an algorithm vibrates, compared with a smooth one: it has rule.vibrates times the total variation and the
-/// square of it times the power; or more of both, and so many times the reversals of the force.
-bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
-/// True if `a` has more of both.
+/// True if `a` has more variation and power.
 inline bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b) {
   return a["velocity_variation"] > b["velocity_variation"] && a["vibration_power"] > b["vibration_power"];
+}
+/// Whether an algorithm vibrates, compared with a smooth one: it has rule.vibrates times the total variation and the
+/// square of it times the power; or more of both, and so many times the reversals of the force.
+inline bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p) {
+  const double more = threshold(p, "vibrates");
+  const bool moves = a["velocity_variation"] >= more * b["velocity_variation"] &&
+                     a["vibration_power"] >= more * more * b["vibration_power"];
+  return moves || (vibrates_more(a, b) && a["force_reversals"] >= more * std::max(1.0, b["force_reversals"]));
 }
 
 /// The damping ratio of a swing about zero [m], a value for each row, from the ratio q of successive extremes,
@@ -314,12 +373,9 @@ std::vector<ClaimRule> appendix_d_experiments();  ///< D
 
 // ---- The ledger
 
-/// What robustness.json says of a claim, if the recorded verdict is this one and the choices that reach it are the
-/// same; else null. Throws InputError when it is no such record.
-Json robustness_on_record(const Json& record, const JudgedClaim& judged);
-
 /// claims.json: the headline and the claims; with the cases of those whose numbers a figure draws. `robustness` has
-/// what robustness.json holds.
+/// what robustness.json holds; of a claim it counts if the recorded verdict is this one and the choices that reach it
+/// are the same. Throws InputError when it is no such record.
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness);
 
 /// claims.md, of what ledger_json gives: the main results, counts by chapter, the claims of the thesis, those that are

@@ -2,30 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-
-#include "sim/contact/neighbour_list_query.hpp"
 
 namespace hapbench {
-
-std::unique_ptr<ContactQuery> make_contact_query(const PointShell& shell, const ToolShape& tool, Skips skips) {
-  if (skips == Skips::off) return std::make_unique<ShellQuery>(shell, tool);
-  return std::make_unique<NeighbourListQuery>(shell, tool);
-}
-
-ShellQuery::ShellQuery(const PointShell& shell, const ToolShape& tool)
-    : shell_(&shell), tool_(&tool), numbers_(shell.padded_size()) {
-  std::iota(numbers_.begin(), numbers_.end(), 0u);
-}
-
-void ShellQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
-  const PointShell& shell = *shell_;
-  const PointColumns points{numbers_.data(), shell.x(), shell.y(), shell.z(), shell.nx(), shell.ny(), shell.nz()};
-  contacts.clear();
-  tool_->push_inside(pose, points, shell.padded_size() / simd::lanes, contacts);
-  ++work_.queries;
-  work_.points_tested += shell.size();
-}
 
 void SpringSource::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   contacts.clear();

@@ -29,62 +29,38 @@ struct SearchWork {
   }
 };
 
-/// Finds the points of a shell that a tool in a given pose touches. Depths and gradients are left to a depth model.
+/// Finds the contacts that a tool in a given pose has. Of a search (make_contact_query) they are points of a shell,
+/// whose depths and gradients are left to a depth model.
 class ContactQuery {
  public:
   virtual ~ContactQuery() = default;
 
-  /// Replaces the contents of `contacts` by the colliding points (inside the tool or on its surface) in ascending
-  /// index. Precondition: contacts.capacity() >= capacity(). Allocates nothing.
+  /// Replaces the contents of `contacts` by the contacts at the pose: of a search the colliding points (inside the tool
+  /// or on its surface) in ascending index. Precondition: contacts.capacity() >= capacity(). Allocates nothing.
   virtual void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
-  /// Upper bound of the number of contacts of a query.
+  /// Upper bound of the number of contacts at a pose.
   virtual std::size_t capacity() const noexcept = 0;
   /// Returns to t = 0, counters included.
   virtual void reset() noexcept { work_ = {}; }
-
-  const SearchWork& work() const noexcept { return work_; }
+  virtual const SearchWork& work() const noexcept { return work_; }
 
  protected:
   SearchWork work_;
 };
 
-/// Compares every point of the shell with the tool, eight at a time: the reference for NeighbourListQuery. O(shell
-/// size), about 0.3 ns a point with 512-bit registers.
-class ShellQuery final : public ContactQuery {
- public:
-  /// Shell and tool must outlive the query.
-  ShellQuery(const PointShell& shell, const ToolShape& tool);
-
-  void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
-  std::size_t capacity() const noexcept override { return shell_->size(); }
-
- private:
-  const PointShell* shell_;
-  const ToolShape* tool_;
-  std::vector<std::uint32_t> numbers_;  ///< 0, 1, … of the points
-};
-
-/// The search used by runs: neighbour lists, or brute force with Skips::off. Shell and tool must outlive it.
+/// The search used by runs: neighbour lists, or with Skips::off brute force, which compares every point of the shell
+/// with the tool. Their answers are the same bit by bit. Shell and tool must outlive it. O(shell size).
 std::unique_ptr<ContactQuery> make_contact_query(const PointShell& shell, const ToolShape& tool, Skips skips);
 
-/// The environment as the step loop sees it: answers which contacts a tool in a given pose has, each with its depth and
-/// gradient. A shell of points needs a search and a depth model for that (algorithms/depth/depth_model.hpp); springs
-/// know their depths, and so do modules (algorithms/module).
-class ContactSource {
+/// The environment as the step loop sees it: each contact comes with its depth and gradient, and the buffer is padded.
+/// A shell of points needs a search and a depth model for that (algorithms/depth/depth_model.hpp); springs know their
+/// depths, and so do modules (algorithms/module). Asked once in every step, and again within a step by some
+/// integrators.
+class ContactSource : public ContactQuery {
  public:
-  virtual ~ContactSource() = default;
-
-  /// Replaces the contents of `contacts` by the contacts at the pose, padded. Precondition: contacts.capacity() >=
-  /// capacity(). Allocates nothing. Called once in every step, and again within a step by some integrators.
-  virtual void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
-  /// Upper bound of the number of contacts at a pose.
-  virtual std::size_t capacity() const noexcept = 0;
   /// Hands over the number of the present row, which changes before the first query of each row, to sources whose
   /// answer depends on more than the pose. Called once, before the first step, unless no Simulation steps the source.
   void follow(const std::uint64_t* row) { row_ = row; }
-  /// Returns to t = 0, counters included.
-  virtual void reset() noexcept { work_ = {}; }
-  virtual const SearchWork& work() const noexcept { return work_; }
   /// Description of a failure in external code since the last reset, which ends the run; null if there was none. Not
   /// virtual, because every step reads it.
   const char* fault() const noexcept { return fault_; }
@@ -92,7 +68,6 @@ class ContactSource {
  protected:
   const char* fault_ = nullptr;
   const std::uint64_t* row_ = nullptr;  ///< null where no Simulation counts rows
-  SearchWork work_;                     ///< of a source that has no search
 };
 
 /// Springs attached to the tool's position, all with natural length at the origin (thesis A.2). Spring j has the unit

@@ -84,12 +84,10 @@ GridCells::Range GridCells::range(double low, double high, int axis) const {
 }
 
 GridIndex::GridIndex(const PointShell& shell)
-    : bounds_(shell.bounds()),
-      cells_(GridCells::for_spacing(bounds_, shell.size(), shell.cell_size())),
+    : cells_(GridCells::for_spacing(shell.bounds(), shell.size(), shell.cell_size())),
       x_(shell.padded_size(), PointShell::kFarAway),
       y_(shell.padded_size(), PointShell::kFarAway),
-      z_(shell.padded_size(), PointShell::kFarAway),
-      shell_size_(shell.size()) {
+      z_(shell.padded_size(), PointShell::kFarAway) {
   SortedByCell sorted = sorted_by_cell(cells_, shell.size(),
                                        [&](std::size_t i) { return Vec3(shell.x()[i], shell.y()[i], shell.z()[i]); });
   start_ = std::move(sorted.start);

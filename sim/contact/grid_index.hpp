@@ -66,23 +66,18 @@ class GridIndex {
   const double* x() const { return x_.data(); }
   const double* y() const { return y_.data(); }
   const double* z() const { return z_.data(); }
-  std::uint32_t shell_index(std::size_t sorted) const { return shell_index_[sorted]; }
   const std::uint32_t* shell_indices() const { return shell_index_.data(); }
   /// True if sorting changed nothing, so that runs come in ascending shell index.
   bool keeps_order() const { return keeps_order_; }
   double cell_size() const { return cells_.size(); }
-  std::size_t size() const { return shell_size_; }
   /// Upper bound of the number of runs that for_each_run visits.
   std::size_t columns() const { return cells_.count(0) * cells_.count(1); }
-  const Box& bounds() const { return bounds_; }
 
  private:
-  Box bounds_;
   GridCells cells_;
   std::vector<std::uint32_t> start_;  ///< first point of each cell, one more at the end
   AlignedDoubles x_, y_, z_;
   std::vector<std::uint32_t> shell_index_;
-  std::size_t shell_size_;
   bool keeps_order_ = true;
 };
 

@@ -12,10 +12,6 @@
 /// Arguments outside a function's domain and NaN give NaN; nothing sets errno.
 namespace hapbench::math {
 
-constexpr double square(double x) noexcept {
-  return x * x;
-}
-
 /// Errors: sin and cos 0.85 ulp, tan 2.5 ulp, or 1e-29 if that is more. Of arguments beyond 1e6 they keep an absolute
 /// error of 1e-15, beyond 1e15, where neighbouring arguments are 0.1 rad apart, only the range.
 double sin(double x) noexcept;

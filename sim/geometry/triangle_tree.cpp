@@ -1,8 +1,5 @@
 #include "sim/geometry/triangle_tree.hpp"
 
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <functional>
 #include <limits>

@@ -4,10 +4,8 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/contact/contact_source.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/core/math.hpp"
-#include "sim/tool/motion.hpp"
 
 namespace hapbench {
 
@@ -160,7 +158,10 @@ bool Simulation::step() noexcept {
 
   r.rendered = &contacts_;
   if (ratio_wanted_) r.ratio = ratio_range(contacts_, r.force.S);
-  if (springs_wanted_) note_springs();
+  if (springs_wanted_) {
+    const bool any = has_springs(contacts_, r.force) || config_.skips == Skips::off;
+    r.springs = any ? parts_.algorithm->spring_state(tool_, contacts_) : SpringState{};
+  }
   if (energy_wanted_) r.device = parts_.device->energy();
   for (Observer* observer : observers_) observer->on_step(r);
   ++result_.rows;
@@ -193,16 +194,6 @@ SimulationResult Simulation::run() noexcept {
   while (step()) {
   }
   return result_;
-}
-
-void Simulation::note_springs() noexcept {
-  if (has_springs(contacts_, record_.force) || config_.skips == Skips::off) {
-    record_.springs = parts_.algorithm->spring_state(tool_, contacts_);
-    springs_noted_ = true;
-  } else if (springs_noted_) {
-    record_.springs = {};
-    springs_noted_ = false;
-  }
 }
 
 bool Simulation::check_bounds() noexcept {

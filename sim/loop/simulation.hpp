@@ -10,7 +10,6 @@
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"
 #include "sim/loop/integrators/table.hpp"
-#include "sim/loop/observer.hpp"
 #include "sim/tool/motion.hpp"
 #include "sim/tool/tool_shape.hpp"
 
@@ -86,6 +85,46 @@ struct SimulationResult {
   Divergence divergence;   ///< if the outcome is `diverges`
 };
 
+/// Row k of a run: everything evaluated from (p_k, v_k, axis(t_k)), before the integrator moves the tool.
+struct StepRecord {
+  std::uint64_t step = 0;
+  double time = 0.0;  ///< t_k = k dt [s]
+  ToolState tool;
+  double roll = 0.0;  ///< of the tool, even if round, in which case its pose omits it; filled only if wanted
+  RenderedForce force;
+  Vec3 hand_force = Vec3::Zero();  ///< of the hand on the handle [N]
+  MeasuredForce hand;              ///< hand_force as measured by the device
+  HandleState handle;
+  bool handle_moves_tool = false;           ///< the tool follows the measured handle; there is no virtual mass
+  const TargetTask* task = nullptr;         ///< of the hand at this row; null without such a task
+  std::size_t colliding = 0;                ///< colliding points before any point stage
+  const ContactBuffer* rendered = nullptr;  ///< contacts seen by the law; valid during on_step only
+  const ContactBuffer* found = nullptr;     ///< contacts before any point stage; null unless an observer wants them
+  RatioRange ratio;                         ///< over the rendered contacts; filled only if an observer wants it
+  SpringState springs;                      ///< filled only if an observer wants springs or energy
+  std::optional<DeviceEnergy> device;       ///< filled only if an observer wants energy
+
+  /// True velocity of the moving body, virtual mass or handle [m/s], without the effects of encoder and filter.
+  const Vec3& body_velocity() const noexcept { return handle_moves_tool ? handle.velocity : tool.velocity; }
+};
+
+/// Watches a run without changing it.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// True if on_step reads `ratio`, which is otherwise not computed.
+  virtual bool wants_ratio() const noexcept { return false; }
+  /// True if on_step reads `roll`, which is otherwise not computed.
+  virtual bool wants_roll() const noexcept { return false; }
+  /// True if on_step reads `springs` and `device`, which are otherwise not computed.
+  virtual bool wants_energy() const noexcept { return false; }
+  /// True if on_step reads `springs`.
+  virtual bool wants_springs() const noexcept { return wants_energy(); }
+  /// True if on_step reads `found`, which is otherwise not kept.
+  virtual bool wants_found() const noexcept { return false; }
+  virtual void on_step(const StepRecord& record) noexcept = 0;
+};
+
 /// The step loop: hand -> device -> contacts -> force algorithm -> observers -> integrator, or the device again if its
 /// handle moves the tool. Owns the contact buffer and allocates only in the constructor.
 class Simulation {
@@ -119,7 +158,6 @@ class Simulation {
   void put_tool_on_handle() noexcept;
   double roll_at(double t) const noexcept;
   Vec3 angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept;
-  void note_springs() noexcept;
   bool check_bounds() noexcept;
   bool check_stop_rules() noexcept;
   void end(Outcome outcome) noexcept;
@@ -145,8 +183,7 @@ class Simulation {
   ToolState tool_;
   double roll_ = 0.0;  ///< of the row; 0 unless wanted
   StepRecord record_;
-  RenderedForce within_step_;   ///< result of the last ForceWithinStep::force_at
-  bool springs_noted_ = false;  ///< record_.springs may be nonzero
+  RenderedForce within_step_;  ///< result of the last ForceWithinStep::force_at
   SimulationResult result_;
 };
 

@@ -54,7 +54,7 @@ void TargetTask::advance(const Vec3& tip, double spring, double rendered, double
   }
   shown_ += dt;
   const LowForce low = active_ && !pressed && rules_.threshold ? rules_.threshold->low : LowForce::restarts;
-  if (!on_target(tip) || (!pressed && low == LowForce::restarts)) {
+  if (!(error(tip).norm() <= rules_.tolerance) || (!pressed && low == LowForce::restarts)) {
     held_ = 0.0;
   } else if (pressed || low == LowForce::nothing) {
     held_ += dt;

@@ -88,7 +88,6 @@ class TargetTask {
 
   /// Vector from the tip to the target, in the components on display [m]. Precondition: not finished.
   Vec3 error(const Vec3& tip) const noexcept;
-  bool on_target(const Vec3& tip) const noexcept { return error(tip).norm() <= rules_.tolerance; }
   /// True if force and speed of this row are logged. Precondition: not finished.
   bool logs(const Vec3& tip) const noexcept { return error(tip).norm() <= rules_.logged.value_or(rules_.tolerance); }
   bool active() const noexcept { return active_; }

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
-#include <utility>
 
-#include "sim/core/math.hpp"
+#include "sim/tool/refuse.hpp"
 
 namespace hapbench {
 namespace {
@@ -165,17 +163,14 @@ Vec3 ScriptedMotion::position_at(double t) const noexcept {
 }
 
 RecordedMotion::RecordedMotion(std::vector<Sample> samples) : samples_(std::move(samples)) {
-  if (samples_.empty()) throw std::invalid_argument("a recorded motion needs at least one sample");
+  if (samples_.empty()) refuse("a recorded motion needs at least one sample");
   for (Sample& sample : samples_) {
     if (sample.orientation) sample.axis = axis_of(*sample.orientation);
   }
   for (std::size_t i = 1; i < samples_.size(); ++i) {
-    if (!(samples_[i - 1].time < samples_[i].time)) {
-      throw std::invalid_argument("the times of a recorded motion must increase strictly");
-    }
-    if (samples_[i].orientation.has_value() != samples_[0].orientation.has_value()) {
-      throw std::invalid_argument("either all samples of a recorded motion have an orientation or none has");
-    }
+    if (!(samples_[i - 1].time < samples_[i].time)) refuse("the times of a recorded motion must increase strictly");
+    if (samples_[i].orientation.has_value() != samples_[0].orientation.has_value())
+      refuse("either all samples of a recorded motion have an orientation or none has");
   }
 }
 

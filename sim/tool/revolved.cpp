@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "sim/tool/axial.hpp"
 #include "sim/tool/cylinder.hpp"
@@ -13,10 +12,6 @@ namespace hapbench {
 namespace {
 
 using simd::Mask, simd::Pack, simd::select;
-
-Pack slack(const HalfPlane& plane, const Pack& s, const Pack& rho) {
-  return Pack(plane.offset) - Pack(plane.ns) * s - Pack(plane.nr) * rho;
-}
 
 /// Tests which points of `all`, with axial coordinate s and squared distance from the axis rho2, lie in the section
 /// with s <= 0. Compares squares of heights, because a root costs as much as four lines. This and the tests below are
@@ -67,7 +62,7 @@ struct InProfileOrBall {
 Pack convex_depth(const Meridian& meridian, const Pack& s, const Pack& rho) {
   Pack d = s - Pack(meridian.low);
   if (meridian.tip == Tip::flat) d = simd::min(d, Pack(meridian.high) - s);
-  for (const HalfPlane& plane : meridian.planes) d = simd::min(d, slack(plane, s, rho));
+  for (const HalfPlane& plane : meridian.planes) d = simd::min(d, plane.slack(s, rho));
   return d;
 }
 
@@ -78,20 +73,20 @@ struct NearestPlace {
   Mask at_corner;
 };
 
-NearestPlace nearest_place(const Meridian& meridian, const Pack& s, const Pack& rho) {
+[[gnu::always_inline]] inline NearestPlace nearest_place(const Meridian& meridian, const Pack& s, const Pack& rho) {
   const Pack zero(0.0);
   // Nearer to a corner, the direction to it is rounding; the line's normal is one of the possible directions.
   const Pack at_line(1e-12 * meridian.widest);
   NearestPlace nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, zero < zero};
   for (const Meridian::Line& line : meridian.lines) {
     const Pack ns(line.ns), nr(line.nr);
-    const Pack inwards = slack(line, s, rho);
+    const Pack inwards = line.slack(s, rho);
     const Pack along = nr * s - ns * rho - Pack(line.start);
     const Pack beyond = along - simd::max(zero, simd::min(along, Pack(line.length)));
     const Pack distance2 = inwards * inwards + beyond * beyond;
     const Mask nearer = distance2 < nearest.distance2;
     const Mask corner = simd::abs(beyond) > at_line;
-    nearest.distance2 = select(nearer, distance2, nearest.distance2);
+    nearest.distance2 = simd::min(nearest.distance2, distance2);
     nearest.vs = select(nearer, select(corner, inwards * ns - beyond * nr, ns), nearest.vs);
     nearest.vr = select(nearer, select(corner, inwards * nr + beyond * ns, nr), nearest.vr);
     nearest.at_corner = (nearer && corner) || (nearest.at_corner && !nearer);
@@ -99,17 +94,9 @@ NearestPlace nearest_place(const Meridian& meridian, const Pack& s, const Pack& 
   return nearest;
 }
 
-/// Distance to that place.
+/// Distance to that place. What else is found there is computed only where it is read, as nearest_place is inlined.
 Pack nearest_distance(const Meridian& meridian, const Pack& s, const Pack& rho) {
-  const Pack zero(0.0);
-  Pack nearest2(std::numeric_limits<double>::infinity());
-  for (const Meridian::Line& line : meridian.lines) {
-    const Pack inwards = slack(line, s, rho);
-    const Pack along = Pack(line.nr) * s - Pack(line.ns) * rho - Pack(line.start);
-    const Pack beyond = along - simd::max(zero, simd::min(along, Pack(line.length)));
-    nearest2 = simd::min(nearest2, inwards * inwards + beyond * beyond);
-  }
-  return simd::sqrt(nearest2);
+  return simd::sqrt(nearest_place(meridian, s, rho).distance2);
 }
 
 /// A ray x + d u in axial coordinates: s + d slope along the axis and the vector rho + d u across it.
@@ -332,11 +319,11 @@ void Revolved::exit_distances(const ToolPose& pose, const ContactBuffer& contact
   }
 }
 
-void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack_wanted,
+void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                                    ContactBuffer& contacts) const noexcept {
   const Meridian& m = meridian_;
   const Pack low(m.low), high(m.high), ball(m.ball), zero(0.0), one(1.0), on_axis(kOnAxis * m.widest), flush(kFlush);
-  const Pack in_reach(slack_wanted);
+  const Pack in_reach(slack);
   const PackVector axis(pose.axis), any(pose.axis.unitOrthogonal()), move(wanted);
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
@@ -359,7 +346,7 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     if (m.convex && simd::any(bumps)) {
       Pack furthest = -in_reach;
       for (const Meridian::Line& line : m.lines) {
-        const Pack beyond = -slack(line, q.s, rho);
+        const Pack beyond = -line.slack(q.s, rho);
         const PackVector face = combined(Pack(line.ns), axis, Pack(line.nr), out);
         const Mask takes = bumps && beyond > furthest && -face.dot(surface) > flush;
         furthest = select(takes, beyond, furthest);

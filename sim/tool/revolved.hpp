@@ -13,8 +13,11 @@ struct HalfPlane {
   double ns, nr;  ///< outward unit normal
   double offset;  ///< [m]
 
-  /// Distance of a place inside from the boundary [m]; negative outside.
-  double slack(double s, double rho) const noexcept { return offset - ns * s - nr * rho; }
+  /// Distance of a place inside from the boundary [m], or of eight; negative outside.
+  template <class Number>
+  Number slack(const Number& s, const Number& rho) const noexcept {
+    return Number(offset) - Number(ns) * s - Number(nr) * rho;
+  }
 };
 
 /// The outline of a solid of revolution, closed by discs where it ends off the axis, as search and depths loop over it.

@@ -106,12 +106,6 @@ GridNodes nodes_around(const ClosedSurface& surface, double spacing) {
   return nodes;
 }
 
-double furthest(const ClosedSurface& surface) {
-  double distance2 = 0.0;
-  for (const Vec3& v : surface.vertices()) distance2 = std::max(distance2, v.squaredNorm());
-  return std::sqrt(distance2);
-}
-
 Vec3 area_vector(const ClosedSurface& surface, const TriangleCorners& t) {
   const auto [a, b, c] = surface.corners(t);
   return 0.5 * (b - a).cross(c - a);
@@ -223,7 +217,8 @@ Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const no
 SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spacing)
     : nodes_(nodes_around(surface, spacing)),
       box_{surface.box().min - Vec3::Constant(error_bound()), surface.box().max + Vec3::Constant(error_bound())},
-      reach_(furthest(surface) + error_bound()),
+      reach_(std::ranges::max(surface.vertices(), {}, [](const Vec3& v) { return v.squaredNorm(); }).norm() +
+             error_bound()),
       vertices_(surface.vertices()),
       hull_(corners_of(surface)) {
   const TriangleTree tree(surface.vertices(), surface.triangles());

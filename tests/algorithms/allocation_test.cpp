@@ -10,7 +10,7 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "device_model/impedance_device.hpp"
-#include "results/allocations/allocations.hpp"
+#include "results/summary/allocations.hpp"
 #include "sim/core/aligned.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"

@@ -77,9 +77,9 @@ void for_tools(std::size_t n, Check check) {
       points.push_back({tool.near_point(pose, random), random.direction()});
     }
     const PointShell shell(points, 0.0);
-    ShellQuery query(shell, *tool.shape);
-    ContactBuffer contacts(query.capacity());
-    query.contacts_at(pose, contacts);
+    const auto query = make_contact_query(shell, *tool.shape, Skips::off);
+    ContactBuffer contacts(query->capacity());
+    query->contacts_at(pose, contacts);
     check(*tool.shape, pose, shell, contacts);
   }
 }
@@ -126,9 +126,9 @@ double depth_at(const ToolShape& tool, const ToolPose& pose, const Vec3& point, 
 /// Whether the search reports the point, as it does for every point a depth model sees.
 bool collides(const ToolShape& tool, const ToolPose& pose, const Vec3& point) {
   const PointShell shell({{point, Vec3::UnitZ()}}, 0.0);
-  ShellQuery query(shell, tool);
-  ContactBuffer contacts(query.capacity());
-  query.contacts_at(pose, contacts);
+  const auto query = make_contact_query(shell, tool, Skips::off);
+  ContactBuffer contacts(query->capacity());
+  query->contacts_at(pose, contacts);
   return !contacts.empty();
 }
 
@@ -238,14 +238,17 @@ class Stroke {
  public:
   explicit Stroke(const std::vector<SurfacePoint>& points,
                   std::shared_ptr<const ToolShape> tool = std::make_shared<Cylinder>())
-      : tool_(std::move(tool)), shell_(points, 0.0), query_(shell_, *tool_), contacts_(query_.capacity()) {
+      : tool_(std::move(tool)),
+        shell_(points, 0.0),
+        query_(make_contact_query(shell_, *tool_, Skips::off)),
+        contacts_(query_->capacity()) {
     model_->prepare(shell_);
     model_->reset();
   }
 
   /// Moves the tool and returns the depths by index of the point.
   std::map<std::uint32_t, Depths> to(const ToolPose& pose) {
-    query_.contacts_at(pose, contacts_);
+    query_->contacts_at(pose, contacts_);
     std::map<std::uint32_t, Depths> depths;
     std::vector<double> exits(contacts_.size());
     for (std::size_t i = 0; i < contacts_.size(); ++i) contacts_.set_gradient(i, -contacts_.normal(i));
@@ -262,7 +265,7 @@ class Stroke {
  private:
   std::shared_ptr<const ToolShape> tool_;
   PointShell shell_;
-  ShellQuery query_;
+  std::unique_ptr<ContactQuery> query_;
   ContactBuffer contacts_;
   std::unique_ptr<DepthModel> model_ = make_depth_model("continuous_normal_projection");
 };

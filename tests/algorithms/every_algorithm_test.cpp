@@ -9,7 +9,7 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "results/allocations/allocations.hpp"
+#include "results/summary/allocations.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/core/math.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/setting.hpp"
@@ -80,7 +79,7 @@ struct WedgeStiffness {
 
 /// The wedge under weights that add up to `weight` on either face: S = weight (u1 u1^T + u2 u2^T).
 WedgeStiffness of_weight(double w, double weight) {
-  return {2.0 * weight * math::square(std::sin(w)), 2.0 * weight * math::square(std::cos(w))};
+  return {2.0 * weight * std::pow(std::sin(w), 2), 2.0 * weight * std::pow(std::cos(w), 2)};
 }
 
 /// Along an axis where the summed stiffness is s: s / (added + s).
@@ -92,7 +91,7 @@ WedgeStiffness in_series(double w, double n, double added) {
 /// From the first update on; also the limit of the iteration, but for epsilon = 1e-6. Under merged_shaping each face is
 /// a group.
 WedgeStiffness of_shaping(double w, double) {
-  return of_weight(w, 1.0 / (1.0 + math::square(std::cos(2.0 * w))));
+  return of_weight(w, 1.0 / (1.0 + std::pow(std::cos(2.0 * w), 2)));
 }
 
 /// S = u_r u_r^T, and the mean gradient u_r points straight into the wedge.
@@ -137,7 +136,7 @@ TEST(Registry, EveryWedgeHasTheTensorOfItsClosedForm) {
         // Weights are known to their regularisation, 1e-6 in exact shaping, over the least eigenvalue of their
         // equations, sin^2 2w; else to rounding over that.
         const bool exact = config.algorithm == "exact_shaping" || config.algorithm == "merged_shaping";
-        const double tolerance = (exact ? 2.0 * kExactShapingEpsilon : 1e-12) / math::square(std::sin(2.0 * w));
+        const double tolerance = (exact ? 2.0 * kExactShapingEpsilon : 1e-12) / std::pow(std::sin(2.0 * w), 2);
         EXPECT_LE((S - Mat3(Vec3(expected.across, expected.along, 0.0).asDiagonal())).norm(), tolerance)
             << name << " at " << w << " of " << points;
       }

@@ -7,9 +7,8 @@
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "tests/bench/bench.hpp"
-#include "tests/bench/task_scene.hpp"
 
 /// The force laws and the reduction on contacts of the tasks.
 namespace hapbench::bench {
@@ -17,11 +16,11 @@ namespace hapbench::bench {
 ContactBuffer task_contacts(std::size_t n) {
   constexpr std::size_t kEvery = 205;  // 0.1 s
   const TaskScene& scene = task_scene("T2");
-  NeighbourListQuery query(*scene.shell, *scene.tool);
+  const auto query = make_contact_query(*scene.shell, *scene.tool, Skips::on);
   const auto depth_model = make_depth_model("surface_normal");
-  ContactBuffer here(query.capacity()), sample(n);
+  ContactBuffer here(query->capacity()), sample(n);
   for (std::size_t k = 0; k < scene.poses.size() && sample.size() < n; k += kEvery) {
-    query.contacts_at(scene.poses[k], here);
+    query->contacts_at(scene.poses[k], here);
     depth_model->evaluate(*scene.tool, scene.poses[k], here);
     for (std::size_t i = 0; i < here.size() && sample.size() < n; ++i) sample.push_copy_of(here, i);
   }

@@ -9,9 +9,7 @@
 #include <string>
 
 #include "sim/contact/contact_source.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/bench.hpp"
-#include "tests/bench/task_scene.hpp"
 #include "tests/support/searches.hpp"
 
 /// The searches for contacts and the shells that they search, also as the grid of the block gets finer.
@@ -22,8 +20,7 @@ namespace {
 constexpr const char* kSearches[] = {"brute_force", "neighbour_list"};
 
 std::unique_ptr<ContactQuery> make_search(const std::string& search, const PointShell& shell, const ToolShape& tool) {
-  if (search == "brute_force") return std::make_unique<ShellQuery>(shell, tool);
-  return std::make_unique<NeighbourListQuery>(shell, tool);
+  return make_contact_query(shell, tool, search == "brute_force" ? Skips::off : Skips::on);
 }
 
 /// A search over a shell at the poses of a task. The answer of a search may depend on earlier poses, so it is called at
@@ -178,11 +175,11 @@ void list_rebuild(benchmark::State& state, std::size_t points) {
   constexpr int kRepeats = 5;
   const auto shell = shell_of(points);
   const std::vector<ToolPose> poses = some_poses();
-  NeighbourListQuery query(*shell, *task_scene("T2").tool);
-  ContactBuffer contacts(query.capacity());
+  const auto query = make_contact_query(*shell, *task_scene("T2").tool, Skips::on);
+  ContactBuffer contacts(query->capacity());
   const auto rebuild = [&](const ToolPose& pose) {
-    query.reset();
-    query.contacts_at(pose, contacts);
+    query->reset();
+    query->contacts_at(pose, contacts);
   };
   // The shortest time of each pose excludes disturbances by the machine.
   double longest = 0.0;

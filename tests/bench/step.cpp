@@ -12,14 +12,12 @@
 #include "results/observe/metrics.hpp"
 #include "results/observe/step_times.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/revolved.hpp"
 #include "tests/bench/bench.hpp"
-#include "tests/bench/task_scene.hpp"
-#include "tests/results/told.hpp"
+#include "tests/results/observing.hpp"
 #include "tests/support/meshes.hpp"
 
 /// Whole steps: their mean time, single steps, growth with the number of contacts, and what each skip saves.
@@ -316,15 +314,14 @@ void rendering_benchmark(benchmark::State& state, RenderingConfig config, std::s
 void clearance_benchmark(benchmark::State& state, Skips skips) {
   const TaskScene& scene = task_scene("T1");
   const ToolPose pose{{0.0, 0.0, 0.002}, {0.0, 0.0, -1.0}};
-  NeighbourListQuery list(*scene.shell, *scene.tool);
-  ShellQuery brute(*scene.shell, *scene.tool);
-  ContactQuery& query = skips == Skips::on ? static_cast<ContactQuery&>(list) : brute;
-  ContactBuffer contacts(query.capacity());
-  for (ContactQuery* each : {static_cast<ContactQuery*>(&list), static_cast<ContactQuery*>(&brute)}) {
+  const auto query = make_contact_query(*scene.shell, *scene.tool, skips);
+  const auto other = make_contact_query(*scene.shell, *scene.tool, skips == Skips::on ? Skips::off : Skips::on);
+  ContactBuffer contacts(query->capacity());
+  for (ContactQuery* each : {query.get(), other.get()}) {
     each->contacts_at(pose, contacts);
     if (!contacts.empty()) return refute(state, "contacts in free air");
   }
-  for (auto _ : state) query.contacts_at(pose, contacts);
+  for (auto _ : state) query->contacts_at(pose, contacts);
 }
 
 /// T3 without observers. With the skip off, ratios and energies are computed nevertheless.

@@ -1,4 +1,4 @@
-#include "tests/bench/task_scene.hpp"
+#include "tests/bench/bench.hpp"
 
 #include <map>
 

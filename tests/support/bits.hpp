@@ -4,7 +4,7 @@
 
 #include "sim/core/hash.hpp"
 #include "sim/core/types.hpp"
-#include "sim/loop/observer.hpp"
+#include "sim/loop/simulation.hpp"
 
 /// Bit-for-bit comparison: where a claim says "the same", no tolerance hides a difference.
 namespace hapbench::test {

@@ -93,7 +93,7 @@ inline SimulationParts fake_parts(FakeAlgorithm::Law law, Calls* calls = nullptr
   parts.source = std::make_unique<FakeSource>();
   parts.algorithm = std::make_unique<FakeAlgorithm>(std::move(law), calls);
   parts.motion = constant_axis(-Vec3::UnitZ());
-  parts.hand = std::make_unique<NoHand>();
+  parts.hand = std::make_unique<ForceHand>();
   parts.device = std::make_unique<IdealDevice>(std::nullopt);
   return parts;
 }

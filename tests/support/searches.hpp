@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "sim/contact/contact_source.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
 #include "sim/core/random.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/scale.hpp"
@@ -31,25 +30,24 @@ class SearchPair {
   SearchPair(const std::vector<SurfacePoint>& points, double cell_size, std::shared_ptr<const ToolShape> tool)
       : tool_(std::move(tool)),
         shell_(points, cell_size),
-        search_(shell_, *tool_),
-        brute_(shell_, *tool_),
-        found_(search_.capacity()),
+        search_(make_contact_query(shell_, *tool_, Skips::on)),
+        brute_(make_contact_query(shell_, *tool_, Skips::off)),
+        found_(search_->capacity()),
         all_(points.size()) {}
 
   bool agree_at(const ToolPose& pose) {
-    search_.contacts_at(pose, found_);
-    brute_.contacts_at(pose, all_);
+    search_->contacts_at(pose, found_);
+    brute_->contacts_at(pose, all_);
     contacts_ += all_.size();
-    return all_.size() <= search_.capacity() && same_contacts(found_, all_);
+    return all_.size() <= search_->capacity() && same_contacts(found_, all_);
   }
   std::uint64_t contacts() const { return contacts_; }
-  const SearchWork& work() const { return search_.work(); }
+  const SearchWork& work() const { return search_->work(); }
 
  private:
   std::shared_ptr<const ToolShape> tool_;
   PointShell shell_;
-  NeighbourListQuery search_;
-  ShellQuery brute_;
+  std::unique_ptr<ContactQuery> search_, brute_;
   ContactBuffer found_, all_;
   std::uint64_t contacts_ = 0;
 };

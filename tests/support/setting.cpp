@@ -82,7 +82,7 @@ SimulationParts free_run(const Setting& setting, const RenderingConfig& config) 
         std::make_unique<LateContacts>(std::move(parts.source), *config.late, setting.springs.has_value(), 1);
   parts.algorithm = make_algorithm(config);
   parts.motion = constant_axis(setting.pose.axis);
-  parts.hand = std::make_unique<NoHand>();
+  parts.hand = std::make_unique<ForceHand>();
   parts.device = std::make_unique<IdealDevice>(std::nullopt);
   return parts;
 }

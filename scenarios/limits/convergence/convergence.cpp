@@ -54,7 +54,6 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
   return sweep;
 }
 
-/// The field's value in the scenario.
 double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
   const Json own = own_value(loaded.scenario, path);
   if (own.is_number_float() && own.get<double>() > 0.0) return own.get<double>();
@@ -70,19 +69,11 @@ double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
 
 // ---- The order
 
-/// Smaller differences, relative to the results, are rounding errors of as many as 10^6 steps and say nothing about the
-/// order.
+/// Smaller differences, relative to the results, are rounding errors of up to 10^6 steps and say nothing of the order.
 constexpr double kRoundingShare = 1e-10;
 constexpr double kGciSafety = 1.25;        // Roache's factor for three and more levels
 constexpr double kAsymptoticWithin = 0.1;  // of GCI_21 / (r^p GCI_32) from 1
 constexpr std::size_t kLeastLevels = 3;
-
-/// The first level of those that count.
-std::size_t first_counted(std::span<const LevelResult> levels) {
-  std::size_t first = levels.size();
-  while (first > 0 && levels[first - 1].result && levels[first - 1].outcome == levels.back().outcome) --first;
-  return first;
-}
 
 std::string too_few_reason(std::span<const LevelResult> levels, std::size_t first) {
   const std::size_t count = levels.size() - first;
@@ -158,12 +149,13 @@ LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, st
   return sweep;
 }
 
-Convergence convergence_of(std::span<const LevelResult> levels, double ratio, double formal_order,
-                           const std::string& no_order) {
+Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels) {
   Convergence c;
   c.orders.resize(levels.size());
   c.errors.resize(levels.size());
-  const std::size_t first = first_counted(levels), count = levels.size() - first;
+  std::size_t first = levels.size();  // of the levels that count
+  while (first > 0 && levels[first - 1].result && levels[first - 1].outcome == levels.back().outcome) --first;
+  const std::size_t count = levels.size() - first;
   std::vector<double> f;
   double largest = 0.0;
   for (const LevelResult& level : levels.subspan(first)) {
@@ -174,7 +166,7 @@ Convergence convergence_of(std::span<const LevelResult> levels, double ratio, do
   for (std::size_t i = 2; i < count; ++i) {
     const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];
     if (!is_rounding(coarse) && !is_rounding(fine) && coarse * fine > 0.0)
-      c.orders[first + i] = math::log(coarse / fine) / math::log(ratio);
+      c.orders[first + i] = math::log(coarse / fine) / math::log(sweep.ratio);
   }
   if (count >= 2) {
     const auto last = f.end() - static_cast<std::ptrdiff_t>(std::min(count, kLeastLevels));
@@ -186,17 +178,21 @@ Convergence convergence_of(std::span<const LevelResult> levels, double ratio, do
     }
   }
 
-  if (c.reason = no_order; !c.reason.empty()) return c;
-  if (count < kLeastLevels) {
+  const auto is_first = [&](const LevelResult& level) { return level.state_hash == levels.front().state_hash; };
+  if (levels.size() > 1 && levels.back().result && std::ranges::all_of(levels, is_first)) {
+    c.reason = fmt::format("{} has no effect here: all runs are the same, bit for bit", sweep.axis.path);
+  } else if (!sweep.no_order.empty()) {
+    c.reason = sweep.no_order;
+  } else if (count < kLeastLevels) {
     c.reason = too_few_reason(levels, first);
   } else if (is_rounding(f[count - 2] - f[count - 1])) {
     c.reason = "the last levels differ by rounding only";
   } else if (c.reason = switching_reason(levels.last(kLeastLevels)); c.reason.empty()) {
-    c.reason = incredible_reason(f, std::span(c.orders).subspan(first), 2.0 * formal_order);
+    c.reason = incredible_reason(f, std::span(c.orders).subspan(first), 2.0 * sweep.formal_order);
   }
   if (!c.reason.empty()) return c;
 
-  const double p = *c.orders.back(), growth = math::pow(ratio, p), fine = f[count - 1] - f[count - 2];
+  const double p = *c.orders.back(), growth = math::pow(sweep.ratio, p), fine = f[count - 1] - f[count - 2];
   c.order = p;
   c.extrapolated = f[count - 1] + fine / (growth - 1.0);
   if (f[count - 1] != 0.0) c.gci = kGciSafety * std::abs(fine) / (std::abs(f[count - 1]) * (growth - 1.0));
@@ -224,15 +220,6 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
   for (const char* name : counts.first(path.starts_with("environment.") ? 1 : counts.size()))
     result.contacts.emplace_back(name, number_of(summary.metrics, name).value_or(0.0));
   return result;
-}
-
-Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult> results) {
-  const auto is_first = [&](const LevelResult& level) { return level.state_hash == results.front().state_hash; };
-  const bool alike = results.size() > 1 && results.back().result && std::ranges::all_of(results, is_first);
-  return convergence_of(results, levels.ratio, levels.formal_order,
-                        alike
-                            ? fmt::format("{} has no effect here: all runs are the same, bit for bit", levels.axis.path)
-                            : levels.no_order);
 }
 
 Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
@@ -286,14 +273,6 @@ std::optional<double> FinerRuns::error_by(const Part& part, std::size_t run, con
     results.push_back(level_result(part.levels, i, level, metric));
   }
   return convergence_of(part.levels, results).errors.front();
-}
-
-KnownError FinerRuns::known_error(std::size_t run, const std::string& metric) const {
-  const auto& [step, spacing, has_points] = scenes_[comparison_.scene(run)];
-  KnownError known{error_by(step, run, metric), error_by(spacing, run, metric), has_points};
-  if (const Metric* found = find_metric(reports_[run].metrics, metric))
-    known.tolerance = found->tolerance().value_or(0.0);
-  return known;
 }
 
 std::string FinerRuns::refined(std::size_t scene) const {

@@ -50,18 +50,14 @@ struct Convergence {
   std::vector<std::optional<double>> errors;
 };
 
-/// Judges the results of levels from coarse to fine, each by `ratio` (> 1) finer than the one before. Those count that
-/// follow the last one that ended otherwise than the finest or has no result. No order is stated for the reason
-/// `no_order`; with fewer than three of them; where contacts switch between the last three or the last two differ by
-/// rounding only; where within the last four differences change their sign or an order is not in (0, 2 formal].
-Convergence convergence_of(std::span<const LevelResult> levels, double ratio, double formal_order,
-                           const std::string& no_order = "");
-
 /// What the run of a level gave of a metric; no result where it has none or diverges.
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary, const std::string& metric);
 
-/// The verdict on the results of all levels.
-Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult> results);
+/// Judges the results of all levels. Those count that follow the last one that ended otherwise than the finest or has
+/// no result. No order is stated where all runs are the same; for the reason that the levels have (`no_order`); with
+/// fewer than three that count; where contacts switch between the last three or the last two differ by rounding only;
+/// where within the last four differences change their sign or an order is not in (0, 2 formal].
+Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels);
 
 /// The cases at the levels behind the first. Throws InputError where one of them cannot be run.
 Cases finer_cases(const LevelSweep& levels, const Cases& cases);
@@ -86,7 +82,13 @@ class FinerRuns {
   FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs);
 
   /// Error of a metric of the run with that number in the comparison; metrics are taken at the times of its own rows.
-  KnownError known_error(std::size_t run, const std::string& metric) const;
+  KnownError known_error(std::size_t run, const std::string& metric) const {
+    const auto& [step, spacing, has_points] = scenes_[comparison_.scene(run)];
+    KnownError known{error_by(step, run, metric), error_by(spacing, run, metric), has_points};
+    if (const Metric* found = find_metric(reports_[run].metrics, metric))
+      known.tolerance = found->tolerance().value_or(0.0);
+    return known;
+  }
 
   /// What was refined of a scene, and why something was not, in a clause.
   std::string refined(std::size_t scene) const;

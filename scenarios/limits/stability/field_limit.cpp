@@ -1,9 +1,5 @@
 #include "scenarios/limits/stability/field_limit.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -15,29 +11,9 @@
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_loop.hpp"
-#include "sim/core/math.hpp"
 
 namespace hapbench {
-double SearchWay::value_at(double part) const {
-  const double value = range.value_at(smallest ? 1.0 - part : part);
-  return whole ? std::round(value) : value;
-}
-
-std::optional<double> SearchWay::own_part() const {
-  if (!own) return std::nullopt;
-  const auto [from, to, logarithmic] = range;
-  const double part = logarithmic ? math::log(*own / from) / math::log(to / from) : (*own - from) / (to - from);
-  return smallest ? 1.0 - part : part;
-}
-
-bool SearchWay::apart(double a, double b) const {
-  const double low = std::min(value_at(a), value_at(b)), high = std::max(value_at(a), value_at(b));
-  if (whole) return high - low > 1.0;
-  if (range.logarithmic) return high > (1.0 + resolution) * low;
-  return high - low > resolution * (range.to - range.from);
-}
 
 TriedParts scanned(int intervals, const IsStable& stable) {
   TriedParts tried;
@@ -93,10 +69,6 @@ FoundEdge find_edge(const SearchWay& way, TriedParts& tried, const IsStable& sta
   return with_other_end(edge);
 }
 
-double may_fail_share(std::size_t tried) {
-  return 1.0 - math::pow(0.05, 1.0 / static_cast<double>(tried));
-}
-
 std::vector<double> parts_between(double from, double to, std::size_t count) {
   constexpr double kGolden = std::numbers::phi - 1.0;
   std::vector<double> parts;
@@ -141,12 +113,6 @@ FoundEdge find_tried_edge(const SearchWay& way, TriedParts& tried, const IsStabl
     begin = *edge.stable;
     for (auto& [part, is_stable] : tried) is_stable = is_stable && part > begin;
   }
-}
-
-LoadedScenario LimitQuestion::at(double value) const {
-  std::vector<std::string> all = overrides;
-  all.push_back(whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value));
-  return load_scenario(*scene, all);
 }
 
 Json own_value(const Scenario& scenario, const std::string& path) {
@@ -218,7 +184,8 @@ bool has_inequality(const Scenario& scenario) {
   return !has_device(scenario) && has_theory(scenario) && scenario.integrator.type->stability_margin != nullptr;
 }
 bool keeps_inequality(const Scenario& scenario) {
-  return *tool_on_spring(scenario, stiffness_eigenvalues(scenario)[2]).margin() >= 0.0;
+  return scenario.integrator.type->stability_margin(tool_on_spring(scenario, stiffness_eigenvalues(scenario)[2])) >=
+         0.0;
 }
 
 /// What is stable without a run, along the whole way.
@@ -284,26 +251,19 @@ void add_closed_forms(const LimitQuestion& question, FieldLimit& limit) {
 
 // ---- The search
 
-/// True for a value in the interval of stable ones that the limit ends.
-bool is_in_interval(double value, const FieldLimit& limit, bool smallest) {
-  const auto is_before = [smallest](double a, double b) { return smallest ? a > b : a < b; };
-  return (!limit.beyond || is_before(value, limit.beyond->value)) &&
-         (!limit.other.beyond || is_before(limit.other.beyond->value, value));
-}
-
 /// Adds the runs of the search to the limit, and which of them contradict it.
 void add_runs(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
+  const auto is_before = [&](double a, double b) { return question.smallest ? a > b : a < b; };
   for (const auto& [value, run] : runs) {
     limit.runs.push_back({value, run.verdict});
-    if (limit.value && question.holds(run.verdict) != is_in_interval(value, limit, question.smallest))
-      limit.inconsistent.push_back(limit.runs.back());
+    const bool in_interval = (!limit.beyond || is_before(value, limit.beyond->value)) &&
+                             (!limit.other.beyond || is_before(limit.other.beyond->value, value));
+    if (limit.value && question.holds(run.verdict) != in_interval) limit.inconsistent.push_back(limit.runs.back());
     limit.undecided += run.undecided;
   }
   limit.has_effect = std::any_of(runs.begin(), runs.end(),
                                  [&](const auto& run) { return run.second.way != runs.begin()->second.way; });
 }
-
-// ---- Devices
 
 /// The device of a file that is one, or of a scenario, of which nothing else is looked at.
 DeviceFields read_device(const Json& file) {
@@ -412,8 +372,9 @@ FieldLimit field_limit(const LimitQuestion& question) {
 // ---- Devices
 
 std::string delay_note(const Scenario& scenario) {
-  const double delay = delay_of(scenario), step = 1e3 * scenario.time.step;
-  if (!has_delay_in_samples(scenario) || delay == 0.0) return "";
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  if (device == nullptr || device->delay || device->delay_samples == 0.0) return "";
+  const double delay = device->delay_samples, step = 1e3 * scenario.time.step;
   return fmt::format(
       "delay_samples: {:.4g} ({:.3g} ms in steps of {:.3g} ms); samples are time steps of the scene, not of the log that "
       "a device was identified from",
@@ -464,9 +425,8 @@ std::vector<std::string> overrides_on(const ComparedDevice& device, const Scenar
   std::vector<std::string> all = {"device=" + device.json.dump()};
   const Json hand = device.has_place_for_mass ? Json() : massless_hand(scene);
   if (!hand.is_null()) all.push_back("hand=" + hand.dump());
-  for (const std::string& override : overrides) {
+  for (const std::string& override : overrides)
     if (hand.is_null() || overridden_path(override) != "hand.mass_kg") all.push_back(override);
-  }
   return all;
 }
 

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "algorithms/rendering_config.hpp"
 #include "scenarios/cases/cases.hpp"
 #include "scenarios/limits/stability/run_stability.hpp"
+#include "sim/core/math.hpp"
 
 /// The search for the edge of stable values, whatever makes them stable, and with it the largest or smallest value of a
 /// scenario's field at which its run is stable (run_stability.hpp).
@@ -22,10 +26,23 @@ struct SearchWay {
   /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
   double resolution = kEdgeResolution;
 
-  double value_at(double part) const;
-  std::optional<double> own_part() const;
+  double value_at(double part) const {
+    const double value = range.value_at(smallest ? 1.0 - part : part);
+    return whole ? std::round(value) : value;
+  }
+  std::optional<double> own_part() const {
+    if (!own) return std::nullopt;
+    const auto [from, to, logarithmic] = range;
+    const double part = logarithmic ? math::log(*own / from) / math::log(to / from) : (*own - from) / (to - from);
+    return smallest ? 1.0 - part : part;
+  }
   /// True while bisection has to go on between two parts.
-  bool apart(double a, double b) const;
+  bool apart(double a, double b) const {
+    const double low = std::min(value_at(a), value_at(b)), high = std::max(value_at(a), value_at(b));
+    if (whole) return high - low > 1.0;
+    if (range.logarithmic) return high > (1.0 + resolution) * low;
+    return high - low > resolution * (range.to - range.from);
+  }
 };
 
 /// The result of a search, as parts of the way: the interval of stable ones, from `first` to `stable`, and the unstable
@@ -54,7 +71,9 @@ inline constexpr std::size_t kTriedBetween = 48;  ///< values between the ends
 inline constexpr std::size_t kTriedNear = 8;      ///< and just below the edge,
 inline constexpr double kNear = 0.02;             ///< as far as this, relative
 /// With no value that fails among so many, at most this share of the interval does, with 95 % confidence.
-double may_fail_share(std::size_t tried);
+inline double may_fail_share(std::size_t tried) {
+  return 1.0 - math::pow(0.05, 1.0 / static_cast<double>(tried));
+}
 /// So many parts between two of a way: wherever one ends, those before it fill the interval evenly.
 std::vector<double> parts_between(double from, double to, std::size_t count);
 /// kTriedNear parts below one whose values are within kNear of its value.
@@ -78,7 +97,11 @@ struct LimitQuestion : StabilityRule, SearchWay {
 
   const char* side() const { return smallest ? "smallest" : "largest"; }
   /// The scene with this value of the field. Throws InputError.
-  LoadedScenario at(double value) const;
+  LoadedScenario at(double value) const {
+    std::vector<std::string> all = overrides;
+    all.push_back(whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value));
+    return load_scenario(*scene, all);
+  }
 };
 
 /// A value and what a run with it came to.

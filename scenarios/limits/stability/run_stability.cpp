@@ -1,7 +1,5 @@
 #include "scenarios/limits/stability/run_stability.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "results/observe/metrics.hpp"
@@ -14,12 +12,6 @@
 
 namespace hapbench {
 namespace {
-
-constexpr double kGrowth = 1.01;
-constexpr double kLeft = 0.01;
-constexpr double kSustained = 0.9;
-constexpr double kRest = 1e-12;
-constexpr double kFelt = 1e-3;  // [m/s]
 
 RunVerdictText of_outcome(Outcome outcome) {
   const OutcomeInfo& info = outcome_infos()[static_cast<std::size_t>(outcome)];
@@ -218,66 +210,6 @@ std::span<const RunVerdictText> run_verdict_texts() noexcept {
       of_outcome(Outcome::stuck),
       {"beyond_bound", "stable but for a metric that a --bound does not allow"}};
   return kTexts;
-}
-
-MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step, double still) {
-  MotionClassifier classifier(steps);
-  classifier.is_moved_ = true;
-  classifier.high_pass_ = vibration_filter(time_step);
-  if (still <= 0.5 * static_cast<double>(steps)) classifier.still_ = static_cast<std::uint64_t>(std::ceil(still));
-  return classifier;
-}
-
-void MotionClassifier::Stretch::add(std::uint64_t quarter, const Vec3& velocity) noexcept {
-  Quarter& here = quarters[std::min<std::uint64_t>(3, quarter)];
-  here.amplitude = std::max(here.amplitude, velocity.norm());
-  for (int i = 0; i < 3; ++i) {
-    if (velocity[i] == 0.0) continue;
-    here.turns[static_cast<std::size_t>(i)] += velocity[i] * last_velocity[i] < 0.0;
-    last_velocity[i] = velocity[i];
-  }
-}
-
-void MotionClassifier::on_step(const StepRecord& record) noexcept {
-  if (high_pass_ && record.step == 0) high_pass_->settle_at(record.body_velocity());
-  const Vec3 v = high_pass_ ? high_pass_->filter(record.body_velocity()) : record.body_velocity();
-  all_.add(record.step * 4 / steps_, v);
-  if (still_ && record.step >= *still_)
-    held_.add((record.step - *still_) * 4 / (steps_ - *still_), record.body_velocity());
-  const double speed = v.norm();
-  largest_speed_ = std::max(largest_speed_, speed);
-  rows_at_rest_ = speed <= kRest * largest_speed_ ? rows_at_rest_ + 1 : 0;
-}
-
-bool MotionClassifier::is_undecided() const noexcept {
-  const auto& q = all_.quarters;
-  return !is_moved_ && !at_rest() && !q[3].oscillates() && q[3].amplitude >= kLeft * q[0].amplitude &&
-         q[3].amplitude > 0.0;
-}
-
-MotionClass MotionClassifier::motion_class(Outcome outcome) const noexcept {
-  if (outcome == Outcome::diverges) return MotionClass::diverged;
-  if (at_rest()) return MotionClass::stable;
-  // A hand that comes to rest may swing a little more for a while: below 30 Hz that is not called growth.
-  return std::max(all_.motion_class(is_moved_ ? kFelt : 0.0),
-                  std::min(held_.motion_class(kFelt), MotionClass::vibrating));
-}
-
-MotionClass MotionClassifier::Stretch::motion_class(double felt) const noexcept {
-  const auto& q = quarters;
-  if (!q[3].oscillates() || q[3].amplitude < felt) return MotionClass::stable;
-  bool grows = true;
-  for (std::size_t i = 1; i < q.size(); ++i) grows = grows && q[i].amplitude > kGrowth * q[i - 1].amplitude;
-  if (grows) return MotionClass::diverged;
-  if (q[3].amplitude < kLeft * q[0].amplitude) return MotionClass::stable;
-  const bool decays = q[2].amplitude < kSustained * q[1].amplitude && q[3].amplitude < kSustained * q[2].amplitude;
-  return decays ? MotionClass::dying_out : MotionClass::vibrating;
-}
-
-StabilityRule rule_of(const Scenario& scenario) {
-  StabilityRule rule;
-  if (vibration_filter(scenario.time.step) && is_moved(scenario)) rule.most_vibration = kMostVibration;
-  return rule;
 }
 
 RunStability stability_of(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/loop/observer.hpp"
 #include "sim/loop/simulation.hpp"
 
 /// Judges whether a run is stable: first by its motion alone, without eigenvalues, tensors or knowledge of the law,
@@ -64,21 +64,47 @@ class MotionClassifier final : public Observer {
   /// steps are longer than a 60th of a second), in the last quarter beyond 1 mm/s, about what a hand can feel there.
   /// If the script ends at the row `still` in the first half of the run, all motion from then on that is faster than
   /// 1 mm/s counts as well, by quarters of what is left.
-  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still);
+  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still) {
+    MotionClassifier classifier(steps);
+    classifier.is_moved_ = true;
+    classifier.high_pass_ = vibration_filter(time_step);
+    if (still <= 0.5 * static_cast<double>(steps)) classifier.still_ = static_cast<std::uint64_t>(std::ceil(still));
+    return classifier;
+  }
 
-  void on_step(const StepRecord& record) noexcept override;
+  void on_step(const StepRecord& record) noexcept override {
+    const Vec3& velocity = record.body_velocity();
+    if (high_pass_ && record.step == 0) high_pass_->settle_at(velocity);
+    const Vec3 v = high_pass_ ? high_pass_->filter(velocity) : velocity;
+    all_.add(record.step * 4 / steps_, v);
+    if (still_ && record.step >= *still_) held_.add((record.step - *still_) * 4 / (steps_ - *still_), velocity);
+    const double speed = v.norm();
+    largest_speed_ = std::max(largest_speed_, speed);
+    rows_at_rest_ = speed <= kRest * largest_speed_ ? rows_at_rest_ + 1 : 0;
+  }
 
-  /// True once the tool has come to rest to 1e-12 of its largest speed for 200 rows: what is left is rounding, and the
-  /// run may be cut short.
+  /// True once the tool is at rest to 1e-12 of its largest speed for 200 rows: the rest is rounding and may be cut off.
   bool at_rest() const noexcept { return !is_moved_ && rows_at_rest_ >= kRowsAtRest; }
   /// True for a complete run that is too short to tell: it moves on in the last quarter, by 1 % of the first one's
   /// amplitude or more, without oscillating.
-  bool is_undecided() const noexcept;
+  bool is_undecided() const noexcept {
+    const auto& q = all_.quarters;
+    return !is_moved_ && !at_rest() && !q[3].oscillates() && q[3].amplitude >= kLeft * q[0].amplitude &&
+           q[3].amplitude > 0.0;
+  }
   /// Class of a complete run, or of one that was cut short because it came to rest.
-  MotionClass motion_class(Outcome outcome) const noexcept;
+  MotionClass motion_class(Outcome outcome) const noexcept {
+    if (outcome == Outcome::diverges) return MotionClass::diverged;
+    if (at_rest()) return MotionClass::stable;
+    // A hand that comes to rest may swing a little more for a while: below 30 Hz that is not called growth.
+    return std::max(all_.motion_class(is_moved_ ? kFelt : 0.0),
+                    std::min(held_.motion_class(kFelt), MotionClass::vibrating));
+  }
 
  private:
   static constexpr int kRowsAtRest = 200;
+  static constexpr double kGrowth = 1.01, kLeft = 0.01, kSustained = 0.9, kRest = 1e-12;
+  static constexpr double kFelt = 1e-3;  ///< [m/s]
 
   struct Quarter {
     double amplitude = 0.0;                ///< largest speed [m/s]
@@ -89,8 +115,26 @@ class MotionClassifier final : public Observer {
   struct Stretch {
     std::array<Quarter, 4> quarters{};
     Vec3 last_velocity = Vec3::Zero();  ///< the last value of each component that was not zero
-    void add(std::uint64_t quarter, const Vec3& velocity) noexcept;
-    MotionClass motion_class(double felt) const noexcept;
+
+    void add(std::uint64_t quarter, const Vec3& velocity) noexcept {
+      Quarter& here = quarters[std::min<std::uint64_t>(3, quarter)];
+      here.amplitude = std::max(here.amplitude, velocity.norm());
+      for (int i = 0; i < 3; ++i) {
+        if (velocity[i] == 0.0) continue;
+        here.turns[static_cast<std::size_t>(i)] += velocity[i] * last_velocity[i] < 0.0;
+        last_velocity[i] = velocity[i];
+      }
+    }
+    MotionClass motion_class(double felt) const noexcept {
+      const auto& q = quarters;
+      if (!q[3].oscillates() || q[3].amplitude < felt) return MotionClass::stable;
+      bool grows = true;
+      for (std::size_t i = 1; i < q.size(); ++i) grows = grows && q[i].amplitude > kGrowth * q[i - 1].amplitude;
+      if (grows) return MotionClass::diverged;
+      if (q[3].amplitude < kLeft * q[0].amplitude) return MotionClass::stable;
+      const bool decays = q[2].amplitude < kSustained * q[1].amplitude && q[3].amplitude < kSustained * q[2].amplitude;
+      return decays ? MotionClass::dying_out : MotionClass::vibrating;
+    }
   };
 
   std::uint64_t steps_;
@@ -131,9 +175,12 @@ struct StabilityRule {
   }
 };
 
-/// The rule where nobody asks for another: where a script moves the tool, what is felt decides (kMostVibration), but
-/// not at 60 Hz and less.
-StabilityRule rule_of(const Scenario& scenario);
+/// The rule by default: where a script moves the tool, what is felt decides (kMostVibration), not at 60 Hz and less.
+inline StabilityRule rule_of(const Scenario& scenario) {
+  StabilityRule rule;
+  if (vibration_filter(scenario.time.step) && is_moved(scenario)) rule.most_vibration = kMostVibration;
+  return rule;
+}
 
 struct RunStability {
   RunVerdict verdict = RunVerdict::stable;

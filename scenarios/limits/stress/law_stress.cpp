@@ -56,7 +56,6 @@ Vec3 in_tool(Random& random, const ContactSet& set) {
 
 using Draw = std::function<Vec3()>;
 
-/// Where the points of a set are.
 Draw positions(Random& random, const ContactSet& set) {
   const double radius = set.tool.radius(), length = set.tool.length();
   switch (random.below(5)) {
@@ -82,7 +81,6 @@ Draw positions(Random& random, const ContactSet& set) {
   }
 }
 
-/// Their normals.
 Draw normals(Random& random, const ContactSet& set) {
   const Vec3 u = chance(random, 0.2) ? set.pose.axis : random.direction();
   switch (random.below(5)) {
@@ -132,11 +130,10 @@ bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   return force.rendered.norm() <= (1.0 + kForceRounding) * bound;
 }
 
-/// Counts a set under one algorithm.
 void count_set(const ContactSet& set, std::uint64_t number, const PointShell& shell, StressCounts& counts) {
   RenderingConfig config = set.rendering;
   config.algorithm = counts.algorithm;
-  ShellSource source(shell, set.tool, std::make_unique<ShellQuery>(shell, set.tool), make_depth_model(config));
+  ShellSource source(shell, set.tool, make_contact_query(shell, set.tool, Skips::off), make_depth_model(config));
   ContactBuffer contacts(source.capacity());
   const auto algorithm = make_algorithm(config);
   algorithm->prepare({source.capacity(), &set.tool, &shell});
@@ -196,8 +193,7 @@ ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
   draw_tool(random, set);
   draw_rendering(random, set.rendering);
   const Draw position = positions(random, set), normal = normals(random, set);
-  // Every fifth set has one point. The other sizes are log-uniform, so that small sets, which are degenerate most
-  // often, are common.
+  // Every fifth set has one point. Other sizes are log-uniform: small ones, degenerate most often, are common.
   const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMostContacts));
   set.points.resize(static_cast<std::size_t>(n));
   for (SurfacePoint& point : set.points) {

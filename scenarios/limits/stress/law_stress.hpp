@@ -22,8 +22,7 @@ struct ContactSet {
 inline constexpr std::size_t kMostContacts = 200;
 
 /// Set number `i` of the seed, by the numbers that the counts name: points on the axis, on the surface, coincident;
-/// normals that are zero, equal, opposite, nearly so, or more different ones than n_ext; scenes of 1e-12 m and of
-/// 1e3 m.
+/// normals that are zero, equal, opposite, nearly so, or more different ones than n_ext; scenes of 1e-12 and 1e3 m.
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 
 /// The counts of one algorithm over all sets.

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "scenarios/limits/tuning/tune.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_loop.hpp"
@@ -74,8 +73,8 @@ struct Trials {
     for (const std::string& of : question.families)
       for (FamilyMember& member : family_of(own, of)) family.push_back(std::move(member));
     if (springs_stay(own.scenario)) springs_lambda = stiffness_eigenvalues(own.scenario)[2];
-    for (const DiagnosisRule& rule : diagnosis_rules())
-      if (is_quiet && rule.quiet) limits[rule.name].max = rule.threshold;
+    if (is_quiet)
+      for (const Diagnosed& rule : diagnosis_rules(is_quiet)) limits[rule.rule].max = rule.threshold;
     end.fail("range", "the end of the range that was searched");
   }
 
@@ -138,13 +137,9 @@ struct Trials {
     if (trial.feasible()) judge_limits(trial);
     return trial;
   }
-  bool feasible(const TuneSetting& setting, double stiffness) {
-    return stiffness <= cap && tried(setting, stiffness).feasible();
-  }
-  /// The trial, or above `cap` the end.
-  const TuneTrial& beyond(const TuneSetting& setting, double stiffness) {
-    return stiffness <= cap ? tried(setting, stiffness) : end;
-  }
+  /// The trial, or above `cap` the end, which is not feasible.
+  const TuneTrial& beyond(const TuneSetting& setting, double K) { return K <= cap ? tried(setting, K) : end; }
+  bool feasible(const TuneSetting& setting, double K) { return beyond(setting, K).feasible(); }
 
   /// Gives the trial the metrics of the scene's own run, unless it has them.
   void measure(TuneTrial& trial) {

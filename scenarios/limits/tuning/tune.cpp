@@ -12,18 +12,6 @@
 
 namespace hapbench {
 
-std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor) {
-  const auto found = metrics.find(name);
-  return found == metrics.end() ? std::nullopt : std::optional(factor * found->second);
-}
-
-std::string setting_text(const TuneSetting& setting) {
-  std::string text;
-  if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *setting.damping_ratio);
-  if (setting.mass) text += fmt::format(", {:.3g} kg", *setting.mass);
-  return setting.filter.empty() ? text : text + ", " + setting.filter;
-}
-
 TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorithm) {
   std::vector<std::string> overrides = question.overrides;
   overrides.push_back("rendering.algorithm=" + algorithm);
@@ -93,14 +81,12 @@ class TuneSearch {
     for (const TuneSetting& setting : settings_) improve(setting);
     if (!best_) approach();
     if (!best_) return best_;
-    for (const char* filter : filters_) {
+    for (const char* filter : filters_)
       for (const TuneSetting& setting : settings_)
         if (setting.mass == best_->mass) improve({setting.damping_ratio, setting.mass, filter});
-    }
     refine();
     return best_;
   }
-  /// The trial just beyond the best.
   const TuneTrial& beyond() const { return beyond_; }
 
  private:
@@ -401,8 +387,7 @@ std::string relaxed(const Trials& trials, const TuneTrial& trial, const std::str
   return fmt::format("{} >= {:.3g} in place of {:.3g}", name, (*worst - more) * 0.999, bound.min.value_or(0.0));
 }
 
-/// For each limit the least by which it alone has to give way for a trial to keep all; where one is not enough, what
-/// the nearest trial needs.
+/// For each limit the least by which it alone has to give way for a trial to keep all; else what the nearest needs.
 std::string relaxations(const Trials& trials, const TuneTrial& nearest) {
   std::map<std::string, std::pair<double, const TuneTrial*>> least;
   for (const auto& [key, trial] : trials.all) {

@@ -13,7 +13,10 @@ inline constexpr std::array kTuneMetrics = {"inside_max_m",     "force_rms_above
                                             "inside_settled_m", "force_mean_in_contact_N", "landing_force_max_N"};
 using TuneMetrics = std::map<std::string, double, std::less<>>;
 /// The value of that name times a factor, if there is one.
-std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor = 1.0);
+inline std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor = 1.0) {
+  const auto found = metrics.find(name);
+  return found == metrics.end() ? std::nullopt : std::optional(factor * found->second);
+}
 
 /// The families of runs besides the scene's own that a setting has to hold in:
 ///   hands   that are springs with the scene's damping: the ends of hand_family(), 100 and 1000 N/m, on an impedance
@@ -52,7 +55,12 @@ struct TuneSetting {
 };
 
 /// ", zeta = 0.3, 0.2 kg", of what is chosen.
-std::string setting_text(const TuneSetting& setting);
+inline std::string setting_text(const TuneSetting& setting) {
+  std::string text;
+  if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *setting.damping_ratio);
+  if (setting.mass) text += fmt::format(", {:.3g} kg", *setting.mass);
+  return setting.filter.empty() ? text : text + ", " + setting.filter;
+}
 
 /// A setting and K, tried for a law.
 struct TuneTrial : TuneSetting {

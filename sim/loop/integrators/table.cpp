@@ -192,7 +192,6 @@ const IntegratorEntry kVelocityVerlet = {
              .known_failure = "no stiffer springs than leapfrog without damping, K < 4 M / dt^2; order 1 with damping"},
     .step = velocity_verlet,
     .order = 2,
-    .forces = 2,
     .damper_limit = 4.0,
 };
 
@@ -206,7 +205,6 @@ const IntegratorEntry kRk4 = {
     .step = rk4,
     .order = 4,
     .damped_order = 4,
-    .forces = 4,
     .damper_limit = kRk4Damper,
 };
 
@@ -220,7 +218,6 @@ const IntegratorEntry kEvent = {
     .step = event,
     .order = 4,
     .damped_order = 4,
-    .forces = 5,
     .damper_limit = kRk4Damper,
 };
 
@@ -265,11 +262,6 @@ bool SpringDamper::is_stable() const {
   const Eigen::Matrix2d A = step_matrix();
   const double trace = A.trace(), determinant = A.determinant();
   return std::abs(determinant) <= 1.0 + kRounding && std::abs(trace) <= 1.0 + determinant + kRounding;
-}
-
-std::optional<double> SpringDamper::margin() const {
-  if (integrator->stability_margin == nullptr) return std::nullopt;
-  return integrator->stability_margin(*this);
 }
 
 }  // namespace hapbench

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 #include "sim/core/types.hpp"
 #include "sim/loop/force_algorithm.hpp"
@@ -42,12 +41,11 @@ struct IntegratorEntry {
   void (*step)(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double tolerance);
   int order = 1;         ///< of convergence on undamped springs
   int damped_order = 1;  ///< of convergence with damping
-  int forces = 1;        ///< rendered forces a step, including the row's; of `event`, without a contact on or off
   /// True if the row's force acts unchanged over the step (M dv = f dt), so that its work needs no other force.
   bool holds_force = false;
   /// The matrix A of (x, v) -> A (x, v).
   Eigen::Matrix2d (*step_matrix)(const SpringDamper&) = nullptr;
-  /// Positive if and only if a step is stable.
+  /// Positive if and only if a step is stable (leapfrog: 4 - 2 lambda B dt / M - lambda K dt^2 / M).
   double (*stability_margin)(const SpringDamper&) = nullptr;
   /// The largest B dt / M of a damper without a spring at which a step is stable; of the implicit ones every value is.
   double damper_limit = std::numeric_limits<double>::infinity();
@@ -83,9 +81,6 @@ struct SpringDamper {
   /// True while no eigenvalue leaves the unit circle by more than rounding. By trace and determinant, because computed
   /// eigenvalues near -1 are off by the square root of rounding.
   bool is_stable() const;
-  /// Positive if a step is stable (leapfrog: 4 - 2 lambda B dt / M - lambda K dt^2 / M); nullopt if the integrator has
-  /// no closed form.
-  std::optional<double> margin() const;
 };
 
 }  // namespace hapbench

@@ -7,7 +7,6 @@
 
 #include "device_model/hands/scripted_hands.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
@@ -121,14 +120,14 @@ void print_mesh_tool() {
   std::vector<SurfacePoint> points;
   for (int i = 0; i < 2000; ++i) points.push_back({random.uniform(0.0, 2.0) * random.direction(), random.direction()});
   const PointShell shell(points, 0.1);
-  NeighbourListQuery search(shell, tool);
-  ContactBuffer contacts(search.capacity());
-  std::vector<double> exits(search.capacity());
-  AlignedDoubles x(simd::padded(search.capacity())), y(x.size()), z(x.size());
+  const auto search = make_contact_query(shell, tool, Skips::on);
+  ContactBuffer contacts(search->capacity());
+  std::vector<double> exits(search->capacity());
+  AlignedDoubles x(simd::padded(search->capacity())), y(x.size()), z(x.size());
   Hash hash;
   for (int i = 0; i < 200; ++i) {
     const ToolPose pose{0.3 * random.direction(), random.direction(), random.uniform(-3.0, 3.0)};
-    search.contacts_at(pose, contacts);
+    search->contacts_at(pose, contacts);
     tool.shortest_depths(pose, contacts);
     tool.shortest_gradients(pose, contacts);
     hash.add(contacts);
@@ -154,12 +153,12 @@ void print_tools(const ToolKind& kind) {
       p = {random.below(2) == 0 ? tool.near_point(pose, random) : tool.surface_point(pose, random), random.direction()};
     }
     const PointShell shell(points, 0.0);
-    NeighbourListQuery query(shell, *tool.shape);
+    const auto query = make_contact_query(shell, *tool.shape, Skips::on);
     ContactBuffer contacts(points.size());
-    ShellQuery brute_force(shell, *tool.shape);  // which has its own loop
-    brute_force.contacts_at(pose, contacts);
+    const auto brute_force = make_contact_query(shell, *tool.shape, Skips::off);  // which has its own loop
+    brute_force->contacts_at(pose, contacts);
     hash.add(contacts);
-    query.contacts_at(pose, contacts);
+    query->contacts_at(pose, contacts);
     tool.shape->shortest_depths(pose, contacts);
     tool.shape->shortest_gradients(pose, contacts);
     hash.add(contacts);

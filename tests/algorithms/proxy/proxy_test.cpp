@@ -4,7 +4,8 @@
 #include <limits>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "algorithms/proxy/proxy_rendering.hpp"
+#include "algorithms/proxy/proxy_constraints.hpp"
+#include "algorithms/registry.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/geometry/analytic_shells.hpp"
@@ -246,27 +247,29 @@ RenderingConfig proxy_config() {
 struct Rig {
   PointShell shell;
   ShellSource source;
-  ProxyRendering proxy;
+  std::unique_ptr<ForceAlgorithm> proxy;
   ContactBuffer contacts;
   RenderedForce force;
+  Vec3 place = Vec3::Zero();  ///< of the proxy
 
   Rig(const test::Setting& setting, const RenderingConfig& config)
       : shell(setting.points, 0.0),
-        source(shell, setting.tool, std::make_unique<ShellQuery>(shell, setting.tool),
+        source(shell, setting.tool, make_contact_query(shell, setting.tool, Skips::off),
                make_depth_model("surface_normal")),
-        proxy(config),
+        proxy(make_algorithm(config)),
         contacts(source.capacity()) {
-    proxy.prepare({source.capacity(), &setting.tool, &shell});
-    proxy.reset();
+    proxy->prepare({source.capacity(), &setting.tool, &shell});
+    proxy->reset();
   }
   void step(const ToolState& tool) {
     source.contacts_at(tool.pose, contacts);
-    proxy.compute(tool, contacts, force);
+    proxy->compute(tool, contacts, force);
+    place = tool.pose.position + force.spring / kK;
   }
   /// How deep a point is in the tool at the proxy's place [m].
   double deepest(const Vec3& axis) {
     ContactBuffer there(source.capacity());
-    source.contacts_at({proxy.proxy(), axis}, there);
+    source.contacts_at({place, axis}, there);
     return there.largest_depth();
   }
 };
@@ -348,7 +351,7 @@ TEST(ProxyRendering, NeverLetsThePointsInWhereTheToolHasRoom) {
       rig.step(tool);
       held += !rig.contacts.empty();
       ASSERT_LE(lambda_max(rig.force.S), 1.0 + 1e-12);
-      const double longest = (tool.pose.position - rig.proxy.proxy()).norm() + 2e-4;
+      const double longest = (tool.pose.position - rig.place).norm() + 2e-4;
       ASSERT_LE(rig.deepest(tool.pose.axis), kViolationTolerance * longest) << "run " << run << ", step " << step;
     }
   }
@@ -368,8 +371,8 @@ TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
 
 /// Half width of the tools.
 constexpr double kHalfWidth = 0.0005;
-/// Motion of a proxy that starts inside in one step.
-const double kRecovery = kRecoverySpeed * kHalfWidth * Scene{}.dt;
+/// Motion of a proxy that starts inside in one step: 40 half widths a second.
+const double kRecovery = 40.0 * kHalfWidth * Scene{}.dt;
 /// A move is only nearly proportional to the depths, because points that are not yet entered stay in place.
 constexpr double kNearly = 1.1;
 
@@ -383,17 +386,17 @@ TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
   Vec3 last = tool.pose.position;
   for (int step = 0; step < 40; ++step) {
     rig.step(tool);
-    const Vec3 moved = rig.proxy.proxy() - last;
+    const Vec3 moved = rig.place - last;
     ASSERT_GE(moved.z(), -1e-15) << step;
     ASSERT_LE(moved.norm(), kNearly * kRecovery) << step;
-    last = rig.proxy.proxy();
+    last = rig.place;
   }
   EXPECT_LE((rig.force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-9);
   // Once outside, it stays outside, however fast the tool turns.
   const ToolPose turned{tool.pose.position, Vec3(1.0, 0.0, 0.02).normalized()};
   rig.step({turned, Vec3::Zero()});
   EXPECT_LE(rig.deepest(turned.axis), 1e-10);
-  EXPECT_GT((rig.proxy.proxy() - last).norm(), kRecovery);
+  EXPECT_GT((rig.place - last).norm(), kRecovery);
 }
 
 TEST(ProxyRendering, StoresTheEnergyOfOneSpring) {
@@ -402,9 +405,9 @@ TEST(ProxyRendering, StoresTheEnergyOfOneSpring) {
   Rig rig(setting, proxy_config());
   rig.step({above(setting), Vec3::Zero()});
   rig.step({setting.pose, Vec3::Zero()});
-  const SpringState state = rig.proxy.spring_state({setting.pose, Vec3::Zero()}, rig.contacts);
+  const SpringState state = rig.proxy->spring_state({setting.pose, Vec3::Zero()}, rig.contacts);
   EXPECT_NEAR(state.energy, 0.5 * kK * 5e-5 * 5e-5, 1e-15);
-  EXPECT_EQ(rig.proxy.jacobian().stiffness, Mat3(kK * rig.force.S));
+  EXPECT_EQ(rig.proxy->jacobian().stiffness, Mat3(kK * rig.force.S));
 }
 
 TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
@@ -413,13 +416,13 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   RenderingConfig config = proxy_config();
   config.angular_damping = true;
   Rig rig(setting, config);
-  EXPECT_TRUE(rig.proxy.angular_velocity_cutoff());
+  EXPECT_TRUE(rig.proxy->angular_velocity_cutoff());
   rig.step({above(setting), Vec3::Zero()});
   const Vec3 turn(0.3, -0.4, 0.1);
   rig.step({setting.pose, Vec3::Zero(), turn});
   ASSERT_EQ(rig.contacts.size(), 1u);
   // One patch holds the edge. The normal component of the velocity omega x r of its point is damped.
-  const double along = turn.cross(rig.contacts.point(0) - rig.proxy.proxy()).z();
+  const double along = turn.cross(rig.contacts.point(0) - rig.place).z();
   const double B = 2.0 * config.damping_ratio * std::sqrt(kK * config.mass);
   EXPECT_LE((rig.force.rendered - rig.force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
 }
@@ -431,21 +434,21 @@ TEST(ProxyRendering, DampsANewDirectionWithItsTimeConstant) {
   RenderingConfig config = proxy_config();
   config.parameters["proxy"]["damping_time_s"] = 0.003;
   config.mu_s = config.mu_f = 0.0;
-  ProxyRendering proxy(config);
+  const auto proxy = make_algorithm(config);
   std::uint64_t row = 0;
   Scene scene;
   scene.capacity = 4;
   scene.springs = &planes;
   scene.dt = 0.001;
   scene.row = &row;
-  proxy.prepare(scene);
-  proxy.reset();
+  proxy->prepare(scene);
+  proxy->reset();
   const Vec3 v(0.1, 0.2, 0.3);
   const double B = 2.0 * config.damping_ratio * std::sqrt(kK * config.mass);
   ContactBuffer contacts(4);
   RenderedForce force;
   const auto damped = [&](const Vec3& position) {
-    proxy.compute({{position, -Vec3::UnitZ()}, v}, contacts, force);
+    proxy->compute({{position, -Vec3::UnitZ()}, v}, contacts, force);
     return Vec3((force.spring - force.rendered) / B);
   };
   const double share = 0.001 / 0.004;
@@ -458,10 +461,10 @@ TEST(ProxyRendering, DampsANewDirectionWithItsTimeConstant) {
   row = 2;
   const double second = share + share * (1.0 - share);
   EXPECT_LE((damped({1e-4, 0, 1e-4}) - Vec3(0.1, 0, second * 0.3)).norm(), 1e-15);
-  EXPECT_LE((proxy.jacobian().damping - Mat3(Vec3(B, 0, B * second).asDiagonal())).norm(), 1e-12 * B);
+  EXPECT_LE((proxy->jacobian().damping - Mat3(Vec3(B, 0, B * second).asDiagonal())).norm(), 1e-12 * B);
   row = 3;
   EXPECT_EQ(damped({-1e-4, 0, -1e-4}), Vec3(Vec3::Zero())) << "gone with the last contact";
-  proxy.reset();
+  proxy->reset();
   row = 0;
   EXPECT_LE((damped({-1e-4, 0, 1e-4}) - Vec3(0, 0, 0.3)).norm(), 1e-15) << "nothing is left after a reset";
 }
@@ -475,21 +478,6 @@ TEST(ProxyRendering, AnswersAPoseThatIsNotFiniteWithAForceThatIsNotUntilAReset) 
   EXPECT_FALSE(probe.force_at(nowhere).spring.allFinite());
   probe.algorithm().reset();
   EXPECT_EQ(probe.force_at(setting.pose).spring, force);
-}
-
-TEST(TypicalSpacing, IsThatOfALatticeAndOfALine) {
-  EXPECT_NEAR(typical_spacing(PointShell(surface_points(Plane{0.004, 0.0001}), 0.0)), 1e-4, 1e-12);
-  EXPECT_NEAR(typical_spacing(PointShell(surface_points(Hole2d{}), 0.0)), 1e-4, 1e-12);
-  EXPECT_EQ(typical_spacing(PointShell({}, 0.0)), 0.0);
-  // Each point four times, with rounding.
-  std::vector<SurfacePoint> copies;
-  for (const SurfacePoint& point : surface_points(Plane{0.004, 0.0001})) {
-    for (int k = 0; k < 4; ++k) {
-      copies.push_back(point);
-      copies.back().position.z() += 1e-16 * k;
-    }
-  }
-  EXPECT_NEAR(typical_spacing(PointShell(copies, 0.0)), 1e-4, 1e-12);
 }
 
 }  // namespace

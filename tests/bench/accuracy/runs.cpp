@@ -13,7 +13,7 @@
 #include "scenarios/thesis/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"
-#include "tests/results/told.hpp"
+#include "tests/results/observing.hpp"
 
 /// Panels whose settings are runs of a scene.
 namespace hapbench::accuracy {

@@ -6,10 +6,10 @@
 
 #include "algorithms/module/module.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
+#include "sim/contact/contact_source.hpp"
+#include "tests/bench/bench.hpp"
 #include "tests/bench/benchmark_program.hpp"
 #include "tests/bench/peers/contact_library.hpp"
-#include "tests/bench/task_scene.hpp"
 
 /// Our search and other libraries at the same poses of the same scenes, as peers/<library>/<task>. Libraries that are
 /// not installed are left out.
@@ -149,8 +149,8 @@ void time_ours(benchmark::State& state, Source& source, const std::vector<ToolPo
 
 void time_search(benchmark::State& state, const std::string& task) {
   const TaskScene& scene = task_scene(task);
-  NeighbourListQuery query(*scene.shell, *scene.tool);
-  time_ours(state, query, scene.poses);
+  const auto query = make_contact_query(*scene.shell, *scene.tool, Skips::on);
+  time_ours(state, *query, scene.poses);
 }
 
 void time_search_and_depths(benchmark::State& state, const std::string& task) {

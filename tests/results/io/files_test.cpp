@@ -10,13 +10,13 @@
 #include <random>
 #include <string>
 
-#include "results/allocations/allocations.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
 #include "results/io/table_writer.hpp"
 #include "results/record/recorder.hpp"
+#include "results/summary/allocations.hpp"
 #include "tests/results/files.hpp"
-#include "tests/results/rows.hpp"
+#include "tests/results/observing.hpp"
 
 namespace hapbench::files_test {
 namespace {

@@ -15,7 +15,7 @@
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/revolved.hpp"
-#include "tests/results/rows.hpp"
+#include "tests/results/observing.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 

@@ -13,8 +13,7 @@
 #include "results/observe/energy.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/metrics.hpp"
-#include "tests/results/rows.hpp"
-#include "tests/results/told.hpp"
+#include "tests/results/observing.hpp"
 #include "tests/support/setting.hpp"
 
 namespace hapbench::forces_test {

@@ -8,11 +8,10 @@
 #include <tuple>
 #include <vector>
 
-#include "results/allocations/allocations.hpp"
 #include "results/observe/contact_metrics.hpp"
 #include "results/observe/energy.hpp"
-#include "tests/results/rows.hpp"
-#include "tests/results/told.hpp"
+#include "results/summary/allocations.hpp"
+#include "tests/results/observing.hpp"
 #include "tests/support/fakes.hpp"
 
 /// Seams between trials and runs without what a metric is of; known answers ask for the numbers.

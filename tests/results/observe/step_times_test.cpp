@@ -6,9 +6,9 @@
 #include <thread>
 #include <vector>
 
-#include "results/allocations/allocations.hpp"
+#include "results/summary/allocations.hpp"
 #include "results/summary/summary.hpp"
-#include "tests/results/rows.hpp"
+#include "tests/results/observing.hpp"
 
 namespace hapbench::step_times_test {
 namespace {

@@ -11,7 +11,7 @@
 #include "results/observe/target_metrics.hpp"
 #include "sim/core/random.hpp"
 #include "sim/loop/simulation.hpp"
-#include "tests/results/told.hpp"
+#include "tests/results/observing.hpp"
 
 namespace hapbench::target_metrics_test {
 namespace {

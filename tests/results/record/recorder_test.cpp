@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "results/allocations/allocations.hpp"
 #include "results/io/columns.hpp"
 #include "results/observe/contact_metrics.hpp"
 #include "results/observe/energy.hpp"
@@ -18,11 +17,11 @@
 #include "results/observe/metrics.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "results/record/recorder.hpp"
+#include "results/summary/allocations.hpp"
 #include "results/summary/summary.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "tests/results/files.hpp"
-#include "tests/results/rows.hpp"
-#include "tests/results/told.hpp"
+#include "tests/results/observing.hpp"
 
 namespace hapbench::recorder_test {
 namespace {

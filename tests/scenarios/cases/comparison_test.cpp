@@ -141,13 +141,19 @@ using Values = std::vector<std::optional<double>>;
 /// One scene, metric and seed, or so many seeds; a value for each algorithm and seed. A negative one stands for a run
 /// that diverged. Each number may be wrong by `error`.
 League league_of(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0) {
-  League league{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}};
+  League league{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}, {}};
   for (std::size_t a = 0; a < values.size() / seeds; ++a) league.algorithms.push_back("law_" + std::to_string(a));
+  std::vector<Result> runs;
   for (const auto& value : values) {
-    const bool failed = value && *value < 0.0;
-    league.runs.push_back({failed ? "diverges" : "completes", failed, league.runs.size(), {{value, error}}});
+    league.failed.push_back(value && *value < 0.0);
+    Result& run = runs.emplace_back();
+    run.end.outcome = league.failed.back() ? Outcome::diverges : Outcome::completes;
+    run.state_hash = runs.size();
+    Section(run.metrics, "").metric("force_max_N", "N", "", value, better).within(0.0, error);
   }
+  league.runs = runs;
   league.rank();
+  league.runs = {};
   return league;
 }
 

@@ -288,8 +288,8 @@ TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   const SweepOptions options{.directory = directory.path(), .jobs = {3, ""}};
   const SweepReport report = run_sweep(plan, options);
   ASSERT_TRUE(report.failed);
-  EXPECT_EQ(report.failed->run, 4567u);
-  EXPECT_NE(report.failed->problem.find("/seed: got -1"), std::string::npos) << report.failed->problem;
+  EXPECT_EQ(*report.failed, 4567u);
+  EXPECT_NE(report.problem.find("/seed: got -1"), std::string::npos) << report.problem;
   const SweepTable table = read_sweep(options.table());
   EXPECT_EQ(table.columns, plan.columns());
   EXPECT_EQ(table.counts.failed, 1u);

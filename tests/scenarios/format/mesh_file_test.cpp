@@ -33,7 +33,7 @@ class MeshFile : public testing::Test {
   MeshPoints read(const std::string& name, const std::string& text, const MeshSampling& sampling = {}) const {
     test::write_plainly(directory_ / name, text);
     const hapbench::MeshFile mesh(read_named_file(directory_ / name), directory_ / name, sampling);
-    return {mesh.points(), mesh.warnings()};
+    return {mesh.points(), mesh.warnings(directory_ / name)};
   }
 
   /// The one warning behind the file's name, which has no directory in front.

@@ -11,7 +11,7 @@
 #include "algorithms/module/module.hpp"
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
-#include "results/allocations/allocations.hpp"
+#include "results/summary/allocations.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/writer.hpp"

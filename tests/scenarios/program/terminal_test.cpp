@@ -161,7 +161,9 @@ TEST(DescribeCommand, ExplainsEveryNameThereIs) {
   for (const AlgorithmEntry& entry : algorithms()) models.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) models.emplace_back(entry.info->name);
   for (const IntegratorEntry* integrator : kIntegrators) models.emplace_back(integrator->info.name);
-  for (const ValueGuide& type : find_field("environment")->value.choices) models.push_back(type.type);
+  for (const PlacedField& placed : placed_fields())
+    if (placed.path == "environment")
+      for (const ValueGuide& type : placed.field->value.choices) models.push_back(type.type);
   for (const BundledScenario& bundled : bundled_scenarios()) models.push_back(bundled.name);
   for (const std::string& name : models) EXPECT_TRUE(listed.contains(name)) << name;
   std::vector<std::string> names = scenario_field_paths();

@@ -87,12 +87,13 @@ std::vector<const ModelInfo*> all_models() {
 /// Parameters are documented with the models and enforced where scenarios are described.
 TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
   EXPECT_FALSE(find_algorithm("shaped_stiffness")->info->parameters.empty());
+  const std::vector<PlacedField> fields = placed_fields();
   for (const ModelInfo* model : all_models()) {
     for (const auto& [parameter, meaning] : model->parameters) {
       const std::string where = std::string(model->name) + ": " + parameter.field, unit = parameter.range.unit;
-      const FieldGuide* field = find_field(parameter.field);
-      ASSERT_NE(field, nullptr) << where;
-      const std::string allowed = field->value.allowed;
+      const auto placed = std::ranges::find(fields, parameter.field, &PlacedField::path);
+      ASSERT_NE(placed, fields.end()) << where;
+      const std::string allowed = placed->field->value.allowed;
       const bool is_number = allowed.find("a number") != std::string::npos;
       EXPECT_TRUE(is_number ? allowed.find("[" + unit + "]") != std::string::npos : unit == "1") << where << allowed;
       EXPECT_STRNE(meaning, "") << where;

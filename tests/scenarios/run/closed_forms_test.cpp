@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "algorithms/proxy/proxy_rendering.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -193,15 +192,15 @@ constexpr double kRecovery = 1e-5;
 class PointsInProxy final : public Observer {
  public:
   PointsInProxy(const PointShell& shell, const SimulationParts& parts, double K)
-      : query_(shell, *parts.tool),
-        contacts_(query_.capacity()),
+      : query_(make_contact_query(shell, *parts.tool, Skips::off)),
+        contacts_(query_->capacity()),
         tool_(parts.tool.get()),
         algorithm_(parts.algorithm.get()),
         K_(K) {}
 
   void on_step(const StepRecord& record) noexcept override {
     const ToolPose proxy{record.tool.pose.position + record.force.spring / K_, record.tool.pose.axis};
-    query_.contacts_at(proxy, contacts_);
+    query_->contacts_at(proxy, contacts_);
     tool_->shortest_depths(proxy, contacts_);
     const double depth = contacts_.largest_depth();
     if (cleared) deepest = std::max(deepest, depth);
@@ -225,7 +224,7 @@ class PointsInProxy final : public Observer {
   double stiffest = 0.0, largest_force = 0.0;
 
  private:
-  ShellQuery query_;
+  std::unique_ptr<ContactQuery> query_;
   ContactBuffer contacts_;
   const ToolShape* tool_;
   const ForceAlgorithm* algorithm_;

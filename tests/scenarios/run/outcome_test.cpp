@@ -263,7 +263,7 @@ TEST(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout) {
     EXPECT_EQ(finding(run(pair.without), pair.rule), nullptr) << pair.rule << " in " << pair.without.name;
     tested.insert(pair.rule);
   }
-  for (const DiagnosisRule& rule : diagnosis_rules()) EXPECT_TRUE(tested.contains(rule.name)) << rule.name;
+  for (const Diagnosed& rule : diagnosis_rules()) EXPECT_TRUE(tested.contains(rule.rule)) << rule.rule;
 }
 
 TEST(Diagnosis, IsSilentWhereNothingIsWrong) {

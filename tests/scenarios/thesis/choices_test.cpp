@@ -340,12 +340,15 @@ TEST_F(Robustness, GoesIntoTheLedgerWhileItIsAboutTheSameChoicesAndVerdict) {
   other.finding.verdict = Verdict::refuted;
   moved.reach = "another";
   untouched.reach = "";
-  EXPECT_EQ(robustness_on_record(record, same).at("holds"), 4);
-  EXPECT_EQ(robustness_on_record(record, same).at("majority"), "reproduced");
-  EXPECT_TRUE(robustness_on_record(record, other).is_null()) << "the verdict has changed since";
-  EXPECT_TRUE(robustness_on_record(record, moved).is_null()) << "the choices that reach it have changed since";
-  EXPECT_TRUE(robustness_on_record(record, untouched).is_null()) << "readings say nothing of it";
-  EXPECT_TRUE(test::input_error_of([&] { robustness_on_record(Json::object(), same); }));
+  const auto on_record = [&record](const JudgedClaim& claim) {
+    return Json(ledger_json({claim}, {}, record).at("claims").at(0).at("robustness"));
+  };
+  EXPECT_EQ(on_record(same).at("holds"), 4);
+  EXPECT_EQ(on_record(same).at("majority"), "reproduced");
+  EXPECT_TRUE(on_record(other).is_null()) << "the verdict has changed since";
+  EXPECT_TRUE(on_record(moved).is_null()) << "the choices that reach it have changed since";
+  EXPECT_TRUE(on_record(untouched).is_null()) << "readings say nothing of it";
+  EXPECT_TRUE(test::input_error_of([&] { ledger_json({same}, {}, Json::object()); }));
   // A record of other claims keeps it.
   Readings none = r;
   none.claims.clear();

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "sim/contact/neighbour_list_query.hpp"
+#include "sim/contact/grid_index.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/searches.hpp"
 #include "tests/support/tool_kinds.hpp"
@@ -80,9 +80,9 @@ std::vector<SurfacePoint> at(const std::vector<Vec3>& positions) {
 /// Whether a shell of the one point reports it.
 bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& position) {
   const PointShell shell(at({position}), 0.0);
-  ShellQuery query(shell, tool);
-  ContactBuffer contacts(query.capacity());
-  query.contacts_at(pose, contacts);
+  const auto query = make_contact_query(shell, tool, Skips::off);
+  ContactBuffer contacts(query->capacity());
+  query->contacts_at(pose, contacts);
   return contacts.size() == 1;
 }
 

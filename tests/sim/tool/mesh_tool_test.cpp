@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "sim/contact/neighbour_list_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"
 #include "sim/tool/signed_distance_grid.hpp"
 #include "tests/support/meshes.hpp"
@@ -256,16 +256,16 @@ TEST_P(MeshToolOf, FindsInEverySearchTheContactsOfBruteForceAndGivesThemDepths) 
     const double size = grid_.reach() * std::pow(10.0, random.uniform(-0.7, 1.0));
     const PointShell shell(test::random_shell(random, size),
                            random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0));
-    ShellQuery brute(shell, tool_);
-    NeighbourListQuery by_list(shell, tool_);
-    ContactBuffer all(brute.capacity()), of_list(by_list.capacity());
+    const auto brute = make_contact_query(shell, tool_, Skips::off);
+    const auto by_list = make_contact_query(shell, tool_, Skips::on);
+    ContactBuffer all(brute->capacity()), of_list(by_list->capacity());
     ToolPose pose{Vec3::Zero(), random.direction()};
     for (int k = 0; k < 500; ++k, ++poses) {
       pose = test::next_pose(pose, random, size, 0.2 * grid_.half_width());
       if (random.below(3) == 0) pose.roll += 0.03 * random.uniform(-1.0, 1.0);
-      brute.contacts_at(pose, all);
-      by_list.contacts_at(pose, of_list);
-      ASSERT_LE(all.size(), by_list.capacity());
+      brute->contacts_at(pose, all);
+      by_list->contacts_at(pose, of_list);
+      ASSERT_LE(all.size(), by_list->capacity());
       ASSERT_TRUE(test::same_contacts(all, of_list)) << "shell " << s << ", pose " << k;
       contacts += all.size();
       if (k % 50 != 0) continue;
@@ -281,7 +281,7 @@ TEST_P(MeshToolOf, FindsInEverySearchTheContactsOfBruteForceAndGivesThemDepths) 
         next += points.depth[i] >= 0.0;
       }
     }
-    rebuilt += by_list.work().lists_rebuilt;
+    rebuilt += by_list->work().lists_rebuilt;
   }
   // The walks touch something, and the lists are used more than once.
   EXPECT_GT(contacts, poses);
@@ -308,9 +308,9 @@ TEST_P(MeshToolOf, MarksAsNearWhateverLiesWithinTheMargin) {
     }
     const ToolShape::Grown grown = tool_.grown(margin + rounding);
     const PointShell shell({{point, Vec3::UnitZ()}}, 0.0);
-    ShellQuery query(shell, *grown.shape);
+    const auto query = make_contact_query(shell, *grown.shape, Skips::off);
     ContactBuffer found(1);
-    query.contacts_at({pose.position + grown.forward * pose.axis, pose.axis, pose.roll}, found);
+    query->contacts_at({pose.position + grown.forward * pose.axis, pose.axis, pose.roll}, found);
     ASSERT_EQ(found.size(), 1u);
   }
   EXPECT_GT(outside, cases(5000) / 10);
@@ -385,15 +385,15 @@ TEST_P(MeshToolOf, LeavesItsBodyAtTheExitDistance) {
 
 TEST_P(MeshToolOf, SurvivesPosesAndDirectionsThatAreNotFinite) {
   const PointShell shell({{{0, 0, 0.5}, {0, 0, 1}}}, 0.1);
-  ShellQuery brute(shell, tool_);
-  NeighbourListQuery list(shell, tool_);
+  const auto brute = make_contact_query(shell, tool_, Skips::off);
+  const auto list = make_contact_query(shell, tool_, Skips::on);
   ContactBuffer found(8);
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {std::nan(""), inf, -inf, 1e300}) {
     for (const ToolPose& pose : {ToolPose{{bad, 0, 0}, {0, 0, -1}}, ToolPose{{0, 0, 0}, {0, bad, -1}}}) {
-      list.contacts_at(pose, found);
+      list->contacts_at(pose, found);
       EXPECT_EQ(found.size(), 0u);
-      brute.contacts_at(pose, found);
+      brute->contacts_at(pose, found);
       EXPECT_EQ(found.size(), 0u);
     }
   }

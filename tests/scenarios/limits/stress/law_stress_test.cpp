@@ -44,9 +44,9 @@ TEST(ContactSets, HoldTheDegenerateCasesOfTheirNames) {
   for (std::uint64_t i = 0; i < test::cases(20'000); ++i) {
     const ContactSet set = stress_set(3, i);
     const PointShell shell(set.points, 0.0);
-    ShellQuery query(shell, set.tool);
-    ContactBuffer contacts(query.capacity());
-    query.contacts_at(set.pose, contacts);
+    const auto query = make_contact_query(shell, set.tool, Skips::off);
+    ContactBuffer contacts(query->capacity());
+    query->contacts_at(set.pose, contacts);
     if (contacts.empty()) continue;
     seen["one point"] += contacts.size() == 1;
     seen["tiny"] += set.tool.length() < 1e-11;

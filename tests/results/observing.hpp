@@ -1,8 +1,12 @@
 #pragma once
 
+#include <optional>
+#include <string_view>
 #include <vector>
 
-#include "sim/loop/observer.hpp"
+#include "results/observe/metric_observer.hpp"
+
+// What observers are shown in tests, and what they tell.
 
 namespace hapbench::test {
 
@@ -30,3 +34,20 @@ inline ContactBuffer contacts_along(const std::vector<Vec3>& gradients) {
 }
 
 }  // namespace hapbench::test
+
+namespace hapbench {
+
+/// The metrics of an observer, named without a section.
+inline MetricList told(const MetricObserver& observer) {
+  MetricList list;
+  Section section(list, "");
+  observer.tell(section);
+  return list;
+}
+
+/// One number of it; none when the metric has no value.
+inline std::optional<double> told(const MetricObserver& observer, std::string_view name) {
+  return number_of(told(observer), name);
+}
+
+}  // namespace hapbench
