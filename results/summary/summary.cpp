@@ -121,10 +121,6 @@ ordered_json provenance_json(const Provenance& p, const std::string& scenario_ha
 
 }  // namespace
 
-bool Result::has_section(const char* section) const {
-  return sections.contains(section);
-}
-
 std::span<const OutcomeInfo> outcome_infos() noexcept {
   return kOutcomes;
 }

@@ -12,7 +12,6 @@
 #include "results/io/columns.hpp"
 #include "results/observe/step_times.hpp"
 #include "results/observe/target_metrics.hpp"
-#include "sim/core/types.hpp"
 #include "sim/loop/simulation.hpp"
 
 namespace hapbench {
@@ -126,8 +125,6 @@ struct Result {
   Provenance provenance;
   std::string scenario_hash;    ///< of the effective scenario
   bool replaces_other = false;  ///< its directory had the results of another scenario
-
-  bool has_section(const char* section) const;
 };
 
 /// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers that do not

@@ -5,20 +5,13 @@ import json
 import sys
 from pathlib import Path
 
+from hapbench.results import objects_in
 from hapbench_report.markup import ASSETS, fill
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "scripts" / "live" / "page"
 SCENARIOS = ROOT / "scenarios" / "library"
 REPLAY = ("replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js", "replay_tracks.js")
-
-
-def objects_in(value):
-    """Every object in a value of JSON, itself first."""
-    if isinstance(value, dict):
-        yield value
-    for part in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
-        yield from objects_in(part)
 
 
 def packed_files(scenes):

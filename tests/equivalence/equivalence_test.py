@@ -10,14 +10,13 @@ import shlex
 import sys
 import tempfile
 import unittest
-from io import StringIO
 from pathlib import Path
 
-from fixture import PROGRAM, ran
+from fixture import PROGRAM, must
 
 HERE = Path(__file__).resolve().parent
 NAMED = sys.argv[2:]
-KNOWN = {title: list(csv.DictReader(StringIO(text))) for title, _, text in
+KNOWN = {title: list(csv.DictReader(text.splitlines())) for title, _, text in
          (part.partition("\n") for part in (HERE / "answers.txt").read_text(encoding="utf-8").split("# ")[1:])}
 K = "rendering.stiffness_N_per_m"
 # A wall, a hand and a device with friction and encoder: no theory but that of the loop.
@@ -85,13 +84,10 @@ def answers(name):
         Path(scratch, "loop.json").write_text(LOOP, encoding="utf-8")
 
         def asked(command, words, program=PROGRAM, more="--json --out out"):
-            done = ran(program, *command.split(), *shlex.split(words), *more.split(), cwd=scratch)
-            assert done.returncode == 0, f"{command} {words}: status {done.returncode}\n{done.stderr}"
-            return json.loads(done.stdout)
+            return json.loads(must(program, *command.split(), *shlex.split(words), *more.split(), cwd=scratch))
 
         def table(file):
-            with open(Path(scratch, "out", file), encoding="utf-8", newline="") as lines:
-                return list(csv.DictReader(lines))
+            return list(csv.DictReader(Path(scratch, "out", file).read_text(encoding="utf-8").splitlines()))
 
         if name in LIMITS:
             return {"limits": asked("limit", f"{LIMITS[name]} --stable settled --over seed=1")["limits"]}

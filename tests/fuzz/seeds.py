@@ -8,10 +8,6 @@ LARGEST = 20_000  # bytes; scripts/fuzz makes none that is larger
 PATTERNS = {"scenario": "*.json", "run": "*.json", "device": "*.json", "module": "module"}
 
 
-def files(pattern):
-    return sorted(file for folder in ("scenarios", "tests/data") for file in (ROOT / folder).rglob(pattern) if file.is_file())
-
-
 def without_prose(target, text):
     """A scene, or its device, in the fewest bytes: what is changed in a blank or a description finds nothing. None for other files."""
     scene = json.loads(text)
@@ -23,7 +19,7 @@ def without_prose(target, text):
 
 def main(target, folder):
     pattern = PATTERNS.get(target, f"*.{target.rsplit('_', 1)[1]}" if "_" in target else "*.csv")
-    seeds = {file.read_bytes() for file in files(pattern)}
+    seeds = {file.read_bytes() for folder in ("scenarios", "tests/data") for file in (ROOT / folder).rglob(pattern) if file.is_file()}
     if pattern == "*.json":
         seeds = {without_prose(target, text) for text in seeds} - {None}
     for number, seed in enumerate(sorted(s for s in seeds if len(s) <= LARGEST)):

@@ -12,6 +12,7 @@ for scenes in sorted(Path(__file__).parent.glob("of_*.py")):
     import_module(scenes.stem)
 
 FOUND = {}  # the bench of each scene
+ANSWERS = []
 NO_TABLES = {"run", "import"}  # commands whose JSON does not repeat a table
 NO_WORDS = {"file of the results"}
 TOLERANCES = "tolerances"
@@ -66,24 +67,21 @@ def setUpModule():
     for name, work in SCENES.items():
         FOUND[name] = Bench(name, folder / name)
         work(FOUND[name])
-
-
-def answers():
-    return [answer for bench in FOUND.values() for answer in bench.answers]
+        ANSWERS.extend(FOUND[name].answers)
 
 
 class KnownAnswers(unittest.TestCase):
     def test_what_is_printed_is_known_and_no_naive_answer(self):
-        for answer in answers():
+        for answer in ANSWERS:
             with self.subTest(field=answer.field, scene=answer.scene):
                 self.assertEqual(list(answer.faults()), [])
 
     def test_every_field_has_one_that_a_naive_answer_fails(self):
-        answered = {answer.field for answer in answers() if answer.naive}
+        answered = {answer.field for answer in ANSWERS if answer.naive}
         self.assertEqual([field for field in printed_fields() if field not in answered], [], "a printed field without a row in a scene of tests/known_answers")
 
     def test_rows_are_of_printed_fields(self):
-        self.assertEqual(sorted({answer.field for answer in answers()} - set(printed_fields())), [])
+        self.assertEqual(sorted({answer.field for answer in ANSWERS} - set(printed_fields())), [])
 
     def test_columns_of_files_are_described(self):
         fields = {field for field in printed_fields() if ":" in field}

@@ -1,6 +1,7 @@
 """Scenes behind the tables of compare and sweep, recomputed from the summaries of single runs, and of converge: recurrences of one
 spring against their limits."""
 import math
+from itertools import product
 
 import numpy as np
 from scipy import linalg
@@ -14,21 +15,10 @@ BY = ["force_step_p99_N", "velocity_total_variation_m_per_s", "contact_share"]
 SEEDS = 14
 
 
-def rows_of(runs, scenes):
-    """The league by the book: means over common seeds, and ranks."""
-    for scene_name in scenes:
-        failed = {law: [runs[scene_name, law, k].summary["outcome"] != "completes" for k in range(SEEDS)] for law in LAWS}
-        some = [law for law in LAWS if not all(failed[law])]
-        common = [k for k in range(SEEDS) if not any(failed[law][k] for law in some)]
-        for law in LAWS:
-            for metric in BY:
-                values = {name: [None if failed[name][k] else runs[scene_name, name, k].metric(metric) for k in common] for name in LAWS}
-                yield scene_name, law, metric, failed, common, values
-
-
 @scene
 def league(bench):
-    """A mass on two parallel springs, soft, and so stiff that leapfrog amplifies every step: some starts leave the bounds in time."""
+    """A mass on two parallel springs, soft, and so stiff that leapfrog amplifies every step: some starts leave the bounds in time. The league
+    by the book: means over common seeds, and ranks."""
     start = {"position_m": [1e-4, -1e-3, 0]}
     bench.scenario("held", time={"step_s": 0.001, "steps": 500}, environment=UP, initial=start,
                    rendering={"algorithm": "mean", **PLAIN, "damping_ratio": 0.05})
@@ -42,9 +32,13 @@ def league(bench):
     table = Table(out / "league.csv")
     known, naive, ranks = [], [], {law: [] for law in LAWS}
     number = lambda x: math.nan if x is None else float(x)
-    for s, law, metric, failed, common, values in rows_of(runs, scenes):
-        bad = {name: sum(failed[name]) for name in LAWS}
-        means = {name: np.mean(v) for name, v in values.items() if not any(x is None for x in v)}
+    outcomes = {(s, law): [runs[s, law, k].summary["outcome"] for k in range(SEEDS)] for s in scenes for law in LAWS}
+    for s, law, metric in product(scenes, LAWS, BY):
+        bad = {name: SEEDS - outcomes[s, name].count("completes") for name in LAWS}
+        some = [name for name in LAWS if bad[name] < SEEDS]
+        common = [k for k in range(SEEDS) if all(outcomes[s, name][k] == "completes" for name in some)]
+        values = {name: [runs[s, name, k].metric(metric) for k in common] for name in some}
+        means = {name: np.mean(v) for name, v in values.items() if None not in v}
         sure = [name for name in means if bad[name] == 0]
         ranked = metric != "contact_share"
         alike = lambda a, b: abs(means[a] - means[b]) <= 1e-3 * max(abs(means[a]), abs(means[b]))
@@ -54,11 +48,11 @@ def league(bench):
             leader[i] = leader[i - 1] if i and alike(order[leader[i - 1]], name) else i
             rank[name] = 1 + leader[i]
         rank.update({name: 1 + sum(bad[other] < bad[name] for other in LAWS) for name in LAWS if bad[name]})
-        outcomes = [runs[s, law, k].summary["outcome"] for k in range(SEEDS)]
-        counts = [f"{name} {outcomes.count(name)}" for name in dict.fromkeys(outcomes)]
+        of_law = outcomes[s, law]
+        counts = [f"{name} {of_law.count(name)}" for name in dict.fromkeys(of_law)]
         known.append({
             "scenario": s, "algorithm": law, "metric": metric, "seeds": SEEDS, "failed": bad[law], "common_seeds": len(common),
-            "outcome": outcomes[0] if len(counts) == 1 else "; ".join(counts), "mean": number(means.get(law)), "better": "less" if ranked else "",
+            "outcome": of_law[0] if len(counts) == 1 else "; ".join(counts), "mean": number(means.get(law)), "better": "less" if ranked else "",
             "spread": number(np.std(values[law], ddof=1) if law in means else None), "rank": number(rank.get(law) if ranked else None)})
         own = [math.nan if runs[s, law, k].metric(metric) is None else runs[s, law, k].metric(metric) for k in range(SEEDS)]
         naive.append({"failed": 0, "mean": float(np.nanmean([*own, 0.0])), "spread": number(np.std(values[law]) if law in means else None),
@@ -178,14 +172,6 @@ def sampled_finer(bench):
               "springs have no points", EXACT, ("none", [0.0] * (2 * len(said))))
 
 
-def positions(K, B, M, dt, n, every=1):
-    A, state, found = step_matrix(K, B, M, dt), np.array([1e-3, 0.0]), []
-    for k in range(n):
-        found += [state] if k % every == 0 else []
-        state = A @ state
-    return np.array(found)
-
-
 def verdict_on(f):
     """Order, Richardson's value and its error of three results at steps that are halved, with Roache's factor."""
     p = math.log2((f[-3] - f[-2]) / (f[-2] - f[-1]))
@@ -203,7 +189,7 @@ def convergence(bench):
     metric, out = "final_position_m.x", bench.folder / "converged"
     printed = bench.json("converge", base, "--metric", metric, "--out", out)
     steps = dt / 2.0 ** np.arange(5)
-    f = np.array([positions(K, B, M, h, n * 2**i, 2**i)[-1, 0] for i, h in enumerate(steps)])
+    f = np.array([1e-3 * np.linalg.matrix_power(step_matrix(K, B, M, h), (n - 1) * 2**i)[0, 0] for i, h in enumerate(steps)])
     p, limit, errors = verdict_on(f)
     orders = [math.nan] * 2 + [verdict_on(f[i - 2:i + 1])[0] for i in range(2, 5)]
     ratio = abs((f[-3] - f[-4]) / f[-3]) / abs((f[-2] - f[-3]) / f[-2]) / 2**p  # of the three before the last, the more severe

@@ -1,10 +1,8 @@
 """Scenes behind the words: how runs end, and the classes of motion that limits are found by."""
 import math
 
-import numpy as np
-
 from answers import EXACT, ROUNDING, Table, Within, scene
-from physics import PLAIN, SPRING, bisected, motion_class, step_matrix
+from physics import PLAIN, SPRING, bisected, class_of, radius, step_matrix
 
 FLAT = {"type": "plane", "size_m": 0.1, "spacing_m": 0.001}
 BALL = {"type": "bur", "family": "ball", "diameter_m": 0.004}
@@ -61,6 +59,30 @@ def ends(bench):
         bench.add("run --json: outcome", run.summary["outcome"], word, "physics", EXACT, ("what the step count says", glance))
         if word == "diverges":
             divergence(bench, run)
+    classes(bench)
+
+
+def classes(bench):
+    """Of the same scenes: runs whose tool does not vibrate and that are no answer all the same."""
+    ask = ("--vary", "rendering.stiffness_N_per_m", "--between")
+    row = bench.json("limit", "end_went_through.json", *ask, "500:5000", "--smallest", "--set", "time.steps=4000", "--resolution", "1e-3",
+                     "--out", "through")["limits"][0]
+    bench.add("limit.csv:limit", row["limit"], 1500.0, "3 N over the radius of 2 mm", Within("bisection ends at 1e-3, and an overdamped tool "
+              "is given 2 s, within which it comes to e^(-2 K / B) of its end", relative=5e-3), ("any, as a bur never vibrates", 500.0))
+    bench.add("went_through (class of motion, of limit and stability)", row["class_beyond"], "went_through", "K r < 3 N", EXACT,
+              ("a tool at rest in free fall is stable", "stable"))
+    # Two patches of points, the tool dragged off the first: it sinks by 1 N over 50 N s/m, and is within its reach of their box in the end.
+    bench.write("gap.csv", "x_m,y_m,z_m,nx,ny,nz", [(x * 1e-3, y * 1e-3, 0, 0, 0, 1) for x in (*range(-20, 1), *range(30, 41)) for y in range(-4, 5)])
+    bench.scenario("end_gap", environment={"type": "point_shell", "file": "gap.csv"}, tool=BALL, time={"step_s": 0.0005, "steps": 2000},
+                   initial={"position_m": [-0.01, 0, 0.002]}, rendering={**PLAIN, "algorithm": "shaped_stiffness", "damping_ratio": 2.0, "stiffness_N_per_m": 20000},
+                   hand={"type": "drag", "force_N": 1.0, "path_m": [[-0.01, 0, 0], [0.035, 0, 0]], "speed_m_per_s": 0.02})
+    for word, end, between in (("thrown_out", "lost_contact", "500:5000"), ("no_contact", "no_contact", "500:5000"), ("lost_contact", "gap", "19000:21000"),
+                               ("not_dragged", "not_dragged", "19000:21000"), ("stuck", "stuck", "19000:21000")):
+        out = bench.folder / word
+        bench.hapbench("limit", f"end_{end}.json", *ask, between, "--resolution", "0.5", "--out", out)
+        found = Table(out / "limit_runs.csv")["class"]
+        bench.add(f"{word} (class of motion, of limit and stability)", found, [word] * len(found), "physics, as of the outcome", EXACT,
+                  ("a tool that does not vibrate is stable", ["stable"] * len(found)))
 
 
 def divergence(bench, run):
@@ -76,11 +98,8 @@ def divergence(bench, run):
     for key, known, naive in (("step", k, k - 1), ("time_s", k * dt, k), ("magnitude", size, bound), ("bound", bound, size)):
         bench.add(f"run --json: {key}", told[key], known, "recurrence against the bounds", grown, ("the row before, or the other", naive))
     bench.add("run --json: quantity", told["quantity"], quantity, "recurrence against the bounds", EXACT, ("the first thing checked", "force"))
-    diagnosed_divergence(bench, run.summary["diagnosis"], K * dt ** 2 / (4 * M))
-
-
-def diagnosed_divergence(bench, findings, share):
-    """Leapfrog without damping is stable up to K = 4 M / dt^2, the edge of which K is `share` times."""
+    # Leapfrog without damping is stable up to K = 4 M / dt^2, the edge of which K is `share` times.
+    findings, share = run.summary["diagnosis"], K * dt ** 2 / (4 * M)
     edge = next(finding for finding in findings if finding["rule"] == "edge")
     cells = [("value", share, "half the edge, of a step of the speed alone", 2 * share), ("threshold", 0.8, "the edge itself", 1.0),
              ("unit", "1", "of K", "N/m"), ("says", f"K is {share:.3g} times the edge of the stable loop", "as if stable", "K is 0.5 times")]
@@ -102,20 +121,12 @@ def limit_of_spring(bench):
     ask = ("limit", base, "--vary", field, "--between", "1e3:1e7", "--resolution", resolution, "--out", "spring")
     printed = bench.json(*ask)
     table, runs = Table(bench.folder / "spring" / "limit.csv"), Table(bench.folder / "spring" / "limit_runs.csv")
-    radius = lambda K: np.abs(np.linalg.eigvals(step_matrix(K, 2 * zeta * math.sqrt(K * M), M, dt))).max()
+    matrix = lambda K: step_matrix(K, 2 * zeta * math.sqrt(K * M), M, dt)
     theory = M * (2 * (math.sqrt(1 + zeta ** 2) - zeta)) ** 2 / dt ** 2
-
-    def judged(K):
-        A, states = step_matrix(K, 2 * zeta * math.sqrt(K * M), M, dt), [np.array([1e-3, 0.0])]
-        for _ in range(n - 1):
-            states.append(A @ states[-1])
-            if abs(states[-1][0]) > 1e3 or abs(states[-1][1]) > 1e6:
-                return "diverged"
-        return motion_class(np.array(states)[:, 1:])
-
+    judged = lambda K: class_of(matrix(K), 1e-3, n)
     values = runs[field]
     classes = [judged(K) for K in values]
-    coarse = ["stable" if radius(K) < 1 else "diverged" for K in values]
+    coarse = ["stable" if radius(matrix(K)) < 1 else "diverged" for K in values]
     bench.add("limit_runs.csv:class", runs["class"], classes, "rule on the recurrence", EXACT, ("stable where the eigenvalues are", coarse))
     bench.add("limit_runs.csv:{field}", len(set(values)), len(values), "each value once", EXACT, ("both ends twice", len(values) - 1))
     for word in ("stable", "dying_out", "vibrating", "diverged"):
@@ -151,7 +162,12 @@ def limit_of_spring(bench):
     bench.add("limit --json: rule", "comes to rest or dies out" in printed["rule"], True, "describe stability", EXACT, ("bounded", False))
     unmoved = bench.json("limit", base, "--vary", "rendering.iterations", "--between", "1:9", "--out", "none")["limits"][0]
     bench.add("limit --json: has_effect", unmoved["has_effect"], False, "summation has no iterations", EXACT, ("as a limit was found", True))
-    bound_and_through(bench, base, field)
+    # The force is largest at the start, K 1 mm, as long as damping takes more than it adds.
+    ask = ("limit", base, "--vary", field, "--between", "1e3:1e5", "--resolution", "1e-4", "--out", "bound", "--bound", "force_max_N=30")
+    row = bench.json(*ask)["limits"][0]
+    bench.add("limit.csv:limit", row["limit"], 30000.0, "bound over the start's 1 mm", strip, ("the stable limit", 1e5))
+    bench.add("beyond_bound (class of motion, of limit and stability)", row["class_beyond"], "beyond_bound", "K 1 mm > 30 N", EXACT,
+              ("it is stable", "stable"))
 
 
 def digits(bench, base, field):
@@ -164,43 +180,3 @@ def digits(bench, base, field):
         known = f"{round(row['limit'] / place) * place:.{max(0, -round(math.log10(place)))}f}"
         bench.add("limit.csv:limit", known in [part.strip() for part in cell], True, "the table's digits are those of the width", EXACT,
                   ("six digits", f"{row['limit']:.6g}" in [part.strip() for part in cell]))
-
-
-def bound_and_through(bench, base, field):
-    """Classes of runs that are stable and yet no answer."""
-    # The force is largest at the start, K 1 mm, as long as damping takes more than it adds.
-    ask = ("limit", base, "--vary", field, "--between", "1e3:1e5", "--resolution", "1e-4", "--out", "bound", "--bound", "force_max_N=30")
-    row = bench.json(*ask)["limits"][0]
-    fine = Within("bisection ends at a relative width of 1e-4", relative=1e-4)
-    bench.add("limit.csv:limit", row["limit"], 30000.0, "bound over the start's 1 mm", fine, ("the stable limit", 1e5))
-    bench.add("beyond_bound (class of motion, of limit and stability)", row["class_beyond"], "beyond_bound", "K 1 mm > 30 N", EXACT,
-              ("it is stable", "stable"))
-    ball = {"environment": FLAT, "tool": BALL, "time": {"step_s": 0.0005, "steps": 4000}}
-    law = {**PLAIN, "algorithm": "highest_depth", "damping_ratio": 2.0}
-    pressed = bench.scenario("pressed", **ball, initial={"position_m": [0, 0, 0.002]}, hand={"type": "force", "z_N": -3.0}, rendering=law)
-    row = bench.json("limit", pressed, "--vary", field, "--between", "500:5000", "--smallest", "--resolution", "1e-3", "--out", "through")["limits"][0]
-    bench.add("limit.csv:limit", row["limit"], 1500.0, "3 N over the radius of 2 mm", Within("bisection ends at 1e-3, and an overdamped tool "
-              "is given 2 s, within which it comes to e^(-2 K / B) of its end", relative=5e-3), ("any, as a bur never vibrates", 500.0))
-    bench.add("went_through (class of motion, of limit and stability)", row["class_beyond"], "went_through", "K r < 3 N", EXACT,
-              ("a tool at rest in free fall is stable", "stable"))
-    # Two patches of points, the tool dragged off the first: it sinks by 1 N over 50 N s/m, and is within its reach of their box in the end.
-    bench.write("gap.csv", "x_m,y_m,z_m,nx,ny,nz", [(x * 1e-3, y * 1e-3, 0, 0, 0, 1) for x in (*range(-20, 1), *range(30, 41)) for y in range(-4, 5)])
-    on_edge = dict(tool=BALL, rendering={**law, "algorithm": "shaped_stiffness", "stiffness_N_per_m": 20000}, initial={"position_m": [-0.01, 0, 0.002]})
-    drag = {"type": "drag", "force_N": 1.0, "path_m": [[-0.01, 0, 0], [0.035, 0, 0]], "speed_m_per_s": 0.02}
-    crawl = {**drag, "stiffness_N_per_m": 1.0, "damping_N_s_per_m": 0, "path_m": [[-0.01, 0, 0], [-0.001, 0, 0]], "speed_m_per_s": 0.01}
-    rub = {**on_edge["rendering"], "damping_ratio": 1.0, "friction": {"mu_s_N_s_per_m": 300, "mu_f_s_per_m": 0}, "mass_kg": 0.4}
-    grips = {"type": "waypoints", "points": [[0, 0.1], [0.5, 0.1], [0.6, 9.0], [4, 9.0]]}
-    gripped = {**rub, "friction": {"mu_s_N_s_per_m": 5, "mu_f_s_per_m": 150}}
-    shell = {"environment": {"type": "point_shell", "file": "gap.csv"}}
-    scenes = [("thrown_out", "500:5000", dict(ball, initial={"position_m": [0, 0, 0.00199]}, hand={"type": "force", "z_N": 1.0}, rendering=law)),
-              ("no_contact", "500:5000", dict(ball, initial={"position_m": [0, 0, 0.01]}, rendering=law)),
-              ("lost_contact", "19000:21000", dict(on_edge, **shell, hand=drag, time={"step_s": 0.0005, "steps": 2000})),
-              ("not_dragged", "19000:21000", dict(on_edge, **shell, hand=crawl, rendering=rub, time={"step_s": 0.0005, "steps": 1800})),
-              ("stuck", "19000:21000", dict(on_edge, environment=FLAT, rendering=gripped, time={"step_s": 0.0005, "steps": 5000},
-                                            hand={**drag, "force_N": grips, "stiffness_N_per_m": 40.0, "damping_N_s_per_m": 0}))]
-    for word, between, fields in scenes:
-        out, file = bench.folder / word, bench.scenario(f"class_{word}", **fields)
-        bench.hapbench("limit", file, "--vary", field, "--between", between, "--resolution", "0.5", "--out", out)
-        classes = Table(out / "limit_runs.csv")["class"]
-        bench.add(f"{word} (class of motion, of limit and stability)", classes, [word] * len(classes), "physics, as of the outcome", EXACT,
-                  ("a tool that does not vibrate is stable", ["stable"] * len(classes)))

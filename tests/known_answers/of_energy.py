@@ -2,6 +2,7 @@
 import math
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
 from physics import FILTERED, SPRING, STEPPED, SUMMED, high_pass
@@ -208,7 +209,7 @@ def turned_into_point(bench):
         (f"gradient_{x}", u[k, i], "from the axis to the point", ROUNDING, "minus the normal", np.full(len(k), float(x == "x")) + (x == "y"))
         for i, x in enumerate("xyz")])
     table = run.table()
-    turned = rotated(table.vectors("qw", "qx", "qy", "qz"))
+    turned = Rotation.from_quat(table.vectors("qx", "qy", "qz", "qw")).apply([0, 0, 1])
     bench.add("trajectory.csv:qw", table["qw"] ** 2 + table["qx"] ** 2 + table["qy"] ** 2 + table["qz"] ** 2, np.ones(n), "a unit quaternion",
               ROUNDING, ("without one component", np.full(n, 0.5)))
     for i, name in enumerate(("qx", "qy", "qz")):
@@ -218,9 +219,3 @@ def turned_into_point(bench):
         (f"axis_{x}", axis[:, i], "-(sin a, 0, cos a)", ROUNDING, "up", -axis[:, i] + (x == "y")) for i, x in enumerate("xyz")] + [
         (f"t{x}_Nm", torque[:, i], "at x f", shape, "f x at", -torque[:, i] + (x != "y") * 1e-3) for i, x in enumerate("xyz")] + [
         (f"f{x}_N", f[:, i], "-K d u", shape, "along the normal", K * d * (x == "x") + (x == "y")) for i, x in enumerate("xyz")])
-
-
-def rotated(q):
-    """Where unit quaternions (w, x, y, z) turn the third axis."""
-    w, x, y, z = q.T
-    return np.column_stack([2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z])

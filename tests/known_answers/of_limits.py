@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from answers import EXACT, ROUNDING, Table, Within, scene
-from physics import PLAIN, SPRING, SUMMED, HeldLoop, bisected, class_of, grows, high_pass, motion_of
+from physics import PLAIN, SPRING, SUMMED, bisected, class_of, edge_of, held_loop, high_pass, motion_of, radius
 
 
 @scene
@@ -49,8 +49,8 @@ def tuned(bench):
     out = bench.folder / "tune"
     printed = bench.json("tune", base, "--margin", "2", "--bound", "force_rms_above_30Hz_N=1e3", "--out", out)
     law, table, trials = printed["algorithms"][0], Table(out / "tune.csv"), Table(out / "tune_trials.csv")
-    loop = lambda K, B, more=0.0: HeldLoop(m, b, T, K, B, delay=delay + more)
-    edge = lambda B: bisected(lambda K: loop(K, B).radius() < 1, 1.0, 1e5)
+    loop = lambda K, B, more=0.0: held_loop(m, b, T, K, B, delay=delay + more)
+    edge = lambda B: edge_of(lambda K: loop(K, B), 1.0, 1e5)
     B = max(np.geomspace(1, 100, 60), key=edge)
     B = max(np.linspace(0.93 * B, 1.07 * B, 60), key=edge)
     K, zeta, runs = law["stiffness_N_per_m"], law["damping_ratio"], printed["runs"]
@@ -59,11 +59,11 @@ def tuned(bench):
     margin = Within("bisection ends at 0.5 % of the gain, 0.02 samples and runs need a strip of 1 %", relative=0.03, absolute=0.02)
     bench.add("tune.csv:stiffness_N_per_m", K, edge(B) / 2, by, near, ("without the margin", edge(B)))
     at_K = 2 * zeta * math.sqrt(K * m)  # B at K; along zeta it grows with the root of the gain
-    gain = bisected(lambda g: loop(g * K, math.sqrt(g) * at_K).radius() < 1, 1.0, 64.0)
+    gain = edge_of(lambda g: loop(g * K, math.sqrt(g) * at_K), 1.0, 64.0)
     bench.add("tune.csv:rendering.damping_ratio", float(table["rendering.damping_ratio"][0]), B / (2 * math.sqrt(edge(B) * m)), "B of the largest edge over 2 sqrt(K M) there", Within(
         "K falls by as many percent as zeta is off on either side", relative=0.05), ("with B at K", B / (2 * math.sqrt(edge(B) / 2 * m))))
-    late = bisected(lambda d: loop(K, at_K, d).radius() < 1, 0.0, 8.0)
-    z = np.linalg.eigvals(loop(K, at_K).matrix)
+    late = edge_of(lambda d: loop(K, at_K, d), 0.0, 8.0)
+    z = np.linalg.eigvals(loop(K, at_K))
     s = np.log(z[np.abs(z) > 1e-9].astype(complex))
     for name, csv, value, naive in (("gain", "gain_margin", gain, 1.0), ("delay_samples", "delay_margin_samples", late, late + delay),
                                     ("damping_ratio", "damping_margin", float((-s.real / np.abs(s)).min()), zeta)):
@@ -85,7 +85,7 @@ def tuned(bench):
     bench.add("tune --json: max", limits["force_rms_above_30Hz_N"]["max"], 1e3, "as asked", EXACT, ("none", None))
     # Each trial by its own eigenvalues: feasible below half the edge of its zeta, but for the strip in which runs cannot tell.
     given = [row for row in trials.rows if row["feasible"] in ("true", "false")]
-    edges = [bisected(lambda k: loop(k, 2 * float(row["rendering.damping_ratio"]) * math.sqrt(k * m)).radius() < 1, 1e-3, 1e6) / 2 for row in given]
+    edges = [edge_of(lambda k: loop(k, 2 * float(row["rendering.damping_ratio"]) * math.sqrt(k * m)), 1e-3, 1e6) / 2 for row in given]
     clear = [(row, e) for row, e in zip(given, edges) if abs(float(row["stiffness_N_per_m"]) / e - 1) > 0.02]
     stable = [float(row["stiffness_N_per_m"]) < e for row, e in clear]
     bench.add("tune_trials.csv:feasible", [float(row["feasible"] == "true") for row, _ in clear], [float(s) for s in stable], by, EXACT,
@@ -117,30 +117,27 @@ def over_another_field(bench):
     told = bench.json(*ask, "--over", f"{damping}=0.1:150:5:log", "--out", "walls")
     bench.add(f"limit --json: {damping}", given(told, damping), np.geomspace(0.1, 150, 5), "as asked", ROUNDING, ("linear", np.linspace(0.1, 150, 5)))
     bench.json(*ask, "--over", f"{damping}=0.1:150:3:log", "--set", "device.viscous_N_s_per_m=0", "--out", "bare")
-    handle = lambda B, K, b=0.5, more=0.0, spring=0.0: HeldLoop(0.1 + more, b, 0.001, K, B, spring=spring).matrix
-    radius = lambda matrix: np.abs(np.linalg.eigvals(matrix)).max()
-    at_rest = lambda matrix: np.eye(len(matrix))[0] * 0.6e-3 + np.eye(len(matrix))[2] * 0.6e-3
-    edge_of = lambda at, low, high: bisected(lambda K: radius(at(K)) < 1, low, high)
+    handle = lambda B, K, b=0.5, more=0.0, spring=0.0: held_loop(0.1 + more, b, 0.001, K, B, spring=spring)
     xs, edges, runs = np.geomspace(0.1, 150, 5), Table(bench.folder / "walls" / "limit.csv"), Table(bench.folder / "walls" / "limit_runs.csv")
     tried, how = list(zip(runs[damping], runs[K])), "recurrence and its eigenvalues"
-    bench.add("limit_runs.csv:class", runs["class"], [class_of(handle(*at), at_rest(handle(*at))) for at in tried], "the rule on the recurrence", EXACT,
+    bench.add("limit_runs.csv:class", runs["class"], [class_of(handle(*at), 0.6e-3) for at in tried], "the rule on the recurrence", EXACT,
               ("by the eigenvalues", ["stable" if radius(handle(*at)) < 1 else "diverged" for at in tried]))
     theory = [edge_of(lambda K: handle(x, K), 1.0, 1e9) for x in xs]
-    swings = [bisected(lambda K: class_of(handle(x, K), at_rest(handle(x, K))) != "diverged", t / 2, 2 * t, 1e-5) for x, t in zip(xs, theory)]
+    swings = [bisected(lambda K: class_of(handle(x, K), 0.6e-3) != "diverged", t / 2, 2 * t, 1e-5) for x, t in zip(xs, theory)]
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
     bench.add("limit.csv:theory", edges["theory"], theory, how, close, ("passive, 2 b / T", [1000.0] * 5))
     bench.add("limit.csv:limit", edges["limit"], swings, how, Within("bisection on runs ends at 0.1 %", relative=1e-3), ("passive, 2 b / T", [1000.0] * 5))
     bench.add("limit.csv:no_theory", sorted({row["no_theory"] for row in edges.rows}), [""], "the loop is linear", EXACT, ("friction", ["dry friction"]))
     hand = '{"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":100,"damping_N_s_per_m":2,"target":{"x_m":0,"y_m":0,"z_m":0}}'
     for name, path, values, loop, more in (
-            ("delay", "device.delay_samples", np.linspace(0, 8, 6), lambda x, K: HeldLoop(0.1, 0.5, 0.001, K, 5.0, delay=x), ()),
-            ("hand", "hand.stiffness_N_per_m", np.geomspace(10, 1e4, 6), lambda x, K: HeldLoop(0.3, 2.5, 0.001, K, 5.0, spring=x), ("--set", f"hand={hand}"))):
+            ("delay", "device.delay_samples", np.linspace(0, 8, 6), lambda x, K: held_loop(0.1, 0.5, 0.001, K, 5.0, delay=x), ()),
+            ("hand", "hand.stiffness_N_per_m", np.geomspace(10, 1e4, 6), lambda x, K: held_loop(0.3, 2.5, 0.001, K, 5.0, spring=x), ("--set", f"hand={hand}"))):
         told = bench.json(*ask, *more, "--over", f"{path}={values[0]}:{values[-1]}:6{'' if name == 'delay' else ':log'}", "--out", name)
         bench.add(f"limit --json: {path}", given(told, path), values, "as asked", ROUNDING, ("the other way round", values[::-1]))
         table = Table(bench.folder / name / "limit.csv")
-        bench.add("limit.csv:theory", table["theory"], [bisected(lambda K: loop(x, K).radius() < 1, 1.0, 1e6) for x in values],
+        bench.add("limit.csv:theory", table["theory"], [edge_of(lambda K: loop(x, K), 1.0, 1e6) for x in values],
                   "eigenvalues, delays of whole and broken samples", close, ("without", [edge_of(lambda K: handle(5.0, K), 1.0, 1e6)] * 6))
-    limits_of_walls(bench, edges, Table(bench.folder / "bare" / "limit.csv"), xs, handle, edge_of)
+    limits_of_walls(bench, edges, Table(bench.folder / "bare" / "limit.csv"), xs, handle)
     q = np.geomspace(1e-6, 1e-3, 4)
     told = bench.json(*ask, "--over", "device.encoder_step_m=1e-6:1e-3:4:log", "--set", "device.coulomb_N=0.02", "--set", f"{damping}=0", "--out", "encoder")
     bench.add("limit --json: device.encoder_step_m", given(told, "device.encoder_step_m"), q, "as asked", ROUNDING, ("in mm", 1e3 * q))
@@ -152,18 +149,15 @@ def over_another_field(bench):
     stressed(bench)
 
 
-def limits_of_walls(bench, table, bare, xs, handle, edge_of):
+def limits_of_walls(bench, table, bare, xs, handle):
     b, T, m, how = 0.5, 0.001, 0.1, "theory's own formula"
-    theta = np.linspace(1e-5, np.pi, 200001)
-    p, r = T * np.sin(0.5 * theta) / (2 * np.sin(0.5 * theta)), -np.cos(theta)  # no delay, no filter
-    delayed = [max(0.0, ((b - B * r) / p).min()) for B in xs]
+    passive = [max(0.0, 2 * (b - B) / T) for B in xs]
     gil = [max(0.0, (b + B) / (T / 2)) if (b + B) * T / m <= 0.15 else math.nan for B in xs]
-    worst = [min(edge_of(lambda K: handle(B, K, more=mass, spring=k), 1.0, 1e9) if np.abs(np.linalg.eigvals(handle(B, 1.0, more=mass, spring=k))).max() < 1
-                 else 0.0 for mass, k in HANDS) for B in xs]
-    scanned = Within("a grid of 2e5 angles, square of the step", relative=1e-8, absolute=1e-6)
+    worst = [min(edge_of(lambda K: handle(B, K, more=mass, spring=k), 1.0, 1e9) if radius(handle(B, 1.0, more=mass, spring=k)) < 1 else 0.0
+                 for mass, k in HANDS) for B in xs]
     for column, known, within, naive in (
-            ("passive_colgate_schenkel", [max(0.0, 2 * (b - B) / T) for B in xs], ROUNDING, [2 * (b + B) / T for B in xs]),
-            ("passive_with_delay", delayed, scanned, [2 * b / T] * 5), ("stable_gil_hulin", gil, ROUNDING, [(b + B) * 2 / T for B in xs]),
+            ("passive_colgate_schenkel", passive, ROUNDING, [2 * (b + B) / T for B in xs]),
+            ("passive_with_delay", passive, ROUNDING, [2 * b / T] * 5), ("stable_gil_hulin", gil, ROUNDING, [(b + B) * 2 / T for B in xs]),
             ("worst_hand", worst, Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8), [1.0] * 5)):
         bench.add(f"limit.csv:{column}", table[column], known, how, within,
                   ("without its range, sign or hand", naive))
@@ -189,26 +183,26 @@ def devices(bench):
     table, runs = Table(bench.folder / "d" / "limit.csv"), Table(bench.folder / "d" / "limit_runs.csv")
     cell = {(row["device"], row["scenario"], row["algorithm"]): row for row in table.rows}
     number = lambda row, name: float(row[name]) if row[name] else math.nan
+    loop = lambda K, lam, m=m, b=b: held_loop(m, b, T, lam * K, lam * B)
 
-    def vibration(K, lam, m=m, b=b):
-        matrix = HeldLoop(m, b, T, lam * K, lam * B).matrix
-        v = motion_of(matrix, np.eye(len(matrix))[0] * 1e-3 + np.eye(len(matrix))[2] * 1e-3, n)
-        return math.inf if v is None else math.sqrt(np.mean(high_pass(v, T)[n // 4:] ** 2))
+    def vibration(*of):
+        v = motion_of(loop(*of), 1e-3, n)
+        return math.inf if v is None else math.sqrt(np.mean(high_pass(v[:, None], T)[n // 4:] ** 2))
 
-    laws, keys = (("summation", 2.0), ("mean", 1.0)), [("mine", "both_ways", "summation"), ("mine", "both_ways", "mean")]
-    edges = [bisected(lambda K: vibration(K, lam) <= most, 100.0, 1e5, 1e-7) for _, lam in laws]
-    theory = [bisected(lambda K: HeldLoop(m, b, T, lam * K, lam * B).radius() < 1, 100.0, 1e5) for _, lam in laws]
+    stiffer, keys = (2.0, 1.0), [("mine", "both_ways", "summation"), ("mine", "both_ways", "mean")]
+    edges = [bisected(lambda K: vibration(K, lam) <= most, 100.0, 1e5, 1e-7) for lam in stiffer]
+    theory = [edge_of(lambda K: loop(K, lam), 100.0, 1e5) for lam in stiffer]
     fine = Within("bisection ends at a relative width of 1e-3", relative=1e-3)
     limits = [number(cell[key], "limit") for key in keys]
-    tried = [[float(row["rendering.stiffness_N_per_m"]) for row in runs.rows if (row["device"], row["scenario"], row["algorithm"]) == key] for key in keys]
-    judged = [["stable" if vibration(K, lam) <= most else "diverged" if grows(HeldLoop(m, b, T, lam * K, lam * B).matrix, n) else "vibrating"
-               for K in values] for (_, lam), values in zip(laws, tried)]
-    says = [[row["class"] for row in runs.rows if (row["device"], row["scenario"], row["algorithm"]) == key] for key in keys]
+    rows = [[row for row in runs.rows if (row["device"], row["scenario"], row["algorithm"]) == key] for key in keys]
+    tried, says = [[float(row["rendering.stiffness_N_per_m"]) for row in of] for of in rows], [row["class"] for of in rows for row in of]
+    judged = [["stable" if vibration(K, lam) <= most else "diverged" if class_of(loop(K, lam), 1e-3, n) == "diverged" else "vibrating"
+               for K in values] for lam, values in zip(stiffer, tried)]
     beyond = [min(K for K in values if K > limit) for values, limit in zip(tried, limits)]
     how = "handle's speed above 30 Hz by the held loop and scipy"
     exact = [("limit", edges, fine, "edge of the eigenvalues", theory), ("beyond", beyond, EXACT, "the limit", limits),
              ("low", [min(v) for v in tried], EXACT, "the limit", limits), ("below", [math.nan] * 2, EXACT, "0", [0.0] * 2),
-             ("vibration_m_per_s", [vibration(K, lam) for K, (_, lam) in zip(limits, laws)], Within("filter and recurrence in another order, over 2000 "
+             ("vibration_m_per_s", [vibration(K, lam) for K, lam in zip(limits, stiffer)], Within("filter and recurrence in another order, over 2000 "
               "rows near the edge", relative=1e-6), "that is allowed", [most] * 2), ("contacts", [2.0, 2.0], EXACT, "by stiffness", [2.0, 1.0]),
              ("lambda_max", [2.0, 1.0], ROUNDING, "of each spring", [1.0, 1.0]),
              ("stiffness_ratio", [1.0, limits[1] / limits[0]], ROUNDING, "the other way round", [1.0, limits[0] / limits[1]]),
@@ -230,7 +224,7 @@ def devices(bench):
     bench.add("limit.csv:limit", [row["limit"] for row in others], ends, how, fine, ("of the preset's own numbers", [ends[0]] * 3))
     classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
     bench.add("limit.csv:class_beyond", [cell[key]["class_beyond"] for key in keys], classes, how, EXACT, ("diverged", ["diverged"] * 2))
-    bench.add("limit_runs.csv:class", says[0] + says[1], judged[0] + judged[1], how, EXACT, ("by the eigenvalues", [
+    bench.add("limit_runs.csv:class", says, judged[0] + judged[1], how, EXACT, ("by the eigenvalues", [
         "stable" if K < edge else "diverged" for values, edge in zip(tried, theory) for K in values]))
     order = [(d, s, a) for d in ("mine", "omega.3") for s in ("both_ways", "pushes") for a in ("summation", "mean")]
     for i, name in enumerate(("device", "scenario", "algorithm")):
@@ -241,7 +235,7 @@ def devices(bench):
     bench.add("limit.csv:published_N_per_m", of_maker, [math.nan] * 4 + [5000.0] * 4, "CHAI3D's largest stiffness for an omega.3", EXACT,
               ("its maker's closed loop", [math.nan] * 4 + [14500.0] * 4))
     pushed = ("mine", "pushes", "summation")
-    linear = bisected(lambda K: HeldLoop(m + 0.2, b + 2, T, K, B, spring=300).radius() < 1, 100.0, 1e6)
+    linear = edge_of(lambda K: held_loop(m + 0.2, b + 2, T, K, B, spring=300), 100.0, 1e6)
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
     bench.add("limit.csv:linear", number(cell[pushed], "linear"), linear, "eigenvalues of the held loop with the hand", close,
               ("without the hand", 2 * theory[0]))

@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from answers import EXACT, ROUNDING, Within, norms, rms, scene
+from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
 
 R, r, H = 1e-3, 0.5e-3, 5e-3  # radii of hole and tool, depth of the hole [m]
 
@@ -93,12 +93,12 @@ def beside_the_ideal(bench):
 def pressed_ball(bench):
     """A ball of 1 mm pressed 3 mm into a plane: its depth is radius less height, whatever its width; a contact's ends at the radius."""
     n, dt, a = 600, 0.001, 0.5e-3
-    z = np.interp(np.arange(n) * dt, [0, 0.1, 0.3, 0.5, 0.6], [1e-3, 2e-4, -3e-3 + a, -1e-3, 1e-3])
+    height = {"type": "waypoints", "points": [[0, 1e-3], [0.1, 2e-4], [0.3, -3e-3 + a], [0.5, -1e-3], [0.6, 1e-3]]}
+    z = profile(height, np.arange(n) * dt)
     run = bench.run(bench.scenario(
         "pressed_ball", time={"step_s": dt, "steps": n}, environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},
         tool={"type": "bur", "family": "ball", "diameter_m": 2 * a}, record={"inside": True},
-        motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": {"type": "waypoints", "points": [
-            [0, 1e-3], [0.1, 2e-4], [0.3, -3e-3 + a], [0.5, -1e-3], [0.6, 1e-3]]}}},
+        motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": height}},
         rendering={"algorithm": "mean", "stiffness_N_per_m": 1000}), statuses=(0, 3))
     inside = np.maximum(0, a - z)
     touching = run.table()["colliding"] > 0

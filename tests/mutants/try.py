@@ -13,7 +13,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -21,7 +20,6 @@ SOURCE = HERE.parent.parent
 
 
 def said(*words):
-    """Status and output of a command."""
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     return done.returncode, done.stdout
 
@@ -47,11 +45,9 @@ def failing(build, regex):
 
 
 def mutated(mutant):
-    """The file with the fault."""
     path = SOURCE / mutant["file"]
     text = path.read_text(encoding="utf-8") if path.is_file() else ""
-    if text.count(mutant["find"]) != 1:
-        times = text.count(mutant["find"])
+    if (times := text.count(mutant["find"])) != 1:
         raise RuntimeError(f"{mutant['name']}: {mutant['file']} has {times} times what is to be replaced: {mutant['find']!r}")
     return text.replace(mutant["find"], mutant["replace"])
 
@@ -86,11 +82,9 @@ def tried(build, names):
         raise RuntimeError(f"{failed} fails without a mutant")
     survivors = 0
     for mutant in mutants:
-        began = time.monotonic()
         killed = killer(mutant, build)
         survivors += not killed
-        print(f"{mutant['name']:32} {'killed by ' + killed if killed else 'SURVIVES: ' + mutant['meaning']}"
-              f"  ({time.monotonic() - began:.0f} s)", flush=True)
+        print(f"{mutant['name']:32} {'killed by ' + killed if killed else 'SURVIVES: ' + mutant['meaning']}", flush=True)
     make(build, killers)
     print(f"{len(mutants) - survivors} of {len(mutants)} killed")
     return survivors

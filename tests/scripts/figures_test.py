@@ -33,10 +33,7 @@ RUNS = (
 DRAWN_BY_COMMAND = "A.5,C.3,D.7,stability-z_width"
 hapbench = partial(must, PROGRAM, statuses=(0, 3))
 figures = partial(ran, SOURCE / "scripts" / "figures")
-
-
-def ids():
-    return [figure.id for figure in command.FIGURES]
+IDS = [figure.id for figure in command.FIGURES]
 
 
 def make_results(directory):
@@ -100,8 +97,8 @@ class Figures(unittest.TestCase):
 
     def test_every_figure_is_drawn(self):
         self.assertEqual(self.status, 0, self.said)
-        self.assertEqual([entry["id"] for entry in self.index()], ids(), self.said)
-        self.assertEqual([line.split()[0] for line in figures("--list").stdout.splitlines()], ids())
+        self.assertEqual([entry["id"] for entry in self.index()], IDS, self.said)
+        self.assertEqual([line.split()[0] for line in figures("--list").stdout.splitlines()], IDS)
         redrawn = "2 4 5 6 7a-c 8 A.1 A.2a-b A.4 A.5 B.3 B.4 B.5 C.1 C.2 C.3 C.4 D.7 D.8 E.1 E.2 E.3 E.4 F.4 F.5"
         found = " ".join(entry["thesis_figure"] or "" for entry in self.index())
         for name in redrawn.split():
@@ -109,9 +106,7 @@ class Figures(unittest.TestCase):
 
     def test_those_of_the_thesis_are_on_record(self):
         page = (RECORD / "figures.md").read_text(encoding="utf-8")
-        for entry in self.index():
-            if not entry["thesis_figure"]:
-                continue
+        for entry in filter(lambda entry: entry["thesis_figure"], self.index()):
             with self.subTest(entry["id"]):
                 file = RECORD / entry["files"][0]
                 self.assertLess(file.stat().st_size, LARGEST)
@@ -163,7 +158,7 @@ class Figures(unittest.TestCase):
         empty.mkdir()
         status, _, said = in_process(command.main, empty, "--out", out)
         self.assertEqual(status, 1)
-        for id_ in ids():
+        for id_ in IDS:
             self.assertRegex(said, rf"skipped {re.escape(id_)} \(no .+\)")
         self.assertEqual(self.index(out), [])
 

@@ -25,14 +25,11 @@ DATA = SOURCE / "scenarios" / "library" / "examples" / "data"
 PRESETS = SOURCE / "scenarios" / "library" / "presets"
 LOG = DATA / "wipe.hapi.txt"
 Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)  # x, -z, y
-
-
 run = partial(ran, PROGRAM)
 STRAIGHT = "0,0,0,0\n0.01,0.001,0,0\n0.02,0.002,0,0\n0.03,0.003,0,0\n"
 
 
-def log(names, samples, number="d"):
-    """A binary log of HAPI."""
+def binary_log(names, samples, number="d"):
     return b"".join(name.encode() + b"\0" for name in names) + b"\0" + b"".join(struct.pack(f"<{len(s)}{number}", *s) for s in samples)
 
 
@@ -45,7 +42,7 @@ class Given(unittest.TestCase):
         return str(self.root / name)
 
     def report(self, data, columns="time=1,position=2", **options):
-        """The report of a recording with these contents, by the package that the command starts."""
+        """The stroke of a recording with these contents, and what was found in it, by the package that the command starts."""
         words = [self.write(data)] + (["--columns", columns] if columns else [])
         for name, value in options.items():
             if name in ("floats", "force_by_tool", "max_gap", "max_speed", "shift", "tip_axis"):
@@ -57,7 +54,7 @@ class Given(unittest.TestCase):
         return import_stroke(open_recording(given.file, chosen), chosen)
 
     def stroke(self, data, columns="time=1,position=2", **options):
-        return self.report(data, columns, **options).stroke
+        return self.report(data, columns, **options)[0]
 
     def refusal(self, data, columns="time=1,position=2", **options):
         """What is refused, without the folder; empty when nothing is."""
@@ -120,7 +117,7 @@ class Recordings(Given):
         # Four times the median are no gap, but longer than allowed.
         slow = "0,0,0,0\n0.2,0.001,0,0\n0.4,0.002,0,0\n1.2,0.003,0,0\n"
         self.assertEqual(self.refusal(slow), "rec.csv, line 3: a gap of 0.8 s follows; allowed: 0.5 s (--set max_gap=...)")
-        self.assertEqual(self.report(slow, max_gap=0.8).gaps, [])
+        self.assertEqual(self.report(slow, max_gap=0.8)[1]["gaps"], 0)
 
     def test_the_mean_direction_of_the_tip_shows_a_wrong_order(self):
         # Two turns about x, by 0.2 +- 0.1 rad, written w first.
@@ -134,12 +131,12 @@ class Recordings(Given):
         self.assertGreater(json.loads(wrong.stdout)["tip_direction"][2], 0.5)
 
     def test_units_and_frames_are_put_right(self):
-        report = self.report("5e6,1,2,3,1,0,2\n5.1e6,1,2,4,1,0,2\n", "time=1,position=2,force=5", frame="x,-z,y", shift="0.5,0,0",
-                             scale="time=1e-6,position=1e-3,force=9.81", force_by_tool=True)
-        np.testing.assert_allclose(report.stroke.position[1], [0.501, -0.004, 0.002], atol=1e-15)
-        np.testing.assert_allclose(report.stroke.force[0], [-9.81, 19.62, 0], atol=1e-14)
-        np.testing.assert_allclose(report.stroke.time, [0, 0.1], atol=1e-12)
-        self.assertEqual(report.clock.first, 5.0)
+        stroke, found = self.report("5e6,1,2,3,1,0,2\n5.1e6,1,2,4,1,0,2\n", "time=1,position=2,force=5", frame="x,-z,y", shift="0.5,0,0",
+                                    scale="time=1e-6,position=1e-3,force=9.81", force_by_tool=True)
+        np.testing.assert_allclose(stroke.position[1], [0.501, -0.004, 0.002], atol=1e-15)
+        np.testing.assert_allclose(stroke.force[0], [-9.81, 19.62, 0], atol=1e-14)
+        np.testing.assert_allclose(stroke.time, [0, 0.1], atol=1e-12)
+        self.assertEqual(found["first_time_s"], 5.0)
 
     def test_every_way_to_write_an_orientation_is_the_same_turn(self):
         noise = np.random.default_rng(2)
@@ -192,19 +189,19 @@ class Recordings(Given):
             self.assertIn(problem, self.refusal(STRAIGHT, **options))
 
     def test_bad_rows_are_left_out_where_asked(self):
-        report = self.report("0,0,0,0\n0.01,x,0,0\n0.02,0.002,0,0\n0.015,0,0,0\n0.03,9,0,0\n0.04,0.004,0,0\n", skip_bad_rows=True)
-        self.assertEqual(report.stroke.position[:, 0].tolist(), [0, 0.002, 0.004])
-        self.assertEqual([place.rpartition(" ")[2] for place, _ in report.read.left_out], ["2", "4", "5"])
+        stroke, found = self.report("0,0,0,0\n0.01,x,0,0\n0.02,0.002,0,0\n0.015,0,0,0\n0.03,9,0,0\n0.04,0.004,0,0\n", skip_bad_rows=True)
+        self.assertEqual(stroke.position[:, 0].tolist(), [0, 0.002, 0.004])
+        self.assertEqual([said.split(": ")[0].rpartition(" ")[2] for said in found["warnings"][1:4]], ["2", "4", "5"])
 
     def test_a_regular_clock_is_kept_and_an_irregular_one_evened(self):
-        report = self.report(STRAIGHT)
-        self.assertFalse(report.resampled)
-        self.assertAlmostEqual(report.rate, 100, delta=1e-9)
-        report = self.report("1,0,0,0\n1.008,0.0008,0,0\n1.02,0.002,0,0\n1.03,0.003,0,0\n1.04,0.004,0,0\n")
-        self.assertTrue(report.resampled)
-        self.assertEqual(report.rate, 100)
-        np.testing.assert_allclose(report.stroke.time, np.arange(5) / 100, atol=1e-15)
-        np.testing.assert_allclose(report.stroke.position[:, 0], 0.1 * report.stroke.time, atol=1e-12)
+        _, found = self.report(STRAIGHT)
+        self.assertFalse(found["resampled"])
+        self.assertAlmostEqual(found["rate_Hz"], 100, delta=1e-9)
+        stroke, found = self.report("1,0,0,0\n1.008,0.0008,0,0\n1.02,0.002,0,0\n1.03,0.003,0,0\n1.04,0.004,0,0\n")
+        self.assertTrue(found["resampled"])
+        self.assertEqual(found["rate_Hz"], 100)
+        np.testing.assert_allclose(stroke.time, np.arange(5) / 100, atol=1e-15)
+        np.testing.assert_allclose(stroke.position[:, 0], 0.1 * stroke.time, atol=1e-12)
         turn = self.stroke("0,0,0,0,0,1,0,0\n1,0,0,0,0,1,0,1.2\n", "time=1,position=2,orientation=5", orientation="axis_angle", rate=8,
                            max_gap=2).turn
         np.testing.assert_allclose((turn[0].inv() * turn).magnitude(), 0.15 * np.arange(9), atol=1e-12)
@@ -229,16 +226,16 @@ class Recordings(Given):
         expected = self.stroke(text, "", preset="hapi")
         np.testing.assert_allclose(expected.position[1], [0.001, -0.004, 0.002], atol=1e-15)
         self.assertEqual(expected.force[1].tolist(), [1, -4, 2])
-        self.assertEqual(stroke_text(self.stroke(log(names, samples), "", preset="hapi_binary")), stroke_text(expected))
-        floats = self.stroke(log(names, samples, "f"), "", preset="hapi_binary", floats=True)
+        self.assertEqual(stroke_text(self.stroke(binary_log(names, samples), "", preset="hapi_binary")), stroke_text(expected))
+        floats = self.stroke(binary_log(names, samples, "f"), "", preset="hapi_binary", floats=True)
         np.testing.assert_allclose(floats.position, expected.position, atol=1e-9)
-        buttons = b"BUTTONS\0" + log(["TIME", "POSITION"], []) + b"".join(struct.pack("<idddd", 3, t, 0.001 * t, 0.002, 0.003) for t in (1, 1.25))
-        report = self.report(buttons, "", preset="hapi_binary")
-        self.assertEqual((report.stroke.time[1], report.stroke.force, report.stroke.has_roll), (0.25, None, False))
-        self.assertEqual(len(report.read.notes), 2, "neither orientation nor force")
-        cut = self.report(log(["TIME", "POSITION"], [[0, 0, 0, 0], [0.1, 0, 0, 0], [0.2, 0, 0, 0]])[:-3], "", preset="hapi_binary")
-        self.assertEqual(len(cut.stroke.time), 2)
-        self.assertIn("behind sample 2 are 29 bytes", cut.read.notes[2])
+        buttons = b"BUTTONS\0" + binary_log(["TIME", "POSITION"], []) + b"".join(struct.pack("<idddd", 3, t, 0.001 * t, 0.002, 0.003) for t in (1, 1.25))
+        stroke, found = self.report(buttons, "", preset="hapi_binary")
+        self.assertEqual((stroke.time[1], stroke.force, stroke.has_roll), (0.25, None, False))
+        self.assertEqual(sum("as the preset names them: left out" in said for said in found["warnings"]), 2, "neither orientation nor force")
+        cut, found = self.report(binary_log(["TIME", "POSITION"], [[0, 0, 0, 0], [0.1, 0, 0, 0], [0.2, 0, 0, 0]])[:-3], "", preset="hapi_binary")
+        self.assertEqual(len(cut.time), 2)
+        self.assertIn("behind sample 2 are 29 bytes", found["warnings"][2])
 
     def test_what_is_no_log_is_refused(self):
         for number in ("9" * 400, "NaN", "Infinity"):
@@ -255,7 +252,7 @@ class Recordings(Given):
     def test_whatever_the_bytes_have_become_they_are_read_or_refused(self):
         noise = random.Random(4)
         text = LOG.read_bytes()[:2000]
-        binary = log(["TIME", "POSITION", "ORIENTATION", "FORCE"], [[0.01 * i, 0, 0, 0.001, 0, 1, 0, 0.5, 1, 2, 3] for i in range(9)])
+        binary = binary_log(["TIME", "POSITION", "ORIENTATION", "FORCE"], [[0.01 * i, 0, 0, 0.001, 0, 1, 0, 0.5, 1, 2, 3] for i in range(9)])
         for i in range(120):
             for data, preset in ((text, "hapi"), (binary, "hapi_binary"), (noise.randbytes(noise.randrange(300)), "traj")):
                 data = bytearray(data)

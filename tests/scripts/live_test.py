@@ -9,8 +9,6 @@ from headless_chromium import Page
 
 SCENES = ("peg", "hole", "task2", "wedge", "molar", "friction")
 READY = "window.live && live.begun && live.shown ? true : false"
-# Moves the hand by the given ways [m, rad] over so many rows.
-MOVE = "(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + {way}[i])); await live.stepRows({rows}); }})()"
 
 folder = page = None
 
@@ -37,7 +35,8 @@ class Live(Page):
         self.wait_for(READY)
 
     def move(self, way, rows):
-        self.js(MOVE.format(way=json.dumps(list(way)), rows=rows))
+        """Moves the hand by the given ways [m, rad] over so many rows."""
+        self.js(f"(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + {list(way)}[i])); await live.stepRows({rows}); }})()")
 
     def assert_program_agrees(self, view=0, **files):
         """What is kept of the motion has the same state when the program runs it."""
@@ -64,7 +63,11 @@ class Live(Page):
     def test_a_drag_pushes_the_peg(self):
         before = self.js("live.pointer")
         x, y = self.centre(".view")
-        self.drag([(x, y), (x + 10, y + 30), (x + 10, y + 60)])
+        self.mouse("mousePressed", x, y, button="left", clickCount=1)
+        for way in (30, 60):
+            self.mouse("mouseMoved", x + 10, y + way, button="left", buttons=1)
+            time.sleep(0.05)
+        self.mouse("mouseReleased", x + 10, y + way, button="left", clickCount=1)
         self.wait_for("live.shown.rows > 1000")
         self.assertTrue(self.js("live.running"))
         self.assertLess(self.js("live.pointer")[1], before[1])
@@ -107,14 +110,6 @@ class Live(Page):
         self.assertEqual(self.js("live.begun[0].algorithm"), "shaped_stiffness")
         self.move((0, 0, -1e-3, 0, 0), 400)
         self.assertGreater(self.assert_program_agrees()["steps_in_contact"], 0)
-
-    def drag(self, places):
-        x, y = places[0]
-        self.mouse("mousePressed", x, y, button="left", clickCount=1)
-        for x, y in places[1:]:
-            self.mouse("mouseMoved", x, y, button="left", buttons=1)
-            time.sleep(0.05)
-        self.mouse("mouseReleased", x, y, button="left", clickCount=1)
 
     def test_every_law_and_stage_is_the_program_s(self):
         self.choose("#views", "1")

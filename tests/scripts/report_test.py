@@ -10,7 +10,6 @@ from unittest import mock
 from fixture import PROGRAM, SOURCE, assert_whole, hapbench, ran, scratch_folder
 
 from hapbench_report import __main__ as command
-from hapbench_report.markup import column, typeset
 from hapbench_report.recording import CONTACT_COLUMNS, MEASURED_COLUMNS, Recording
 from hapbench_report.replay import replays
 from hapbench_report.runs import load_runs
@@ -149,14 +148,3 @@ class BadInput(WithResults):
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
             self.assertIn(said, done.stderr)
             self.assertFalse((self.root / "refused").exists())
-
-
-class Names(unittest.TestCase):
-    def test_numbers_and_columns_as_printers_set_them(self):
-        for given, shown in (("t = -0.3, K-1", "t = −0.3, K-1"), ("1e-9", "1 × 10⁻⁹"), ("3-5", "3-5"), ("<", "&lt;"), ("1.5e+12x", "1.5e+12x")):
-            self.assertEqual(typeset(given), shown)
-        for name, expected in (("force_reversals_per_s", ("force reversals", "1/s", 1)), ("stiffness_N_per_m", ("stiffness", "N/m", 1)),
-                               ("seconds_per_call", ("time of a call", "µs", 1e6))):
-            self.assertEqual(column(name, [1]), expected)
-        # The usual length decides: one that was thrown out does not.
-        self.assertEqual(column("depth_m", [0.001, 0.002, 18])[1:], ("mm", 1e3))

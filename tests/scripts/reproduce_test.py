@@ -3,13 +3,12 @@ import csv
 import json
 import math
 import os
-import shlex
 import signal
 import subprocess
 import time
 import unittest
 
-from fixture import SOURCE, must, scratch_folder
+from fixture import SOURCE, must, ran, scratch_folder
 
 NOTHING = "#!/bin/sh\nexit 0\n"
 
@@ -17,6 +16,7 @@ NOTHING = "#!/bin/sh\nexit 0\n"
 class Reproduce(unittest.TestCase):
     def setUp(self):
         self.root = scratch_folder(self)
+        self.environment = {**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}"}
         (self.root / "results" / "reference").mkdir(parents=True)
         (self.root / "scripts" / "python").mkdir(parents=True)
         self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
@@ -31,15 +31,10 @@ class Reproduce(unittest.TestCase):
         file.write_text(text, encoding="utf-8")
         file.chmod(0o755)
 
-    def start(self, program, *words):
-        self.put("build/release/bin/hapbench", program)
-        return subprocess.Popen([self.root / "scripts" / "reproduce", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                text=True, env={**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}"})
-
     def run_with(self, program, *words):
-        process = self.start(program, *words)
-        out, err = process.communicate()
-        return process.returncode, out, err
+        self.put("build/release/bin/hapbench", program)
+        done = ran(self.root / "scripts" / "reproduce", *words, env=self.environment)
+        return done.returncode, done.stdout, done.stderr
 
     def test_one_part_failed(self):
         self.put("build/release/bin/hapbench_accuracy", "#!/bin/sh\nexit 7\n")
@@ -99,7 +94,8 @@ class Reproduce(unittest.TestCase):
 
     def test_a_signal_ends_its_parts(self):
         # Without a program of its own that would outlive the shell and write while the folder is removed.
-        process = self.start(f"#!/bin/sh\n: >{shlex.quote(str(self.root))}/began\nexec sleep 50\n")
+        self.put("build/release/bin/hapbench", "#!/bin/sh\n: >began\nexec sleep 50\n")
+        process = subprocess.Popen([self.root / "scripts" / "reproduce"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment)
         while not (self.root / "began").exists():
             self.assertIsNone(process.poll())
             time.sleep(0.02)

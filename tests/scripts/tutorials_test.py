@@ -6,7 +6,7 @@ import sys
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 
-from fixture import ENVIRONMENT, PROGRAM, SOURCE, ran, scratch_folder
+from fixture import ENVIRONMENT, PROGRAM, SOURCE, must, scratch_folder
 
 TUTORIALS = [file for file in sorted((SOURCE / "scenarios" / "library" / "tutorials").glob("*.md")) if file.name != "README.md"]
 CODE = re.compile(r"^```(bash|python)\n(.*?)^```\n", re.M | re.S)
@@ -17,7 +17,7 @@ NUMBER = re.compile(r"(?<![\w.^-])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w-]|\.\d)")
 PLAYER = """
 import json, subprocess, sys
 names = {"__name__": "__main__"}
-for number, (language, code) in enumerate(json.load(sys.stdin), 1):
+for number, (language, code) in enumerate(json.loads(sys.argv[1]), 1):
     sys.stdout.flush()
     if language == "bash":
         subprocess.run(["bash", "-e", "-o", "pipefail", "-c", code], check=True, stdin=subprocess.DEVNULL)
@@ -32,15 +32,9 @@ def played(text, folder):
     clone.mkdir()
     for name in ("algorithms", "device_model", "scenarios", "scripts", "sim", "tests"):  # commands write to results/
         (clone / name).symlink_to(SOURCE / name)
-    player = folder / "player.py"
-    player.write_text(PLAYER, encoding="utf-8")
-    blocks = folder / "blocks.json"
-    blocks.write_text(json.dumps(CODE.findall(text)), encoding="utf-8")
     environment = {**ENVIRONMENT, "PATH": f"{PROGRAM.parent}:{ENVIRONMENT['PATH']}", "PYTHONPATH": sys.argv[-1], "MPLBACKEND": "Agg",
                    "HAPBENCH_MODULE_PATH": "", "COLUMNS": "100", "LC_ALL": "C.UTF-8"}
-    done = ran("bash", "-c", 'exec "$0" "$1" <"$2"', sys.executable, player, blocks, cwd=clone, env=environment)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
-    return done.stdout
+    return must(sys.executable, "-c", PLAYER, json.dumps(CODE.findall(text)), cwd=clone, env=environment)
 
 
 def unproven_numbers(text, printed):

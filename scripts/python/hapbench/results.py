@@ -65,6 +65,14 @@ def at(value, pointer):
     return value
 
 
+def objects_in(value):
+    """Every object in a value of JSON, itself first."""
+    if isinstance(value, dict):
+        yield value
+    for part in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from objects_in(part)
+
+
 def number_or_none(value):
     """A finite number, else None. Booleans are not numbers here."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):

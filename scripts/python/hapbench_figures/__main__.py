@@ -12,7 +12,7 @@ from hapbench.errors import InputError, ResultError
 from hapbench.results import Files, MissingResult, read_json
 from hapbench_command import BAD_INPUT, SUCCESS, Arguments, exit_status, say_error, write
 
-from .published import LEDGER
+from .scene import LEDGER
 
 CAPTIONS = Path(__file__).parent / "captions.txt"
 HEAD = re.compile(r"(\S+)\] (.+) · (\w+)\.(\w+)(?:\((\w+)\))? · (.+)")

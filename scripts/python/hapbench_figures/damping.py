@@ -4,7 +4,7 @@ import numpy as np
 
 import hapbench_style as style
 
-from . import published, scene
+from . import scene
 from .tasks import thin
 
 DP, HS = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
@@ -89,7 +89,7 @@ def implicit_plane(results):
 def force_limit(results):
     figure, ((ax,),) = style.panels(1, 1, 2.9)
     stiffness = results.json("thesis/force_limit_on/scenario.effective.json")["rendering"]["stiffness_N_per_m"]
-    offset, limit = published.value("L1.offset"), published.value("L1.threshold")
+    offset, limit = scene.published("L1.offset"), scene.published("L1.threshold")
     ideal = np.array([offset, limit + offset, 5.8])
     ax.plot(ideal, 1e3 * (ideal - offset) / stiffness, color=style.BLACK, lw=0.9)
     ax.plot(ideal, 1e3 * np.minimum(ideal - offset, limit) / stiffness, color=style.BLACK, lw=0.9)
@@ -99,7 +99,7 @@ def force_limit(results):
         x, y = thin(force, -1e3 * rows["pz_m"], count=110)
         ax.plot(x, y, marker, color=colour, ms=3.2, ls="none", alpha=0.8, mec="none")
     style.note(ax, 0.13, 0.42, "black: ideal, (force − 0.7 N) / K")
-    threshold = published.value("L1.measured")
+    threshold = scene.published("L1.measured")
     ax.axvline(threshold, **style.PUBLISHED_LINE)
     ax.set(xlabel="measured force [N]", ylabel="displacement into the flat [mm]", xlim=(0.5, 5.8), ylim=(-0.01, 0.27))
     ax.text(4.0, 0.19, "without limit", color=style.AMBER, ha="right")

@@ -5,7 +5,7 @@ from matplotlib.colors import ListedColormap
 
 import hapbench_style as style
 
-from . import published, scene
+from . import scene
 
 SHORTEST, NORMAL = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
 DEEP = 0.42  # tilt [rad] at which many points lie beyond the median line
@@ -91,7 +91,7 @@ def draw_error(ax, sweep):
     used, true, tilt = (np.concatenate(part) for part in (used, true, tilt))
     marks = ax.scatter(1e3 * true, 1e3 * (true - used), c=tilt, cmap=TILT_COLOURS, s=6, linewidths=0, rasterized=True)
     ax.figure.colorbar(marks, ax=ax, label="tilt [rad]", shrink=0.9)
-    ax.axvline(1e3 * published.entries()["G1.negligible"]["at_most"], **style.PUBLISHED_LINE)
+    ax.axvline(1e3 * scene.PUBLISHED["G1.negligible"]["at_most"], **style.PUBLISHED_LINE)
     style.note(ax, 0.22, 0.98, "published: negligible\nup to 0.25 mm", style.RED)
     ax.set(xlabel="distance along the normal [mm]", ylabel="depth too small by [mm]", title="underestimation", xlim=(0, 1.3),
            ylim=(-0.02, 0.85))

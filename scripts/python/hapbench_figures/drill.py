@@ -5,7 +5,7 @@ from matplotlib.patches import Polygon
 import hapbench_style as style
 from hapbench.results import MissingResult
 
-from . import published
+from . import scene
 
 HANDS = "task2_hands"  # a sweep of task 2 over the hand's force, tilted from upright to 1.047 rad and back
 MARKS = 40  # of a hand at most: more could not be told from their neighbours
@@ -17,7 +17,7 @@ def samples(results, run):
     """Rows of a hand, settled, within the compared tilts, and on the wall: not those in which the drill has slid towards the axis. Lengths in
     millimetres."""
     rows = results.table(f"{HANDS}/runs/{run:06d}/ideal_trajectory.csv")
-    range_ = published.entries()["J1.tilt"]
+    range_ = scene.PUBLISHED["J1.tilt"]
     own = (rows["time_s"] > SETTLED) & (rows["tilt_rad"] >= range_["at_least"]) & (rows["tilt_rad"] <= range_["at_most"])
     if not own.any():
         raise MissingResult(f"no row at the compared tilts in {HANDS}/runs/{run:06d}")
@@ -63,7 +63,7 @@ def trajectory(results):
         thin = {key: column[pick] for key, column in rows.items()}
         # The firmest hand is hollow and lies over its neighbour, whose places it shares.
         look = {"color": own.colour, "marker": own.marker, "ls": "none", "ms": 2.3, "mec": "none", "alpha": 0.7}
-        if force > published.value("J1.split"):
+        if force > scene.published("J1.split"):
             look |= {"ms": 4, "mec": own.colour, "mfc": "none", "mew": 0.6}
         section.plot(thin["lateral_m"], thin["height_m"], **look)
         height.plot(thin["tilt_rad"], thin["height_m"] + bottom, label=f"{force:.2g} N", **look)
@@ -72,13 +72,13 @@ def trajectory(results):
     section.plot(x, y, color=style.BLACK)
     height.plot(tilt, y + bottom, color=style.BLACK, label="ideal")
     distance.plot(tilt, np.abs(x), color=style.BLACK)
-    inside = 1e3 * published.value("J1.lateral")
+    inside = 1e3 * scene.published("J1.lateral")
     distance.fill_between(tilt, np.abs(x) - inside, np.abs(x) + inside, color=style.RED, alpha=0.13, lw=0)
     height.set(title="height over the bottom", xlabel="tilt α [rad]", ylabel="height [mm]")
     distance.set(title="distance to the median line", xlabel="tilt α [rad]", ylabel="distance [mm]")
     section.set_title("section")
     for ax in (height, distance):
-        ax.set_xlim(published.entries()["J1.tilt"]["at_least"], published.entries()["J1.tilt"]["at_most"])
+        ax.set_xlim(scene.PUBLISHED["J1.tilt"]["at_least"], scene.PUBLISHED["J1.tilt"]["at_most"])
     height.legend(loc="upper left", markerscale=1.8, fontsize=6.5)
     height.margins(y=0.12)
     style.note(distance, 0.03, 0.3, "shaded: published,\nerror up to about\n0.25 mm", style.RED)

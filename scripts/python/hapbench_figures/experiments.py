@@ -8,7 +8,7 @@ import numpy as np
 import hapbench_style as style
 from hapbench.columns import numbers
 
-from . import published
+from . import scene
 
 MEASURES = (
     ("success", "removed", "success rate", 1),
@@ -51,9 +51,9 @@ def signed(number):
 
 
 def published_test(claim):
-    entry = published.entries()[f"{claim}.p"]
+    entry = scene.PUBLISHED[f"{claim}.p"]
     sign, bound = ("<", entry["at_most"]) if "at_most" in entry else (">", entry["at_least"])
-    return f"t = {signed(published.value(f'{claim}.t'))}, p {sign} {bound:g}"
+    return f"t = {signed(scene.published(f'{claim}.t'))}, p {sign} {bound:g}"
 
 
 def draw_measure(ax, tables, place, claim, measure):
@@ -70,7 +70,7 @@ def draw_measure(ax, tables, place, claim, measure):
             ax.errorbar([x], [finite.mean()], yerr=[error], marker=look.marker, color=look.colour, ms=5, capsize=2.5,
                         elinewidth=1.2)
         id_ = f"{claim}.{name}.{method}"
-        ax.errorbar([x + 0.24], [scale * published.value(id_)], yerr=[scale * published.spread(id_)], **style.PUBLISHED)
+        ax.errorbar([x + 0.24], [scale * scene.published(id_)], yerr=[scale * scene.spread(id_)], **style.PUBLISHED)
     ax.set_xlim(-0.5, 1.5)
     ax.set_xticks([0, 1], [short for _, short in METHODS])
     ax.grid(axis="x", visible=False)
@@ -131,7 +131,7 @@ def threshold(results):
         ax.axhline(recorded(results, task, place, HS), color=style.look(HS).colour, label="HS, every sample")
         for at, method in ((12, DP), (18, HS)):
             id_ = f"{claim}.success.{method}"
-            ax.errorbar([at], [published.value(id_)], yerr=[published.spread(id_)], **style.PUBLISHED)
+            ax.errorbar([at], [scene.published(id_)], yerr=[scene.spread(id_)], **style.PUBLISHED)
         ax.set_xscale("symlog", linthresh=1, linscale=0.4)
         ax.set(title=title, xlabel="grace [ms]", xlim=(-0.3, 25), ylim=(-0.05, 1.08))
         ax.set_xticks([0, 1, 2, 5], ["0", "1", "2", "5"])

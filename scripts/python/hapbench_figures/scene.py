@@ -1,5 +1,7 @@
-"""The planar peg-in-hole scene and its contacts, in millimetres."""
+"""What several figures draw: the numbers that the thesis publishes, and the planar peg-in-hole scene with its contacts, in millimetres."""
+import json
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from matplotlib.patches import Polygon
@@ -7,6 +9,19 @@ from matplotlib.patches import Polygon
 import hapbench_style as style
 
 MM = 1e3
+ROOT = Path(__file__).resolve().parents[3]
+PUBLISHED = {entry["id"]: entry for entry in json.loads((ROOT / "results/reference/published.json").read_text(encoding="utf-8"))["values"]}
+LEDGER = "claims.json"  # beside the results: what was measured for each claim
+
+
+def published(id_):
+    """The number of an entry of PUBLISHED with a single one or a mean."""
+    return PUBLISHED[id_].get("value", PUBLISHED[id_].get("mean"))
+
+
+def spread(id_):
+    """Standard deviation or standard error, whichever the entry has."""
+    return PUBLISHED[id_].get("std", PUBLISHED[id_].get("standard_error"))
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from hapbench.columns import numbers, read_records
 from hapbench_pictures.given import axis
 from hapbench_pictures.over_axes import Limits, draw_limits, draw_over
 
-from . import published
+from . import scene
 
-SPRING = published.FILE.parents[2] / "scenarios" / "library" / "limits" / "single_spring.json"
+SPRING = scene.ROOT / "scenarios" / "library" / "limits" / "single_spring.json"
 
 
 def draw_path(ax, rows, look):
@@ -59,8 +59,8 @@ def spaced(number):
 
 
 def root_locus(results):
-    scene = json.loads(SPRING.read_text(encoding="utf-8"))
-    dt, M, zeta = scene["time"]["step_s"], scene["rendering"]["mass_kg"], scene["rendering"]["damping_ratio"]
+    spring = json.loads(SPRING.read_text(encoding="utf-8"))
+    dt, M, zeta = spring["time"]["step_s"], spring["rendering"]["mass_kg"], spring["rendering"]["damping_ratio"]
     poles = lambda K, B: sorted(np.linalg.eigvals([[1 - K * dt * dt / M, dt - B * dt * dt / M], [-K * dt / M, 1 - B * dt / M]]),
                                 key=lambda pole: (-pole.imag, -pole.real))
     undamped, damped = results.records("spring_stiffness/limit.csv")
@@ -71,7 +71,7 @@ def root_locus(results):
     figure, axes = style.panels(1, 3, 2.7, sharey=True)
     turn = np.linspace(0, 2 * np.pi, 181)
     for ax, (id_, title, symbol, unit, ours, at) in zip(axes[0], cases):
-        value = published.value(id_)
+        value = scene.published(id_)
         ax.plot(np.cos(turn), np.sin(turn), color=style.BLACK, lw=0.8)
         for way, colour, line in zip(np.array([at(v) for v in np.linspace(0, 1.25 * value, 401)]).T, (style.PETROL, style.AMBER), ("-", (0, (4, 1.2)))):
             ax.plot(way.real, way.imag, color=colour, ls=line, lw=1.5)
@@ -97,7 +97,7 @@ def of_all_devices(results):
     return draw_limits(results, 'device_limits/'), {}
 
 
-MEASURED = published.FILE.parents[2] / "scenarios" / "library" / "validation" / "measured.csv"
+MEASURED = scene.ROOT / "scenarios" / "library" / "validation" / "measured.csv"
 SCATTER = 1.3  # of sessions of measuring one setting, a factor
 
 

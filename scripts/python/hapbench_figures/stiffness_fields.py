@@ -8,7 +8,7 @@ from matplotlib.patches import Circle
 
 import hapbench_style as style
 
-from . import published, scene
+from . import scene
 
 SWEEP = "tilt_sweep_shaped_stiffness"
 PEG = "stiffness_peg"  # the same sweep under every algorithm
@@ -36,7 +36,7 @@ def field(tensor):
 def draw_field(ax, name, tensor, contacts, reach, ticks):
     """The field in the algorithm's colour and the ratio along each contact, which it returns."""
     curve, colour = field(tensor), style.look(name).colour
-    limit = published.entries()["C4.ratio"]["at_most"]
+    limit = scene.PUBLISHED["C4.ratio"]["at_most"]
     ax.fill(*curve.T, facecolor=(*to_rgb(colour), 0.22), edgecolor=colour, lw=1.1)
     ax.add_patch(Circle((0, 0), limit, fill=False, edgecolor=style.RED, lw=1.1, ls=(0, (1, 1)), zorder=2))
     ax.add_patch(Circle((0, 0), 1, fill=False, edgecolor=style.BLACK, lw=0.8, ls=(0, (3, 2)), zorder=2))

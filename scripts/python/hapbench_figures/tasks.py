@@ -3,7 +3,7 @@ import numpy as np
 
 import hapbench_style as style
 
-from . import published
+from . import scene
 
 TASKS = (
     ("T1", "task1_flat", "task 1: poke and drag"),
@@ -29,7 +29,7 @@ def ratios(results, task, iteration, density="signed_distance"):
 
 def cases(results, id_):
     """The cases of a claim in the ledger: name and numbers of each."""
-    return next(claim["cases"] for claim in results.json(published.LEDGER)["claims"] if claim["id"] == id_)
+    return next(claim["cases"] for claim in results.json(scene.LEDGER)["claims"] if claim["id"] == id_)
 
 
 def thin(*columns, count=80):
@@ -41,7 +41,7 @@ def thin(*columns, count=80):
 def published_count(ax, x, task, what):
     """Mean and standard deviation at the right edge of a time axis."""
     id_ = f"{task}.{what}"
-    ax.errorbar([x], [published.value(id_)], yerr=published.entries()[id_].get("std"), **style.PUBLISHED, clip_on=False)
+    ax.errorbar([x], [scene.published(id_)], yerr=scene.PUBLISHED[id_].get("std"), **style.PUBLISHED, clip_on=False)
 
 
 def span(time, values, bins=BINS):
@@ -65,7 +65,7 @@ def loop_load(ax, results, task, duration):
     # Above the points, which share the panel.
     load.set(yscale="log", ylim=(1e-9, 400), yticks=[0.1, 1, 10, 100])
     load.set_yticklabels(["0.1", "1", "10", "100"])
-    if task == "task3_spin" and results.has(published.LEDGER):
+    if task == "task3_spin" and results.has(scene.LEDGER):
         dense = cases(results, "T5")[0]["values"]
         for name in ("unreduced_3", "reduced_3"):
             load.axhline(100 * dense[name], color=style.BLACK, ls="--", lw=0.8)
@@ -118,9 +118,9 @@ def count_distribution(results):
                 values = rows[column][rows["colliding"] > 0]
                 draw_distribution(ax, y + above, values, marker, name if place == 0 else None)
             for k, suffix in enumerate(("", ".C3")):
-                if f"{id_}.{what}{suffix}" in published.entries():
-                    entry = published.entries()[f"{id_}.{what}{suffix}"]
-                    ax.errorbar([published.value(entry["id"])], [y - 0.2 - 0.13 * k], xerr=[[entry.get("std", 0)]] * 2,
+                if f"{id_}.{what}{suffix}" in scene.PUBLISHED:
+                    entry = scene.PUBLISHED[f"{id_}.{what}{suffix}"]
+                    ax.errorbar([scene.published(entry["id"])], [y - 0.2 - 0.13 * k], xerr=[[entry.get("std", 0)]] * 2,
                                 **style.PUBLISHED)
         ax.set(title=title, xlabel="points in contact", xscale="log")
         ax.set_xlim((1, 1000) if what == "raw" else (0.8, 100))
@@ -152,7 +152,7 @@ def draw_quantiles(ax, results, tasks, density="signed_distance"):
         ax.fill_between(ITERATIONS, values[:, 1], values[:, 3], color=colour, alpha=0.3, lw=0)
         ax.plot(ITERATIONS, values[:, 2], color=colour, marker=marker)
         ax.plot(ITERATIONS, values[:, extreme], color=colour, ls=":", lw=1.1)
-    once = published.entries()["R1.once"]
+    once = scene.PUBLISHED["R1.once"]
     ax.errorbar([0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
     ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
 
@@ -161,7 +161,7 @@ def convergence_by_task(results):
     figure, axes = style.panels(1, 3, 2.5, sharey=True)
     for ax, task in zip(axes[0], TASKS):
         draw_quantiles(ax, results, (task,))
-        ax.axhline(published.entries()["R1.bound"]["at_most"], **style.PUBLISHED_LINE)
+        ax.axhline(scene.PUBLISHED["R1.bound"]["at_most"], **style.PUBLISHED_LINE)
         ax.set(xscale="log", title=task[2], xlabel="iterations", xlim=(0.7, 200), ylim=(0.4, 1.62))
         ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
         ax.minorticks_off()
@@ -224,7 +224,7 @@ def model_force(results):
         time, low, high = span(rows["time_s"], size)
         ax.fill_between(time, low, high, color=style.PETROL, alpha=0.45, lw=0)
         ax.plot(time, (low + high) / 2, color=style.PETROL, lw=0.9)
-        ax.axhline(published.value("L1.threshold"), color=style.RED, ls="--", lw=0.9)
+        ax.axhline(scene.published("L1.threshold"), color=style.RED, ls="--", lw=0.9)
 
     figure, axes = over_time(draw, ["model force [N]"])
     # The taps of task 2 are ten times as strong as all else.
@@ -234,7 +234,7 @@ def model_force(results):
     axes[0, 0].axhline(0.5, color=style.GREY, lw=0.5)
     axes[0, 0].minorticks_off()
     style.note(axes[0, 0], 0.98, 0.8, "logarithmic above 0.5 N", style.GREY, ha="right")
-    limit = published.value("L1.threshold")
+    limit = scene.published("L1.threshold")
     axes[0, 0].text(0, 0.95 * limit, "published limit of the input force", color=style.RED, fontsize=7, va="top")
     return figure, {"spans": BINS}
 
@@ -253,7 +253,7 @@ def ratio_over_time(results, extreme):
         said = f"≤ {rows[column].max():.4g}" if above else f"≥ {rows[column].min():.4g}"
         style.note(ax, 0.5, 0.8 if above else 0.15, said, colour, ha="center", va="center")
         if ITERATIONS[i] == 1:
-            ax.axhline(published.entries()["R1.once"][published_end], **style.PUBLISHED_LINE)
+            ax.axhline(scene.PUBLISHED["R1.once"][published_end], **style.PUBLISHED_LINE)
 
     labels = [f"{n}" for n in ITERATIONS]
     figure, axes = over_time(draw, labels, height=7.6, rows=len(ITERATIONS))

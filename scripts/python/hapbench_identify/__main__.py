@@ -108,10 +108,8 @@ def shown_end(end):
 
 
 def warnings_of(told, found, log):
-    warnings = []
-    for name, why in found.untold.items():
-        if name in IN_DEVICE:
-            warnings.append(f"{name}: the log cannot tell it: {why}; 95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}")
+    warnings = [f"{name}: the log cannot tell it: {why}; 95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}"
+                for name, why in found.untold.items() if name in IN_DEVICE]
     if told["offset_N"]["value"] is not None:
         warnings.append(f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands (weight, a cable): no device file has it")
     if found.misfit:

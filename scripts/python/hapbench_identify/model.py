@@ -13,34 +13,26 @@ FRICTION_TOLD = 0.6  # of the largest force; more dry friction leaves too little
 HIGHEST = 100.0  # frequency [Hz]; more tells little of a handle's mass and friction
 
 
-class Simulator:
+class Simulator(subprocess.Popen):
     """A process of the program that simulates a log, in a `with`; a fit needs some thousand simulations."""
 
     def __init__(self, time, force):
         program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
         if not program:
             fail("the program hapbench, which simulates the handle, is not in the path")
-        self._process = subprocess.Popen([program, "import", "device", "--simulate-log"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        super().__init__([program, "import", "device", "--simulate-log"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self._send(np.concatenate([[len(time)], time, force]))
         self.rows = len(time)
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self._process.stdin.close()
-        self._process.stdout.close()
-        self._process.wait()
-
     def _send(self, numbers):
-        self._process.stdin.write(np.asarray(numbers, float).tobytes())
-        self._process.stdin.flush()
+        self.stdin.write(np.asarray(numbers, float).tobytes())
+        self.stdin.flush()
 
     def __call__(self, parameters, rows=None):
         """The way from the first place to those at the first `rows` times of a handle with `parameters` (NAMES)."""
         rows = rows or self.rows
         self._send([rows, *parameters])
-        answer = self._process.stdout.read(8 * rows)
+        answer = self.stdout.read(8 * rows)
         if len(answer) != 8 * rows:
             raise OSError(0, "the program ended", "the simulation of the log")
         return np.frombuffer(answer)

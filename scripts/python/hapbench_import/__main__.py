@@ -6,7 +6,6 @@ from hapbench_command import CommandLine, answer, exit_status, fail, refuse_sour
 
 from .options import FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
 
-STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
 FOOTER = """\
 --columns: time, and position, orientation and force by the first of their columns, or each by itself as px, py, pz, qw, qx, qy, \
 qz, mfx, mfy, mfz. --orientation is none, axis (the direction out of the tip), quat_wxyz, quat_xyzw, axis_angle (axis, angle) or \
@@ -49,16 +48,15 @@ def run(options):
     if not options.preset and not options.columns:
         fail("--columns or --preset is missing: which columns hold time and position?")
     from .recording import open_recording  # loads numpy and scipy, which the help does without
-    from .stroke import import_stroke, json_of, stroke_text, table_of
+    from .stroke import import_stroke, stroke_text, table_of
     out = options.out or f"{Path(options.file).stem}_stroke.csv"
     refuse_source(out, options.file, "recording")
     asked = options_of(options)
-    report = import_stroke(open_recording(options.file, asked), asked)
-    write(Path(out), stroke_text(report.stroke))
+    stroke, found = import_stroke(open_recording(options.file, asked), asked)
+    write(Path(out), stroke_text(stroke))
     scenario = f"{Path(out).stem}.json"
     next_line = f"{shell_line('hapbench', 'new', 'stroke', '--from', out, '--out', scenario)} && {shell_line('hapbench', 'run', scenario)}"
-    found = json_of(report, STIFFNESS)
-    table = table_text(["of the stroke", ""], table_of(found, STIFFNESS), options.wide)
+    table = table_text(["of the stroke", ""], table_of(found), options.wide)
     answer(options, f"{out}\n{table}\nnext: {next_line}", {"file": out} | found | {"next": next_line})
 
 

@@ -1,15 +1,15 @@
 """From samples to a stroke: an even clock that starts at 0, smoothed if asked for, and the resolution of the recording. What was found
 on the way, as JSON and, from that, as a table for people."""
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from hapbench_command import MOST_FAULTS, Faults, fail
 
-from .samples import DOWN, Read, Samples, read_samples
+from .samples import DOWN, Samples, read_samples
 
+STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
 MOST_SAMPLES = 1e7
 LONG_INTERVALS = 10.0  # median intervals from which on one is a gap
 USUAL_RATES = (1.0, 1e5)  # of recordings [Hz]
@@ -17,76 +17,67 @@ LONGEST, SHORTEST = 3.0, 1e-5  # of a hand's stroke, which is millimetres to dec
 MOST_GAPS = 5  # that are told each
 
 
-@dataclass
-class Clock:
-    """The clock of a recording [s]."""
-    first: float
-    duration: float
-    interval_min: float
-    interval_median: float
-    interval_max: float
-    is_regular: bool  # every sample within a thousandth of an interval of its place on an even clock
-
-
-@dataclass
-class Report:
-    """What was found in a recording and done with it."""
-    read: Read
-    stroke: Samples
-    clock: Clock
-    gaps: list          # bridged: (index of the sample before it, duration [s])
-    resolution: list    # of the recorded coordinates [m]; None: kept in full
-    resampled: bool
-    rate: float         # of the stroke [Hz]
-    smoothing: dict | None  # what it changed
-    speed_p99: float    # between samples of the stroke [m/s]
-    speed_max: float
-
-
 def import_stroke(recording, options):
-    """A stroke that a scenario plays back, with what was found on the way."""
+    """A stroke that a scenario plays back, and, as JSON, what was found on the way."""
     read = read_samples(recording, options)
-    clock = clock_of(read.samples.time)
-    gaps = gaps_in(read, clock, options.max_gap)
-    resampled = options.rate is not None or not clock.is_regular
-    rate = options.rate if options.rate is not None else usual_rate(clock, len(read.samples.time))
-    resolution = [resolution_of(column) for column in read.coordinates.T]
+    clock, is_regular = clock_of(read.samples.time)
+    gaps = gaps_in(read, clock["interval_s"]["median"], options.max_gap)
+    resampled = options.rate is not None or not is_regular
+    rate = options.rate if options.rate is not None else usual_rate(clock, is_regular, len(read.samples.time))
     stroke = resample(read.samples, rate) if resampled else read.samples
     if not resampled:
-        stroke.time = stroke.time - clock.first
+        stroke.time = stroke.time - clock["first_time_s"]
     smoothing = smooth(stroke, **options.smooth) if options.smooth else None
     speeds = sorted((np.linalg.norm(np.diff(stroke.position, axis=0), axis=1) / np.diff(stroke.time)).tolist()) or [0.0]
-    return Report(read, stroke, clock, gaps, resolution, resampled, rate, smoothing, speeds[int(0.99 * (len(speeds) - 1))], speeds[-1])
+    resolution = [resolution_of(column) for column in read.coordinates.T]
+    coarsest = max((step for step in resolution if step is not None), default=None)
+    axes = stroke.turn.apply(DOWN)
+    mean = axes.mean(axis=0)
+    mean = mean / np.linalg.norm(mean) if np.linalg.norm(mean) > 1e-9 else axes[0]
+    forces = None if stroke.force is None else np.linalg.norm(stroke.force, axis=1)
+    found = {
+        "rows_read": len(recording.rows), "rows_left_out": len(read.left_out), "samples": len(stroke.time),
+        "rate_Hz": rate, "resampled": resampled, **clock,
+        "gaps": len(gaps), "box_m": [stroke.position.min(axis=0).tolist(), stroke.position.max(axis=0).tolist()],
+        "speed_p99_m_per_s": speeds[int(0.99 * (len(speeds) - 1))], "speed_max_m_per_s": speeds[-1], "has_roll": stroke.has_roll,
+        "tip_direction": mean.tolist(), "tip_direction_spread_rad": float(np.arccos(np.clip(axes @ mean, -1.0, 1.0)).max()),
+        "unit_deviation": read.unit_deviation, "quantum_m": resolution,
+        "quantum_force_N": None if coarsest is None else STIFFNESS * coarsest,
+        "force_min_N": None if forces is None else float(forces.min()), "force_max_N": None if forces is None else float(forces.max()),
+        "smoothing": smoothing}
+    return stroke, found | {"warnings": _warnings(read, gaps, found)}
 
 
 def clock_of(time):
+    """The times of a recording, and whether every sample is within a thousandth of an interval of its place on an even clock."""
     first, duration, intervals = float(time[0]), float(time[-1] - time[0]), np.diff(time)
     even = duration / len(intervals)
     off = time - first - np.arange(len(time)) * even
-    return Clock(first, duration, float(intervals.min()), float(np.sort(intervals)[len(intervals) // 2]), float(intervals.max()),
-                 bool((np.abs(off) <= 1e-3 * even).all()))
+    interval = {"min": float(intervals.min()), "median": float(np.sort(intervals)[len(intervals) // 2]), "max": float(intervals.max())}
+    return {"first_time_s": first, "duration_s": duration, "interval_s": interval}, bool((np.abs(off) <= 1e-3 * even).all())
 
 
-def usual_rate(clock, samples):
+def usual_rate(clock, is_regular, samples):
     """As recorded; of an irregular clock that of its median interval, as a whole number."""
-    if clock.is_regular:
-        return (samples - 1) / clock.duration
-    rate = 1.0 / clock.interval_median
+    if is_regular:
+        return (samples - 1) / clock["duration_s"]
+    rate = 1.0 / clock["interval_s"]["median"]
     return rate if rate < 10.0 else float(math.floor(rate + 0.5))
 
 
-def gaps_in(read, clock, longest):
-    """The gaps to bridge. Intervals longer than `longest` [s] are refused, however many there are."""
-    if clock.interval_median > longest:
-        factor = next((unit for unit in (1e-3, 1e-6, 1e-9) if clock.interval_median * unit <= longest), 1e-9)
-        fail(f"got intervals of {clock.interval_median:.4g} s in the median; allowed: {longest:g} s (--set max_gap=...); are times in "
+def gaps_in(read, median, longest):
+    """The gaps to bridge: index of the sample before it, and duration [s]. Intervals longer than `longest` [s] are refused, however many
+    there are."""
+    if median > longest:
+        factor = next((unit for unit in (1e-3, 1e-6, 1e-9) if median * unit <= longest), 1e-9)
+        fail(f"got intervals of {median:.4g} s in the median; allowed: {longest:g} s (--set max_gap=...); are times in "
              f"other units? (--scale time={factor:g})", read.recording.file)
     intervals = np.diff(read.samples.time)
     faults = [(read.recording.place(read.kept[i]), f"a gap of {intervals[i]:.4g} s follows; allowed: {longest:g} s (--set max_gap=...)")
               for i in np.flatnonzero(intervals > longest).tolist()]
     if faults:
         raise Faults(faults[:MOST_FAULTS])
-    return [(i, float(intervals[i])) for i in np.flatnonzero(intervals >= LONG_INTERVALS * clock.interval_median).tolist()]
+    return [(i, float(intervals[i])) for i in np.flatnonzero(intervals >= LONG_INTERVALS * median).tolist()]
 
 
 def resolution_of(values):
@@ -184,29 +175,8 @@ def number_text(value):
     return fixed if len(fixed) <= len(scientific) else scientific
 
 
-def json_of(report, stiffness):
-    read, clock, stroke = report.read, report.clock, report.stroke
-    axes = stroke.turn.apply(DOWN)
-    mean = axes.mean(axis=0)
-    mean = mean / np.linalg.norm(mean) if np.linalg.norm(mean) > 1e-9 else axes[0]
-    coarsest = max((step for step in report.resolution if step is not None), default=None)
-    forces = None if stroke.force is None else np.linalg.norm(stroke.force, axis=1)
-    found = {
-        "rows_read": len(read.recording.rows), "rows_left_out": len(read.left_out), "samples": len(stroke.time),
-        "rate_Hz": report.rate, "resampled": report.resampled, "first_time_s": clock.first, "duration_s": clock.duration,
-        "interval_s": {"min": clock.interval_min, "median": clock.interval_median, "max": clock.interval_max},
-        "gaps": len(report.gaps), "box_m": [stroke.position.min(axis=0).tolist(), stroke.position.max(axis=0).tolist()],
-        "speed_p99_m_per_s": report.speed_p99, "speed_max_m_per_s": report.speed_max, "has_roll": stroke.has_roll,
-        "tip_direction": mean.tolist(), "tip_direction_spread_rad": float(np.arccos(np.clip(axes @ mean, -1.0, 1.0)).max()),
-        "unit_deviation": read.unit_deviation, "quantum_m": report.resolution,
-        "quantum_force_N": None if coarsest is None else stiffness * coarsest,
-        "force_min_N": None if forces is None else float(forces.min()), "force_max_N": None if forces is None else float(forces.max()),
-        "smoothing": report.smoothing}
-    return found | {"warnings": _warnings(report, found)}
-
-
-def table_of(found, stiffness):
-    """Rows of a label and a text, of what json_of made."""
+def table_of(found):
+    """Rows of a label and a text, of what import_stroke found."""
     interval, (low, high) = found["interval_s"], found["box_m"]
     bad, smoothing = found["rows_left_out"], found["smoothing"]
     rows = [
@@ -222,7 +192,7 @@ def table_of(found, stiffness):
                        f"{math.degrees(found['tip_direction_spread_rad']):.3g} degrees of it"),
         ("resolution", ", ".join(f"{axis} {'none' if step is None else f'{1e6 * step:.4g} um'}" for axis, step in zip("xyz", found["quantum_m"])))]
     if found["quantum_force_N"] is not None:
-        rows.append(("", f"alone makes steps of K q = {found['quantum_force_N']:.4g} N at the default K = {stiffness:g} N/m"))
+        rows.append(("", f"alone makes steps of K q = {found['quantum_force_N']:.4g} N at the default K = {STIFFNESS:g} N/m"))
     if smoothing:
         moved, moved_rms, turned, turned_rms = smoothing.values()
         rows.append(("smoothing", f"moved the tip by {1e6 * moved:.4g} um at most, {1e6 * moved_rms:.4g} um rms; turned it by "
@@ -231,22 +201,21 @@ def table_of(found, stiffness):
     return [*rows, ("force", "not measured" if least is None else f"measured, {least:.4g} ... {most:.4g} N")]
 
 
-def _warnings(report, found):
-    read = report.read
+def _warnings(read, gaps, found):
     warnings = list(read.notes)
     if read.left_out:
         warnings.append(f"{len(read.left_out)} bad rows were left out")
     warnings += [f"{place}: {problem}" for place, problem in read.left_out[:20]]
     warnings += [f"a gap of {duration:.4g} s behind {read.recording.row_word} {read.recording.places[read.kept[i]]} is bridged by a straight line"
-                 for i, duration in report.gaps[:MOST_GAPS]]
-    if len(report.gaps) > MOST_GAPS:
-        warnings.append(f"{len(report.gaps)} gaps in all")
+                 for i, duration in gaps[:MOST_GAPS]]
+    if len(gaps) > MOST_GAPS:
+        warnings.append(f"{len(gaps)} gaps in all")
     extent = float(np.ptp(found["box_m"], axis=0).max())
     if not SHORTEST <= extent <= LONGEST:
         warnings.append(f"the tip's places are within {extent:.4g} m, which is not a stroke of a hand: is the scale right? "
                         "(--scale position=0.001 is for millimetres)")
-    if not USUAL_RATES[0] <= report.rate <= USUAL_RATES[1]:
-        warnings.append(f"{report.rate:.4g} samples a second is an unusual rate: is the scale of time right? (--scale time=1e-3 is for "
+    if not USUAL_RATES[0] <= found["rate_Hz"] <= USUAL_RATES[1]:
+        warnings.append(f"{found['rate_Hz']:.4g} samples a second is an unusual rate: is the scale of time right? (--scale time=1e-3 is for "
                         "milliseconds)")
     if found["tip_direction"][2] > 0.5:
         warnings.append("the tip points upwards in the mean: are --orientation (the order of a quaternion), tip_axis and --frame right?")

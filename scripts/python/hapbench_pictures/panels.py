@@ -1,6 +1,6 @@
 """How runs are drawn: as their algorithm is everywhere, with line styles where two runs share one; one quantity over time, and the
 scene in a section, with the tip's way and the tool, of several runs, into matplotlib's axes."""
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.patches import Polygon
@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from hapbench_looks import SERIES, Look, look
 from hapbench_style import curve, equal_curves, reduced, striped
 
-from .quantities import range_of
+from .quantities import settled_range
 
 # Text, ground, grid, solid and its surface: of paper, and of the dark page.
 LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#EFE8DC", "#8C7A58")
@@ -45,10 +45,6 @@ def looks(runs, labels, groups=()):
         colours = of_series if alike and not one_each else own
         found.append(RunLook(label, colours.colour, colours.dark, own.dash if one_each else of_series.dash, width=width, group=group))
     return found
-
-
-def on_dark(shown):
-    return [replace(one, colour=one.dark) for one in shown]
 
 
 def settings(paper):
@@ -90,7 +86,7 @@ def share_an_axis(ax, heights):
 
 def cut_off_peaks(ax, quantity, drawn):
     """The range of settled contact, where it is far below a peak; the largest one is written where it leaves the picture."""
-    shown = range_of(quantity, [s for s, _, _ in drawn])
+    shown = settled_range([(s.settled[quantity.file], low, high) for s, _, (_, low, high) in drawn])
     if shown is None:
         return
     ax.set_ylim(*shown)

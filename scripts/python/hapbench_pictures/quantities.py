@@ -152,12 +152,6 @@ class Samples:
         return (table["time_s"], *q.of(table)) if set(q.columns) <= set(table) else None
 
 
-def range_of(quantity, samples):
-    """The range that settled contact takes, where its peaks are cut off; else None."""
-    drawn = [(s.settled[quantity.file], *s.of(quantity)[1:]) for s in samples if s.of(quantity) is not None]
-    return settled_range(drawn)
-
-
 def settled_range(curves):
     """The least and the greatest value of the bulk of settled contact with some air; None when all is to be shown. Each
     curve: which rows are settled, and the lower and upper edge of every row."""

@@ -3,6 +3,7 @@ each quantity."""
 import base64
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ from hapbench_style import SETTINGS, picture, plt
 from .differences import are_equal, differences, in_words, number as number_of
 from .given import SEED_FOLDER, common_folder, given_runs, given_sweep, labels
 from .over_axes import Axis, look_of, over_axes, pareto
-from .panels import AXIS_COLUMNS, DARK, LIGHT, PATH_COLUMNS, RunLook, draw_over_time, draw_section, looks, on_dark, settings
+from .panels import AXIS_COLUMNS, DARK, LIGHT, PATH_COLUMNS, RunLook, draw_over_time, draw_section, looks, settings
 from .plot import profile_of
 from .quantities import SHORT, TRAJECTORY, USUAL, Samples, switch_of, tables_of
 
@@ -121,7 +122,7 @@ def spoken(quantity, samples, labels):
 
 def drawing(size, draw, light, title, words, **labels):
     images = []
-    for paper, shown, name in ((LIGHT, light, "only-light"), (DARK, on_dark(light), "only-dark")):
+    for paper, shown, name in ((LIGHT, light, "only-light"), (DARK, [replace(one, colour=one.dark) for one in light], "only-dark")):
         with plt.rc_context({**SETTINGS, **settings(paper)}):
             figure, ax = plt.subplots(figsize=size)
             draw(ax, shown, paper)

@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 from urllib.parse import quote
 
-from hapbench.results import at
+from hapbench.results import at, objects_in
 
 from .figures import figures_section
 from .ledger import ledger_section, summary_section
@@ -71,16 +71,12 @@ def live_page():
     return page if page.is_file() else None
 
 
-def names_a_file(value):
-    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
-    return isinstance(value, dict) and isinstance(value.get("file"), str) or any(map(names_a_file, parts))
-
-
 def live_link(scenario):
     """A sentence with the link; nothing where there is no live page or a pointer cannot lead the scene's tool."""
     position = at(scenario, "/motion/position")
     is_free = position is None or at(scenario, "/motion/position/type") == "free"
-    if live_page() is None or not scenario or not is_free or names_a_file(scenario):
+    names_a_file = any(isinstance(part.get("file"), str) for part in objects_in(scenario))
+    if live_page() is None or not scenario or not is_free or names_a_file:
         return ""
     led = {key: value for key, value in scenario.items() if key not in ("$schema", "record", "expect", "description", "reference_force")}
     scene = quote(json.dumps(led, separators=(",", ":"), ensure_ascii=False))

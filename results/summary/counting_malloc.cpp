@@ -2,7 +2,7 @@
 #include <cerrno>
 #include <cstddef>
 
-#include "results/allocations/allocations.hpp"
+#include "results/summary/allocations.hpp"
 
 using hapbench::allocations_of_thread;
 

@@ -5,7 +5,7 @@
 namespace hapbench {
 
 /// The calling thread's count, for counting_malloc: a run stays on one thread while others may run.
-extern constinit thread_local std::uint64_t allocations_of_thread;
+inline constinit thread_local std::uint64_t allocations_of_thread = 0;
 
 /// Heap allocations of this thread from its construction on: malloc, calloc, realloc and the aligned ones, hence
 /// operator new and Eigen's allocator too, which call them. So summary.json states how many a step loop made (none),
