@@ -72,7 +72,8 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& m
       add_names(metrics, metrics_without_values(loaded.scenario, has_force));
     }
     loaded.scenario.name.clear();  // may be that of the scenario's file
-    hashes.push_back(with_file(loaded, [&] { return scenario_hash(loaded.scenario, loaded.files); }));
+    hashes.push_back(
+        with_file(loaded, [&] { return scenario_hash(effective_scenario(loaded.scenario, {}), loaded.files); }));
   }
   return hashes;
 }

@@ -264,10 +264,9 @@ Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
   return json;
 }
 
-std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
-  Json json = written_object(scenario);
-  for (const auto& file : files.all()) json.at(Json::json_pointer(file->pointer())) = file->hash();
-  return hash_text(hash_of(json_text(json)));
+std::string scenario_hash(Json effective, const NamedFiles& files) {
+  for (const auto& file : files.all()) effective.at(Json::json_pointer(file->pointer())) = file->hash();
+  return hash_text(hash_of(json_text(effective)));
 }
 
 }  // namespace hapbench

@@ -93,8 +93,8 @@ auto with_file(const Place& place, Work work) {
 /// `directory`.
 Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory);
 
-/// Identifies what is simulated: FNV-1a over the scenario with every default filled in and the contents of `files`,
-/// which are the scenario's, in place of their paths, as 16 hexadecimal digits. Throws InputError.
-std::string scenario_hash(const Scenario& scenario, const NamedFiles& files);
+/// Identifies what is simulated: FNV-1a over the effective scenario with the contents of `files`, which are the
+/// scenario's, in place of their paths, as 16 hexadecimal digits. Throws InputError.
+std::string scenario_hash(Json effective, const NamedFiles& files);
 
 }  // namespace hapbench

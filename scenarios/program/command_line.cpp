@@ -26,7 +26,7 @@ using AddCommand = void(CommandLine& line);
 /// Every command, each defined in a source file of its own subject.
 AddCommand add_compare, add_converge, add_describe, add_limit, add_new, add_reproduce, add_run, add_stress, add_sweep,
     add_tune, add_validate;
-/// Those of Python packages, which take every word behind the name, --help included.
+/// Runs a command of a Python package, which takes every word behind the name, --help included.
 int run_python_command(const ProgramWords& words);
 
 namespace {

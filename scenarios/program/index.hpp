@@ -44,7 +44,7 @@ struct Named {
 };
 using Index = std::vector<Named>;
 
-/// What the program knows by itself, in the order in which it is told: from models and presets to words and headings.
+/// Everything that `describe` can describe, in the order of its lists: from models and presets to words and headings.
 Index program_index();
 /// Every table among the results of this program, and those that are only printed, without a file.
 std::vector<DescribedTable> result_tables();

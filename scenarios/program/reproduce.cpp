@@ -48,7 +48,7 @@ bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
   try {
     const Json summary = read_json(directory / "summary.json");
     const Json& made = summary.at("provenance");
-    return made.at("scenario_hash") == scenario_hash(loaded.scenario, loaded.files) &&
+    return made.at("scenario_hash") == scenario_hash(effective_scenario(loaded.scenario, {}), loaded.files) &&
            made.at("commit") == provenance().commit && provenance().identifies_source();
   } catch (const std::exception&) {
     return false;  // missing, damaged or of another version: run it

@@ -202,7 +202,7 @@ struct Sentence {
   std::string (*of_run)(const DiagnosedRun& run) = nullptr;
 };
 
-/// What it advises names no law that the run uses, and no cause that was not measured.
+/// A rule of the diagnosis. Its advice names no law that the run uses, and no cause that was not measured.
 struct Rule {
   const char *name, *number, *unit;  ///< number: what it is
   double threshold;                  ///< something is wrong where the number is larger

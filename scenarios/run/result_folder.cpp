@@ -163,8 +163,9 @@ fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
   return directory;
 }
 
-bool ResultFolder::write(const Scenario& scenario, const Result& result, const Recorders& recorders) {
-  std::vector<ResultTable> tables = tables_with(scenario.record);
+bool ResultFolder::write(const RecordFields& record, const Json& effective, const Result& result,
+                         const Recorders& recorders) {
+  std::vector<ResultTable> tables = tables_with(record);
   FileSet files;
   remove_earlier_run(directory_, files);
   for (const auto& recorder : recorders) recorder->finish(&files);
@@ -173,21 +174,21 @@ bool ResultFolder::write(const Scenario& scenario, const Result& result, const R
     write_target_table(directory_ / kTargetTable.file, result.targets, &files);
   }
   const auto add = [&](const char* name, const std::string& text) { files.write(directory_ / name, text); };
-  const std::string effective = json_text(effective_scenario(scenario, directory_));
-  add(kEffectiveFile, effective);
+  const std::string text = json_text(effective);
+  add(kEffectiveFile, text);
   std::ifstream earlier(directory_ / kEffectiveFile, std::ios::binary);
   const std::string before{std::istreambuf_iterator<char>(earlier), {}};
   add("columns.json", json_text(columns_json(tables, result.metrics)));
-  if (scenario.record.timing) add("timing.json", timing_text(result));
+  if (record.timing) add("timing.json", timing_text(result));
   // The summary, which says that a run is there, is the first to go and the last to come.
   add("summary.json", json_text(summary_json(result)));
   files.commit();
   remove_empty_trials(directory_);
-  return !before.empty() && before != effective;
+  return !before.empty() && before != text;
 }
 
-void RunTables::write(const Scenario& scenario, const Result& result, const Recorders& recorders) {
-  effective = effective_scenario(scenario, fs::current_path());
+void RunTables::write(const Json& of_scenario, const Result& result, const Recorders& recorders) {
+  effective = of_scenario;
   for (const auto& recorder : recorders) recorder->finish();
   if (result.sections.contains("targets")) write_target_table(&targets.emplace(kTargetTable.columns), result.targets);
 }

@@ -251,9 +251,10 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
   result.provenance = provenance();
   result.provenance.plugin = origin.file;
   result.provenance.plugin_hash = origin.hash;
-  result.scenario_hash = scenario_hash(scenario, loaded.files);
-  if (folder) result.replaces_other = folder->write(scenario, result, run.recorders());
-  if (tables != nullptr) tables->write(scenario, result, run.recorders());
+  const Json effective = effective_scenario(scenario, output ? *output : fs::current_path());
+  result.scenario_hash = scenario_hash(effective, loaded.files);
+  if (folder) result.replaces_other = folder->write(scenario.record, effective, result, run.recorders());
+  if (tables != nullptr) tables->write(effective, result, run.recorders());
   return result;
 }
 

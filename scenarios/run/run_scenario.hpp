@@ -65,8 +65,8 @@ class ResultFolder {
   std::filesystem::path of_trial(Trial trial, std::size_t trials);
 
   /// Writes the results in place of those of an earlier run: each file appears complete or not at all, the summary
-  /// last. Returns true when that was another scenario. Throws IoError.
-  bool write(const Scenario& scenario, const Result& result, const Recorders& recorders);
+  /// last. Returns true when that was another scenario. `effective`: with paths from the directory. Throws IoError.
+  bool write(const RecordFields& record, const Json& effective, const Result& result, const Recorders& recorders);
 
  private:
   std::filesystem::path directory_;
@@ -81,7 +81,7 @@ struct RunTables {
   Json effective;                      ///< scenario.effective.json, with paths from the working directory
 
   /// Ends the recorders, and adds what is not of one trial. Throws std::bad_alloc when rows were lost.
-  void write(const Scenario& scenario, const Result& result, const Recorders& recorders);
+  void write(const Json& of_scenario, const Result& result, const Recorders& recorders);
 };
 
 /// Removes from a directory, if there is one, only what a run wrote. Throws IoError when it cannot be listed.

@@ -280,7 +280,7 @@ std::string headline_of(const Json& claims) {
       all, counts, sure[kSteady], sure[kFragile], sure[kNotSampled]);
 }
 
-/// What robustness.json says of a claim; null where that is not about this verdict and the choices that reach it.
+/// The entry of a claim in robustness.json; null where that is not about this verdict and the choices that reach it.
 Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
   try {
     for (const Json& claim : record.at("claims")) {

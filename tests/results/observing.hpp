@@ -6,7 +6,7 @@
 
 #include "results/observe/metric_observer.hpp"
 
-// What observers are shown in tests, and what they tell.
+// Rows for observers in tests, and a reader of the metrics that they tell.
 
 namespace hapbench::test {
 

@@ -358,7 +358,7 @@ TEST(ScenarioInCode, HasWhatAnotherAlgorithmFixes) {
 }
 
 std::string content_hash(const Scenario& scenario) {
-  return scenario_hash(scenario, NamedFiles(scenario));
+  return scenario_hash(effective_scenario(scenario, {}), NamedFiles(scenario));
 }
 
 void expect_fixed_point(const Scenario& scenario, const fs::path& directory) {
