@@ -36,12 +36,12 @@ struct GridFrame {
   }
 };
 
-/// Eight points in the coordinates of the nodes.
+/// Eight points in the coordinates of the nodes. Always inline: g++ would otherwise keep the packs in memory.
 struct GridPack {
   Pack u, v, w;
   Mask within;  ///< in the grid; false for coordinates that are not finite
 
-  GridPack(const GridFrame& f, const double* px, const double* py, const double* pz) {
+  [[gnu::always_inline]] GridPack(const GridFrame& f, const double* px, const double* py, const double* pz) {
     const Pack x = simd::load(px) - Pack(f.position.x()), y = simd::load(py) - Pack(f.position.y()),
                z = simd::load(pz) - Pack(f.position.z());
     const auto along = [&](int k) {
