@@ -28,7 +28,7 @@ class IdealDevice final : public Device {
     return {hand_force, limit_input_force(hand_force, force_limit_)};
   }
   void advance(const ToolState& tool, const Vec3&, double) noexcept override { reset(tool); }
-  HandleState handle() const noexcept override { return handle_; }
+  const HandleState& handle() const noexcept override { return handle_; }
 
  private:
   std::optional<double> force_limit_;
@@ -214,7 +214,7 @@ class AdmittanceDevice final : public Device {
     const HandleState& carriage = mechanics_.carriage();
     mechanics_.advance(hand_force, servo_.force(tool, carriage.position, carriage.velocity), dt);
   }
-  HandleState handle() const noexcept override { return mechanics_.handle(); }
+  const HandleState& handle() const noexcept override { return mechanics_.handle(); }
   std::optional<DeviceEnergy> energy() const noexcept override { return mechanics_.energy(); }
 
  private:

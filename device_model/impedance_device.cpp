@@ -168,7 +168,7 @@ ImpedanceDevice::ImpedanceDevice(const ImpedanceDeviceConfig& config, double dt,
 
 void ImpedanceDevice::reset(const ToolState& tool) noexcept {
   motion_.reset({tool.pose.position, tool.velocity});
-  if (elastic_) elastic_->motion.reset({tool.pose.position, tool.velocity});
+  if (elastic_) elastic_->parts.reset({tool.pose.position, tool.velocity});
   path_.reset();
   if (config_.position_noise > 0.0) random_ = Random(config_.seed);
   sampled_ = {read_position(), Vec3::Zero()};
@@ -177,7 +177,7 @@ void ImpedanceDevice::reset(const ToolState& tool) noexcept {
 }
 
 Vec3 ImpedanceDevice::read_position() noexcept {
-  Vec3 position = elastic_ ? elastic_->motion.motor().position : motion_.handle().position;
+  Vec3 position = elastic_ ? elastic_->parts.motor().position : motion_.handle().position;
   if (config_.position_noise > 0.0)
     for (double& axis : position) axis += config_.position_noise * random_.normal();
   return rounded_to(position, config_.encoder_step);
@@ -190,7 +190,7 @@ void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexce
     if (before_.time > 0.0) motion.advance(motors.before, before);
     motion.advance(motors.after, after);
   };
-  elastic_ ? advance(elastic_->motion, elastic_->before, elastic_->after) : advance(motion_, before_, after_);
+  elastic_ ? advance(elastic_->parts, elastic_->before, elastic_->after) : advance(motion_, before_, after_);
   sampled_.position = read_position();
   sampled_.velocity = filter_.read(sampled_.position);
   if (position_filter_) sampled_.position = position_filter_->filter(sampled_.position);

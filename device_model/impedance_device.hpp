@@ -166,9 +166,9 @@ class ImpedanceDevice final : public Device {
 
   void reset(const ToolState& tool) noexcept override;
   MeasuredForce measure(const Vec3& hand_force) noexcept override { return {hand_force, Vec3::Zero()}; }
-  HandleState handle() const noexcept override { return elastic_ ? elastic_->motion.handle() : motion_.handle(); }
+  const HandleState& handle() const noexcept override { return elastic_ ? elastic_->parts.handle() : motion_.handle(); }
   std::optional<DeviceEnergy> energy() const noexcept override {
-    return elastic_ ? elastic_->motion.energy() : motion_.energy();
+    return elastic_ ? elastic_->parts.energy() : motion_.energy();
   }
 
   bool moves_tool() const noexcept override { return true; }
@@ -187,7 +187,7 @@ class ImpedanceDevice final : public Device {
   HandleMotion motion_;
   FreeMotion before_, after_;  ///< the two parts of a period
   struct Elastic {
-    ElasticMotion motion;
+    ElasticMotion parts;
     ElasticMotion::Stretch before, after;
   };
   std::optional<Elastic> elastic_;  ///< instead of motion_

@@ -13,12 +13,12 @@ struct HandleState {
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
-/// The user's perception in one step: the handle in the hand and the contents of the display.
+/// The user's perception in one step, the handle in the hand and what the display shows: the simulation's own numbers.
 struct HandView {
-  HandleState handle;
-  ToolPose tool;                     ///< on the display
-  Vec3 model_force = Vec3::Zero();   ///< f_render of the previous step, for gauge and task [N]
-  Vec3 spring_force = Vec3::Zero();  ///< f_spring of the previous step, for gauge and task [N]
+  const HandleState& handle;
+  const ToolPose& tool;      ///< on the display
+  const Vec3& model_force;   ///< f_render of the previous step, for gauge and task [N]
+  const Vec3& spring_force;  ///< f_spring of the previous step, for gauge and task [N]
 };
 
 /// Model of the human hand: its force on the handle as a function of time and perception.
@@ -61,7 +61,7 @@ class Device {
   virtual MeasuredForce measure(const Vec3& hand_force) noexcept = 0;
   /// Follows the tool's motion over one step of dt seconds, while the hand pushes on the handle.
   virtual void advance(const ToolState& /*tool*/, const Vec3& /*hand_force*/, double /*dt*/) noexcept {}
-  virtual HandleState handle() const noexcept = 0;
+  virtual const HandleState& handle() const noexcept = 0;
   /// Returns nothing if the handle is the tool itself and has no mass or friction of its own.
   virtual std::optional<DeviceEnergy> energy() const noexcept { return std::nullopt; }
 

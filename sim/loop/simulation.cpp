@@ -1,6 +1,6 @@
 #include "sim/loop/simulation.hpp"
 
-#include <limits>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -139,15 +139,15 @@ bool Simulation::step() noexcept {
   r.time = static_cast<double>(row_) * config_.dt;
   r.tool = tool_;
   r.roll = roll_;
-  r.handle = parts_.device->handle();
-  r.hand_force = parts_.hand->force(r.time, {r.handle, tool_.pose, r.force.rendered, r.force.spring});
+  const HandleState& handle = parts_.device->handle();
+  r.hand_force = parts_.hand->force(r.time, {handle, tool_.pose, r.force.rendered, r.force.spring});
+  r.handle = handle;
   r.task = parts_.hand->task();
   r.hand = parts_.device->measure(r.hand_force);
 
   parts_.source->contacts_at(tool_.pose, contacts_);
   if (parts_.source->fault() != nullptr) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    result_.divergence = {row_, r.time, "contacts", kNaN, 0.0, parts_.source->fault()};
+    result_.divergence = {row_, r.time, "contacts", std::nan(""), 0.0, parts_.source->fault()};
     end(Outcome::diverges);
     return true;
   }
@@ -158,10 +158,9 @@ bool Simulation::step() noexcept {
 
   r.rendered = &contacts_;
   if (ratio_wanted_) r.ratio = ratio_range(contacts_, r.force.S);
-  if (springs_wanted_) {
-    const bool any = has_springs(contacts_, r.force) || config_.skips == Skips::off;
-    r.springs = any ? parts_.algorithm->spring_state(tool_, contacts_) : SpringState{};
-  }
+  if (springs_wanted_) r.springs = {};
+  if (springs_wanted_ && (has_springs(contacts_, r.force) || config_.skips == Skips::off))
+    r.springs = parts_.algorithm->spring_state(tool_, contacts_);
   if (energy_wanted_) r.device = parts_.device->energy();
   for (Observer* observer : observers_) observer->on_step(r);
   ++result_.rows;

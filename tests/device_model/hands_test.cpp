@@ -14,6 +14,14 @@
 namespace hapbench::hands_test {
 namespace {
 
+/// The numbers of a HandView, which only refers to them.
+struct Seen {
+  HandleState handle;
+  ToolPose tool;
+  Vec3 model_force = Vec3::Zero(), spring_force = Vec3::Zero();
+  operator HandView() const { return {handle, tool, model_force, spring_force}; }
+};
+
 TEST(PushDirection, LeansFromStraightDownTowardsItsAzimuth) {
   EXPECT_EQ(push_direction(0.0, 1.0), Vec3(0, 0, -1));
   const double eps = 4 * std::numeric_limits<double>::epsilon(), pi = std::numbers::pi;
@@ -27,9 +35,9 @@ TEST(PushDirection, LeansFromStraightDownTowardsItsAzimuth) {
 
 TEST(ImpedanceHand, IsASpringAndADamperFromTargetToHandle) {
   ImpedanceHand hand(100.0, 10.0, {Profile::Shape(Profile::Ramp{1.0, 2.0}), 5.0, 0.0});
-  const HandView view{{{1, 5, -1}, {2, 0, 3}}, {}, {9, 9, 9}};
+  const Seen seen{{{1, 5, -1}, {2, 0, 3}}, {}, {9, 9, 9}};
   // At t = 3 the target is at x = 7 and moves at 2 m/s.
-  EXPECT_EQ(hand.force(3.0, view), Vec3(100 * 6 + 10 * 0, 0, 100 * 1 - 10 * 3));
+  EXPECT_EQ(hand.force(3.0, seen), Vec3(100 * 6 + 10 * 0, 0, 100 * 1 - 10 * 3));
 }
 
 /// Over ten minutes the mean square of eight tones is that of their amplitudes to 1 %: what beats does so faster than
@@ -59,7 +67,7 @@ TEST(Tremor, MovesTheTargetOfAHandAsItsSeedSays) {
   ImpedanceHand still(100.0, 10.0, {0.0, 0.0, 0.0}), shaky(100.0, 10.0, {0.0, 0.0, 0.0}, tremor);
   const double t = 0.37, h = 1e-6;
   const auto [x, v] = tremor.at(t);
-  EXPECT_LE((shaky.force(t, {}) - still.force(t, {}) - 100.0 * x - 10.0 * v).norm(), 1e-15);
+  EXPECT_LE((shaky.force(t, Seen{}) - still.force(t, Seen{}) - 100.0 * x - 10.0 * v).norm(), 1e-15);
   // The difference errs by the third derivative, 43 m/s^3, times h^2 / 6, and by rounding over h.
   EXPECT_LE(((tremor.at(t + h).position - tremor.at(t - h).position) / (2.0 * h) - v).norm(), 1e-10);
   EXPECT_EQ(Tremor(config, 1).at(t).position, x);
@@ -191,9 +199,9 @@ TEST_F(DragOnPlane, PushesAlongTheNormalAndPullsWithinTheSurface) {
   const Vec3 x(-0.0004, 0.0002, 0.0005), v(0.003, -0.001, -0.02);
   // At t = 0.05 s the moving point is at x = -0.5 mm.
   const Vec3 expected(100.0 * -0.0001 + 10.0 * (0.01 - 0.003), 100.0 * -0.0002 + 10.0 * 0.001, -2.0 + 50.0 * 0.02);
-  EXPECT_LT((hand.force(0.05, {{x, v}, {}, {}}) - expected).norm(), 1e-12);
+  EXPECT_LT((hand.force(0.05, Seen{{x, v}, {}, {}}) - expected).norm(), 1e-12);
   // Once the path is at its end, the point rests.
-  EXPECT_LT((hand.force(1.0, {{{0.001, 0, 0.0005}, {0, 0, 0}}, {}, {}}) - Vec3(0, 0, -2)).norm(), 1e-12);
+  EXPECT_LT((hand.force(1.0, Seen{{{0.001, 0, 0.0005}, {0, 0, 0}}, {}, {}}) - Vec3(0, 0, -2)).norm(), 1e-12);
 }
 
 TEST_F(DragOnPlane, AxisLeansFromTheNormalTowardsTheTravel) {
@@ -226,7 +234,7 @@ TargetTask one_target(TargetDisplay display, const Vec3& place) {
 TEST(TrackingHand, DoesNothingBeforeTheReactionDelay) {
   const Subject subject = calm();
   TrackingHand hand(subject, one_target(TargetDisplay::panel, {0.01, 0, 0}), 0.0, kStep, 1);
-  HandView view;
+  Seen view;
   view.model_force.z() = subject.press;  // nothing to correct in z
   const int delay = static_cast<int>(std::lround(subject.reaction_delay / kStep));
   double first_force = -1.0;
@@ -245,7 +253,7 @@ TEST(TrackingHand, MovesTowardsTheTargetAtTheBandwidthOfTheSubject) {
   subject.reaction_delay = 0.0;
   const double error = 0.001;
   TrackingHand hand(subject, one_target(TargetDisplay::panel, {error, -error, 0}), 0.0, kStep, 1);
-  HandView view;
+  Seen view;
   view.model_force.z() = subject.press;
   const Vec3 force = hand.force(0.0, view);
   const double step = 2.0 * std::numbers::pi * subject.bandwidth * error * kStep;
@@ -259,7 +267,7 @@ TEST(TrackingHand, PressesHarderOrSofterUntilTheGaugeShowsWhatItWants) {
   subject.reaction_delay = 0.0;
   for (const double shown : {0.0, subject.press + 1.0}) {
     TrackingHand hand(subject, one_target(TargetDisplay::panel, {0, 0, 0}), 0.0, kStep, 1);
-    HandView view;
+    Seen view;
     view.model_force.z() = shown;
     const double force = hand.force(0.0, view).z();
     const double change = -2.0 * std::numbers::pi * subject.press_bandwidth * (subject.press - shown) * kStep;
@@ -268,7 +276,7 @@ TEST(TrackingHand, PressesHarderOrSofterUntilTheGaugeShowsWhatItWants) {
 }
 
 TEST(TrackingHand, ReadsTheSpringForceFromAGaugeAndTheRenderedForceWithoutOne) {
-  HandView view;
+  Seen view;
   view.model_force.z() = 3.0;
   view.spring_force.z() = 2.0;
   TargetRules rules;
@@ -287,8 +295,8 @@ TEST(TrackingHand, TurnsTheToolOnlyWithTheHeightDisplay) {
   const double rise = 0.001;
   TrackingHand panel(subject, one_target(TargetDisplay::panel, {0, 0, rise}), 0.5, kStep, 1);
   TrackingHand height(subject, one_target(TargetDisplay::height, {0.3, 0.3, rise}), 0.5, kStep, 1);
-  const Vec3 force = height.force(0.0, {});
-  panel.force(0.0, {});
+  const Vec3 force = height.force(0.0, Seen{});
+  panel.force(0.0, Seen{});
   EXPECT_EQ(panel.tilt(), 0.5);
   const double turn = 2.0 * std::numbers::pi * subject.bandwidth * rise / subject.height_per_tilt * kStep;
   EXPECT_NEAR(height.tilt(), 0.5 + turn, 1e-15) << "the tip rises with the tilt";
@@ -307,7 +315,7 @@ TEST(TrackingHand, NoiseHasTheGivenDeviationAndBandwidth) {
   double squares = 0.0, products = 0.0, last = 0.0;
   constexpr int kSamples = 400'000;
   for (int i = 0; i < kSamples; ++i) {
-    const double x = hand.force(i * kStep, {}).x();
+    const double x = hand.force(i * kStep, Seen{}).x();
     squares += x * x;
     products += x * last;
     last = x;
@@ -324,7 +332,7 @@ TEST(TrackingHand, AResetRepeatsEverythingBitForBitAndASeedChangesIt) {
   const auto record = [](TrackingHand& hand) {
     std::vector<Vec3> forces;
     for (int i = 0; i < 3000; ++i) {
-      HandView view;
+      Seen view;
       view.handle.position.x() = 1e-4 * std::sin(0.01 * i);
       view.tool.position = view.handle.position;
       view.model_force.z() = 1.2;
