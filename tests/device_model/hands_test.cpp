@@ -234,8 +234,7 @@ TargetTask one_target(TargetDisplay display, const Vec3& place) {
 TEST(TrackingHand, DoesNothingBeforeTheReactionDelay) {
   const Subject subject = calm();
   TrackingHand hand(subject, one_target(TargetDisplay::panel, {0.01, 0, 0}), 0.0, kStep, 1);
-  Seen view;
-  view.model_force.z() = subject.press;  // nothing to correct in z
+  const Seen view{{}, {}, {0, 0, subject.press}};  // nothing to correct in z
   const int delay = static_cast<int>(std::lround(subject.reaction_delay / kStep));
   double first_force = -1.0;
   for (int i = 0; i <= delay; ++i) {
@@ -253,8 +252,7 @@ TEST(TrackingHand, MovesTowardsTheTargetAtTheBandwidthOfTheSubject) {
   subject.reaction_delay = 0.0;
   const double error = 0.001;
   TrackingHand hand(subject, one_target(TargetDisplay::panel, {error, -error, 0}), 0.0, kStep, 1);
-  Seen view;
-  view.model_force.z() = subject.press;
+  const Seen view{{}, {}, {0, 0, subject.press}};
   const Vec3 force = hand.force(0.0, view);
   const double step = 2.0 * std::numbers::pi * subject.bandwidth * error * kStep;
   EXPECT_NEAR(force.x(), subject.stiffness * step, 1e-12);
@@ -267,8 +265,7 @@ TEST(TrackingHand, PressesHarderOrSofterUntilTheGaugeShowsWhatItWants) {
   subject.reaction_delay = 0.0;
   for (const double shown : {0.0, subject.press + 1.0}) {
     TrackingHand hand(subject, one_target(TargetDisplay::panel, {0, 0, 0}), 0.0, kStep, 1);
-    Seen view;
-    view.model_force.z() = shown;
+    const Seen view{{}, {}, {0, 0, shown}};
     const double force = hand.force(0.0, view).z();
     const double change = -2.0 * std::numbers::pi * subject.press_bandwidth * (subject.press - shown) * kStep;
     EXPECT_NEAR(force, change, 1e-12) << "downwards when too little is shown";
@@ -276,9 +273,7 @@ TEST(TrackingHand, PressesHarderOrSofterUntilTheGaugeShowsWhatItWants) {
 }
 
 TEST(TrackingHand, ReadsTheSpringForceFromAGaugeAndTheRenderedForceWithoutOne) {
-  Seen view;
-  view.model_force.z() = 3.0;
-  view.spring_force.z() = 2.0;
+  const Seen view{{}, {}, {0, 0, 3.0}, {0, 0, 2.0}};
   TargetRules rules;
   rules.places = {Vec3(0, 0, 0)};
   for (const bool has_gauge : {false, true}) {
@@ -332,11 +327,8 @@ TEST(TrackingHand, AResetRepeatsEverythingBitForBitAndASeedChangesIt) {
   const auto record = [](TrackingHand& hand) {
     std::vector<Vec3> forces;
     for (int i = 0; i < 3000; ++i) {
-      Seen view;
-      view.handle.position.x() = 1e-4 * std::sin(0.01 * i);
-      view.tool.position = view.handle.position;
-      view.model_force.z() = 1.2;
-      forces.push_back(hand.force(i * kStep, view));
+      const Vec3 position(1e-4 * std::sin(0.01 * i), 0.0, 0.0);
+      forces.push_back(hand.force(i * kStep, Seen{{position}, {position}, {0, 0, 1.2}}));
     }
     return forces;
   };
