@@ -60,7 +60,7 @@ class CsvWriter {
 
  private:
   void put(double value) noexcept { cell() += NumberText(value); }
-  void put(std::uint64_t value) noexcept { cell() += NumberText(value); }
+  void put(std::unsigned_integral auto value) noexcept { cell() += NumberText(std::uint64_t{value}); }
   void put(const std::optional<double>& value) noexcept { value ? put(*value) : static_cast<void>(cell()); }
   void put(std::string_view text) noexcept { cell() += csv_cell(text); }
   void put(const CellRange auto& values) noexcept {
@@ -111,7 +111,7 @@ class MemoryTable {
  private:
   bool reserve(std::size_t more) noexcept;
   void put(double value) noexcept { data_[size_++] = value; }
-  void put(std::uint64_t value) noexcept { put(static_cast<double>(value)); }
+  void put(std::unsigned_integral auto value) noexcept { put(static_cast<double>(value)); }
   void put(const std::optional<double>& value) noexcept {
     put(value.value_or(std::numeric_limits<double>::quiet_NaN()));
   }

@@ -200,7 +200,7 @@ constexpr const char* kNoEffect = "no_effect";  ///< of warnings: a given value 
 void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vector<Warning>& warnings) {
   const RenderingConfig& fixed = scenario.rendering;
   const AlgorithmEntry& entry = *find_algorithm(fixed.algorithm);
-  const std::string depth_model = json.value(Json::json_pointer("/rendering/depth_model"), fixed.depth_model);
+  const std::string depth_model = json.value("rendering", Json::object()).value("depth_model", fixed.depth_model);
   if (!is<SpringsEnvironment>(scenario.environment) && depth_model != fixed.depth_model) {
     warnings.push_back({kNoEffect, "/rendering/depth_model",
                         fmt::format("\"{}\" is not used: algorithm \"{}\" is defined with \"{}\"", depth_model,

@@ -122,7 +122,7 @@ void describe(Fields& f, MotionFields& motion) {
   motion.orientation.reset();
 }
 
-static Orientation make_orientation(const OrientationFields& fields) {
+Orientation make_orientation(const OrientationFields& fields) {
   return {fields.up.normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth, fields.roll};
 }
 

@@ -66,6 +66,7 @@ inline std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
 /// The inside of the environment's true surface, not of its shell; null for springs. Equal ones are shared.
 std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files);
 
+Orientation make_orientation(const OrientationFields& fields);
 /// The springs, those with random directions from the seed. Precondition: the environment is springs.
 SpringSet make_springs(const Scenario& scenario);
 
