@@ -5,7 +5,6 @@
 #include <atomic>
 #include <csignal>
 #include <ctime>
-#include <fstream>
 #include <set>
 #include <stdexcept>
 #include <thread>

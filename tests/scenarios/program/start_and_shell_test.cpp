@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <regex>
-#include <utility>
 
 #include "scenarios/format/mesh_file.hpp"
 #include "sim/geometry/analytic_shells.hpp"

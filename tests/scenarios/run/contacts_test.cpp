@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "algorithms/registry.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/json_file.hpp"
