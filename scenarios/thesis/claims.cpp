@@ -260,26 +260,6 @@ Json cases_json(const Measured& cases) {
   return json;
 }
 
-/// How many claims have which verdict, and how many verdicts are steady.
-std::string headline_of(const Json& claims) {
-  std::map<Verdict, std::size_t> verdicts;
-  std::map<std::string, std::size_t> sure;
-  std::size_t all = 0;
-  for (const Json& claim : claims) {
-    if (is_ours(claim)) continue;
-    ++all;
-    ++verdicts[verdict_of(claim)];
-    ++sure[text_at(claim, "sureness")];
-  }
-  std::string counts;
-  for (const auto& [verdict, count] : verdicts)
-    append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
-  return fmt::format(
-      "{} claims of the thesis: {}. {} of the verdicts are steady (more than half of the samples of the choices on "
-      "record have them), {} fragile, {} not sampled.",
-      all, counts, sure[kSteady], sure[kFragile], sure[kNotSampled]);
-}
-
 /// The entry of a claim in robustness.json; null where that is not about this verdict and the choices that reach it.
 Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
   try {
@@ -299,6 +279,25 @@ Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
 }
 
 }  // namespace
+
+std::string headline_of(const Json& claims) {
+  std::map<Verdict, std::size_t> verdicts;
+  std::map<std::string, std::size_t> sure;
+  std::size_t all = 0;
+  for (const Json& claim : claims) {
+    if (is_ours(claim)) continue;
+    ++all;
+    ++verdicts[verdict_of(claim)];
+    ++sure[text_at(claim, "sureness")];
+  }
+  std::string counts;
+  for (const auto& [verdict, count] : verdicts)
+    append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
+  return fmt::format(
+      "{} claims of the thesis: {}. {} of the verdicts are steady (more than half of the samples of the choices on "
+      "record have them), {} fragile, {} not sampled.",
+      all, counts, sure[kSteady], sure[kFragile], sure[kNotSampled]);
+}
 
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness) {
   Json claims = Json::array();

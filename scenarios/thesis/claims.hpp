@@ -377,6 +377,7 @@ std::vector<ClaimRule> appendix_d_experiments();  ///< D
 /// what robustness.json holds; of a claim it counts if the recorded verdict is this one and the choices that reach it
 /// are the same. Throws InputError when it is no such record.
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness);
+std::string headline_of(const Json& claims);  ///< how many have which verdict, and how many verdicts are steady
 
 /// claims.md, of what ledger_json gives: the main results, counts by chapter, the claims of the thesis, those that are
 /// contradicted first, what was found on the way.
