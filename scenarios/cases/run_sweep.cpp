@@ -212,7 +212,7 @@ fs::path beside(fs::path table) {
 /// The definition in the JSON next to a table; empty when there is none to be read.
 std::string definition_in(const fs::path& about) {
   try {
-    return description_of(about)["definition"];
+    return description_of(about)["definition"].get<std::string>();
   } catch (const std::exception&) {
     return "";
   }

@@ -95,7 +95,7 @@ Named on_record(const char* kind, const Json& thing) {
   };
   Json more = Json::object();
   if (thing.contains("claim")) more = {{"verdict", thing.at("verdict")}, {"source", thing.at("place")}};
-  return {kind, thing.at("id"), thing.value("claim", ""), describe, more};
+  return {kind, thing.at("id").get<std::string>(), thing.value("claim", ""), describe, more};
 }
 
 /// What the folders beside the program hold: scenarios, studies, claims and choices on record. Throws InputError.

@@ -363,7 +363,8 @@ Description describe_words() {
 }
 
 void add_term(Index& index, const Json& json) {
-  index.push_back({json["kind"], json["name"], json["meaning"], [json] { return described(json); }});
+  const auto text = [&](const char* key) { return json.at(key).get<std::string>(); };
+  index.push_back({text("kind"), text("name"), text("meaning"), [json] { return described(json); }});
 }
 
 /// The columns of all files, those of one name and meaning once.

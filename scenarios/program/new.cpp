@@ -46,8 +46,8 @@ const std::vector<StartKind>& start_kinds() {
       Json scene = {{"description", kind.at("summary")},
                     {"time", {{"step_s", kStep}, {"steps", kind.value("steps", 2000)}}}};
       for (const Json& part : kind.at("parts")) scene.update(json.at("parts").at(part.get<std::string>()));
-      all.push_back(
-          {kind.at("kind"), kind.at("summary"), kind.value("from", ""), kind.value("optional", false), scene});
+      const auto text = [&](const char* key) { return kind.at(key).get<std::string>(); };
+      all.push_back({text("kind"), text("summary"), kind.value("from", ""), kind.value("optional", false), scene});
     }
     return all;
   }();

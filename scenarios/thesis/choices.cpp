@@ -19,13 +19,13 @@ namespace fs = std::filesystem;
 
 OpenChoice choice_of(const Json& json) {
   const Json& value = json.at("value");
-  OpenChoice choice{.id = json.at("id"),
+  OpenChoice choice{.id = json.at("id").get<std::string>(),
                     .value = value.is_number() ? cell_text(value.get<double>()) : value.get<std::string>(),
                     .options = json.value("options", std::vector<std::string>()),
                     .text = json_text(json)};
   if (json.contains("range")) choice.range = json.at("range").get<std::pair<double, double>>();
   for (const Json& field : json.value("fields", Json::array()))
-    choice.fields.push_back({field.at("scenarios"), field.at("path"), field.value("times", false)});
+    choice.fields.push_back({field.at("scenarios").get<std::vector<std::string>>(), field.at("path").get<std::string>(), field.value("times", false)});
   return choice;
 }
 

@@ -18,7 +18,7 @@ PublishedNumbers::PublishedNumbers(const fs::path& file) {
   try {
     const Json json = with_file(file, [&] { return read_json(file); });
     for (const Json& value : json.at("values")) {
-      PublishedNumber& number = numbers_[value.at("id")];
+      PublishedNumber& number = numbers_[value.at("id").get<std::string>()];
       for (const char* key : {"mean", "value"}) number.mean = value.value(key, number.mean);
       for (const char* key : {"std", "standard_error"}) number.spread = value.value(key, number.spread);
       number.at_least = value.value("at_least", number.at_least);
@@ -98,15 +98,16 @@ std::vector<Claim> all_claims() {
        {chapters_1_and_4, chapter_3, chapter_3_cost, appendix_a, appendix_b_c_f, appendix_d_experiments})
     for (const ClaimRule& rule : chapter()) rules[rule.id] = rule;
   const std::filesystem::path file = installed_folder("results/reference") / "rules.json";
+  const auto text = [](const Json& row, const char* key) { return row.at(key).get<std::string>(); };
   std::vector<Claim> claims;
   try {
     const Json json = read_json(file);
     for (const Json& row : json.at("claims")) {
-      Claim& claim = claims.emplace_back(Claim{.id = row.at("id"),
-                                               .place = row.at("place"),
-                                               .claim = row.at("claim"),
+      Claim& claim = claims.emplace_back(Claim{.id = text(row, "id"),
+                                               .place = text(row, "place"),
+                                               .claim = text(row, "claim"),
                                                .published = row.value("published", ""),
-                                               .rule = row.at("rule"),
+                                               .rule = text(row, "rule"),
                                                .why = row.value("why", ""),
                                                .measured = row.value("measured", ""),
                                                .each = row.value("each", ""),
@@ -115,7 +116,7 @@ std::vector<Claim> all_claims() {
                                                .costly = row.value("costly", false),
                                                .drawn = row.value("drawn", false)});
       if (const Json main = row.value("main", Json()); !main.is_null())
-        claim.main = {main.at("claim"), main.at("published"), main.at("ours")};
+        claim.main = {text(main, "claim"), text(main, "published"), text(main, "ours")};
       if (!claim.why.empty()) continue;
       claim.measure = rules.at(claim.id).measure;
       claim.judge = rules.at(claim.id).judge;

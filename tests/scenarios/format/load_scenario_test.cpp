@@ -176,7 +176,7 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
     const Json json = with(more).at("device");
     return std::pair(json.value("delay_s", -1.0), json.at("delay_samples").get<double>());
   };
-  const double step = with({}).at("time").at("step_s");
+  const double step = with({}).at("time").at("step_s").get<double>();
   EXPECT_EQ(delays({}), std::pair(0.0023, 0.0023 / step));
   EXPECT_EQ(delays({"time.step_s=0.001"}), std::pair(0.0023, 0.0023 / 0.001));
   // One replaces the other.

@@ -18,7 +18,7 @@ std::vector<NamedScenario> minimal_scenarios() {
   std::vector<NamedScenario> scenarios;
   for (const char* environment : environments) {
     Json json = {{"time", {{"step_s", 0.0005}, {"steps", 20}}}, {"environment", Json::parse(environment)}};
-    std::string name = json["environment"]["type"];
+    std::string name = json["environment"]["type"].get<std::string>();
     scenarios.push_back({std::move(name), std::move(json)});
   }
   return scenarios;

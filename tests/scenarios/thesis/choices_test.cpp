@@ -321,8 +321,9 @@ TEST_F(Robustness, CountsAndNamesWhatDecides) {
   EXPECT_EQ(claims[0].at("majority"), "reproduced") << "of two as frequent, the one on record";
   EXPECT_EQ(claims[0].at("decided_by"), Json({{"choice", "seed"}, {"index", 1.0}}));
   const auto counts = [&claims](std::size_t c) {
-    return std::vector<int>{claims[c].at("judged"), claims[c].at("holds"), claims[c].at("reproduced"),
-                            claims[c].at("not_measured")};
+    std::vector<int> found;
+    for (const char* key : {"judged", "holds", "reproduced", "not_measured"}) found.push_back(claims[c].at(key).get<int>());
+    return found;
   };
   EXPECT_EQ(counts(0), (std::vector<int>{64, 32, 32, 0}));
   EXPECT_EQ(counts(1), (std::vector<int>{16, 16, 0, 0}));
