@@ -44,9 +44,20 @@ def column(choice, count, seed):
 
 def run(scenario, sets, folder):
     """The summary of a run, without its tables."""
-    words = [word for text in ("record.trajectory=false", "record.ratio_iterations=[]", "expect={}", *sets) for word in ("--set", text)]
-    done = subprocess.run([PROGRAM, "run", scenario, *words, "--out", folder, "--quiet"], capture_output=True, text=True)
-    if done.returncode not in (0, 3):  # 3: it ended otherwise than its scenario expects, as a short one may
+    words = [
+        word
+        for text in ("record.trajectory=false", "record.ratio_iterations=[]", "expect={}", *sets)
+        for word in ("--set", text)
+    ]
+    done = subprocess.run(
+        [PROGRAM, "run", scenario, *words, "--out", folder, "--quiet"],
+        capture_output=True,
+        text=True,
+    )
+    if done.returncode not in (
+        0,
+        3,
+    ):  # 3: it ended otherwise than its scenario expects, as a short one may
         sys.exit(done.stderr)
     return json.loads((Path(folder) / "summary.json").read_text(encoding="utf-8"))
 
@@ -77,9 +88,13 @@ def calibrated(choice, reading, choices):
         base = json.loads((Path(folder) / "scenario.effective.json").read_text(encoding="utf-8"))
 
         def excess(logarithm):
-            sets = sets_of(reading | {choice["id"]: repr(math.exp(logarithm))}, choices, scenario, base)
+            sets = sets_of(
+                reading | {choice["id"]: repr(math.exp(logarithm))}, choices, scenario, base
+            )
             metrics = run(scenario, sets, folder)["metrics"]
-            return math.log(max(metrics["colliding_mean"] / max(metrics["contact_share"], 1e-9), 1e-9) / raw)
+            return math.log(
+                max(metrics["colliding_mean"] / max(metrics["contact_share"], 1e-9), 1e-9) / raw
+            )
 
         at, slope, before = math.log(choice["value"]), 1.0, None
         for _ in range(TRIES):
@@ -105,11 +120,22 @@ def calibrate(readings, choices, jobs):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("count", type=int, help="readings to draw")
     parser.add_argument("--seed", type=int, default=1, help="of the random numbers (default: 1)")
-    parser.add_argument("--choices", type=Path, default=CHOICES, help="another file in place of results/reference/choices.json")
-    parser.add_argument("--calibrate", action="store_true", help="search the values of calibrated choices, with the built program")
+    parser.add_argument(
+        "--choices",
+        type=Path,
+        default=CHOICES,
+        help="another file in place of results/reference/choices.json",
+    )
+    parser.add_argument(
+        "--calibrate",
+        action="store_true",
+        help="search the values of calibrated choices, with the built program",
+    )
     parser.add_argument("--jobs", type=int, default=2, help="runs at once (default: 2)")
     options = parser.parse_args()
     if options.count < 1:

@@ -17,7 +17,9 @@ from contextlib import contextmanager
 
 from hapbench.errors import InputError
 
-SHARED = "as everywhere: hapbench --help"  # the help of an option that means the same in every command
+SHARED = (
+    "as everywhere: hapbench --help"  # the help of an option that means the same in every command
+)
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
 MOST_FAULTS = 20  # reported at once
 SILENCE = 2.0  # before a notice [s]
@@ -41,7 +43,13 @@ class CommandLine(Arguments):
     """The words behind the name of a command of the program: help and errors are as those of the other commands."""
 
     def __init__(self, name, summary, footer):
-        super().__init__(prog=f"hapbench {name}", description=summary, epilog=footer, add_help=False, allow_abbrev=False)
+        super().__init__(
+            prog=f"hapbench {name}",
+            description=summary,
+            epilog=footer,
+            add_help=False,
+            allow_abbrev=False,
+        )
         self.name = name
         self.add_argument("-h", "--help", action="help", help=SHARED)
 
@@ -50,15 +58,24 @@ class CommandLine(Arguments):
 
     def texts(self, name, meaning):
         """Several values in one word, separated by commas."""
-        self.text(name, meaning, metavar="TEXT,...", action="extend", default=[],
-                  type=lambda text: [part.strip() for part in text.split(",") if part.strip()])
+        self.text(
+            name,
+            meaning,
+            metavar="TEXT,...",
+            action="extend",
+            default=[],
+            type=lambda text: [part.strip() for part in text.split(",") if part.strip()],
+        )
 
     def one_of(self, names, name, meaning):
         def checked(word):
             if word in names:
                 return word
             quoted = ", ".join(f'"{known}"' for known in names)
-            raise argparse.ArgumentTypeError(f'got "{word}"; allowed: {quoted}{nearest(word, names)}')
+            raise argparse.ArgumentTypeError(
+                f'got "{word}"; allowed: {quoted}{nearest(word, names)}'
+            )
+
         self.text(name, meaning, type=checked)
 
     def flag(self, name, meaning):
@@ -73,7 +90,9 @@ class CommandLine(Arguments):
         if not {"-h", "--help"}.isdisjoint(words):
             self.print_help()
             self.exit()
-        with_value = {name for action in self._actions if action.nargs != 0 for name in action.option_strings}
+        with_value = {
+            name for action in self._actions if action.nargs != 0 for name in action.option_strings
+        }
         joined = []
         for word in words:
             if joined and joined[-1] in with_value and "--" not in joined:
@@ -91,7 +110,9 @@ class CommandLine(Arguments):
             message = f'unknown option "{word}"{nearest(word, [name for action in self._actions for name in action.option_strings])}'
         elif subject == "unrecognized arguments":
             message = f'unexpected argument "{word}"'
-        say_error(f'{self.name}: {message.removeprefix("argument ")}; "{self.prog} --help" explains')
+        say_error(
+            f'{self.name}: {message.removeprefix("argument ")}; "{self.prog} --help" explains'
+        )
         sys.exit(BAD_INPUT)
 
     def format_help(self):
@@ -101,19 +122,33 @@ class CommandLine(Arguments):
             actions = [action for action in self._actions if bool(action.option_strings) == named]
             if actions:
                 lines += ["", title]
-            shared = ", ".join(action.option_strings[-1] for action in actions if action.help == SHARED)
+            shared = ", ".join(
+                action.option_strings[-1] for action in actions if action.help == SHARED
+            )
             for action in actions:
                 if action.help == SHARED:
                     continue
-                word = ",".join(action.option_strings) + (f" {action.metavar}" if action.nargs != 0 else "") if named else action.metavar
+                word = (
+                    ",".join(action.option_strings)
+                    + (f" {action.metavar}" if action.nargs != 0 else "")
+                    if named
+                    else action.metavar
+                )
                 lines.append(entry(word, action.help, width))
                 if not named:
                     several = f"{word}..." if action.nargs in ("+", "*") else word
                     lines[1] += f" {several}" if action.required else f" [{several}]"
             if shared:
                 lines.append(entry(shared, SHARED, width))
-        lines += [""] + [textwrap.fill(line, width, subsequent_indent=" " * (4 if line.startswith(" ") else 0), **WHOLE_WORDS)
-                         for line in self.epilog.splitlines()]
+        lines += [""] + [
+            textwrap.fill(
+                line,
+                width,
+                subsequent_indent=" " * (4 if line.startswith(" ") else 0),
+                **WHOLE_WORDS,
+            )
+            for line in self.epilog.splitlines()
+        ]
         return "\n".join(lines) + "\n"
 
 
@@ -123,7 +158,9 @@ WHOLE_WORDS = {"break_long_words": False, "break_on_hyphens": False}
 def entry(word, meaning, width):
     """A word with its meaning beside it, or below where the word is too long."""
     column = 26
-    text = textwrap.fill(meaning, width, initial_indent=" " * column, subsequent_indent=" " * column, **WHOLE_WORDS)
+    text = textwrap.fill(
+        meaning, width, initial_indent=" " * column, subsequent_indent=" " * column, **WHOLE_WORDS
+    )
     return f"  {word}\n{text}" if len(word) + 4 > column else f"  {word}{text[len(word) + 2:]}"
 
 
@@ -166,22 +203,33 @@ def table_text(headings, rows, wide, numbers=False):
     """Columns below their headings, the first of them texts; a last column that the terminal has no room for is wrapped."""
     widths = [max(map(len, column)) for column in zip(headings, *rows)]
     if sys.stdout.isatty() and not wide:
-        widths[-1] = min(widths[-1], max(24, shutil.get_terminal_size().columns - sum(widths[:-1]) - 2 * len(widths[:-1])))
+        widths[-1] = min(
+            widths[-1],
+            max(24, shutil.get_terminal_size().columns - sum(widths[:-1]) - 2 * len(widths[:-1])),
+        )
     lines = [headings, ["-" * width for width in widths]]
     for *cells, last in rows:
         first, *more = textwrap.wrap(last, widths[-1]) or [""]
         lines += [[*cells, first]] + [[""] * len(cells) + [part] for part in more]
-    return "".join("  ".join(cell.rjust(width) if numbers and i else cell.ljust(width) for i, (cell, width) in enumerate(zip(line, widths))).rstrip()
-                   + "\n" for line in lines)
+    return "".join(
+        "  ".join(
+            cell.rjust(width) if numbers and i else cell.ljust(width)
+            for i, (cell, width) in enumerate(zip(line, widths))
+        ).rstrip()
+        + "\n"
+        for line in lines
+    )
 
 
 def nearest(name, names):
     """The end of a message about an unknown name, in the words of the program; empty when no name is near."""
     lower = {candidate.lower(): candidate for candidate in reversed(names)}
     # Half a name before one that merely looks alike.
-    longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [n for n in lower if name.lower() in n]
+    longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [
+        n for n in lower if name.lower() in n
+    ]
     close = longer or difflib.get_close_matches(name.lower(), lower, 1)
-    return f"; nearest valid name: \"{lower[close[0]]}\"" if close else ""
+    return f'; nearest valid name: "{lower[close[0]]}"' if close else ""
 
 
 class Faults(InputError):
@@ -194,7 +242,9 @@ class Faults(InputError):
     @property
     def lines(self):
         lines = [f"{place}: {problem}" if place else problem for place, problem in self.list]
-        return lines + ([f"no more than {MOST_FAULTS} are shown"] if len(lines) == MOST_FAULTS else [])
+        return lines + (
+            [f"no more than {MOST_FAULTS} are shown"] if len(lines) == MOST_FAULTS else []
+        )
 
 
 def fail(problem, place=""):
@@ -282,7 +332,12 @@ def show_seconds(text, ended):
     while not ended.wait(pause):
         seconds = time.monotonic() - start
         line = f"hapbench: {text} ... {seconds:.0f} s"
-        print(f"\r{line}\033[K" if terminal else line, end="" if terminal else "\n", file=sys.stderr, flush=True)
+        print(
+            f"\r{line}\033[K" if terminal else line,
+            end="" if terminal else "\n",
+            file=sys.stderr,
+            flush=True,
+        )
         pause = 0.5 if terminal else seconds
     if terminal and pause != SILENCE:
         print("\r\033[K", end="", file=sys.stderr, flush=True)

@@ -34,7 +34,9 @@ ALGORITHMS = {
     "tandpasta": Look("tandpasta", "#123C04", "#A5C98A", (7, 2, 1, 2), "P"),
     "normal_projection": Look("normal projection", "#515454", "#B5B9B9", (2, 1), "X"),
     "exact_shaping": Look("exact shaping (ours)", "#BD1BC3", "#F08CF3", (4, 1, 1, 1, 1, 1), "h"),
-    "continuous_normal_projection": Look("contin. projection (ours)", "#775543", "#D3AE97", (3, 1), "*"),
+    "continuous_normal_projection": Look(
+        "contin. projection (ours)", "#775543", "#D3AE97", (3, 1), "*"
+    ),
     "least_squares": Look("least squares (ours)", "#1B06E8", "#8F9BFF", (1, 1.5), "d"),
     "highest_depth": Look("highest depth", "#09335D", "#C3D3EA", (6, 2), "<"),
     "mcneely": Look("McNeely, 10/N", "#8A4B00", "#F0B060", (3, 1.5, 1, 1.5), "1"),
@@ -47,8 +49,13 @@ PUBLISHED, PUBLISHED_DARK = "#C2261C", "#FF8A75"
 
 # For curves that are of no algorithm, or all of one.
 SERIES = (
-    Look("", "#00647D", "#5FC4E8", (), "o"), Look("", "#8A5600", "#E9B64C", (4, 1.2), "s"), Look("", "#000000", "#F2F2F2", (1, 1.65), "^"),
-    Look("", "#8A3B75", "#F07CC8", (5, 1.5), "v"), Look("", "#5F5F5F", "#B5B9B9", (3, 1, 1, 1), "D"), Look("", "#1D6A01", "#7EDB5A", (6, 2), "x"))
+    Look("", "#00647D", "#5FC4E8", (), "o"),
+    Look("", "#8A5600", "#E9B64C", (4, 1.2), "s"),
+    Look("", "#000000", "#F2F2F2", (1, 1.65), "^"),
+    Look("", "#8A3B75", "#F07CC8", (5, 1.5), "v"),
+    Look("", "#5F5F5F", "#B5B9B9", (3, 1, 1, 1), "D"),
+    Look("", "#1D6A01", "#7EDB5A", (6, 2), "x"),
+)
 
 # Class of a run -> its name, colour and hatching; light to dark, so that they can be told apart in grey.
 CLASSES = {
@@ -75,7 +82,9 @@ def look_of_class(name):
 def by_class(names):
     """Names of classes in the order of the table."""
     order = list(CLASSES)
-    return sorted(set(names), key=lambda name: (order.index(name) if name in order else len(order), name))
+    return sorted(
+        set(names), key=lambda name: (order.index(name) if name in order else len(order), name)
+    )
 
 
 # For algorithms without an entry.
@@ -93,7 +102,12 @@ def look(algorithm):
     number = zlib.crc32(algorithm.encode())
     number, dash = divmod(number, len(FURTHER_DASHES))
     hue, marker = divmod(number, len(FURTHER_MARKERS))
-    return Look(algorithm.replace("_", " "), *in_hue(hue % 360 / 360), FURTHER_DASHES[dash], FURTHER_MARKERS[marker])
+    return Look(
+        algorithm.replace("_", " "),
+        *in_hue(hue % 360 / 360),
+        FURTHER_DASHES[dash],
+        FURTHER_MARKERS[marker],
+    )
 
 
 def in_hue(hue):

@@ -6,7 +6,11 @@ import re
 import matplotlib
 import numpy as np
 
-from hapbench_looks import ALGORITHMS, SERIES, look  # noqa: F401  (style.look is how figures name it)
+from hapbench_looks import (
+    ALGORITHMS,
+    SERIES,
+    look,
+)  # noqa: F401  (style.look is how figures name it)
 from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
 
 matplotlib.use("agg")
@@ -20,31 +24,62 @@ DPI = 150  # of a PNG
 # Lines and texts have a contrast of at least 4.5 to white. These colours are for readings, forces and contacts, not for
 # algorithms. Amber and petrol differ for every kind of colour vision; a third colour comes with a line style or marker of
 # its own. Red is for the thesis's numbers.
-BLACK, GREY, AMBER, PETROL, PLUM, RED = "#000000", "#5F5F5F", "#8A5600", "#00647D", "#8A3B75", PUBLISHED_COLOUR
+BLACK, GREY, AMBER, PETROL, PLUM, RED = (
+    "#000000",
+    "#5F5F5F",
+    "#8A5600",
+    "#00647D",
+    "#8A3B75",
+    PUBLISHED_COLOUR,
+)
 SAND, SOIL = "#EFE8DC", "#8C7A58"  # an area, and its border
 
 # Numbers of the thesis are hollow diamonds everywhere.
-PUBLISHED = {"marker": "D", "mfc": "white", "mec": RED, "ecolor": RED, "color": RED, "ms": 4.5, "mew": 1.2, "elinewidth": 1.2,
-             "capsize": 2.5, "ls": "none", "zorder": 5}
+PUBLISHED = {
+    "marker": "D",
+    "mfc": "white",
+    "mec": RED,
+    "ecolor": RED,
+    "color": RED,
+    "ms": 4.5,
+    "mew": 1.2,
+    "elinewidth": 1.2,
+    "capsize": 2.5,
+    "ls": "none",
+    "zorder": 5,
+}
 PUBLISHED_LINE = {"color": RED, "lw": 1, "ls": (0, (1, 1.5))}
 
 # Behind a label that may stand on a line.
 PLATE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
 
 # Of matplotlib, by their groups.
-SETTINGS = {f"{group}.{name}": value for group, settings in {
-    "font": {"sans-serif": ["DejaVu Sans"], "size": 8},
-    "axes": {"titlesize": 8.5, "titlelocation": "left", "labelsize": 8, "linewidth": 0.7, "spines.top": False, "spines.right": False,
-             "grid": True, "axisbelow": True},
-    "xtick": {"labelsize": 7.5},
-    "ytick": {"labelsize": 7.5},
-    "legend": {"fontsize": 7.5, "frameon": False},
-    "grid": {"color": "#E6E6E6", "linewidth": 0.6},
-    "lines": {"linewidth": 1.3, "markersize": 3.5},
-    "pdf": {"fonttype": 42},
-    "path": {"simplify_threshold": 0.5},
-    "agg": {"path.chunksize": 10000},
-    "figure": {"constrained_layout.use": True}}.items() for name, value in settings.items()}
+SETTINGS = {
+    f"{group}.{name}": value
+    for group, settings in {
+        "font": {"sans-serif": ["DejaVu Sans"], "size": 8},
+        "axes": {
+            "titlesize": 8.5,
+            "titlelocation": "left",
+            "labelsize": 8,
+            "linewidth": 0.7,
+            "spines.top": False,
+            "spines.right": False,
+            "grid": True,
+            "axisbelow": True,
+        },
+        "xtick": {"labelsize": 7.5},
+        "ytick": {"labelsize": 7.5},
+        "legend": {"fontsize": 7.5, "frameon": False},
+        "grid": {"color": "#E6E6E6", "linewidth": 0.6},
+        "lines": {"linewidth": 1.3, "markersize": 3.5},
+        "pdf": {"fonttype": 42},
+        "path": {"simplify_threshold": 0.5},
+        "agg": {"path.chunksize": 10000},
+        "figure": {"constrained_layout.use": True},
+    }.items()
+    for name, value in settings.items()
+}
 
 
 def panels(rows, columns, height, **keywords):
@@ -69,7 +104,9 @@ def legend_above(figure, handles, labels, columns=4):
     if not labels:
         return
     lines = -(-len(labels) // columns)
-    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - (0.08 + LINE * lines) / figure.get_figheight()))
+    figure.get_layout_engine().set(
+        rect=(0, 0, 1, 1 - (0.08 + LINE * lines) / figure.get_figheight())
+    )
     figure.legend(handles, labels, loc="upper left", ncol=columns, handlelength=2.6)
 
 
@@ -104,7 +141,9 @@ def picture(figure, kind, salt="hapbench"):
     follow from `salt`."""
     fix_layout(figure)
     drawn = io.BytesIO()
-    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[kind]
+    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[
+        kind
+    ]
     with matplotlib.rc_context({"svg.hashsalt": salt, "svg.fonttype": "none"}):
         figure.savefig(drawn, format=kind, dpi=DPI, metadata=undated)
     return compact(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
@@ -113,8 +152,10 @@ def picture(figure, kind, salt="hapbench"):
 PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')  # attributes of an SVG that hold places
 DISC = re.compile(r'<path id="(\w+)" d="M 0 ([\d.]+) \nC[^"]*z\n"')
 # Matplotlib gives the style to the group or, from some version on, to each disc.
-DISCS = re.compile(r'<g( clip-path="[^"]*")?(?: style="([^"]*)")?>\s*'
-                   r'((?:<use xlink:href="#(\w+)" x="[^"]*" y="[^"]*"(?: style="([^"]*)")?/>\s*)+)</g>')
+DISCS = re.compile(
+    r'<g( clip-path="[^"]*")?(?: style="([^"]*)")?>\s*'
+    r'((?:<use xlink:href="#(\w+)" x="[^"]*" y="[^"]*"(?: style="([^"]*)")?/>\s*)+)</g>'
+)
 
 
 def as_dots(svg):
@@ -129,11 +170,15 @@ def as_dots(svg):
         fill, stroke = look.pop("fill", "#000000"), look.pop("stroke", "none")
         if name not in radii or stroke not in ("none", fill):
             return group[0]
-        width = 2 * float(radii[name]) + (float(look.pop("stroke-width", 1)) if stroke == fill else 0)
+        width = 2 * float(radii[name]) + (
+            float(look.pop("stroke-width", 1)) if stroke == fill else 0
+        )
         opacity = look.get("fill-opacity", look.get("opacity", "1"))
         places = "".join(f"M{x} {y}h0" for x, y in re.findall(r'x="([^"]*)" y="([^"]*)"', uses))
-        return (f'<path d="{places}"{clip} style="fill: none; stroke: {fill}; stroke-opacity: {opacity}; stroke-linecap: round; '
-                f'stroke-width: {width:.2f}"/>')
+        return (
+            f'<path d="{places}"{clip} style="fill: none; stroke: {fill}; stroke-opacity: {opacity}; stroke-linecap: round; '
+            f'stroke-width: {width:.2f}"/>'
+        )
 
     return DISCS.sub(dots, svg)
 
@@ -142,28 +187,44 @@ def compact(svg):
     """The same drawing in half the bytes: places to a tenth of a point, styles that repeat as classes, short identifiers, and
     nothing that only a reader of the source would see."""
     svg = as_dots(re.sub(r"<!--.*?-->|<metadata>.*?</metadata>|<g[^>]*/>", "", svg, flags=re.S))
-    svg = PLACES.sub(lambda place: place[1] + re.sub(r"-?\d+\.\d+", lambda n: f"{round(float(n[0]), 1):g}", place[2]), svg)
+    svg = PLACES.sub(
+        lambda place: place[1]
+        + re.sub(r"-?\d+\.\d+", lambda n: f"{round(float(n[0]), 1):g}", place[2]),
+        svg,
+    )
     svg = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", svg)
     names = set(re.findall(r'(?:href="#|url\(#)(\w+)', svg))
     short = {name: f"i{number:x}" for number, name in enumerate(sorted(names, key=svg.index))}
     svg = re.sub(r' id="(\w+)"', lambda i: f' id="{short[i[1]]}"' if i[1] in short else "", svg)
     svg = re.sub(r"(?<=#)\w+(?=[\")])", lambda i: short.get(i[0], i[0]), svg)
     styles = re.findall(r' style="([^"]*)"', svg)
-    often = {style: f"s{number:x}" for number, style in enumerate(dict.fromkeys(s for s in styles if styles.count(s) > 1))}
-    svg = re.sub(r' style="([^"]*)"', lambda s: f' class="{often[s[1]]}"' if s[1] in often else s[0], svg)
+    often = {
+        style: f"s{number:x}"
+        for number, style in enumerate(dict.fromkeys(s for s in styles if styles.count(s) > 1))
+    }
+    svg = re.sub(
+        r' style="([^"]*)"', lambda s: f' class="{often[s[1]]}"' if s[1] in often else s[0], svg
+    )
     rules = "".join(f".{name}{{{style}}}" for style, name in often.items())
     svg = re.sub(r"(<defs>\s*<style[^>]*>)", lambda d: d[1] + rules, svg, count=1)
     svg, inner = re.sub(r">\s+<", "><", svg), re.compile(r"<g>((?:<(?!/?g[ >])[^>]*>[^<]*)*)</g>")
     while inner.search(svg):  # groups that say nothing of what is in them
         svg = inner.sub(r"\1", svg)
-    svg = re.sub(r' d="([^"]*)"', lambda d: f' d="{re.sub(r"(?<=[LMCQ]) | (?=[LMCQz])|(?<=z) ", "", d[1]).strip()}"', re.sub(r"\s+", " ", svg))
-    svg = re.sub(r"(?<=\d)L(-?[\d.]+ -?[\d.]+)(?=[Lz\"])", r" \1", svg)  # what follows a place is a line
+    svg = re.sub(
+        r' d="([^"]*)"',
+        lambda d: f' d="{re.sub(r"(?<=[LMCQ]) | (?=[LMCQz])|(?<=z) ", "", d[1]).strip()}"',
+        re.sub(r"\s+", " ", svg),
+    )
+    svg = re.sub(
+        r"(?<=\d)L(-?[\d.]+ -?[\d.]+)(?=[Lz\"])", r" \1", svg
+    )  # what follows a place is a line
     return re.sub(r"((?:[^>]*>){12,}?)(?=<(?:path|g|use|rect)[ >])", "\\1\n", svg).strip() + "\n"
 
 
 def reduced(time, low, high, spans):
     """The least of `low` and the greatest of `high` in each of so many equal spans of time that hold a row, and where
-    the span begins; the rows themselves if they are no more. NaN only where a span has nothing else."""
+    the span begins; the rows themselves if they are no more. NaN only where a span has nothing else.
+    """
     if len(time) <= 2 * spans:
         return time, low, high
     length = (time[-1] - time[0]) or 1.0

@@ -16,8 +16,13 @@ from fixture import PROGRAM, must
 
 HERE = Path(__file__).resolve().parent
 NAMED = sys.argv[2:]
-KNOWN = {title: list(csv.DictReader(text.splitlines())) for title, _, text in
-         (part.partition("\n") for part in (HERE / "answers.txt").read_text(encoding="utf-8").split("# ")[1:])}
+KNOWN = {
+    title: list(csv.DictReader(text.splitlines()))
+    for title, _, text in (
+        part.partition("\n")
+        for part in (HERE / "answers.txt").read_text(encoding="utf-8").split("# ")[1:]
+    )
+}
 K = "rendering.stiffness_N_per_m"
 # A wall, a hand and a device with friction and encoder: no theory but that of the loop.
 LOOP = """{"time": {"step_s": 0.001, "steps": 600}, "tool": {"diameter_m": 0.01, "length_m": 0.1},
@@ -37,13 +42,15 @@ LIMITS = {
     "limit_in_hole": f"tap_hole --vary {K} --algorithms mean,summation,shaped_stiffness,normal_projection,proxy --resolution 0.05",
     "limit_without_effect": """loop.json --vary device.velocity_filter.cutoff_Hz --resolution 0.1
         --set 'device.velocity_filter={"type": "low_pass", "cutoff_Hz": 100}' --set rendering.damping_ratio=0""",
-    "limit_mesh": f"drag_molar --vary {K} --resolution 0.05 --algorithms mean,shaped_stiffness,summation"}
+    "limit_mesh": f"drag_molar --vary {K} --resolution 0.05 --algorithms mean,shaped_stiffness,summation",
+}
 CONVERGENCE = {
     "converge_springs": "springs_oscillation --metric force_max_N,inside_max_m,final_position_m.x",
     "converge_step": "poke_plane --metric force_max_N,inside_settled_m,passivity.energy_min_J --levels 6",
     "converge_shell": "drag_molar --vary environment.spacing_m --metric force_rms_above_30Hz_N,inside_max_m --levels 3 --set time.duration_s=1",
     "converge_other_field": "explorer_on_bumps --vary tool.grid_m --metric force_max_N,force_mean_in_contact_N --levels 3 --to 1%",
-    "converge_on_device": "loop.json --metric force_max_N,inside_settled_m --levels 5 --ratio 3"}
+    "converge_on_device": "loop.json --metric force_max_N,inside_settled_m --levels 5 --ratio 3",
+}
 HAND = """'hand={"type": "mass_spring_damper", "mass_kg": 0.2, "stiffness_N_per_m": 100, "damping_N_s_per_m": 2, "target": {"x_m": 0, "y_m": 0, "z_m": 0}}'"""
 MAPS = {
     "map_time_step": "single_spring --over time.step_s=5e-5:5e-3:5:log --set time.steps=8000",
@@ -52,30 +59,70 @@ MAPS = {
     "map_delay": "wall_on_handle --over device.delay_samples=0:8:5",
     "map_velocity_filter": """wall_on_handle --over device.velocity_filter.cutoff_Hz=20:500:5:log
         --set 'device.velocity_filter={"type": "low_pass", "cutoff_Hz": 100}'""",
-    "map_hand": f"wall_on_handle --over hand.stiffness_N_per_m=10:1e4:5:log --set {HAND}"}
-ACCURACY = [f"accuracy_{panel}" for panel in ("integrators", "shaping", "spacing", "reduction", "merging", "algorithms", "events", "late_contacts")]
+    "map_hand": f"wall_on_handle --over hand.stiffness_N_per_m=10:1e4:5:log --set {HAND}",
+}
+ACCURACY = [
+    f"accuracy_{panel}"
+    for panel in (
+        "integrators",
+        "shaping",
+        "spacing",
+        "reduction",
+        "merging",
+        "algorithms",
+        "events",
+        "late_contacts",
+    )
+]
 SPRINGS = [f"spring_{field}" for field in ("stiffness", "damping", "time_step")]
 # By the beginning of a question's name and the column: how far the number may be off, relative. All others are the same.
 TOLERANCES = {
-    "map_": {**dict.fromkeys(("time.step_s", "rendering.damping_N_s_per_m", "hand.stiffness_N_per_m", K, "stable_gil_hulin"),
-                             1e-12),  # the same value of a range, whose ends are others
-             **dict.fromkeys(("theory", "worst_hand"), 1e-9),  # an edge by eigenvalues, bisected from another range
-             "limit": 2e-3},  # bisection on runs ends at 0.1 %
-    "accuracy_reduction": dict.fromkeys(("kept_mean", "force_error_relative", "depth_error_max_m"), 1e-12),  # forces added up in another order
-    "spring_": {"closed_form": 1e-9, "theory": 1e-9, "limit": 2e-4}}
+    "map_": {
+        **dict.fromkeys(
+            (
+                "time.step_s",
+                "rendering.damping_N_s_per_m",
+                "hand.stiffness_N_per_m",
+                K,
+                "stable_gil_hulin",
+            ),
+            1e-12,
+        ),  # the same value of a range, whose ends are others
+        **dict.fromkeys(
+            ("theory", "worst_hand"), 1e-9
+        ),  # an edge by eigenvalues, bisected from another range
+        "limit": 2e-3,
+    },  # bisection on runs ends at 0.1 %
+    "accuracy_reduction": dict.fromkeys(
+        ("kept_mean", "force_error_relative", "depth_error_max_m"), 1e-12
+    ),  # forces added up in another order
+    "spring_": {"closed_form": 1e-9, "theory": 1e-9, "limit": 2e-4},
+}
 
 
 def text_of(value):
     """A cell as CSV files have it: of a list how long it is."""
     if isinstance(value, list):
         return str(len(value))
-    return "" if value is None else str(value).lower() if isinstance(value, bool) else value if isinstance(value, str) else repr(value)
+    return (
+        ""
+        if value is None
+        else str(value).lower()
+        if isinstance(value, bool)
+        else value
+        if isinstance(value, str)
+        else repr(value)
+    )
 
 
 def of_grid(rows, low, high):
     """The runs at five stiffnesses in equal ratios from low to high: every second or fourth that the search tries at once."""
     grid = [low * (high / low) ** (i / 4) for i in range(5)]
-    return [row for row in rows if any(math.isclose(float(row[K]), value, rel_tol=1e-9) for value in grid)]
+    return [
+        row
+        for row in rows
+        if any(math.isclose(float(row[K]), value, rel_tol=1e-9) for value in grid)
+    ]
 
 
 def answers(name):
@@ -84,17 +131,36 @@ def answers(name):
         Path(scratch, "loop.json").write_text(LOOP, encoding="utf-8")
 
         def asked(command, words, program=PROGRAM, more="--json --out out"):
-            return json.loads(must(program, *command.split(), *shlex.split(words), *more.split(), cwd=scratch))
+            return json.loads(
+                must(program, *command.split(), *shlex.split(words), *more.split(), cwd=scratch)
+            )
 
         def table(file):
-            return list(csv.DictReader(Path(scratch, "out", file).read_text(encoding="utf-8").splitlines()))
+            return list(
+                csv.DictReader(Path(scratch, "out", file).read_text(encoding="utf-8").splitlines())
+            )
 
         if name in LIMITS:
-            return {"limits": asked("limit", f"{LIMITS[name]} --stable settled --over seed=1")["limits"]}
+            return {
+                "limits": asked("limit", f"{LIMITS[name]} --stable settled --over seed=1")["limits"]
+            }
         if name in ACCURACY:
-            told = asked("", f"--benchmark_filter=^{name.removeprefix('accuracy_')}/", PROGRAM.with_name("hapbench_accuracy"),
-                         "--benchmark_min_time=0.0001 --benchmark_format=json")["benchmarks"]
-            return {"errors": [{**one, "setting": one["name"].partition("/")[2].removesuffix("/manual_time"), "outcome": one["label"]} for one in told]}
+            told = asked(
+                "",
+                f"--benchmark_filter=^{name.removeprefix('accuracy_')}/",
+                PROGRAM.with_name("hapbench_accuracy"),
+                "--benchmark_min_time=0.0001 --benchmark_format=json",
+            )["benchmarks"]
+            return {
+                "errors": [
+                    {
+                        **one,
+                        "setting": one["name"].partition("/")[2].removesuffix("/manual_time"),
+                        "outcome": one["label"],
+                    }
+                    for one in told
+                ]
+            }
         if name in CONVERGENCE:
             asked("converge", CONVERGENCE[name])
             return {"orders": table("converge.csv"), "levels": table("converge_levels.csv")}
@@ -102,13 +168,21 @@ def answers(name):
             asked("limit", name)
             return {"limits": table("limit.csv")}
         wall = "wall_on_handle" in MAPS[name]
-        asked("limit", f"{MAPS[name]} --between {'0.1:1e11' if wall else '10:1e9'} --stable bounded --algorithms shaped_stiffness")
-        return {"classes": of_grid(table("limit_runs.csv"), *((1e2, 1e5) if wall else (1e3, 1e7))), "edge": table("limit.csv")}
+        asked(
+            "limit",
+            f"{MAPS[name]} --between {'0.1:1e11' if wall else '10:1e9'} --stable bounded --algorithms shaped_stiffness",
+        )
+        return {
+            "classes": of_grid(table("limit_runs.csv"), *((1e2, 1e5) if wall else (1e3, 1e7))),
+            "edge": table("limit.csv"),
+        }
 
 
 def same(value, known, relative):
     try:
-        return value == known or math.isclose(float(value), float(known), rel_tol=relative, abs_tol=0.0)
+        return value == known or math.isclose(
+            float(value), float(known), rel_tol=relative, abs_tol=0.0
+        )
     except ValueError:
         return False
 
@@ -131,11 +205,24 @@ class Equivalence(unittest.TestCase):
         self.assertEqual({title.split()[0] for title in KNOWN}, set(questions))
         for question in NAMED or questions:
             with self.subTest(question=question):
-                found = [line for table, rows in answers(question).items() for line in differences(question, table, rows)]
+                found = [
+                    line
+                    for table, rows in answers(question).items()
+                    for line in differences(question, table, rows)
+                ]
                 self.assertEqual(found[:20], [], f"{len(found)} differences")
 
     def test_another_number_is_found(self):
         rows = KNOWN["limit_of_springs limits"]
         self.assertEqual(list(differences("limit_of_springs", "limits", rows)), [])
         other = repr(math.nextafter(float(rows[0]["limit"]), math.inf))
-        self.assertEqual(len(list(differences("limit_of_springs", "limits", [{**rows[0], "limit": other}, *rows[1:]]))), 1)
+        self.assertEqual(
+            len(
+                list(
+                    differences(
+                        "limit_of_springs", "limits", [{**rows[0], "limit": other}, *rows[1:]]
+                    )
+                )
+            ),
+            1,
+        )

@@ -13,13 +13,22 @@ def without_prose(target, text):
     scene = json.loads(text)
     if not isinstance(scene, dict) or not {"environment", "extends"} & scene.keys():
         return None
-    scene = scene.get("device") if target == "device" else {key: value for key, value in scene.items() if key not in ("description", "source")}
+    scene = (
+        scene.get("device")
+        if target == "device"
+        else {key: value for key, value in scene.items() if key not in ("description", "source")}
+    )
     return json.dumps(scene, separators=(",", ":")).encode() if isinstance(scene, dict) else None
 
 
 def main(target, folder):
     pattern = PATTERNS.get(target, f"*.{target.rsplit('_', 1)[1]}" if "_" in target else "*.csv")
-    seeds = {file.read_bytes() for folder in ("scenarios", "tests/data") for file in (ROOT / folder).rglob(pattern) if file.is_file()}
+    seeds = {
+        file.read_bytes()
+        for folder in ("scenarios", "tests/data")
+        for file in (ROOT / folder).rglob(pattern)
+        if file.is_file()
+    }
     if pattern == "*.json":
         seeds = {without_prose(target, text) for text in seeds} - {None}
     for number, seed in enumerate(sorted(s for s in seeds if len(s) <= LARGEST)):

@@ -17,13 +17,18 @@ SCENES = {}
 @dataclass(frozen=True)
 class Within:
     """A tolerance with its derivation; the relative part is of the largest known value of a series."""
+
     why: str
     relative: float = 0.0
     absolute: float = 0.0
 
 
 EXACT = Within("the same number, text or count")
-ROUNDING = Within("sums of products of numbers known to 1e-15, cancelled by less than 1e3", relative=1e-12, absolute=1e-18)
+ROUNDING = Within(
+    "sums of products of numbers known to 1e-15, cancelled by less than 1e3",
+    relative=1e-12,
+    absolute=1e-18,
+)
 
 
 @dataclass(frozen=True)
@@ -44,7 +49,11 @@ class Answer:
 
 
 def shown(value):
-    return f"{len(value)} values {value[:3]} ..." if isinstance(value, (list, np.ndarray)) and len(value) > 6 else repr(value)
+    return (
+        f"{len(value)} values {value[:3]} ..."
+        if isinstance(value, (list, np.ndarray)) and len(value) > 6
+        else repr(value)
+    )
 
 
 def same(value, known, within):
@@ -55,8 +64,12 @@ def same(value, known, within):
     if isinstance(known, (list, tuple)) and any(isinstance(k, (str, type(None))) for k in known):
         return all(same(v, k, within) for v, k in zip(value, known))
     value, known = np.asarray(value, float), np.asarray(known, float)
-    allowed = within.absolute + within.relative * np.fmax.reduce(np.abs(known), axis=None, initial=0.0)
-    return value.shape == known.shape and np.allclose(value, known, rtol=0.0, atol=allowed, equal_nan=True)  # NaN: empty cells
+    allowed = within.absolute + within.relative * np.fmax.reduce(
+        np.abs(known), axis=None, initial=0.0
+    )
+    return value.shape == known.shape and np.allclose(
+        value, known, rtol=0.0, atol=allowed, equal_nan=True
+    )  # NaN: empty cells
 
 
 class Table:
@@ -116,8 +129,16 @@ class Bench:
     def json(self, *words, statuses=(0,)):
         found = json.loads(self.hapbench(*words, "--json", statuses=statuses))
         of_runs = words[0] == "compare" and (isinstance(found, list) or "runs" in found)
-        self.printed.append((words[0], {key: found[key] for key in found if key != "runs"} if of_runs and isinstance(found, dict) else
-                             [] if of_runs else found))
+        self.printed.append(
+            (
+                words[0],
+                {key: found[key] for key in found if key != "runs"}
+                if of_runs and isinstance(found, dict)
+                else []
+                if of_runs
+                else found,
+            )
+        )
         return found
 
     def run(self, scenario, *words, out=None, statuses=(0,)):
@@ -135,27 +156,57 @@ class Bench:
     def proven(self, field, file, test, said, refused):
         """A row that a test in C++ is: it holds both texts, what is known and what is refused."""
         suite, name = test.split(".")
-        body = re.search(rf"TEST(_F)?\({suite}, {name}\) {{(.*?)\n}}", (SOURCE / file).read_text(encoding="utf-8"), re.S)
+        body = re.search(
+            rf"TEST(_F)?\({suite}, {name}\) {{(.*?)\n}}",
+            (SOURCE / file).read_text(encoding="utf-8"),
+            re.S,
+        )
         found = body[2] if body else ""
-        self.add(field, said in found and refused in found, True, f"the test {test}", EXACT, ("another case of the same test", False))
+        self.add(
+            field,
+            said in found and refused in found,
+            True,
+            f"the test {test}",
+            EXACT,
+            ("another case of the same test", False),
+        )
 
     def metrics(self, run, table):
         """Rows (metric, known value, how it is known, tolerance, naive answer, its value); the last two may be left out."""
         for name, known, known_by, within, *naive in table:
-            self.add(re.sub(r"^targets\.\d+", "targets.PLACE", name), run.metric(name), known, known_by, within, tuple(naive) or None)
+            self.add(
+                re.sub(r"^targets\.\d+", "targets.PLACE", name),
+                run.metric(name),
+                known,
+                known_by,
+                within,
+                tuple(naive) or None,
+            )
 
     def tolerance(self, run, metric, known, known_by, within, naive, exact):
         """The row of a metric's tolerance, and one that the metric keeps it."""
         printed = run.summary["tolerances"][metric]
         self.add(f"run --json: tolerances.{metric}", printed, known, known_by, within, naive)
-        self.add(f"run --json: tolerances.{metric}", abs(run.metric(metric) - exact) <= printed, True, "the metric differs by less", EXACT)
+        self.add(
+            f"run --json: tolerances.{metric}",
+            abs(run.metric(metric) - exact) <= printed,
+            True,
+            "the metric differs by less",
+            EXACT,
+        )
 
     def columns(self, table, rows):
         """The same for the columns of a table, whose known values are series."""
         for name, known, known_by, within, *naive in rows:
-            known = np.broadcast_to(known, len(table.rows)) if np.ndim(known) == 0 and not isinstance(known, str) else known
+            known = (
+                np.broadcast_to(known, len(table.rows))
+                if np.ndim(known) == 0 and not isinstance(known, str)
+                else known
+            )
             known = [known] * len(table.rows) if isinstance(known, str) else known
-            self.add(f"{table.name}:{name}", table[name], known, known_by, within, tuple(naive) or None)
+            self.add(
+                f"{table.name}:{name}", table[name], known, known_by, within, tuple(naive) or None
+            )
 
 
 def scene(function):
@@ -171,7 +222,9 @@ def profile(given, t):
     if given["type"] == "ramp":
         return given["start"] + given["rate_per_s"] * t
     if given["type"] == "sine":
-        return given.get("mean", 0) + given["amplitude"] * np.sin(2 * np.pi * t / given["period_s"] + given.get("phase_rad", 0))
+        return given.get("mean", 0) + given["amplitude"] * np.sin(
+            2 * np.pi * t / given["period_s"] + given.get("phase_rad", 0)
+        )
     times, values = np.transpose(given["points"])
     if given.get("interpolation", "linear") == "linear":
         return np.interp(t, times, values)

@@ -31,11 +31,27 @@ def keys_of(data):
         yield from keys_of(part)
     if not isinstance(data, dict):
         return
-    members = {key: value for key, value in data.items() if key not in NO_ANSWERS and key not in (TOLERANCES, DIAGNOSIS)}
-    members.update({f"{TOLERANCES}.{name}": value for name, value in data.get(TOLERANCES, {}).items()})  # beside the metrics' own
-    members.update({f"{DIAGNOSIS}.{name}": value for finding in data.get(DIAGNOSIS, []) for name, value in finding.items()})  # words of other keys
+    members = {
+        key: value
+        for key, value in data.items()
+        if key not in NO_ANSWERS and key not in (TOLERANCES, DIAGNOSIS)
+    }
+    members.update(
+        {f"{TOLERANCES}.{name}": value for name, value in data.get(TOLERANCES, {}).items()}
+    )  # beside the metrics' own
+    members.update(
+        {
+            f"{DIAGNOSIS}.{name}": value
+            for finding in data.get(DIAGNOSIS, [])
+            for name, value in finding.items()
+        }
+    )  # words of other keys
     for key, value in members.items():
-        grouping = isinstance(value, dict) or isinstance(value, list) and any(isinstance(v, dict) for v in value)
+        grouping = (
+            isinstance(value, dict)
+            or isinstance(value, list)
+            and any(isinstance(v, dict) for v in value)
+        )
         yield key, grouping
         if grouping:
             yield from keys_of(value)
@@ -50,15 +66,34 @@ def printed_fields():
         names = [column["name"] for column in table["columns"]]
         columns |= set(names)
         shared = table["name"] in ("sweep.csv", "comparison.csv")
-        fields += [f"{table['name']}:{name.split('.')[0] if name.startswith(TOLERANCES) else name}" for name in names if not shared or name not in metrics]
+        fields += [
+            f"{table['name']}:{name.split('.')[0] if name.startswith(TOLERANCES) else name}"
+            for name in names
+            if not shared or name not in metrics
+        ]
         fields += [f"{table['name']}:metrics"] if shared else []
-    fields += [f"{word['name']} ({word['kind']})" for word in described("words")["words"] if word["kind"] not in NO_WORDS]
+    fields += [
+        f"{word['name']} ({word['kind']})"
+        for word in described("words")["words"]
+        if word["kind"] not in NO_WORDS
+    ]
     # Runs of compare are those of run.
-    printed = [(command, *key) for bench in FOUND.values() for command, data in bench.printed for key in keys_of(data)]
+    printed = [
+        (command, *key)
+        for bench in FOUND.values()
+        for command, data in bench.printed
+        for key in keys_of(data)
+    ]
     groups = {(command, key) for command, key, grouping in printed if grouping}
-    keys = {(command, key) for command, key, _ in printed if key not in parts or command != "run"} - groups
+    keys = {
+        (command, key) for command, key, _ in printed if key not in parts or command != "run"
+    } - groups
     of_runs = {key for command, key in keys if command == "run"}
-    fields += [f"{command} --json: {key}" for command, key in sorted(keys) if command in NO_TABLES or key not in columns | of_runs]
+    fields += [
+        f"{command} --json: {key}"
+        for command, key in sorted(keys)
+        if command in NO_TABLES or key not in columns | of_runs
+    ]
     return list(dict.fromkeys(fields))
 
 
@@ -78,7 +113,11 @@ class KnownAnswers(unittest.TestCase):
 
     def test_every_field_has_one_that_a_naive_answer_fails(self):
         answered = {answer.field for answer in ANSWERS if answer.naive}
-        self.assertEqual([field for field in printed_fields() if field not in answered], [], "a printed field without a row in a scene of tests/known_answers")
+        self.assertEqual(
+            [field for field in printed_fields() if field not in answered],
+            [],
+            "a printed field without a row in a scene of tests/known_answers",
+        )
 
     def test_rows_are_of_printed_fields(self):
         self.assertEqual(sorted({answer.field for answer in ANSWERS} - set(printed_fields())), [])
@@ -90,13 +129,19 @@ class KnownAnswers(unittest.TestCase):
                 name = file.name
                 header = file.read_text(encoding="utf-8").split("\n")[0].split(",")
                 if f"{name}:{header[0]}" in fields and f"{name}:metrics" not in fields:
-                    varied = {column for column in header if "." in column and name == "limit_runs.csv"}
-                    self.assertEqual({f"{name}:{column}" for column in set(header) - varied} - fields, set())
+                    varied = {
+                        column for column in header if "." in column and name == "limit_runs.csv"
+                    }
+                    self.assertEqual(
+                        {f"{name}:{column}" for column in set(header) - varied} - fields, set()
+                    )
 
     def test_a_wrong_number_is_found(self):
         within = Within("", relative=1e-6)
         wrong = Answer("x", "y", "", within, 1.0, 1.0 + 1e-5, ("", 1.0 + 1e-7))
         self.assertEqual(len(list(wrong.faults())), 2)
-        self.assertEqual(list(Answer("x", "y", "", within, 1.0, 1.0 + 1e-7, ("", 1.1)).faults()), [])
+        self.assertEqual(
+            list(Answer("x", "y", "", within, 1.0, 1.0 + 1e-7, ("", 1.1)).faults()), []
+        )
         self.assertEqual(len(list(Answer("x", "y", "", within, "stable", "vibrating").faults())), 1)
         self.assertEqual(len(list(Answer("x", "y", "", within, 1.0, None).faults())), 1)

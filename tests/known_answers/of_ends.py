@@ -13,50 +13,183 @@ def ends(bench):
     """Runs whose end is known by physics, with the word for it and the one that a glance would give."""
     time = {"step_s": 0.0005, "steps": 1000}
     free = {"rendering": {**PLAIN, "algorithm": "summation"}}
-    pressed = {"environment": FLAT, "tool": BALL, "time": time, "initial": {"position_m": [0, 0, 0.002]}}
+    pressed = {
+        "environment": FLAT,
+        "tool": BALL,
+        "time": time,
+        "initial": {"position_m": [0, 0, 0.002]},
+    }
     highest = {**PLAIN, "algorithm": "highest_depth", "damping_ratio": 2.0}
-    rub = {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 20000, "damping_ratio": 1.0, "mass_kg": 0.4}
-    slope = {"up": [0, 0, 1], "lean": [1, 0, 0], "tilt_rad": {"type": "ramp", "start": 0.1, "rate_per_s": 5.0}, "azimuth_rad": 0}
+    rub = {
+        "algorithm": "shaped_stiffness",
+        "stiffness_N_per_m": 20000,
+        "damping_ratio": 1.0,
+        "mass_kg": 0.4,
+    }
+    slope = {
+        "up": [0, 0, 1],
+        "lean": [1, 0, 0],
+        "tilt_rad": {"type": "ramp", "start": 0.1, "rate_per_s": 5.0},
+        "azimuth_rad": 0,
+    }
 
     def drag(force, stiffness):
-        return {"type": "drag", "force_N": force, "path_m": [[-0.04, 0, 0], [0.04, 0, 0]], "speed_m_per_s": 0.02, "stiffness_N_per_m": stiffness,
-                "damping_N_s_per_m": 0}
-    on_edge = {"environment": FLAT, "tool": BALL, "time": {"step_s": 0.0005, "steps": 8000}, "initial": {"position_m": [-0.04, 0, 0.002]}}
+        return {
+            "type": "drag",
+            "force_N": force,
+            "path_m": [[-0.04, 0, 0], [0.04, 0, 0]],
+            "speed_m_per_s": 0.02,
+            "stiffness_N_per_m": stiffness,
+            "damping_N_s_per_m": 0,
+        }
+
+    on_edge = {
+        "environment": FLAT,
+        "tool": BALL,
+        "time": {"step_s": 0.0005, "steps": 8000},
+        "initial": {"position_m": [-0.04, 0, 0.002]},
+    }
     grips = {"type": "waypoints", "points": [[0, 0.1], [1.0, 0.1], [1.1, 9.0], [4, 9.0]]}
     scenes = [
         # At 4 M / dt^2 = 1.6e6 N/m an undamped spring is bounded below and not above.
-        ("completes", dict(time=time, environment=SPRING, initial={"position_m": [1e-3, 0, 0]},
-                           rendering={**free["rendering"], "stiffness_N_per_m": 1.59e6}), "diverges", 1000),
-        ("diverges", dict(time=time, environment=SPRING, initial={"position_m": [1e-3, 0, 0]},
-                          rendering={**free["rendering"], "stiffness_N_per_m": 1.7e6}), "completes", None),
+        (
+            "completes",
+            dict(
+                time=time,
+                environment=SPRING,
+                initial={"position_m": [1e-3, 0, 0]},
+                rendering={**free["rendering"], "stiffness_N_per_m": 1.59e6},
+            ),
+            "diverges",
+            1000,
+        ),
+        (
+            "diverges",
+            dict(
+                time=time,
+                environment=SPRING,
+                initial={"position_m": [1e-3, 0, 0]},
+                rendering={**free["rendering"], "stiffness_N_per_m": 1.7e6},
+            ),
+            "completes",
+            None,
+        ),
         # y_k = -1 mm + k 0.05 mm is above 0 first at k = 21; it is 0 to rounding at 20.
-        ("leaves_hole", dict(time={**time, "stop_when": ["leaves_hole"]}, environment={"type": "springs", "groups": []}, initial={
-            "position_m": [0, -1.02e-3, 0], "velocity_m_per_s": [0, 0.1, 0]}, **free), "completes", 22),
+        (
+            "leaves_hole",
+            dict(
+                time={**time, "stop_when": ["leaves_hole"]},
+                environment={"type": "springs", "groups": []},
+                initial={"position_m": [0, -1.02e-3, 0], "velocity_m_per_s": [0, 0.1, 0]},
+                **free,
+            ),
+            "completes",
+            22,
+        ),
         # 0.1 + 5 t reaches pi / 2 first at k = 589 (0.2945 s).
-        ("tool_horizontal", dict(time={**time, "stop_when": ["tool_horizontal"]}, environment={"type": "springs", "groups": []}, motion={
-            "orientation": slope}, **free), "completes", 590),
-        ("no_contact", dict(pressed, initial={"position_m": [0, 0, 0.01]}, **free), "completes", 1000),
+        (
+            "tool_horizontal",
+            dict(
+                time={**time, "stop_when": ["tool_horizontal"]},
+                environment={"type": "springs", "groups": []},
+                motion={"orientation": slope},
+                **free,
+            ),
+            "completes",
+            590,
+        ),
+        (
+            "no_contact",
+            dict(pressed, initial={"position_m": [0, 0, 0.01]}, **free),
+            "completes",
+            1000,
+        ),
         # 1 N on 0.1 kg for 0.5 s: 1.25 m away from a plane of 0.1 m.
-        ("lost_contact", dict(pressed, hand={"type": "force", "z_N": 1.0}, rendering={**free["rendering"], "stiffness_N_per_m": 1},
-                              initial={"position_m": [0, 0, 0.00199]}), "completes", 1000),
+        (
+            "lost_contact",
+            dict(
+                pressed,
+                hand={"type": "force", "z_N": 1.0},
+                rendering={**free["rendering"], "stiffness_N_per_m": 1},
+                initial={"position_m": [0, 0, 0.00199]},
+            ),
+            "completes",
+            1000,
+        ),
         # The deepest contact of a ball is at most its radius deep: K r = 2 N hold no 3 N.
-        ("went_through", dict(pressed, hand={"type": "force", "z_N": -3.0}, rendering=highest), "completes", 1000),
+        (
+            "went_through",
+            dict(pressed, hand={"type": "force", "z_N": -3.0}, rendering=highest),
+            "completes",
+            1000,
+        ),
         # Friction of 300 N s/m against a hand of 1 N/m: a time constant of 300 s, for a way of 4 s.
-        ("not_dragged", dict(on_edge, hand=drag(0.5, 1.0), rendering={**rub, "friction": {"mu_s_N_s_per_m": 300, "mu_f_s_per_m": 0}}), "completes",
-         8000),
+        (
+            "not_dragged",
+            dict(
+                on_edge,
+                hand=drag(0.5, 1.0),
+                rendering={**rub, "friction": {"mu_s_N_s_per_m": 300, "mu_f_s_per_m": 0}},
+            ),
+            "completes",
+            8000,
+        ),
         # Friction rises from 20 to 1355 N s/m against 40 N/m: time constants of 0.5 and 34 s.
-        ("stuck", dict(on_edge, hand=drag(grips, 40.0), rendering={**rub, "friction": {"mu_s_N_s_per_m": 5, "mu_f_s_per_m": 150}}), "completes",
-         8000)]
+        (
+            "stuck",
+            dict(
+                on_edge,
+                hand=drag(grips, 40.0),
+                rendering={**rub, "friction": {"mu_s_N_s_per_m": 5, "mu_f_s_per_m": 150}},
+            ),
+            "completes",
+            8000,
+        ),
+    ]
     for word, fields, glance, rows in scenes:
         run = bench.run(bench.scenario(f"end_{word}", **fields), statuses=(0, 3))
-        bench.add(f"{word} (outcome of a run)", run.summary["outcome"], word, "physics: see the scene", EXACT, ("what the step count says", glance))
+        bench.add(
+            f"{word} (outcome of a run)",
+            run.summary["outcome"],
+            word,
+            "physics: see the scene",
+            EXACT,
+            ("what the step count says", glance),
+        )
         if rows:
-            bench.add("run --json: duration_s", run.summary["duration_s"], rows * 0.0005, "rows times dt", ROUNDING,
-                      ("to the last row", (rows - 1) * 0.0005))
-            bench.add("run --json: steps", run.summary["steps"], rows, "rows", EXACT, ("last row's number", rows - 1))
+            bench.add(
+                "run --json: duration_s",
+                run.summary["duration_s"],
+                rows * 0.0005,
+                "rows times dt",
+                ROUNDING,
+                ("to the last row", (rows - 1) * 0.0005),
+            )
+            bench.add(
+                "run --json: steps",
+                run.summary["steps"],
+                rows,
+                "rows",
+                EXACT,
+                ("last row's number", rows - 1),
+            )
         failure = word not in ("completes", "leaves_hole", "tool_horizontal")
-        bench.add("run --json: expected", run.summary["expected"], not failure, "by default a run completes or is stopped", EXACT, ("unasked", failure))
-        bench.add("run --json: outcome", run.summary["outcome"], word, "physics", EXACT, ("what the step count says", glance))
+        bench.add(
+            "run --json: expected",
+            run.summary["expected"],
+            not failure,
+            "by default a run completes or is stopped",
+            EXACT,
+            ("unasked", failure),
+        )
+        bench.add(
+            "run --json: outcome",
+            run.summary["outcome"],
+            word,
+            "physics",
+            EXACT,
+            ("what the step count says", glance),
+        )
         if word == "diverges":
             divergence(bench, run)
     classes(bench)
@@ -65,24 +198,88 @@ def ends(bench):
 def classes(bench):
     """Of the same scenes: runs whose tool does not vibrate and that are no answer all the same."""
     ask = ("--vary", "rendering.stiffness_N_per_m", "--between")
-    row = bench.json("limit", "end_went_through.json", *ask, "500:5000", "--smallest", "--set", "time.steps=4000", "--resolution", "1e-3",
-                     "--out", "through")["limits"][0]
-    bench.add("limit.csv:limit", row["limit"], 1500.0, "3 N over the radius of 2 mm", Within("bisection ends at 1e-3, and an overdamped tool "
-              "is given 2 s, within which it comes to e^(-2 K / B) of its end", relative=5e-3), ("any, as a bur never vibrates", 500.0))
-    bench.add("went_through (class of motion, of limit and stability)", row["class_beyond"], "went_through", "K r < 3 N", EXACT,
-              ("a tool at rest in free fall is stable", "stable"))
+    row = bench.json(
+        "limit",
+        "end_went_through.json",
+        *ask,
+        "500:5000",
+        "--smallest",
+        "--set",
+        "time.steps=4000",
+        "--resolution",
+        "1e-3",
+        "--out",
+        "through",
+    )["limits"][0]
+    bench.add(
+        "limit.csv:limit",
+        row["limit"],
+        1500.0,
+        "3 N over the radius of 2 mm",
+        Within(
+            "bisection ends at 1e-3, and an overdamped tool "
+            "is given 2 s, within which it comes to e^(-2 K / B) of its end",
+            relative=5e-3,
+        ),
+        ("any, as a bur never vibrates", 500.0),
+    )
+    bench.add(
+        "went_through (class of motion, of limit and stability)",
+        row["class_beyond"],
+        "went_through",
+        "K r < 3 N",
+        EXACT,
+        ("a tool at rest in free fall is stable", "stable"),
+    )
     # Two patches of points, the tool dragged off the first: it sinks by 1 N over 50 N s/m, and is within its reach of their box in the end.
-    bench.write("gap.csv", "x_m,y_m,z_m,nx,ny,nz", [(x * 1e-3, y * 1e-3, 0, 0, 0, 1) for x in (*range(-20, 1), *range(30, 41)) for y in range(-4, 5)])
-    bench.scenario("end_gap", environment={"type": "point_shell", "file": "gap.csv"}, tool=BALL, time={"step_s": 0.0005, "steps": 2000},
-                   initial={"position_m": [-0.01, 0, 0.002]}, rendering={**PLAIN, "algorithm": "shaped_stiffness", "damping_ratio": 2.0, "stiffness_N_per_m": 20000},
-                   hand={"type": "drag", "force_N": 1.0, "path_m": [[-0.01, 0, 0], [0.035, 0, 0]], "speed_m_per_s": 0.02})
-    for word, end, between in (("thrown_out", "lost_contact", "500:5000"), ("no_contact", "no_contact", "500:5000"), ("lost_contact", "gap", "19000:21000"),
-                               ("not_dragged", "not_dragged", "19000:21000"), ("stuck", "stuck", "19000:21000")):
+    bench.write(
+        "gap.csv",
+        "x_m,y_m,z_m,nx,ny,nz",
+        [
+            (x * 1e-3, y * 1e-3, 0, 0, 0, 1)
+            for x in (*range(-20, 1), *range(30, 41))
+            for y in range(-4, 5)
+        ],
+    )
+    bench.scenario(
+        "end_gap",
+        environment={"type": "point_shell", "file": "gap.csv"},
+        tool=BALL,
+        time={"step_s": 0.0005, "steps": 2000},
+        initial={"position_m": [-0.01, 0, 0.002]},
+        rendering={
+            **PLAIN,
+            "algorithm": "shaped_stiffness",
+            "damping_ratio": 2.0,
+            "stiffness_N_per_m": 20000,
+        },
+        hand={
+            "type": "drag",
+            "force_N": 1.0,
+            "path_m": [[-0.01, 0, 0], [0.035, 0, 0]],
+            "speed_m_per_s": 0.02,
+        },
+    )
+    for word, end, between in (
+        ("thrown_out", "lost_contact", "500:5000"),
+        ("no_contact", "no_contact", "500:5000"),
+        ("lost_contact", "gap", "19000:21000"),
+        ("not_dragged", "not_dragged", "19000:21000"),
+        ("stuck", "stuck", "19000:21000"),
+    ):
         out = bench.folder / word
-        bench.hapbench("limit", f"end_{end}.json", *ask, between, "--resolution", "0.5", "--out", out)
+        bench.hapbench(
+            "limit", f"end_{end}.json", *ask, between, "--resolution", "0.5", "--out", out
+        )
         found = Table(out / "limit_runs.csv")["class"]
-        bench.add(f"{word} (class of motion, of limit and stability)", found, [word] * len(found), "physics, as of the outcome", EXACT,
-                  ("a tool that does not vibrate is stable", ["stable"] * len(found)))
+        bench.add(
+            f"{word} (class of motion, of limit and stability)",
+            found,
+            [word] * len(found),
+            "physics, as of the outcome",
+            EXACT,
+            ("a tool that does not vibrate is stable", ["stable"] * len(found)),
+        )
 
 
 def divergence(bench, run):
@@ -95,88 +292,285 @@ def divergence(bench, run):
         k += 1
     grown = Within("the recurrence in another order of operations, over 100 steps", relative=1e-10)
     quantity, size, bound = ("position", abs(x), 1e3) if abs(x) > 1e3 else ("velocity", abs(v), 1e6)
-    for key, known, naive in (("step", k, k - 1), ("time_s", k * dt, k), ("magnitude", size, bound), ("bound", bound, size)):
-        bench.add(f"run --json: {key}", told[key], known, "recurrence against the bounds", grown, ("the row before, or the other", naive))
-    bench.add("run --json: quantity", told["quantity"], quantity, "recurrence against the bounds", EXACT, ("the first thing checked", "force"))
+    for key, known, naive in (
+        ("step", k, k - 1),
+        ("time_s", k * dt, k),
+        ("magnitude", size, bound),
+        ("bound", bound, size),
+    ):
+        bench.add(
+            f"run --json: {key}",
+            told[key],
+            known,
+            "recurrence against the bounds",
+            grown,
+            ("the row before, or the other", naive),
+        )
+    bench.add(
+        "run --json: quantity",
+        told["quantity"],
+        quantity,
+        "recurrence against the bounds",
+        EXACT,
+        ("the first thing checked", "force"),
+    )
     # Leapfrog without damping is stable up to K = 4 M / dt^2, the edge of which K is `share` times.
-    findings, share = run.summary["diagnosis"], K * dt ** 2 / (4 * M)
+    findings, share = run.summary["diagnosis"], K * dt**2 / (4 * M)
     edge = next(finding for finding in findings if finding["rule"] == "edge")
-    cells = [("value", share, "half the edge, of a step of the speed alone", 2 * share), ("threshold", 0.8, "the edge itself", 1.0),
-             ("unit", "1", "of K", "N/m"), ("says", f"K is {share:.3g} times the edge of the stable loop", "as if stable", "K is 0.5 times")]
+    cells = [
+        ("value", share, "half the edge, of a step of the speed alone", 2 * share),
+        ("threshold", 0.8, "the edge itself", 1.0),
+        ("unit", "1", "of K", "N/m"),
+        (
+            "says",
+            f"K is {share:.3g} times the edge of the stable loop",
+            "as if stable",
+            "K is 0.5 times",
+        ),
+    ]
     for name, known, naive, value in cells:
-        bench.add(f"run --json: diagnosis.{name}", edge[name], known, "4 - K dt^2 / M = 0", EXACT, (naive, value))
-    bench.add("run --json: diagnosis.rule", [finding["rule"] for finding in findings][:2], ["diverged", "edge"], "what happened, then why", EXACT,
-              ("what happened alone", ["diverged"]))
+        bench.add(
+            f"run --json: diagnosis.{name}",
+            edge[name],
+            known,
+            "4 - K dt^2 / M = 0",
+            EXACT,
+            (naive, value),
+        )
+    bench.add(
+        "run --json: diagnosis.rule",
+        [finding["rule"] for finding in findings][:2],
+        ["diverged", "edge"],
+        "what happened, then why",
+        EXACT,
+        ("what happened alone", ["diverged"]),
+    )
     for name, words in (("number", "K over the edge"), ("try", "a shorter time.step_s")):
-        bench.add(f"run --json: diagnosis.{name}", words in edge[name], True, "4 - K dt^2 / M = 0", EXACT, ("another cause", False))
+        bench.add(
+            f"run --json: diagnosis.{name}",
+            words in edge[name],
+            True,
+            "4 - K dt^2 / M = 0",
+            EXACT,
+            ("another cause", False),
+        )
 
 
 @scene
 def limit_of_spring(bench):
     """The stiffness of one damped spring: runs are judged as the recurrence says, theory is 4 - 2 B dt / M - K dt^2 / M = 0."""
     M, dt, n, zeta, resolution = 0.1, 0.0005, 400, 0.02, 1e-4
-    base = bench.scenario("limit_of_spring", time={"step_s": dt, "steps": n}, environment=SPRING, initial={"position_m": [1e-3, 0, 0]},
-                          rendering={**PLAIN, "algorithm": "summation", "damping_ratio": zeta, "stiffness_N_per_m": 20000})
+    base = bench.scenario(
+        "limit_of_spring",
+        time={"step_s": dt, "steps": n},
+        environment=SPRING,
+        initial={"position_m": [1e-3, 0, 0]},
+        rendering={
+            **PLAIN,
+            "algorithm": "summation",
+            "damping_ratio": zeta,
+            "stiffness_N_per_m": 20000,
+        },
+    )
     field = "rendering.stiffness_N_per_m"
-    ask = ("limit", base, "--vary", field, "--between", "1e3:1e7", "--resolution", resolution, "--out", "spring")
+    ask = (
+        "limit",
+        base,
+        "--vary",
+        field,
+        "--between",
+        "1e3:1e7",
+        "--resolution",
+        resolution,
+        "--out",
+        "spring",
+    )
     printed = bench.json(*ask)
-    table, runs = Table(bench.folder / "spring" / "limit.csv"), Table(bench.folder / "spring" / "limit_runs.csv")
+    table, runs = Table(bench.folder / "spring" / "limit.csv"), Table(
+        bench.folder / "spring" / "limit_runs.csv"
+    )
     matrix = lambda K: step_matrix(K, 2 * zeta * math.sqrt(K * M), M, dt)
-    theory = M * (2 * (math.sqrt(1 + zeta ** 2) - zeta)) ** 2 / dt ** 2
+    theory = M * (2 * (math.sqrt(1 + zeta**2) - zeta)) ** 2 / dt**2
     judged = lambda K: class_of(matrix(K), 1e-3, n)
     values = runs[field]
     classes = [judged(K) for K in values]
     coarse = ["stable" if radius(matrix(K)) < 1 else "diverged" for K in values]
-    bench.add("limit_runs.csv:class", runs["class"], classes, "rule on the recurrence", EXACT, ("stable where the eigenvalues are", coarse))
-    bench.add("limit_runs.csv:{field}", len(set(values)), len(values), "each value once", EXACT, ("both ends twice", len(values) - 1))
+    bench.add(
+        "limit_runs.csv:class",
+        runs["class"],
+        classes,
+        "rule on the recurrence",
+        EXACT,
+        ("stable where the eigenvalues are", coarse),
+    )
+    bench.add(
+        "limit_runs.csv:{field}",
+        len(set(values)),
+        len(values),
+        "each value once",
+        EXACT,
+        ("both ends twice", len(values) - 1),
+    )
     for word in ("stable", "dying_out", "vibrating", "diverged"):
         at = [i for i, name in enumerate(classes) if name == word]
-        bench.add(f"{word} (class of motion, of limit and stability)", [runs["class"][i] for i in at], [word] * len(at), "rule on the recurrence",
-                  EXACT, ("by the eigenvalues", [coarse[i] if word != coarse[i] else "" for i in at]))
+        bench.add(
+            f"{word} (class of motion, of limit and stability)",
+            [runs["class"][i] for i in at],
+            [word] * len(at),
+            "rule on the recurrence",
+            EXACT,
+            ("by the eigenvalues", [coarse[i] if word != coarse[i] else "" for i in at]),
+        )
     # A motion dies out when it loses a tenth from quarter to quarter: the edge of that lies below theory.
     rests = lambda K: judged(K) in ("stable", "dying_out")
     stable = [K for K, name in zip(values, classes) if name in ("stable", "dying_out")]
-    limit, beyond, edge = max(stable), min(K for K in values if K > max(stable)), bisected(rests, 1e6, theory)
+    limit, beyond, edge = (
+        max(stable),
+        min(K for K in values if K > max(stable)),
+        bisected(rests, 1e6, theory),
+    )
     low, below = min(stable), max(K for K in values if K < min(stable))
     slowest = bisected(lambda K: not rests(K), below, low)
     strip = Within("bisection ends at a relative width of 1e-4", relative=resolution)
     row = printed["limits"][0]
-    cells = [("algorithm", "summation", EXACT, "mean"), ("field", field, EXACT, "K"), ("side", "largest", EXACT, "smallest"),
-             ("limit", edge, strip, 4 * M / dt ** 2), ("beyond", beyond, EXACT, limit), ("class_beyond", classes[list(values).index(beyond)], EXACT, "vibrating"),
-             ("low", slowest, strip, 1000.0), ("below", below, EXACT, 1000.0), ("class_below", "vibrating", EXACT, "stable"), ("high", limit, EXACT, beyond),
-             ("above", beyond, EXACT, limit), ("class_above", classes[list(values).index(beyond)], EXACT, "vibrating"),
-             ("theory", theory, Within("bisected to 1e-12", relative=3e-12), 4 * M / dt ** 2), ("linear", math.nan, EXACT, theory),
-             ("undecided", 0, EXACT, sum(name == "vibrating" for name in classes)), ("runs", len(values), EXACT, 17), ("inconsistent_runs", 0, EXACT, 1),
-             ("astray", 0, EXACT, 1), ("tried_between", 48, EXACT, 56), ("may_fail_share", 1 - 0.05 ** (1 / 48), ROUNDING, 0.05)]
+    cells = [
+        ("algorithm", "summation", EXACT, "mean"),
+        ("field", field, EXACT, "K"),
+        ("side", "largest", EXACT, "smallest"),
+        ("limit", edge, strip, 4 * M / dt**2),
+        ("beyond", beyond, EXACT, limit),
+        ("class_beyond", classes[list(values).index(beyond)], EXACT, "vibrating"),
+        ("low", slowest, strip, 1000.0),
+        ("below", below, EXACT, 1000.0),
+        ("class_below", "vibrating", EXACT, "stable"),
+        ("high", limit, EXACT, beyond),
+        ("above", beyond, EXACT, limit),
+        ("class_above", classes[list(values).index(beyond)], EXACT, "vibrating"),
+        ("theory", theory, Within("bisected to 1e-12", relative=3e-12), 4 * M / dt**2),
+        ("linear", math.nan, EXACT, theory),
+        ("undecided", 0, EXACT, sum(name == "vibrating" for name in classes)),
+        ("runs", len(values), EXACT, 17),
+        ("inconsistent_runs", 0, EXACT, 1),
+        ("astray", 0, EXACT, 1),
+        ("tried_between", 48, EXACT, 56),
+        ("may_fail_share", 1 - 0.05 ** (1 / 48), ROUNDING, 0.05),
+    ]
     for name, known, within, naive in cells:
-        bench.add(f"limit.csv:{name}", table[name][0], known, "rule on the recurrence, and the eigenvalues",
-                  within, ("of the eigenvalues alone, or the value beside", naive))
-    for key, known, naive in (("limit_tolerance", beyond - limit, resolution * limit), ("high_tolerance", beyond - limit, resolution * limit),
-                              ("low_tolerance", low - below, resolution * low)):
-        bench.add(f"limit --json: {key}", row[key], known, "from the last stable value to the next tried", ROUNDING, ("the resolution asked", naive))
+        bench.add(
+            f"limit.csv:{name}",
+            table[name][0],
+            known,
+            "rule on the recurrence, and the eigenvalues",
+            within,
+            ("of the eigenvalues alone, or the value beside", naive),
+        )
+    for key, known, naive in (
+        ("limit_tolerance", beyond - limit, resolution * limit),
+        ("high_tolerance", beyond - limit, resolution * limit),
+        ("low_tolerance", low - below, resolution * low),
+    ):
+        bench.add(
+            f"limit --json: {key}",
+            row[key],
+            known,
+            "from the last stable value to the next tried",
+            ROUNDING,
+            ("the resolution asked", naive),
+        )
     digits(bench, base, field)
-    for key, known, naive in (("from", 1e3, 1.0), ("to", 1e7, 1e6), ("resolution", resolution, 1e-3), ("has_effect", True, False),
-                              ("unstable_without_contact", False, True), ("scattered", False, True)):
-        bench.add(f"limit --json: {key}", printed[key] if key in printed else row[key], known, "as asked; one spring, and no device", EXACT,
-                  ("a default", naive))
-    bench.add("limit --json: rule", "comes to rest or dies out" in printed["rule"], True, "describe stability", EXACT, ("bounded", False))
-    unmoved = bench.json("limit", base, "--vary", "rendering.iterations", "--between", "1:9", "--out", "none")["limits"][0]
-    bench.add("limit --json: has_effect", unmoved["has_effect"], False, "summation has no iterations", EXACT, ("as a limit was found", True))
+    for key, known, naive in (
+        ("from", 1e3, 1.0),
+        ("to", 1e7, 1e6),
+        ("resolution", resolution, 1e-3),
+        ("has_effect", True, False),
+        ("unstable_without_contact", False, True),
+        ("scattered", False, True),
+    ):
+        bench.add(
+            f"limit --json: {key}",
+            printed[key] if key in printed else row[key],
+            known,
+            "as asked; one spring, and no device",
+            EXACT,
+            ("a default", naive),
+        )
+    bench.add(
+        "limit --json: rule",
+        "comes to rest or dies out" in printed["rule"],
+        True,
+        "describe stability",
+        EXACT,
+        ("bounded", False),
+    )
+    unmoved = bench.json(
+        "limit", base, "--vary", "rendering.iterations", "--between", "1:9", "--out", "none"
+    )["limits"][0]
+    bench.add(
+        "limit --json: has_effect",
+        unmoved["has_effect"],
+        False,
+        "summation has no iterations",
+        EXACT,
+        ("as a limit was found", True),
+    )
     # The force is largest at the start, K 1 mm, as long as damping takes more than it adds.
-    ask = ("limit", base, "--vary", field, "--between", "1e3:1e5", "--resolution", "1e-4", "--out", "bound", "--bound", "force_max_N=30")
+    ask = (
+        "limit",
+        base,
+        "--vary",
+        field,
+        "--between",
+        "1e3:1e5",
+        "--resolution",
+        "1e-4",
+        "--out",
+        "bound",
+        "--bound",
+        "force_max_N=30",
+    )
     row = bench.json(*ask)["limits"][0]
-    bench.add("limit.csv:limit", row["limit"], 30000.0, "bound over the start's 1 mm", strip, ("the stable limit", 1e5))
-    bench.add("beyond_bound (class of motion, of limit and stability)", row["class_beyond"], "beyond_bound", "K 1 mm > 30 N", EXACT,
-              ("it is stable", "stable"))
+    bench.add(
+        "limit.csv:limit",
+        row["limit"],
+        30000.0,
+        "bound over the start's 1 mm",
+        strip,
+        ("the stable limit", 1e5),
+    )
+    bench.add(
+        "beyond_bound (class of motion, of limit and stability)",
+        row["class_beyond"],
+        "beyond_bound",
+        "K 1 mm > 30 N",
+        EXACT,
+        ("it is stable", "stable"),
+    )
 
 
 def digits(bench, base, field):
     """The table prints a limit down to the leading digit of the width within which the edge lies."""
     for resolution in (0.1, 1e-3, 1e-5):
-        ask = ("limit", base, "--vary", field, "--between", "1e5:1e7", "--resolution", resolution, "--out", "digits")
+        ask = (
+            "limit",
+            base,
+            "--vary",
+            field,
+            "--between",
+            "1e5:1e7",
+            "--resolution",
+            resolution,
+            "--out",
+            "digits",
+        )
         row, text = bench.json(*ask)["limits"][0], bench.hapbench(*ask)
         cell = next(line for line in text.splitlines() if line.startswith("summation ")).split("  ")
         place = 10.0 ** math.floor(math.log10(row["limit_tolerance"]))
         known = f"{round(row['limit'] / place) * place:.{max(0, -round(math.log10(place)))}f}"
-        bench.add("limit.csv:limit", known in [part.strip() for part in cell], True, "the table's digits are those of the width", EXACT,
-                  ("six digits", f"{row['limit']:.6g}" in [part.strip() for part in cell]))
+        bench.add(
+            "limit.csv:limit",
+            known in [part.strip() for part in cell],
+            True,
+            "the table's digits are those of the width",
+            EXACT,
+            ("six digits", f"{row['limit']:.6g}" in [part.strip() for part in cell]),
+        )

@@ -7,21 +7,49 @@ from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
 from physics import BELOW, SPRING, STEPPED, SUMMED, nearest_rank
 
 # Not periodic: one lag alone fits.
-STEPS = [[0, 0], [0.1, -1e-3], [0.18, -0.4e-3], [0.3, -1.6e-3], [0.36, -1.1e-3], [0.52, -2e-3], [0.6, -0.3e-3], [0.8, -0.9e-3], [1, -0.5e-3]]
+STEPS = [
+    [0, 0],
+    [0.1, -1e-3],
+    [0.18, -0.4e-3],
+    [0.3, -1.6e-3],
+    [0.36, -1.1e-3],
+    [0.52, -2e-3],
+    [0.6, -0.3e-3],
+    [0.8, -0.9e-3],
+    [1, -0.5e-3],
+]
 
 
 @scene
 def late_force(bench):
     """A force that follows the reference by 30 ms, with a part across it."""
     K, dt, n, late = 1000.0, 0.0005, 2000, 0.03
-    reference = {"z_N": {"type": "waypoints", "points": [[max(0, s - late), -K * z] for s, z in STEPS[1:]]}, "x_N": 0.05}
-    path = {"x_m": {"type": "sine", "mean": 0, "amplitude": 4e-5, "period_s": 0.01, "phase_rad": 0.4}, "y_m": 0,
-            "z_m": {"type": "waypoints", "points": [[0, 0], *STEPS[1:]]}}
-    run = bench.run(bench.scenario(
-        "late_force", time={"step_s": dt, "steps": n}, motion={"position": {"type": "prescribed", **path}}, reference_force=reference,
-        environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}, {"direction": [1, 0, 0], "count": 1}]},
-        record={"force_reference": True},
-        rendering={**SUMMED, "stiffness_N_per_m": K, "damping_ratio": 0.5, "mass_kg": 0.01}))
+    reference = {
+        "z_N": {"type": "waypoints", "points": [[max(0, s - late), -K * z] for s, z in STEPS[1:]]},
+        "x_N": 0.05,
+    }
+    path = {
+        "x_m": {"type": "sine", "mean": 0, "amplitude": 4e-5, "period_s": 0.01, "phase_rad": 0.4},
+        "y_m": 0,
+        "z_m": {"type": "waypoints", "points": [[0, 0], *STEPS[1:]]},
+    }
+    run = bench.run(
+        bench.scenario(
+            "late_force",
+            time={"step_s": dt, "steps": n},
+            motion={"position": {"type": "prescribed", **path}},
+            reference_force=reference,
+            environment={
+                "type": "springs",
+                "groups": [
+                    {"direction": [0, 0, -1], "count": 1},
+                    {"direction": [1, 0, 0], "count": 1},
+                ],
+            },
+            record={"force_reference": True},
+            rendering={**SUMMED, "stiffness_N_per_m": K, "damping_ratio": 0.5, "mass_kg": 0.01},
+        )
+    )
     t, B = np.arange(n) * dt, math.sqrt(K * 0.01)
     p = np.column_stack([profile(path[a], t) for a in ("x_m", "y_m", "z_m")])
     v = np.diff(p, axis=0, prepend=[2 * p[0] - p[1]]) / dt
@@ -39,7 +67,7 @@ def late_force(bench):
     shifts = np.arange(-200, 201)
 
     def fits(s):
-        a, b = m[max(0, -s):n - max(0, s)], f[max(0, s):n - max(0, -s)]
+        a, b = m[max(0, -s) : n - max(0, s)], f[max(0, s) : n - max(0, -s)]
         a, b = a - a.mean(axis=0), b - b.mean(axis=0)
         return np.sum(a * b) / math.sqrt(np.sum(a * a) * np.sum(b * b))
 
@@ -47,43 +75,185 @@ def late_force(bench):
     lag = shifts[np.argmax(lags)] * dt
     formula = "the rendered force's formula and the profile"
     fifth = Within("a lag is told to a row", absolute=0.5 * dt)
-    bench.metrics(run, [
-        ("fidelity.rows", n, "every row has a reference", EXACT, "rows of both above 0.1 N", int(both.sum())),
-        ("fidelity.reference_force_rms_N", rms(m), formula, STEPPED, "of z alone", rms(m[:, 2])),
-        ("fidelity.force_error_rms_N", rms(error), formula, STEPPED, "difference of the norms", rms(norms(f) - size)),
-        ("fidelity.force_error_relative", rms(error) / rms(m), formula, STEPPED, "over the rendered force", rms(error) / rms(f)),
-        ("fidelity.force_error_normal_rms_N", rms(along), "along f_spring", STEPPED, "along f",
-         rms(np.sum(error * f, axis=1) / norms(f))),
-        ("fidelity.force_error_tangential_rms_N", rms(error - along[:, None] * unit), "across f_spring", STEPPED, "across f_m",
-         rms(error - np.sum(error * line, axis=1)[:, None] * line)),
-        ("fidelity.reference_mu", float(np.sum(load * norms(m - load[:, None] * unit)) / np.sum(load**2)), "least squares across f_spring over along it",
-         STEPPED, "mean of the ratios", float(np.mean(norms(m - load[:, None] * unit) / np.maximum(load, 1e-9)))),
-        ("fidelity.force_artefact_share", rms(across) / rms(f), "across f_m over f", STEPPED, "over f_m", rms(across) / rms(m)),
-        ("fidelity.direction_rows", int(both.sum()), "rows of both above 0.1 N", EXACT, "all rows", n),
-        ("fidelity.force_direction_error_rad", angles[both].mean(), "mean angle, by the cosine", Within("a cosine loses half the digits near 0",
-         relative=1e-7), "over all rows", angles.mean()),
-        ("fidelity.force_lag_s", lag, "numpy's correlation at every shift", fifth, "with the other sign", -lag),
-        ("fidelity.force_lag_period_s", None, "the path repeats nothing", EXACT, "the ripple's period", 0.01)])
-    bench.tolerance(run, "fidelity.force_lag_s", 0.5 * dt, "half a row", ROUNDING, ("a parabola's top is exact", 0.0), lag)
-    bench.columns(run.table("force_reference.csv"), [
-        ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1), ("time_s", t, "k dt", EXACT, "after the step", t + dt)] + [
-        (f"mf{x}_N", m[:, i], "the profile", ROUNDING, "f", f[:, i] + (x == "y")) for i, x in enumerate("xyz")] + [
-        (f"force_error_{x}_N", error[:, i], formula, STEPPED, "f_m - f", -error[:, i] + (x == "y")) for i, x in enumerate("xyz")])
+    bench.metrics(
+        run,
+        [
+            (
+                "fidelity.rows",
+                n,
+                "every row has a reference",
+                EXACT,
+                "rows of both above 0.1 N",
+                int(both.sum()),
+            ),
+            (
+                "fidelity.reference_force_rms_N",
+                rms(m),
+                formula,
+                STEPPED,
+                "of z alone",
+                rms(m[:, 2]),
+            ),
+            (
+                "fidelity.force_error_rms_N",
+                rms(error),
+                formula,
+                STEPPED,
+                "difference of the norms",
+                rms(norms(f) - size),
+            ),
+            (
+                "fidelity.force_error_relative",
+                rms(error) / rms(m),
+                formula,
+                STEPPED,
+                "over the rendered force",
+                rms(error) / rms(f),
+            ),
+            (
+                "fidelity.force_error_normal_rms_N",
+                rms(along),
+                "along f_spring",
+                STEPPED,
+                "along f",
+                rms(np.sum(error * f, axis=1) / norms(f)),
+            ),
+            (
+                "fidelity.force_error_tangential_rms_N",
+                rms(error - along[:, None] * unit),
+                "across f_spring",
+                STEPPED,
+                "across f_m",
+                rms(error - np.sum(error * line, axis=1)[:, None] * line),
+            ),
+            (
+                "fidelity.reference_mu",
+                float(np.sum(load * norms(m - load[:, None] * unit)) / np.sum(load**2)),
+                "least squares across f_spring over along it",
+                STEPPED,
+                "mean of the ratios",
+                float(np.mean(norms(m - load[:, None] * unit) / np.maximum(load, 1e-9))),
+            ),
+            (
+                "fidelity.force_artefact_share",
+                rms(across) / rms(f),
+                "across f_m over f",
+                STEPPED,
+                "over f_m",
+                rms(across) / rms(m),
+            ),
+            (
+                "fidelity.direction_rows",
+                int(both.sum()),
+                "rows of both above 0.1 N",
+                EXACT,
+                "all rows",
+                n,
+            ),
+            (
+                "fidelity.force_direction_error_rad",
+                angles[both].mean(),
+                "mean angle, by the cosine",
+                Within("a cosine loses half the digits near 0", relative=1e-7),
+                "over all rows",
+                angles.mean(),
+            ),
+            (
+                "fidelity.force_lag_s",
+                lag,
+                "numpy's correlation at every shift",
+                fifth,
+                "with the other sign",
+                -lag,
+            ),
+            (
+                "fidelity.force_lag_period_s",
+                None,
+                "the path repeats nothing",
+                EXACT,
+                "the ripple's period",
+                0.01,
+            ),
+        ],
+    )
+    bench.tolerance(
+        run,
+        "fidelity.force_lag_s",
+        0.5 * dt,
+        "half a row",
+        ROUNDING,
+        ("a parabola's top is exact", 0.0),
+        lag,
+    )
+    bench.columns(
+        run.table("force_reference.csv"),
+        [
+            ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1),
+            ("time_s", t, "k dt", EXACT, "after the step", t + dt),
+        ]
+        + [
+            (f"mf{x}_N", m[:, i], "the profile", ROUNDING, "f", f[:, i] + (x == "y"))
+            for i, x in enumerate("xyz")
+        ]
+        + [
+            (
+                f"force_error_{x}_N",
+                error[:, i],
+                formula,
+                STEPPED,
+                "f_m - f",
+                -error[:, i] + (x == "y"),
+            )
+            for i, x in enumerate("xyz")
+        ],
+    )
 
 
 @scene
 def periodic_force(bench):
     """A force in phase with a reference of 20 Hz: of many lags the nearest, and their spacing."""
-    run = bench.run(bench.scenario(
-        "periodic_force", time={"step_s": 0.0005, "steps": 2000}, reference_force={"z_N": {"type": "sine", "mean": 2, "amplitude": 1, "period_s": 0.05}},
-        environment=BELOW, rendering=SUMMED,
-        motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": {"type": "sine", "mean": -2e-3, "amplitude": 1e-3, "period_s": 0.05,
-                                                                              "phase_rad": math.pi - 0.4}}}))
+    run = bench.run(
+        bench.scenario(
+            "periodic_force",
+            time={"step_s": 0.0005, "steps": 2000},
+            reference_force={"z_N": {"type": "sine", "mean": 2, "amplitude": 1, "period_s": 0.05}},
+            environment=BELOW,
+            rendering=SUMMED,
+            motion={
+                "position": {
+                    "type": "prescribed",
+                    "x_m": 0,
+                    "y_m": 0,
+                    "z_m": {
+                        "type": "sine",
+                        "mean": -2e-3,
+                        "amplitude": 1e-3,
+                        "period_s": 0.05,
+                        "phase_rad": math.pi - 0.4,
+                    },
+                }
+            },
+        )
+    )
     # -z follows by 0.4 rad.
-    lag = Within("a parabola through three rows of a cosine finds its top to (omega dt)^2 / 24 of a row", absolute=1e-6)
-    bench.metrics(run, [
-        ("fidelity.force_lag_s", 0.4 / (2 * math.pi) * 0.05, "phase over angular frequency", lag, "a period earlier", -0.05 + 0.4 / (2 * math.pi) * 0.05),
-        ("fidelity.force_lag_period_s", 0.05, "the sine's", lag, "half of it", 0.025)])
+    lag = Within(
+        "a parabola through three rows of a cosine finds its top to (omega dt)^2 / 24 of a row",
+        absolute=1e-6,
+    )
+    bench.metrics(
+        run,
+        [
+            (
+                "fidelity.force_lag_s",
+                0.4 / (2 * math.pi) * 0.05,
+                "phase over angular frequency",
+                lag,
+                "a period earlier",
+                -0.05 + 0.4 / (2 * math.pi) * 0.05,
+            ),
+            ("fidelity.force_lag_period_s", 0.05, "the sine's", lag, "half of it", 0.025),
+        ],
+    )
 
 
 @scene
@@ -91,70 +261,200 @@ def recorded_force(bench):
     """A stroke with a force measured in its middle: between samples both are linear, and rows beyond the measurement have no reference."""
     K, dt, n = 500.0, 0.001, 1000
     t = np.array([0.1, 0.25, 0.45, 0.7])
-    place, force = np.array([0, -1e-3, -3e-3, -2e-3]), np.array([[0, 0, 0.1], [0.1, 0, 0.6], [0.2, -0.1, 1.4], [0, 0, 1.1]])
-    bench.write("stroke.csv", "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
-                np.column_stack([t, 0 * t, 0 * t, place, 0 * t, 0 * t, 0 * t - 1, force]))
-    run = bench.run(bench.scenario(
-        "recorded_force", time={"step_s": dt, "steps": n}, motion={"position": {"type": "file", "file": "stroke.csv"}}, record={"force_reference": True},
-        environment=BELOW, rendering={**SUMMED, "stiffness_N_per_m": K}))
+    place, force = np.array([0, -1e-3, -3e-3, -2e-3]), np.array(
+        [[0, 0, 0.1], [0.1, 0, 0.6], [0.2, -0.1, 1.4], [0, 0, 1.1]]
+    )
+    bench.write(
+        "stroke.csv",
+        "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
+        np.column_stack([t, 0 * t, 0 * t, place, 0 * t, 0 * t, 0 * t - 1, force]),
+    )
+    run = bench.run(
+        bench.scenario(
+            "recorded_force",
+            time={"step_s": dt, "steps": n},
+            motion={"position": {"type": "file", "file": "stroke.csv"}},
+            record={"force_reference": True},
+            environment=BELOW,
+            rendering={**SUMMED, "stiffness_N_per_m": K},
+        )
+    )
     at = np.arange(n) * dt
     m = np.column_stack([np.interp(at, t, force[:, i]) for i in range(3)])
     f = np.column_stack([0 * at, 0 * at, -K * np.interp(at, t, place)])
     has = (at >= t[0]) & (at <= t[-1])
     error = (f - m)[has]
     how = "linear between the samples"
-    bench.metrics(run, [
-        ("fidelity.rows", int(has.sum()), "rows from the first sample to the last", EXACT, "all rows", n),
-        ("fidelity.reference_force_rms_N", rms(m[has]), how, STEPPED, "over all rows", rms(m)),
-        ("fidelity.force_error_rms_N", rms(error), how, STEPPED, "over all rows", rms(f - m)),
-        ("fidelity.force_artefact_share", rms(f[has] - np.sum(f * m, axis=1)[has, None] * m[has] / np.sum(m * m, axis=1)[has, None]) / rms(f[has]),
-         "across f_m over f", STEPPED, "over all rows", rms(error) / rms(f))])
-    bench.columns(run.table("force_reference.csv"), [
-        (f"mf{x}_N", np.where(has, m[:, i], np.nan), how, STEPPED, "held beyond", m[:, i]) for i, x in enumerate("xyz")] + [
-        (f"force_error_{x}_N", np.where(has, (f - m)[:, i], np.nan), how, STEPPED, "held beyond", (f - m)[:, i]) for i, x in enumerate("xyz")])
+    bench.metrics(
+        run,
+        [
+            (
+                "fidelity.rows",
+                int(has.sum()),
+                "rows from the first sample to the last",
+                EXACT,
+                "all rows",
+                n,
+            ),
+            ("fidelity.reference_force_rms_N", rms(m[has]), how, STEPPED, "over all rows", rms(m)),
+            ("fidelity.force_error_rms_N", rms(error), how, STEPPED, "over all rows", rms(f - m)),
+            (
+                "fidelity.force_artefact_share",
+                rms(
+                    f[has]
+                    - np.sum(f * m, axis=1)[has, None] * m[has] / np.sum(m * m, axis=1)[has, None]
+                )
+                / rms(f[has]),
+                "across f_m over f",
+                STEPPED,
+                "over all rows",
+                rms(error) / rms(f),
+            ),
+        ],
+    )
+    bench.columns(
+        run.table("force_reference.csv"),
+        [
+            (f"mf{x}_N", np.where(has, m[:, i], np.nan), how, STEPPED, "held beyond", m[:, i])
+            for i, x in enumerate("xyz")
+        ]
+        + [
+            (
+                f"force_error_{x}_N",
+                np.where(has, (f - m)[:, i], np.nan),
+                how,
+                STEPPED,
+                "held beyond",
+                (f - m)[:, i],
+            )
+            for i, x in enumerate("xyz")
+        ],
+    )
 
 
 @scene
 def imported(bench):
     """A recording whose places come in steps of 10, 20 and 5 um: what import says of it."""
     t = np.arange(400) * 0.002
-    p = np.column_stack([np.round(1e-3 * np.sin(7 * t) / 1e-5) * 1e-5, np.round(2e-3 * np.cos(5 * t) / 2e-5) * 2e-5, np.round(-1e-3 * t / 5e-6) * 5e-6])
+    p = np.column_stack(
+        [
+            np.round(1e-3 * np.sin(7 * t) / 1e-5) * 1e-5,
+            np.round(2e-3 * np.cos(5 * t) / 2e-5) * 2e-5,
+            np.round(-1e-3 * t / 5e-6) * 5e-6,
+        ]
+    )
     f = np.column_stack([np.full(400, 0.1), np.full(400, 0.2), np.sin(t)])
     bench.write("rec.csv", "t,x,y,z,fx,fy,fz", np.column_stack([t, p, f]))
-    told = bench.json("import", "stroke", "rec.csv", "--columns", "time=t,position=x,force=fx", "--out", "stroke.csv")
+    told = bench.json(
+        "import",
+        "stroke",
+        "rec.csv",
+        "--columns",
+        "time=t,position=x,force=fx",
+        "--out",
+        "stroke.csv",
+    )
     speed = norms(np.diff(p, axis=0)) / 0.002
-    close = Within("times and places as written, with all their digits", relative=1e-9, absolute=1e-15)
+    close = Within(
+        "times and places as written, with all their digits", relative=1e-9, absolute=1e-15
+    )
     q = np.array([1e-5, 2e-5, 5e-6])
-    bench.add("quantum (number of import)", told["quantum_m"], q, "steps they were rounded to", close, ("least difference of places", [1e-18] * 3))
+    bench.add(
+        "quantum (number of import)",
+        told["quantum_m"],
+        q,
+        "steps they were rounded to",
+        close,
+        ("least difference of places", [1e-18] * 3),
+    )
     for key, known, within, says, naive in (
-            ("quantum_m", q, close, "mean step", q * 2), ("quantum_force_N", 20000 * 2e-5, close, "of the finest axis", 0.1),
-            ("rows_read", 400, EXACT, "with the header", 401), ("rows_left_out", 0, EXACT, "the header", 1), ("samples", 400, EXACT, "intervals", 399),
-            ("rate_Hz", 500, close, "samples over duration", 400 / 0.798), ("resampled", False, EXACT, "rounded times", True),
-            ("first_time_s", 0.0, EXACT, "the second", 0.002), ("duration_s", 0.798, close, "samples over rate", 0.8), ("gaps", 0, EXACT, "one", 1),
-            ("box_m", [p.min(axis=0), p.max(axis=0)], close, "about the mean", [p.min(axis=0) - p.mean(axis=0), p.max(axis=0) - p.mean(axis=0)]),
-            ("speed_max_m_per_s", speed.max(), close, "largest component", np.abs(np.diff(p, axis=0)).max() / 0.002),
-            ("speed_p99_m_per_s", np.percentile(speed, 99), Within("ranks of 99 % differ by one of 399", relative=0.02), "mean", speed.mean()),
-            ("has_roll", False, EXACT, "poses", True), ("tip_direction", [0, 0, -1], ROUNDING, "up", [0, 0, 1]), ("tip_direction_spread_rad", 0.0, ROUNDING, "some", 1.0),
-            ("unit_deviation", 0.0, ROUNDING, "some", 1.0), ("force_min_N", norms(f).min(), close, "of z", f[:, 2].min()),
-            ("force_max_N", norms(f).max(), close, "of z", f[:, 2].max()), ("smoothing", None, EXACT, "some", 5), ("warnings", [], EXACT, "some", ["steps"]),
-            ("file", "stroke.csv", EXACT, "the recording", "rec.csv"), ("next", "hapbench new stroke", EXACT, "run", "hapbench run rec.csv")):
+        ("quantum_m", q, close, "mean step", q * 2),
+        ("quantum_force_N", 20000 * 2e-5, close, "of the finest axis", 0.1),
+        ("rows_read", 400, EXACT, "with the header", 401),
+        ("rows_left_out", 0, EXACT, "the header", 1),
+        ("samples", 400, EXACT, "intervals", 399),
+        ("rate_Hz", 500, close, "samples over duration", 400 / 0.798),
+        ("resampled", False, EXACT, "rounded times", True),
+        ("first_time_s", 0.0, EXACT, "the second", 0.002),
+        ("duration_s", 0.798, close, "samples over rate", 0.8),
+        ("gaps", 0, EXACT, "one", 1),
+        (
+            "box_m",
+            [p.min(axis=0), p.max(axis=0)],
+            close,
+            "about the mean",
+            [p.min(axis=0) - p.mean(axis=0), p.max(axis=0) - p.mean(axis=0)],
+        ),
+        (
+            "speed_max_m_per_s",
+            speed.max(),
+            close,
+            "largest component",
+            np.abs(np.diff(p, axis=0)).max() / 0.002,
+        ),
+        (
+            "speed_p99_m_per_s",
+            np.percentile(speed, 99),
+            Within("ranks of 99 % differ by one of 399", relative=0.02),
+            "mean",
+            speed.mean(),
+        ),
+        ("has_roll", False, EXACT, "poses", True),
+        ("tip_direction", [0, 0, -1], ROUNDING, "up", [0, 0, 1]),
+        ("tip_direction_spread_rad", 0.0, ROUNDING, "some", 1.0),
+        ("unit_deviation", 0.0, ROUNDING, "some", 1.0),
+        ("force_min_N", norms(f).min(), close, "of z", f[:, 2].min()),
+        ("force_max_N", norms(f).max(), close, "of z", f[:, 2].max()),
+        ("smoothing", None, EXACT, "some", 5),
+        ("warnings", [], EXACT, "some", ["steps"]),
+        ("file", "stroke.csv", EXACT, "the recording", "rec.csv"),
+        ("next", "hapbench new stroke", EXACT, "run", "hapbench run rec.csv"),
+    ):
         value = told[key][:19] if key == "next" else told[key]
-        bench.add(f"import --json: {key}", value, known, "numpy on the recording", within, (says, naive))
+        bench.add(
+            f"import --json: {key}", value, known, "numpy on the recording", within, (says, naive)
+        )
     for i, key in enumerate(("min", "median", "max")):
-        bench.add(f"import --json: {key}", told["interval_s"][key], 0.002, "numpy on the recording", close, ("in milliseconds", 2.0))
+        bench.add(
+            f"import --json: {key}",
+            told["interval_s"][key],
+            0.002,
+            "numpy on the recording",
+            close,
+            ("in milliseconds", 2.0),
+        )
 
 
 @scene
 def bristle(bench):
     """A tool rubbed to and fro under dry friction, pressed ever deeper into one spring."""
     K, M, dt, n, mu, kt, zeta = 1000.0, 0.01, 0.0005, 2000, 0.4, 2000.0, 0.5
-    path = {"x_m": {"type": "sine", "mean": 0, "amplitude": 1e-3, "period_s": 0.25, "phase_rad": 0.3}, "y_m": 0,
-            "z_m": {"type": "waypoints", "points": [[0, -1e-3], [1, -2e-3]]}}
-    run = bench.run(bench.scenario(
-        "bristle", time={"step_s": dt, "steps": n}, motion={"position": {"type": "prescribed", **path}},
-        environment=BELOW, record={"trajectory": True},
-        rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0, "mass_kg": M,
-                   "friction": {"type": "dry", "mu": mu, "stiffness_N_per_m": kt, "damping_ratio": zeta}}))
+    path = {
+        "x_m": {"type": "sine", "mean": 0, "amplitude": 1e-3, "period_s": 0.25, "phase_rad": 0.3},
+        "y_m": 0,
+        "z_m": {"type": "waypoints", "points": [[0, -1e-3], [1, -2e-3]]},
+    }
+    run = bench.run(
+        bench.scenario(
+            "bristle",
+            time={"step_s": dt, "steps": n},
+            motion={"position": {"type": "prescribed", **path}},
+            environment=BELOW,
+            record={"trajectory": True},
+            rendering={
+                "algorithm": "summation",
+                "stiffness_N_per_m": K,
+                "damping_ratio": 0,
+                "mass_kg": M,
+                "friction": {
+                    "type": "dry",
+                    "mu": mu,
+                    "stiffness_N_per_m": kt,
+                    "damping_ratio": zeta,
+                },
+            },
+        )
+    )
     t = np.arange(n) * dt
     p = np.column_stack([profile(path[a], t) for a in ("x_m", "y_m", "z_m")])
     v = np.diff(p[:, 0], prepend=2 * p[0, 0] - p[1, 0]) / dt
@@ -169,19 +469,52 @@ def bristle(bench):
         force[k] = -g
     began = int(np.sum(slides[1:] & ~slides[:-1]))
     law = "the bristle's equations, row by row"
-    bench.metrics(run, [
-        ("friction.stick_share", int(np.sum(~slides)) / n, law, EXACT, "rows with the force below mu N", float(np.mean(np.abs(force) < 0.99 * mu * load))),
-        ("friction.slips_per_s", began / (n * dt), law, EXACT, "rows that slide", slides.sum() / (n * dt))])
-    bench.columns(run.table("trajectory.csv"), [("fx_N", force, law, STEPPED, "Coulomb's alone", -mu * load * np.sign(v))])
+    bench.metrics(
+        run,
+        [
+            (
+                "friction.stick_share",
+                int(np.sum(~slides)) / n,
+                law,
+                EXACT,
+                "rows with the force below mu N",
+                float(np.mean(np.abs(force) < 0.99 * mu * load)),
+            ),
+            (
+                "friction.slips_per_s",
+                began / (n * dt),
+                law,
+                EXACT,
+                "rows that slide",
+                slides.sum() / (n * dt),
+            ),
+        ],
+    )
+    bench.columns(
+        run.table("trajectory.csv"),
+        [("fx_N", force, law, STEPPED, "Coulomb's alone", -mu * load * np.sign(v))],
+    )
 
 
 @scene
 def tank(bench):
     """A mass on one spring whose energy tank holds a tenth of what the spring does: the stage's formula, row by row."""
     K, B, M, dt, n, capacity = 2000.0, 2.0, 0.1, 0.0005, 400, 1e-4
-    run = bench.run(bench.scenario("tank", time={"step_s": dt, "steps": n}, environment=SPRING, initial={"position_m": [1e-3, 0, 0]}, rendering={
-        **SUMMED, "stiffness_N_per_m": K, "damping_N_s_per_m": B, "mass_kg": M,
-        "force_stage": {"type": "energy_tank", "capacity_J": capacity}}))
+    run = bench.run(
+        bench.scenario(
+            "tank",
+            time={"step_s": dt, "steps": n},
+            environment=SPRING,
+            initial={"position_m": [1e-3, 0, 0]},
+            rendering={
+                **SUMMED,
+                "stiffness_N_per_m": K,
+                "damping_N_s_per_m": B,
+                "mass_kg": M,
+                "force_stage": {"type": "energy_tank", "capacity_J": capacity},
+            },
+        )
+    )
     x, v, energy, changed, taken, rendered = 1e-3, 0.0, 0.5 * K * 1e-6, 0, 0.0, []
     level = min(capacity, energy)
     for k in range(n):
@@ -198,29 +531,93 @@ def tank(bench):
         v = after
         x += dt * v
     formula = "the tank's formula, row by row"
-    bench.metrics(run, [
-        ("force_stage.changed_share", changed / n, formula, EXACT, "rows in contact", 1.0),
-        ("force_stage.taken_J", taken, formula, STEPPED, "the spring's energy less the tank's", 0.5 * K * 1e-6 - capacity)])
-    bench.columns(run.table("trajectory.csv"), [("fx_N", np.array(rendered), formula, STEPPED, "without the tank", -K * np.array(rendered))])
+    bench.metrics(
+        run,
+        [
+            ("force_stage.changed_share", changed / n, formula, EXACT, "rows in contact", 1.0),
+            (
+                "force_stage.taken_J",
+                taken,
+                formula,
+                STEPPED,
+                "the spring's energy less the tank's",
+                0.5 * K * 1e-6 - capacity,
+            ),
+        ],
+    )
+    bench.columns(
+        run.table("trajectory.csv"),
+        [
+            (
+                "fx_N",
+                np.array(rendered),
+                formula,
+                STEPPED,
+                "without the tank",
+                -K * np.array(rendered),
+            )
+        ],
+    )
 
 
 @scene
 def late(bench):
     """A mass on one spring whose contacts are asked for every fourth row, serve three rows later and are often lost."""
     K, dt, n = 2000.0, 0.0005, 400
-    run = bench.run(bench.scenario(
-        "late", time={"step_s": dt, "steps": n}, environment=SPRING, initial={"position_m": [1e-3, 0, 0]},
-        rendering={**SUMMED, "stiffness_N_per_m": K, "damping_ratio": 0.2, "contacts": {"every": 4, "delay_samples": 3, "dropout": 0.3}}))
+    run = bench.run(
+        bench.scenario(
+            "late",
+            time={"step_s": dt, "steps": n},
+            environment=SPRING,
+            initial={"position_m": [1e-3, 0, 0]},
+            rendering={
+                **SUMMED,
+                "stiffness_N_per_m": K,
+                "damping_ratio": 0.2,
+                "contacts": {"every": 4, "delay_samples": 3, "dropout": 0.3},
+            },
+        )
+    )
     table = run.table()
     place, pull = table["px_m"], table["fspring_x_N"]
     asked = np.arange(0, n, 4)
-    used = [min((q for q in asked if q + 3 <= k), key=lambda q: abs(pull[k] + K * place[q])) for k in range(3, n)]
-    assert max(abs(pull[k] + K * place[q]) for k, q in zip(range(3, n), used)) < 1e-12  # no other place gives this force
+    used = [
+        min((q for q in asked if q + 3 <= k), key=lambda q: abs(pull[k] + K * place[q]))
+        for k in range(3, n)
+    ]
+    assert (
+        max(abs(pull[k] + K * place[q]) for k, q in zip(range(3, n), used)) < 1e-12
+    )  # no other place gives this force
     age, lost = dt * (np.arange(3, n) - used), len(asked) - len(set(used))
     how = "the place that the spring force is of"
-    bench.metrics(run, [
-        ("contacts.age_p50_s", nearest_rank(age, 0.5), how, ROUNDING, "the delay", 3 * dt),
-        ("contacts.age_p95_s", nearest_rank(age, 0.95), how, ROUNDING, "without losses", 6 * dt),
-        ("contacts.age_max_s", age.max(), how, ROUNDING, "without losses", 6 * dt),
-        ("contacts.asked", len(asked), "every fourth row", EXACT, "those that served", len(set(used))),
-        ("contacts.lost_share", lost / len(asked), "queries whose place is never used", ROUNDING, "their probability", 0.3)])
+    bench.metrics(
+        run,
+        [
+            ("contacts.age_p50_s", nearest_rank(age, 0.5), how, ROUNDING, "the delay", 3 * dt),
+            (
+                "contacts.age_p95_s",
+                nearest_rank(age, 0.95),
+                how,
+                ROUNDING,
+                "without losses",
+                6 * dt,
+            ),
+            ("contacts.age_max_s", age.max(), how, ROUNDING, "without losses", 6 * dt),
+            (
+                "contacts.asked",
+                len(asked),
+                "every fourth row",
+                EXACT,
+                "those that served",
+                len(set(used)),
+            ),
+            (
+                "contacts.lost_share",
+                lost / len(asked),
+                "queries whose place is never used",
+                ROUNDING,
+                "their probability",
+                0.3,
+            ),
+        ],
+    )

@@ -17,7 +17,11 @@ def depth_in_block(q):
 
 def interpenetration(tip, tilt):
     """The deepest point of the tool's solid, by ever finer grids about the deepest points of a coarse one."""
-    axis, e1, e2 = -np.array([math.sin(tilt), 0, math.cos(tilt)]), np.array([math.cos(tilt), 0, -math.sin(tilt)]), np.array([0, 1.0, 0])
+    axis, e1, e2 = (
+        -np.array([math.sin(tilt), 0, math.cos(tilt)]),
+        np.array([math.cos(tilt), 0, -math.sin(tilt)]),
+        np.array([0, 1.0, 0]),
+    )
 
     def depth(angle, up):  # of points of the side: inside the tip's flat none is deepest
         turned = np.cos(angle)[..., None] * e1 + np.sin(angle)[..., None] * e2
@@ -25,7 +29,9 @@ def interpenetration(tip, tilt):
 
     def zoomed(angle, up, wide, long):
         for _ in range(14):  # the grid about the deepest point is a fifth as wide each time
-            grid = np.meshgrid(np.linspace(angle - wide, angle + wide, 41), np.linspace(up - long, up + long, 41))
+            grid = np.meshgrid(
+                np.linspace(angle - wide, angle + wide, 41), np.linspace(up - long, up + long, 41)
+            )
             found = depth(*grid)
             at = np.unravel_index(np.argmax(found), found.shape)
             angle, up, wide, long = grid[0][at], grid[1][at], wide / 5, long / 5
@@ -43,151 +49,499 @@ def interpenetration(tip, tilt):
 def beside_the_ideal(bench):
     """A drill led beside 3.6's ideal trajectory by offsets that are chosen, half of the rows with a gentle hand, some without an ideal."""
     n, dt = 24, 0.001
-    tilt = np.r_[np.linspace(0.35, 0.95, 20), 1.10, 1.15, 1.2, 1.25]  # contact with the wall ends at 60 degrees
+    tilt = np.r_[
+        np.linspace(0.35, 0.95, 20), 1.10, 1.15, 1.2, 1.25
+    ]  # contact with the wall ends at 60 degrees
     t, has = np.arange(n) * dt, tilt < math.pi / 3
     c, s = np.cos(tilt), np.sin(tilt)
     ideal = np.column_stack([-R + r * c, (r * (1 + c * c) - 2 * R * c) / s])
     has &= (ideal[:, 1] + r * s < 0) & (ideal[:, 1] - r * s > -H)
-    off = np.column_stack([2e-5 * np.sin(1.0 + np.arange(n)), 3e-5 * np.cos(2 * np.arange(n)) - 1.5e-5])
+    off = np.column_stack(
+        [2e-5 * np.sin(1.0 + np.arange(n)), 3e-5 * np.cos(2 * np.arange(n)) - 1.5e-5]
+    )
     place = ideal + off
-    bench.write("beside.csv", "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z",
-                np.column_stack([t, place[:, 0], 0 * t, place[:, 1], -s, 0 * t, -c]))
+    bench.write(
+        "beside.csv",
+        "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z",
+        np.column_stack([t, place[:, 0], 0 * t, place[:, 1], -s, 0 * t, -c]),
+    )
     push = 1.2 + 80 * t
-    run = bench.run(bench.scenario(
-        "beside_the_ideal", time={"step_s": dt, "steps": n}, record={"ideal_trajectory": True},
-        environment={"type": "block_with_hole", "size_m": [0.006, 0.006, 0.006], "hole_diameter_m": 2 * R, "hole_depth_m": H, "grid_m": 0.0002,
-                     "density": "signed_distance"},
-        tool={"diameter_m": 2 * r, "length_m": 0.01, "tip": "flat"}, motion={"position": {"type": "file", "file": "beside.csv"}},
-        hand={"type": "force", "x_N": {"type": "ramp", "start": 1.2, "rate_per_s": 80.0}},
-        rendering={"algorithm": "mean", "stiffness_N_per_m": 1000}))
+    run = bench.run(
+        bench.scenario(
+            "beside_the_ideal",
+            time={"step_s": dt, "steps": n},
+            record={"ideal_trajectory": True},
+            environment={
+                "type": "block_with_hole",
+                "size_m": [0.006, 0.006, 0.006],
+                "hole_diameter_m": 2 * R,
+                "hole_depth_m": H,
+                "grid_m": 0.0002,
+                "density": "signed_distance",
+            },
+            tool={"diameter_m": 2 * r, "length_m": 0.01, "tip": "flat"},
+            motion={"position": {"type": "file", "file": "beside.csv"}},
+            hand={"type": "force", "x_N": {"type": "ramp", "start": 1.2, "rate_per_s": 80.0}},
+            rendering={"algorithm": "mean", "stiffness_N_per_m": 1000},
+        )
+    )
     deep = np.array([interpenetration(np.array([p[0], 0, p[1]]), a) for p, a in zip(place, tilt)])
-    searched = Within("a grid ends within 1e-10 of the deepest place, ours within 1e-8 rad of 0.5 mm", absolute=2e-11)
-    split = Within("a row's place is the file's, whose axes are unit vectors to 1e-16", relative=1e-10, absolute=1e-16)
+    searched = Within(
+        "a grid ends within 1e-10 of the deepest place, ours within 1e-8 rad of 0.5 mm",
+        absolute=2e-11,
+    )
+    split = Within(
+        "a row's place is the file's, whose axes are unit vectors to 1e-16",
+        relative=1e-10,
+        absolute=1e-16,
+    )
     table = []
     for name, rows, wrong in (("gentle", has & (push < 2), has), ("firm", has & (push >= 2), has)):
         height, side = off[rows, 1], off[rows, 0]
-        table += [(f"ideal_trajectory.{name}.{field}", known, how, within, naive, value) for field, known, how, within, naive, value in (
-            ("rows", int(rows.sum()), "tilts with an ideal, hand below and from 2 N", EXACT, "of both hands", int(wrong.sum())),
-            ("height_error_mean_m", height.mean(), "the offset", split, "mean of |error|", np.abs(height).mean()),
-            ("height_error_rms_m", rms(height), "the offset", split, "of both hands", rms(off[wrong, 1])),
-            ("height_error_min_m", height.min(), "the offset", split, "least |error|", np.abs(height).min()),
-            ("height_error_max_m", height.max(), "the offset", split, "largest |error|", np.abs(height).max() + (height.max() == np.abs(height).max())),
-            ("lateral_error_mean_m", side.mean(), "the offset", split, "against the lean", -side.mean()),
-            ("lateral_error_rms_m", rms(side), "the offset", split, "of both hands", rms(off[wrong, 0])),
-            ("lateral_error_max_m", np.abs(side).max(), "largest |offset|", split, "signed", side.max() - (side.max() == np.abs(side).max())),
-            ("interpenetration_mean_m", deep[rows].mean(), "search on the exact shapes", searched, "of both hands", deep[wrong].mean()),
-            ("interpenetration_max_m", deep[rows].max(), "search on the exact shapes", searched, "the mean", deep[rows].mean()))]
+        table += [
+            (f"ideal_trajectory.{name}.{field}", known, how, within, naive, value)
+            for field, known, how, within, naive, value in (
+                (
+                    "rows",
+                    int(rows.sum()),
+                    "tilts with an ideal, hand below and from 2 N",
+                    EXACT,
+                    "of both hands",
+                    int(wrong.sum()),
+                ),
+                (
+                    "height_error_mean_m",
+                    height.mean(),
+                    "the offset",
+                    split,
+                    "mean of |error|",
+                    np.abs(height).mean(),
+                ),
+                (
+                    "height_error_rms_m",
+                    rms(height),
+                    "the offset",
+                    split,
+                    "of both hands",
+                    rms(off[wrong, 1]),
+                ),
+                (
+                    "height_error_min_m",
+                    height.min(),
+                    "the offset",
+                    split,
+                    "least |error|",
+                    np.abs(height).min(),
+                ),
+                (
+                    "height_error_max_m",
+                    height.max(),
+                    "the offset",
+                    split,
+                    "largest |error|",
+                    np.abs(height).max() + (height.max() == np.abs(height).max()),
+                ),
+                (
+                    "lateral_error_mean_m",
+                    side.mean(),
+                    "the offset",
+                    split,
+                    "against the lean",
+                    -side.mean(),
+                ),
+                (
+                    "lateral_error_rms_m",
+                    rms(side),
+                    "the offset",
+                    split,
+                    "of both hands",
+                    rms(off[wrong, 0]),
+                ),
+                (
+                    "lateral_error_max_m",
+                    np.abs(side).max(),
+                    "largest |offset|",
+                    split,
+                    "signed",
+                    side.max() - (side.max() == np.abs(side).max()),
+                ),
+                (
+                    "interpenetration_mean_m",
+                    deep[rows].mean(),
+                    "search on the exact shapes",
+                    searched,
+                    "of both hands",
+                    deep[wrong].mean(),
+                ),
+                (
+                    "interpenetration_max_m",
+                    deep[rows].max(),
+                    "search on the exact shapes",
+                    searched,
+                    "the mean",
+                    deep[rows].mean(),
+                ),
+            )
+        ]
     bench.metrics(run, table)
-    bench.metrics(run, [("ideal_trajectory.rows_without_ideal", int((~has).sum()), "tilts beyond 60 degrees", EXACT, "none", 0)])
+    bench.metrics(
+        run,
+        [
+            (
+                "ideal_trajectory.rows_without_ideal",
+                int((~has).sum()),
+                "tilts beyond 60 degrees",
+                EXACT,
+                "none",
+                0,
+            )
+        ],
+    )
     k = np.flatnonzero(has)
-    bench.columns(run.table("ideal_trajectory.csv"), [
-        ("step", k, "rows with an ideal", EXACT, "counted anew", k + 1), ("time_s", t[k], "k dt", EXACT, "after the step", t[k] + dt),
-        ("tilt_rad", tilt[k], "of the file", split, "from the horizontal", math.pi / 2 - tilt[k]),
-        ("height_m", place[k, 1], "of the file", split, "ideal", ideal[k, 1]), ("ideal_height_m", ideal[k, 1], "3.6's formula", split, "actual", place[k, 1]),
-        ("lateral_m", place[k, 0], "of the file", split, "ideal", ideal[k, 0]), ("ideal_lateral_m", ideal[k, 0], "-R + r cos a", split, "actual", place[k, 0]),
-        ("interpenetration_m", deep[k], "search on the exact shapes", searched, "height error", -off[k, 1]),
-        ("hand_force_N", push[k], "the ramp", ROUNDING, "capped at 2 N", np.minimum(2, push[k]))])
+    bench.columns(
+        run.table("ideal_trajectory.csv"),
+        [
+            ("step", k, "rows with an ideal", EXACT, "counted anew", k + 1),
+            ("time_s", t[k], "k dt", EXACT, "after the step", t[k] + dt),
+            (
+                "tilt_rad",
+                tilt[k],
+                "of the file",
+                split,
+                "from the horizontal",
+                math.pi / 2 - tilt[k],
+            ),
+            ("height_m", place[k, 1], "of the file", split, "ideal", ideal[k, 1]),
+            ("ideal_height_m", ideal[k, 1], "3.6's formula", split, "actual", place[k, 1]),
+            ("lateral_m", place[k, 0], "of the file", split, "ideal", ideal[k, 0]),
+            ("ideal_lateral_m", ideal[k, 0], "-R + r cos a", split, "actual", place[k, 0]),
+            (
+                "interpenetration_m",
+                deep[k],
+                "search on the exact shapes",
+                searched,
+                "height error",
+                -off[k, 1],
+            ),
+            (
+                "hand_force_N",
+                push[k],
+                "the ramp",
+                ROUNDING,
+                "capped at 2 N",
+                np.minimum(2, push[k]),
+            ),
+        ],
+    )
 
 
 @scene
 def pressed_ball(bench):
     """A ball of 1 mm pressed 3 mm into a plane: its depth is radius less height, whatever its width; a contact's ends at the radius."""
     n, dt, a = 600, 0.001, 0.5e-3
-    height = {"type": "waypoints", "points": [[0, 1e-3], [0.1, 2e-4], [0.3, -3e-3 + a], [0.5, -1e-3], [0.6, 1e-3]]}
+    height = {
+        "type": "waypoints",
+        "points": [[0, 1e-3], [0.1, 2e-4], [0.3, -3e-3 + a], [0.5, -1e-3], [0.6, 1e-3]],
+    }
     z = profile(height, np.arange(n) * dt)
-    run = bench.run(bench.scenario(
-        "pressed_ball", time={"step_s": dt, "steps": n}, environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},
-        tool={"type": "bur", "family": "ball", "diameter_m": 2 * a}, record={"inside": True},
-        motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": height}},
-        rendering={"algorithm": "mean", "stiffness_N_per_m": 1000}), statuses=(0, 3))
+    run = bench.run(
+        bench.scenario(
+            "pressed_ball",
+            time={"step_s": dt, "steps": n},
+            environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},
+            tool={"type": "bur", "family": "ball", "diameter_m": 2 * a},
+            record={"inside": True},
+            motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": height}},
+            rendering={"algorithm": "mean", "stiffness_N_per_m": 1000},
+        ),
+        statuses=(0, 3),
+    )
     inside = np.maximum(0, a - z)
     touching = run.table()["colliding"] > 0
     first = int(np.flatnonzero(touching)[0])
     settled = touching & (np.arange(n) >= first + 50)
     line = np.array(run.summary["tool"]["outline_m"])
     begin, along = line[:-1], np.diff(line, axis=0)
-    share = np.clip(-np.sum(begin * along, axis=1) / np.sum(along ** 2, axis=1), 0, 1)
+    share = np.clip(-np.sum(begin * along, axis=1) / np.sum(along**2, axis=1), 0, 1)
     chord = norms(begin + share[:, None] * along).min()
     half = Within("exact for a ball on a plane, but for rounding of 3 mm", absolute=1e-15)
-    bench.metrics(run, [
-        ("inside_max_m", inside.max(), "radius less height", half, "the half width, where a contact's depth ends", a),
-        ("inside_settled_m", float(np.median(inside[settled])), "radius less height, median of settled rows", half, "median over all rows",
-         float(np.median(inside))),
-        ("centre_inside_share", np.mean(z < 0), "height below 0", ROUNDING, "rows in contact", touching.mean()),
-        ("depth_max_m", chord, "from the grid's point in the ball's centre to the nearest chord of its outline", Within("a row's centre lies within "
-         "1e-17 m of the plane", absolute=1e-15), "how deep the tool is", inside.max())])
+    bench.metrics(
+        run,
+        [
+            (
+                "inside_max_m",
+                inside.max(),
+                "radius less height",
+                half,
+                "the half width, where a contact's depth ends",
+                a,
+            ),
+            (
+                "inside_settled_m",
+                float(np.median(inside[settled])),
+                "radius less height, median of settled rows",
+                half,
+                "median over all rows",
+                float(np.median(inside)),
+            ),
+            (
+                "centre_inside_share",
+                np.mean(z < 0),
+                "height below 0",
+                ROUNDING,
+                "rows in contact",
+                touching.mean(),
+            ),
+            (
+                "depth_max_m",
+                chord,
+                "from the grid's point in the ball's centre to the nearest chord of its outline",
+                Within("a row's centre lies within " "1e-17 m of the plane", absolute=1e-15),
+                "how deep the tool is",
+                inside.max(),
+            ),
+        ],
+    )
     two = "2 % of it and of the half width, the bound of the search"
-    for name, exact in (("inside_max_m", inside.max()), ("inside_settled_m", float(np.median(inside[settled])))):
-        bench.tolerance(run, name, 0.02 * (exact + a), two, ROUNDING, ("2 % of it", 0.02 * exact), exact)
-    few = bench.run(bench.folder / "pressed_ball.json", "--set", "record.inside=false", out="few", statuses=(0, 3))
-    bench.tolerance(few, "inside_max_m", 0.02 * (inside.max() + a), two, Within("the deepest of the looked at rows for the deepest", relative=0.02),
-                    ("2 % of it", 0.02 * inside.max()), inside.max())
-    bench.columns(run.table(), [("inside_m", inside, "radius less height", half, "depth of the deepest contact", run.table()["depth_max_m"])])
+    for name, exact in (
+        ("inside_max_m", inside.max()),
+        ("inside_settled_m", float(np.median(inside[settled]))),
+    ):
+        bench.tolerance(
+            run, name, 0.02 * (exact + a), two, ROUNDING, ("2 % of it", 0.02 * exact), exact
+        )
+    few = bench.run(
+        bench.folder / "pressed_ball.json",
+        "--set",
+        "record.inside=false",
+        out="few",
+        statuses=(0, 3),
+    )
+    bench.tolerance(
+        few,
+        "inside_max_m",
+        0.02 * (inside.max() + a),
+        two,
+        Within("the deepest of the looked at rows for the deepest", relative=0.02),
+        ("2 % of it", 0.02 * inside.max()),
+        inside.max(),
+    )
+    bench.columns(
+        run.table(),
+        [
+            (
+                "inside_m",
+                inside,
+                "radius less height",
+                half,
+                "depth of the deepest contact",
+                run.table()["depth_max_m"],
+            )
+        ],
+    )
 
 
 @scene
 def counted(bench):
     """A ball that comes down on a plane of 81 x 81 points for seven rows and goes: the work of it with and without skips, and the tool."""
     fields = dict(
-        time={"step_s": 0.001, "steps": 600}, environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},
-        tool={"type": "bur", "family": "ball", "diameter_m": 0.001}, motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": {
-            "type": "waypoints", "points": [[0, 0.01], [0.3, 0.0004], [0.6, 0.01]]}}},
-        rendering={"algorithm": "shaped_stiffness", "iterations": 4, "stiffness_N_per_m": 1000})
+        time={"step_s": 0.001, "steps": 600},
+        environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},
+        tool={"type": "bur", "family": "ball", "diameter_m": 0.001},
+        motion={
+            "position": {
+                "type": "prescribed",
+                "x_m": 0,
+                "y_m": 0,
+                "z_m": {"type": "waypoints", "points": [[0, 0.01], [0.3, 0.0004], [0.6, 0.01]]},
+            }
+        },
+        rendering={"algorithm": "shaped_stiffness", "iterations": 4, "stiffness_N_per_m": 1000},
+    )
     skipping = bench.run(bench.scenario("counted", **fields))
     full = bench.run(bench.scenario("counted", **fields), "--no-skip", out="full")
     work, least = full.summary["work"], skipping.summary["work"]
     rows = 2 * math.floor(0.0001 / 0.000032) + 1  # 0.032 mm a row, contact below 0.5 mm
-    for key, known, naive in (("queries", 600, 600 * 81), ("points_tested", 600 * 81 * 81, least["points_tested"]),
-                              ("lists_rebuilt", 0, least["lists_rebuilt"]), ("steps_skipped", 0, least["steps_skipped"]),
-                              ("iterations", 4 * 600, 4 * rows)):
-        bench.add(f"run --json: {key}", work[key], known, "without skips every row tests every point and shapes", EXACT, ("with skips", naive))
-    bench.add("run --json: iterations", least["iterations"], 4 * rows, "with skips only rows in contact shape", EXACT, ("all rows", 2400))
-    bench.add("run --json: state_hash", skipping.summary["state_hash"], full.summary["state_hash"], "skips change no bit", EXACT,
-              ("another run's", bench.run(bench.scenario("counted", **fields), "--set", "rendering.stiffness_N_per_m=1001", out="x").summary["state_hash"]))
+    for key, known, naive in (
+        ("queries", 600, 600 * 81),
+        ("points_tested", 600 * 81 * 81, least["points_tested"]),
+        ("lists_rebuilt", 0, least["lists_rebuilt"]),
+        ("steps_skipped", 0, least["steps_skipped"]),
+        ("iterations", 4 * 600, 4 * rows),
+    ):
+        bench.add(
+            f"run --json: {key}",
+            work[key],
+            known,
+            "without skips every row tests every point and shapes",
+            EXACT,
+            ("with skips", naive),
+        )
+    bench.add(
+        "run --json: iterations",
+        least["iterations"],
+        4 * rows,
+        "with skips only rows in contact shape",
+        EXACT,
+        ("all rows", 2400),
+    )
+    bench.add(
+        "run --json: state_hash",
+        skipping.summary["state_hash"],
+        full.summary["state_hash"],
+        "skips change no bit",
+        EXACT,
+        (
+            "another run's",
+            bench.run(
+                bench.scenario("counted", **fields),
+                "--set",
+                "rendering.stiffness_N_per_m=1001",
+                out="x",
+            ).summary["state_hash"],
+        ),
+    )
     tool, line = full.summary["tool"], np.array(full.summary["tool"]["outline_m"])
     corner = line[2:] - line[1:-1], line[1:-1] - line[:-2]
     turns = corner[0][:, 0] * corner[1][:, 1] - corner[0][:, 1] * corner[1][:, 0]
     ball = line[line[:, 0] > -0.0004]
     for key, printed, known, how, within, naive in (
-            ("half_width_m", tool["half_width_m"], 0.0005, "radius of the ball", ROUNDING, 0.001),
-            ("reach_m", tool["reach_m"], norms(line).max(), "furthest point of the outline", ROUNDING, -line[:, 0].min()),
-            ("convex", tool["convex"], bool(np.all(turns <= 1e-15) or np.all(turns >= -1e-15)), "turns of the outline", EXACT, True),
-            ("outline_m", norms(ball), np.full(len(ball), 0.0005), "a circle below the neck", ROUNDING, ball[:, 1])):
+        ("half_width_m", tool["half_width_m"], 0.0005, "radius of the ball", ROUNDING, 0.001),
+        (
+            "reach_m",
+            tool["reach_m"],
+            norms(line).max(),
+            "furthest point of the outline",
+            ROUNDING,
+            -line[:, 0].min(),
+        ),
+        (
+            "convex",
+            tool["convex"],
+            bool(np.all(turns <= 1e-15) or np.all(turns >= -1e-15)),
+            "turns of the outline",
+            EXACT,
+            True,
+        ),
+        (
+            "outline_m",
+            norms(ball),
+            np.full(len(ball), 0.0005),
+            "a circle below the neck",
+            ROUNDING,
+            ball[:, 1],
+        ),
+    ):
         bench.add(f"run --json: {key}", printed, known, how, within, ("of another measure", naive))
-    bench.add("run --json: allocations", least["allocations"], 0, "a step allocates nothing (tests/algorithms/allocation_test)", EXACT, ("one a row", 600))
-    bench.add("run --json: warnings", full.summary["warnings"], [], "nothing is odd", EXACT, ("some", ["no expectation"]))
+    bench.add(
+        "run --json: allocations",
+        least["allocations"],
+        0,
+        "a step allocates nothing (tests/algorithms/allocation_test)",
+        EXACT,
+        ("one a row", 600),
+    )
+    bench.add(
+        "run --json: warnings",
+        full.summary["warnings"],
+        [],
+        "nothing is odd",
+        EXACT,
+        ("some", ["no expectation"]),
+    )
     for word, test, said, refused in (
-            ("step_p50_s", "StepLatency.PercentilesAreThoseOfNearestRank", "thousand.p50, 500u", "seven.p50, 4u"),
-            ("step_p99_s", "StepLatency.PercentilesAreThoseOfNearestRank", "thousand.p99, 990u", "seven.p99_9, 7u")):
-        bench.proven(f"{word} (number of timing.json)", "tests/results/observe/step_times_test.cpp", test, said, refused)
-    bench.proven("run --json: steps_controlled", "tests/algorithms/stages/passivity_controller_test.cpp",
-                 "PassivityController.ChangesARunOnlyIfItWouldCreateEnergy", "EXPECT_GT(held.controlled, 0u)", "EXPECT_EQ(held.controlled, 0u)")
+        (
+            "step_p50_s",
+            "StepLatency.PercentilesAreThoseOfNearestRank",
+            "thousand.p50, 500u",
+            "seven.p50, 4u",
+        ),
+        (
+            "step_p99_s",
+            "StepLatency.PercentilesAreThoseOfNearestRank",
+            "thousand.p99, 990u",
+            "seven.p99_9, 7u",
+        ),
+    ):
+        bench.proven(
+            f"{word} (number of timing.json)",
+            "tests/results/observe/step_times_test.cpp",
+            test,
+            said,
+            refused,
+        )
+    bench.proven(
+        "run --json: steps_controlled",
+        "tests/algorithms/stages/passivity_controller_test.cpp",
+        "PassivityController.ChangesARunOnlyIfItWouldCreateEnergy",
+        "EXPECT_GT(held.controlled, 0u)",
+        "EXPECT_EQ(held.controlled, 0u)",
+    )
 
 
 @scene
 def subjects(bench):
     """Subjects on targets: means and their standard errors are over subjects, each by the mean of its own targets."""
-    run = bench.run("vertical_peg_in_hole_shaped_stiffness", "--set", "hand.trials=1", "--set", "expect={}",
-                    "--set", "hand.task.time_limit_s=3", out="subjects", statuses=(0, 3))
+    run = bench.run(
+        "vertical_peg_in_hole_shaped_stiffness",
+        "--set",
+        "hand.trials=1",
+        "--set",
+        "expect={}",
+        "--set",
+        "hand.task.time_limit_s=3",
+        out="subjects",
+        statuses=(0, 3),
+    )
     table, rows = run.table("targets.csv"), []
     for place in (0, 1):
-        for field, column in (("success_rate", "removed"), ("completion_time_s", "time_s"), ("model_force_N", "model_force_N"),
-                              ("speed_m_per_s", "speed_m_per_s")):
+        for field, column in (
+            ("success_rate", "removed"),
+            ("completion_time_s", "time_s"),
+            ("model_force_N", "model_force_N"),
+            ("speed_m_per_s", "speed_m_per_s"),
+        ):
             at, value = table["place"] == place, table[column]
             known = at & ~np.isnan(value)
-            means = np.array([value[known & (table["subject"] == subject)].mean() for subject in np.unique(table["subject"][known])])
+            means = np.array(
+                [
+                    value[known & (table["subject"] == subject)].mean()
+                    for subject in np.unique(table["subject"][known])
+                ]
+            )
             pooled = value[known]
             name = f"targets.{place}.{field}"
             spread = means.std(ddof=1) / math.sqrt(len(means))
             removed, weight = table["removed"][known] == 1, table["rows_on_target"][known]
-            wrong = {"success_rate": ("of subjects who removed all", np.mean(means == 1)),
-                     "completion_time_s": ("of removed targets alone", pooled[removed].mean())}.get(
-                         field, ("weighted by rows", np.sum(weight * pooled) / weight.sum()))
-            rows += [(f"{name}.mean", means.mean(), "of the subjects' means in targets.csv", ROUNDING,
-                      *(wrong if place == 0 or field[0] in "ms" and field != "success_rate" else ())),
-                     (f"{name}.standard_error", spread, "sample deviation over root of subjects", ROUNDING, "with n in place of n - 1",
-                      means.std() / math.sqrt(len(means))),
-                     (f"{name}.subjects", len(means), "subjects with a value", EXACT, "targets", len(pooled))]
+            wrong = {
+                "success_rate": ("of subjects who removed all", np.mean(means == 1)),
+                "completion_time_s": ("of removed targets alone", pooled[removed].mean()),
+            }.get(field, ("weighted by rows", np.sum(weight * pooled) / weight.sum()))
+            rows += [
+                (
+                    f"{name}.mean",
+                    means.mean(),
+                    "of the subjects' means in targets.csv",
+                    ROUNDING,
+                    *(wrong if place == 0 or field[0] in "ms" and field != "success_rate" else ()),
+                ),
+                (
+                    f"{name}.standard_error",
+                    spread,
+                    "sample deviation over root of subjects",
+                    ROUNDING,
+                    "with n in place of n - 1",
+                    means.std() / math.sqrt(len(means)),
+                ),
+                (
+                    f"{name}.subjects",
+                    len(means),
+                    "subjects with a value",
+                    EXACT,
+                    "targets",
+                    len(pooled),
+                ),
+            ]
     bench.metrics(run, rows)
 
 
@@ -195,13 +549,29 @@ def subjects(bench):
 def one_subject(bench):
     """A subject's targets by the rule: held for 1 s without a break within 0.2 mm while the force that the hand meets, rendered in the row
     before, is 1 N, until 1.5 s have passed."""
-    run = bench.run("vertical_peg_in_hole_shaped_stiffness", "--set", "hand.subjects=[{}]", "--set", "hand.trials=1", "--set", "expect={}", "--set",
-                    "hand.task.time_limit_s=1.5", "--set", "hand.task.targets_per_place=3", "--set", "record.trajectory=true", out="one", statuses=(0, 3))
+    run = bench.run(
+        "vertical_peg_in_hole_shaped_stiffness",
+        "--set",
+        "hand.subjects=[{}]",
+        "--set",
+        "hand.trials=1",
+        "--set",
+        "expect={}",
+        "--set",
+        "hand.task.time_limit_s=1.5",
+        "--set",
+        "hand.task.targets_per_place=3",
+        "--set",
+        "record.trajectory=true",
+        out="one",
+        statuses=(0, 3),
+    )
     table, rows = run.table("targets.csv"), run.table()
     place = np.array([[0, 0], [0.00052, 0]])
     order = table["place"].astype(int)  # drawn
     dt, tip, f = 1 / 2048, rows.vectors("px_m", "py_m"), rows.vectors("fx_N", "fy_N", "fz_N")
     found, active, shown, held, on = [], False, 0, 0, []
+
     def near(k):
         return len(found) < len(order) and np.hypot(*(place[order[len(found)]] - tip[k])) <= 0.0002
 
@@ -219,27 +589,61 @@ def one_subject(bench):
         on += [k] if near(k) else []
     how = "the rule on the rows of trajectory.csv"
     counts = np.array([len(on) for _, _, on in found])
-    known = [("subject", np.zeros(6), "one", EXACT, "from 1", np.ones(6)), ("trial", np.zeros(6), "one", EXACT, "from 1", np.ones(6)),
-             ("target", np.arange(6), "in order", EXACT, "from 1", np.arange(6) + 1),
-             ("removed", [float(r) for r, _, _ in found], how, EXACT, "all", np.ones(6)),
-             ("time_s", [t for _, t, _ in found], how, ROUNDING, "the hold", np.ones(6)),
-             ("rows_on_target", counts, how, EXACT, "with the last", counts + 1),
-             ("model_force_N", [norms(f[on]).mean() for _, _, on in found], how, ROUNDING, "its vertical part", [f[on, 2].mean() for _, _, on in found])]
+    known = [
+        ("subject", np.zeros(6), "one", EXACT, "from 1", np.ones(6)),
+        ("trial", np.zeros(6), "one", EXACT, "from 1", np.ones(6)),
+        ("target", np.arange(6), "in order", EXACT, "from 1", np.arange(6) + 1),
+        ("removed", [float(r) for r, _, _ in found], how, EXACT, "all", np.ones(6)),
+        ("time_s", [t for _, t, _ in found], how, ROUNDING, "the hold", np.ones(6)),
+        ("rows_on_target", counts, how, EXACT, "with the last", counts + 1),
+        (
+            "model_force_N",
+            [norms(f[on]).mean() for _, _, on in found],
+            how,
+            ROUNDING,
+            "its vertical part",
+            [f[on, 2].mean() for _, _, on in found],
+        ),
+    ]
     bench.columns(table, known)
-    bench.proven("targets.csv:speed_m_per_s", "tests/results/observe/target_metrics_test.cpp", "TargetMetrics.MeansAreOverTheRowsOnTheTargetOfTheTrial",
-                 "EXPECT_EQ(observer.rows()[0].speed, 5.0)", "step(0.001, 100.0, 100.0);  // off the target")
+    bench.proven(
+        "targets.csv:speed_m_per_s",
+        "tests/results/observe/target_metrics_test.cpp",
+        "TargetMetrics.MeansAreOverTheRowsOnTheTargetOfTheTrial",
+        "EXPECT_EQ(observer.rows()[0].speed, 5.0)",
+        "step(0.001, 100.0, 100.0);  // off the target",
+    )
     first = sorted(order) == [0, 0, 0, 1, 1, 1]
-    bench.add("targets.csv:place", first, True, "three of each place, in an order that is drawn", EXACT, ("any", False))
+    bench.add(
+        "targets.csv:place",
+        first,
+        True,
+        "three of each place, in an order that is drawn",
+        EXACT,
+        ("any", False),
+    )
 
 
 @scene
 def verdicts(bench):
     """Verdicts on claims, by tests that give the rules of claims numbers beside their thresholds, for each verdict and for another."""
-    for word, said, refused in (("reproduced", '{"T4", costs, {{"", reproduced}', "not_reproduced"),
-                                ("not reproduced", '"1.reduced_mean=1.1 1.reduced_max=2", not_reproduced', "reproduced"),
-                                ("reproduced in kind", '"outside_taps=15", in_kind', "reproduced"), ("refuted", '"last_max=1.3 limit_max=1.3", refuted', "reproduced"),
-                                ("holds", '{"T2b", "force=0.2 raw=55 kept=20 | force=1.9 raw=56", {{"", holds}', "does_not_hold"),
-                                ("does not hold", '"0.raw=56 1.raw=57", does_not_hold', "holds"),
-                                ("not reproducible", 'EXPECT_EQ(finding.verdict, not_reproducible)', "reproduced")):
-        bench.proven(f"{word} (verdict on a claim)", "tests/scenarios/thesis/claims_test.cpp", "Claims.AreJudgedByTheirThresholds",
-                     said, refused)
+    for word, said, refused in (
+        ("reproduced", '{"T4", costs, {{"", reproduced}', "not_reproduced"),
+        ("not reproduced", '"1.reduced_mean=1.1 1.reduced_max=2", not_reproduced', "reproduced"),
+        ("reproduced in kind", '"outside_taps=15", in_kind', "reproduced"),
+        ("refuted", '"last_max=1.3 limit_max=1.3", refuted', "reproduced"),
+        (
+            "holds",
+            '{"T2b", "force=0.2 raw=55 kept=20 | force=1.9 raw=56", {{"", holds}',
+            "does_not_hold",
+        ),
+        ("does not hold", '"0.raw=56 1.raw=57", does_not_hold', "holds"),
+        ("not reproducible", "EXPECT_EQ(finding.verdict, not_reproducible)", "reproduced"),
+    ):
+        bench.proven(
+            f"{word} (verdict on a claim)",
+            "tests/scenarios/thesis/claims_test.cpp",
+            "Claims.AreJudgedByTheirThresholds",
+            said,
+            refused,
+        )

@@ -4,24 +4,70 @@ import math
 import numpy as np
 
 from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
-from physics import BELOW, BINNED, FILTERED, STEPPED, Phases, high_pass, nearest_rank, settled_high_pass
+from physics import (
+    BELOW,
+    BINNED,
+    FILTERED,
+    STEPPED,
+    Phases,
+    high_pass,
+    nearest_rank,
+    settled_high_pass,
+)
 
 # Two nearly parallel springs, of which the reduction keeps the deeper, one across, and five that are never reached.
 NEAR = 0.03
-DIRECTIONS = np.array([[math.sin(NEAR), 0, -math.cos(NEAR)], [-math.sin(NEAR), 0, -math.cos(NEAR)], [0.48, 0.36, -0.8]] + 5 * [[0, 1.0, 0]])
-PATH = {"x_m": {"type": "sine", "mean": 0, "amplitude": 2e-4, "period_s": 0.01, "phase_rad": 0.3}, "y_m": {"type": "ramp", "start": -1e-4, "rate_per_s": -1e-3},
-        "z_m": {"type": "waypoints", "points": [
-            [0, 1e-3], [0.0543, 1e-3], [0.0563, -2.4e-3], [0.2003, -2e-3], [0.2063, 5e-4], [0.2203, 5e-4], [0.2243, -1.5e-3],
-            [0.35, -1.5e-3], [0.3543, 1e-3], [0.4543, 1e-3], [0.4603, -1.8e-3], [0.55, -1.2e-3], [0.555, 1e-3], [0.6, 1e-3]]}}
+DIRECTIONS = np.array(
+    [
+        [math.sin(NEAR), 0, -math.cos(NEAR)],
+        [-math.sin(NEAR), 0, -math.cos(NEAR)],
+        [0.48, 0.36, -0.8],
+    ]
+    + 5 * [[0, 1.0, 0]]
+)
+PATH = {
+    "x_m": {"type": "sine", "mean": 0, "amplitude": 2e-4, "period_s": 0.01, "phase_rad": 0.3},
+    "y_m": {"type": "ramp", "start": -1e-4, "rate_per_s": -1e-3},
+    "z_m": {
+        "type": "waypoints",
+        "points": [
+            [0, 1e-3],
+            [0.0543, 1e-3],
+            [0.0563, -2.4e-3],
+            [0.2003, -2e-3],
+            [0.2063, 5e-4],
+            [0.2203, 5e-4],
+            [0.2243, -1.5e-3],
+            [0.35, -1.5e-3],
+            [0.3543, 1e-3],
+            [0.4543, 1e-3],
+            [0.4603, -1.8e-3],
+            [0.55, -1.2e-3],
+            [0.555, 1e-3],
+            [0.6, 1e-3],
+        ],
+    },
+}
 TOUCHES = {
     "time": {"step_s": 0.0005, "steps": 1200},
-    "environment": {"type": "springs", "bilateral": False,
-                    "groups": [{"direction": list(u), "count": 1} for u in DIRECTIONS[:3]] + [{"direction": [0, 1, 0], "count": 5}]},
+    "environment": {
+        "type": "springs",
+        "bilateral": False,
+        "groups": [{"direction": list(u), "count": 1} for u in DIRECTIONS[:3]]
+        + [{"direction": [0, 1, 0], "count": 5}],
+    },
     "motion": {"position": {"type": "prescribed", **PATH}},
-    "rendering": {"algorithm": "summation", "stiffness_N_per_m": 1000, "damping_ratio": 1, "mass_kg": 0.001,
-                  "friction": {"mu_s_N_s_per_m": 1, "mu_f_s_per_m": 1}, "reduction": {"threshold": 0.995, "max_points": 100}},
+    "rendering": {
+        "algorithm": "summation",
+        "stiffness_N_per_m": 1000,
+        "damping_ratio": 1,
+        "mass_kg": 0.001,
+        "friction": {"mu_s_N_s_per_m": 1, "mu_f_s_per_m": 1},
+        "reduction": {"threshold": 0.995, "max_points": 100},
+    },
     "record": {"contacts": True, "stiffness_tensor": True, "ratio_iterations": [0, 1, 3]},
-    "expect": {"outcome": "completes"}}
+    "expect": {"outcome": "completes"},
+}
 
 
 class Touches:
@@ -34,7 +80,9 @@ class Touches:
         self.d = self.p @ DIRECTIONS.T
         self.touched = self.d > 0
         self.kept = self.touched.copy()
-        deeper = self.d[:, 1] > self.d[:, 0]  # of those alike the first stays unless the second is deeper
+        deeper = (
+            self.d[:, 1] > self.d[:, 0]
+        )  # of those alike the first stays unless the second is deeper
         both = self.touched[:, 0] & self.touched[:, 1]
         self.kept[both & deeper, 0] = self.kept[both & ~deeper, 1] = False
         self.S = np.einsum("kn,ni,nj->kij", self.kept.astype(float), DIRECTIONS, DIRECTIONS)
@@ -43,11 +91,16 @@ class Touches:
         self.contact = self.touched.any(axis=1)
         rub = ((mu_s + mu_f * norms(self.spring)) * self.contact)[:, None]
         self.f = self.spring - B * normal - rub * (self.v - normal)
-        self.ratios = np.where(self.kept, np.einsum("ni,kij,nj->kn", DIRECTIONS, self.S, DIRECTIONS), np.nan)
+        self.ratios = np.where(
+            self.kept, np.einsum("ni,kij,nj->kn", DIRECTIONS, self.S, DIRECTIONS), np.nan
+        )
         self.phases = Phases(self.contact, dt)
         self.steps = np.r_[0.0, norms(np.diff(self.f, axis=0))]
         self.reverses = np.r_[False, np.sum(self.f[1:] * self.f[:-1], axis=1) < 0]
-        self.changes = np.r_[False, self.contact[1:] & self.contact[:-1] & (self.kept[1:] != self.kept[:-1]).any(axis=1)]
+        self.changes = np.r_[
+            False,
+            self.contact[1:] & self.contact[:-1] & (self.kept[1:] != self.kept[:-1]).any(axis=1),
+        ]
 
 
 @scene
@@ -60,85 +113,377 @@ def touches(bench):
     v_behind, quarter = high_pass(r.v, r.dt), slice(900, 1200)
     onsets = int(np.sum(touching[1:] & ~touching[:-1]))
     rows = "the formula's rows"
-    bench.metrics(run, [
-        ("force_max_N", F.max(), rows, STEPPED, "settled contact only", F[settled].max()),
-        ("force_step_max_N", r.steps.max(), rows, STEPPED, "settled contact only", r.steps[settled].max()),
-        ("velocity_total_variation_m_per_s", norms(np.diff(r.v, axis=0)).sum(), rows, STEPPED, "variation of the speed",
-         np.abs(np.diff(norms(r.v))).sum()),
-        ("force_reversals", int(r.reverses.sum()), rows, EXACT, "changes of sign of f_x", int(np.sum(r.f[1:, 0] * r.f[:-1, 0] < 0))),
-        ("vibration_power_above_30Hz_m2_per_s2", rms(v_behind) ** 2, "scipy's filter on the path's velocity", FILTERED,
-         "mean square of v", rms(r.v) ** 2),
-        ("depth_max_m", np.max(r.d), "largest <p, u>", STEPPED, "distance below z = 0", -r.p[:, 2].min()),
-        ("ratio_min", np.nanmin(r.ratios), "u^T S u", ROUNDING, "least eigenvalue of S", np.linalg.eigvalsh(r.S[touching]).min()),
-        ("ratio_max", np.nanmax(r.ratios), "u^T S u", ROUNDING, "largest eigenvalue of S", np.linalg.eigvalsh(r.S).max()),
-        ("colliding_mean", r.touched.sum() / 1200, "springs with <p, u> > 0", ROUNDING, "mean over rows in contact",
-         r.touched.sum() / touching.sum()),
-        ("colliding_max", 3, "springs with <p, u> > 0", EXACT, "springs there are", 8),
-        ("rendered_mean", r.kept.sum() / 1200, "those that the reduction keeps", ROUNDING, "colliding_mean", r.touched.sum() / 1200),
-        ("rendered_max", 2, "those that the reduction keeps", EXACT, "colliding_max", 3),
-        ("steps_in_contact", int(touching.sum()), "rows with <p, u> > 0", EXACT, "rows after the first touch", 1200 - int(np.flatnonzero(touching)[0])),
-        ("contact_share", touching.mean(), "rows with <p, u> > 0", ROUNDING, "settled share", settled.mean()),
-        ("last_contact_s", r.t[last], "the path's crossing", ROUNDING, "the first row after", r.t[last + 1]),
-        ("speed_max_m_per_s", norms(r.v).max(), rows, STEPPED, "largest component", np.abs(r.v).max()),
-        *[(f"explicit_friction_{name}", None, "a prescribed motion is not integrated", EXACT, "(2 M / dt - mu_s) / mu_f", 3.0)
-          for name in ("limit_N", "rows_beyond", "first_step")],
-        ("landings", 2, "touches 50 ms or more after the last", EXACT, "all touches", onsets),
-        ("landing_force_max_N", F[landing].max(), rows, STEPPED, "of settled contact", F[settled].max()),
-        ("landing_force_step_max_N", r.steps[landing].max(), rows, STEPPED, "of settled contact", r.steps[settled].max()),
-        ("settled_s", settled.sum() * r.dt, "rows in contact after a landing", ROUNDING, "all contact", touching.sum() * r.dt),
-        ("force_mean_in_contact_N", F[settled].mean(), rows, STEPPED, "over all rows in contact", F[touching].mean()),
-        ("settled_force_max_N", F[settled].max(), rows, STEPPED, "over all rows", F.max()),
-        ("force_step_p99_N", nearest_rank(r.steps[settled], 0.99), "sorted steps of settled rows", BINNED, "over all rows",
-         nearest_rank(r.steps, 0.99)),
-        ("settled_force_step_max_N", r.steps[settled].max(), rows, STEPPED, "over all rows", r.steps.max()),
-        ("force_rms_above_30Hz_N", rms(behind[settled]), "scipy's filter from the end of each landing", FILTERED,
-         "filtered from the start of the run", rms(all_behind[settled])),
-        ("force_reversals_per_s", (r.reverses & settled).sum() / (settled.sum() * r.dt), rows, ROUNDING, "all over the run's time",
-         r.reverses.sum() / 0.6),
-        ("reduction_changes", int(r.changes.sum()), "crossings of the two depths", EXACT, "with touches and leaves",
-         int((r.kept[1:] != r.kept[:-1]).any(axis=1).sum())),
-        ("reduction_force_step_max_N", r.steps[r.changes & settled].max(), rows, STEPPED, "of all settled rows", r.steps[settled].max()),
-        ("vibration_last_quarter_m_per_s", rms(v_behind[quarter]), "scipy's filter over the run, rms of its last quarter", FILTERED,
-         "of v unfiltered", rms(r.v[quarter])),
-        ("final_position_m.x", r.p[-1, 0], "the path's last row", STEPPED, "a row later", profile(PATH["x_m"], np.array([0.6]))[0]),
-        ("final_position_m.y", r.p[-1, 1], "the path", STEPPED, "a row later", -1e-4 - 1e-3 * 0.6),
-        ("final_position_m.z", 1e-3, "the path", EXACT, "the deepest", r.p[:, 2].min())])
+    bench.metrics(
+        run,
+        [
+            ("force_max_N", F.max(), rows, STEPPED, "settled contact only", F[settled].max()),
+            (
+                "force_step_max_N",
+                r.steps.max(),
+                rows,
+                STEPPED,
+                "settled contact only",
+                r.steps[settled].max(),
+            ),
+            (
+                "velocity_total_variation_m_per_s",
+                norms(np.diff(r.v, axis=0)).sum(),
+                rows,
+                STEPPED,
+                "variation of the speed",
+                np.abs(np.diff(norms(r.v))).sum(),
+            ),
+            (
+                "force_reversals",
+                int(r.reverses.sum()),
+                rows,
+                EXACT,
+                "changes of sign of f_x",
+                int(np.sum(r.f[1:, 0] * r.f[:-1, 0] < 0)),
+            ),
+            (
+                "vibration_power_above_30Hz_m2_per_s2",
+                rms(v_behind) ** 2,
+                "scipy's filter on the path's velocity",
+                FILTERED,
+                "mean square of v",
+                rms(r.v) ** 2,
+            ),
+            (
+                "depth_max_m",
+                np.max(r.d),
+                "largest <p, u>",
+                STEPPED,
+                "distance below z = 0",
+                -r.p[:, 2].min(),
+            ),
+            (
+                "ratio_min",
+                np.nanmin(r.ratios),
+                "u^T S u",
+                ROUNDING,
+                "least eigenvalue of S",
+                np.linalg.eigvalsh(r.S[touching]).min(),
+            ),
+            (
+                "ratio_max",
+                np.nanmax(r.ratios),
+                "u^T S u",
+                ROUNDING,
+                "largest eigenvalue of S",
+                np.linalg.eigvalsh(r.S).max(),
+            ),
+            (
+                "colliding_mean",
+                r.touched.sum() / 1200,
+                "springs with <p, u> > 0",
+                ROUNDING,
+                "mean over rows in contact",
+                r.touched.sum() / touching.sum(),
+            ),
+            ("colliding_max", 3, "springs with <p, u> > 0", EXACT, "springs there are", 8),
+            (
+                "rendered_mean",
+                r.kept.sum() / 1200,
+                "those that the reduction keeps",
+                ROUNDING,
+                "colliding_mean",
+                r.touched.sum() / 1200,
+            ),
+            ("rendered_max", 2, "those that the reduction keeps", EXACT, "colliding_max", 3),
+            (
+                "steps_in_contact",
+                int(touching.sum()),
+                "rows with <p, u> > 0",
+                EXACT,
+                "rows after the first touch",
+                1200 - int(np.flatnonzero(touching)[0]),
+            ),
+            (
+                "contact_share",
+                touching.mean(),
+                "rows with <p, u> > 0",
+                ROUNDING,
+                "settled share",
+                settled.mean(),
+            ),
+            (
+                "last_contact_s",
+                r.t[last],
+                "the path's crossing",
+                ROUNDING,
+                "the first row after",
+                r.t[last + 1],
+            ),
+            (
+                "speed_max_m_per_s",
+                norms(r.v).max(),
+                rows,
+                STEPPED,
+                "largest component",
+                np.abs(r.v).max(),
+            ),
+            *[
+                (
+                    f"explicit_friction_{name}",
+                    None,
+                    "a prescribed motion is not integrated",
+                    EXACT,
+                    "(2 M / dt - mu_s) / mu_f",
+                    3.0,
+                )
+                for name in ("limit_N", "rows_beyond", "first_step")
+            ],
+            ("landings", 2, "touches 50 ms or more after the last", EXACT, "all touches", onsets),
+            (
+                "landing_force_max_N",
+                F[landing].max(),
+                rows,
+                STEPPED,
+                "of settled contact",
+                F[settled].max(),
+            ),
+            (
+                "landing_force_step_max_N",
+                r.steps[landing].max(),
+                rows,
+                STEPPED,
+                "of settled contact",
+                r.steps[settled].max(),
+            ),
+            (
+                "settled_s",
+                settled.sum() * r.dt,
+                "rows in contact after a landing",
+                ROUNDING,
+                "all contact",
+                touching.sum() * r.dt,
+            ),
+            (
+                "force_mean_in_contact_N",
+                F[settled].mean(),
+                rows,
+                STEPPED,
+                "over all rows in contact",
+                F[touching].mean(),
+            ),
+            ("settled_force_max_N", F[settled].max(), rows, STEPPED, "over all rows", F.max()),
+            (
+                "force_step_p99_N",
+                nearest_rank(r.steps[settled], 0.99),
+                "sorted steps of settled rows",
+                BINNED,
+                "over all rows",
+                nearest_rank(r.steps, 0.99),
+            ),
+            (
+                "settled_force_step_max_N",
+                r.steps[settled].max(),
+                rows,
+                STEPPED,
+                "over all rows",
+                r.steps.max(),
+            ),
+            (
+                "force_rms_above_30Hz_N",
+                rms(behind[settled]),
+                "scipy's filter from the end of each landing",
+                FILTERED,
+                "filtered from the start of the run",
+                rms(all_behind[settled]),
+            ),
+            (
+                "force_reversals_per_s",
+                (r.reverses & settled).sum() / (settled.sum() * r.dt),
+                rows,
+                ROUNDING,
+                "all over the run's time",
+                r.reverses.sum() / 0.6,
+            ),
+            (
+                "reduction_changes",
+                int(r.changes.sum()),
+                "crossings of the two depths",
+                EXACT,
+                "with touches and leaves",
+                int((r.kept[1:] != r.kept[:-1]).any(axis=1).sum()),
+            ),
+            (
+                "reduction_force_step_max_N",
+                r.steps[r.changes & settled].max(),
+                rows,
+                STEPPED,
+                "of all settled rows",
+                r.steps[settled].max(),
+            ),
+            (
+                "vibration_last_quarter_m_per_s",
+                rms(v_behind[quarter]),
+                "scipy's filter over the run, rms of its last quarter",
+                FILTERED,
+                "of v unfiltered",
+                rms(r.v[quarter]),
+            ),
+            (
+                "final_position_m.x",
+                r.p[-1, 0],
+                "the path's last row",
+                STEPPED,
+                "a row later",
+                profile(PATH["x_m"], np.array([0.6]))[0],
+            ),
+            (
+                "final_position_m.y",
+                r.p[-1, 1],
+                "the path",
+                STEPPED,
+                "a row later",
+                -1e-4 - 1e-3 * 0.6,
+            ),
+            ("final_position_m.z", 1e-3, "the path", EXACT, "the deepest", r.p[:, 2].min()),
+        ],
+    )
     p99 = nearest_rank(r.steps[settled], 0.99)
-    bench.tolerance(run, "force_step_p99_N", p99 * (math.sqrt(33 / 32) - 1) / 2, "half a bin of the histogram of squares",
-                    Within("the bin's middle for the number, and 0.00775 rounded to 0.0078", relative=0.02), ("a whole bin", p99 * (math.sqrt(33 / 32) - 1)), p99)
+    bench.tolerance(
+        run,
+        "force_step_p99_N",
+        p99 * (math.sqrt(33 / 32) - 1) / 2,
+        "half a bin of the histogram of squares",
+        Within("the bin's middle for the number, and 0.00775 rounded to 0.0078", relative=0.02),
+        ("a whole bin", p99 * (math.sqrt(33 / 32) - 1)),
+        p99,
+    )
     touch_tables(bench, run, r)
-    full = bench.run(bench.folder / "touches.json", "--set", 'rendering.reduction={"threshold":0.995,"max_points":1}', out="full")
-    bench.add("run --json: points_dropped", full.summary["work"]["points_dropped"], int((r.touched[:, :2].any(axis=1) & r.touched[:, 2]).sum()),
-              "the third spring where another is kept", EXACT, ("all but one", int(np.maximum(0, r.touched.sum(axis=1) - 1).sum())))
+    full = bench.run(
+        bench.folder / "touches.json",
+        "--set",
+        'rendering.reduction={"threshold":0.995,"max_points":1}',
+        out="full",
+    )
+    bench.add(
+        "run --json: points_dropped",
+        full.summary["work"]["points_dropped"],
+        int((r.touched[:, :2].any(axis=1) & r.touched[:, 2]).sum()),
+        "the third spring where another is kept",
+        EXACT,
+        ("all but one", int(np.maximum(0, r.touched.sum(axis=1) - 1).sum())),
+    )
 
 
 def touch_tables(bench, run, r):
     """trajectory.csv, stiffness_tensor.csv, ratios.csv, contacts.csv and contact_trace.csv of the same run."""
     rows, touching = "the formula", r.contact
-    columns = [("step", np.arange(1200.0), "0, 1, ...", EXACT, "from 1", np.arange(1200.0) + 1),
-               ("time_s", r.t, "k dt", EXACT, "after the step", r.t + r.dt)]
+    columns = [
+        ("step", np.arange(1200.0), "0, 1, ...", EXACT, "from 1", np.arange(1200.0) + 1),
+        ("time_s", r.t, "k dt", EXACT, "after the step", r.t + r.dt),
+    ]
     for i, x in enumerate("xyz"):
         other = (i + 1) % 3
         columns += [
             (f"p{x}_m", r.p[:, i], "the path", STEPPED, "a row later", r.p[:, other]),
-            (f"v{x}_m_per_s", r.v[:, i], "(p_k - p_(k-1)) / dt", STEPPED, "a row later", np.r_[r.v[1:, i], r.v[0, i] + 1]),
-            (f"axis_{x}", (0.0, -1.0, 0.0)[i], "down in the plane of springs", EXACT, "down in space", np.full(1200, (2.0, 0, -1)[i])),
+            (
+                f"v{x}_m_per_s",
+                r.v[:, i],
+                "(p_k - p_(k-1)) / dt",
+                STEPPED,
+                "a row later",
+                np.r_[r.v[1:, i], r.v[0, i] + 1],
+            ),
+            (
+                f"axis_{x}",
+                (0.0, -1.0, 0.0)[i],
+                "down in the plane of springs",
+                EXACT,
+                "down in space",
+                np.full(1200, (2.0, 0, -1)[i]),
+            ),
             (f"f{x}_N", r.f[:, i], rows, STEPPED, "f_spring", r.spring[:, i]),
             (f"fspring_{x}_N", r.spring[:, i], rows, STEPPED, "f", r.f[:, i]),
-            (f"h{x}_m", r.p[:, i], "an ideal device's handle is the tip", STEPPED, "a row late", np.r_[r.p[:1, i], r.p[:-1, i]])]
-    columns += [("colliding", r.touched.sum(axis=1), "springs with <p, u> > 0", EXACT, "those kept", r.kept.sum(axis=1)),
-                ("rendered", r.kept.sum(axis=1), "those that the reduction keeps", EXACT, "colliding", r.touched.sum(axis=1)),
-                ("depth_max_m", np.maximum(0, r.d.max(axis=1)), "largest <p, u>", STEPPED, "-z", np.maximum(0, -r.p[:, 2]))]
+            (
+                f"h{x}_m",
+                r.p[:, i],
+                "an ideal device's handle is the tip",
+                STEPPED,
+                "a row late",
+                np.r_[r.p[:1, i], r.p[:-1, i]],
+            ),
+        ]
+    columns += [
+        (
+            "colliding",
+            r.touched.sum(axis=1),
+            "springs with <p, u> > 0",
+            EXACT,
+            "those kept",
+            r.kept.sum(axis=1),
+        ),
+        (
+            "rendered",
+            r.kept.sum(axis=1),
+            "those that the reduction keeps",
+            EXACT,
+            "colliding",
+            r.touched.sum(axis=1),
+        ),
+        (
+            "depth_max_m",
+            np.maximum(0, r.d.max(axis=1)),
+            "largest <p, u>",
+            STEPPED,
+            "-z",
+            np.maximum(0, -r.p[:, 2]),
+        ),
+    ]
     least, most = np.full(1200, np.nan), np.full(1200, np.nan)
-    least[touching], most[touching] = np.nanmin(r.ratios[touching], axis=1), np.nanmax(r.ratios[touching], axis=1)
+    least[touching], most[touching] = np.nanmin(r.ratios[touching], axis=1), np.nanmax(
+        r.ratios[touching], axis=1
+    )
     values = np.linalg.eigvalsh(r.S)
-    columns += [("ratio_min", least, "u^T S u", ROUNDING, "eigenvalue of S", np.where(touching, values[:, 0], np.nan)),
-                ("ratio_max", most, "u^T S u", ROUNDING, "eigenvalue of S", np.where(touching, values[:, 2], np.nan))]
+    columns += [
+        (
+            "ratio_min",
+            least,
+            "u^T S u",
+            ROUNDING,
+            "eigenvalue of S",
+            np.where(touching, values[:, 0], np.nan),
+        ),
+        (
+            "ratio_max",
+            most,
+            "u^T S u",
+            ROUNDING,
+            "eigenvalue of S",
+            np.where(touching, values[:, 2], np.nan),
+        ),
+    ]
     bench.columns(run.table(), columns)
-    tensor = [(name, r.S[:, i, j], "sum u u^T", ROUNDING, "of all touched", 1 + r.S[:, i, j]) for name, i, j in
-              (("sxx", 0, 0), ("sxy", 0, 1), ("sxz", 0, 2), ("syy", 1, 1), ("syz", 1, 2), ("szz", 2, 2))]
-    bench.columns(run.table("stiffness_tensor.csv"),
-                  columns[:2] + tensor + [("lambda_max", values[:, 2], "numpy's eigenvalue", ROUNDING, "trace of S", values.sum(axis=1))])
+    tensor = [
+        (name, r.S[:, i, j], "sum u u^T", ROUNDING, "of all touched", 1 + r.S[:, i, j])
+        for name, i, j in (
+            ("sxx", 0, 0),
+            ("sxy", 0, 1),
+            ("sxz", 0, 2),
+            ("syy", 1, 1),
+            ("syz", 1, 2),
+            ("szz", 2, 2),
+        )
+    ]
+    bench.columns(
+        run.table("stiffness_tensor.csv"),
+        columns[:2]
+        + tensor
+        + [
+            (
+                "lambda_max",
+                values[:, 2],
+                "numpy's eigenvalue",
+                ROUNDING,
+                "trace of S",
+                values.sum(axis=1),
+            )
+        ],
+    )
     shaping_table(bench, run, r)
     contact_table(bench, run, r)
 
@@ -151,33 +496,78 @@ def shaping_table(bench, run, r):
         for m in range(4):
             ratio = A @ c
             if m in (0, 1, 3):
-                rows.append((k, r.t[k], m, len(U), ratio.min(), ratio.max(), np.linalg.eigvalsh((U.T * c) @ U)[-1]))
+                rows.append(
+                    (
+                        k,
+                        r.t[k],
+                        m,
+                        len(U),
+                        ratio.min(),
+                        ratio.max(),
+                        np.linalg.eigvalsh((U.T * c) @ U)[-1],
+                    )
+                )
             c = c / ratio
     known = np.array(rows).T
     first = np.repeat(known[:, ::3], 3, axis=1)
     how = "c <- c / (A c) on the matrix A_ij = <u_i, u_j>^2"
-    bench.columns(run.table("ratios.csv"), [
-        (name, known[i], how, ROUNDING, "before any iteration" if i > 3 else "the next row's", first[i] if i > 3 else known[i] + 1)
-        for i, name in enumerate(("step", "time_s", "iteration", "rendered", "ratio_min", "ratio_max", "lambda_max"))])
+    bench.columns(
+        run.table("ratios.csv"),
+        [
+            (
+                name,
+                known[i],
+                how,
+                ROUNDING,
+                "before any iteration" if i > 3 else "the next row's",
+                first[i] if i > 3 else known[i] + 1,
+            )
+            for i, name in enumerate(
+                ("step", "time_s", "iteration", "rendered", "ratio_min", "ratio_max", "lambda_max")
+            )
+        ],
+    )
 
 
 def contact_table(bench, run, r):
     k, i = np.nonzero(r.kept)
     U = DIRECTIONS[i]
-    rows = [("step", k, "rows in contact", EXACT, "counted from 1", k + 1), ("time_s", r.t[k], "k dt", EXACT, "after the step", r.t[k] + r.dt),
-            ("index", i, "of the spring", EXACT, "within the row", np.zeros(len(i))),
-            ("depth_m", r.d[k, i], "<p, u>", STEPPED, "-z", -r.p[k, 2]), ("weight", np.ones(len(k)), "1 under summation", EXACT, "1 / n",
-             1 / r.kept.sum(axis=1)[k])]
+    rows = [
+        ("step", k, "rows in contact", EXACT, "counted from 1", k + 1),
+        ("time_s", r.t[k], "k dt", EXACT, "after the step", r.t[k] + r.dt),
+        ("index", i, "of the spring", EXACT, "within the row", np.zeros(len(i))),
+        ("depth_m", r.d[k, i], "<p, u>", STEPPED, "-z", -r.p[k, 2]),
+        ("weight", np.ones(len(k)), "1 under summation", EXACT, "1 / n", 1 / r.kept.sum(axis=1)[k]),
+    ]
     for j, x in enumerate("xyz"):
-        rows += [(f"gradient_{x}", U[:, j], "u of the spring", ROUNDING, "-u", -U[:, j] - (x == "y"))]
+        rows += [
+            (f"gradient_{x}", U[:, j], "u of the spring", ROUNDING, "-u", -U[:, j] - (x == "y"))
+        ]
     bench.columns(run.table("contacts.csv"), rows)
     k, i = np.nonzero(r.touched)
     U = DIRECTIONS[i]
-    bench.columns(run.table("contact_trace.csv"), [
-        ("time_s", r.t[k], "k dt of what is touched", EXACT, "after the step", r.t[k] + r.dt),
-        *[(f"{x}_m", r.p[k, j], "the tip", STEPPED, "the row after", r.p[np.minimum(k + 1, 1199), j]) for j, x in enumerate("xyz")],
-        *[(f"u{x}", U[:, j], "u of the spring", ROUNDING, "-u", -U[:, j] - (x == "y")) for j, x in enumerate("xyz")],
-        ("depth_m", r.d[k, i], "<p, u>", STEPPED, "-z", -r.p[k, 2])])
+    bench.columns(
+        run.table("contact_trace.csv"),
+        [
+            ("time_s", r.t[k], "k dt of what is touched", EXACT, "after the step", r.t[k] + r.dt),
+            *[
+                (
+                    f"{x}_m",
+                    r.p[k, j],
+                    "the tip",
+                    STEPPED,
+                    "the row after",
+                    r.p[np.minimum(k + 1, 1199), j],
+                )
+                for j, x in enumerate("xyz")
+            ],
+            *[
+                (f"u{x}", U[:, j], "u of the spring", ROUNDING, "-u", -U[:, j] - (x == "y"))
+                for j, x in enumerate("xyz")
+            ],
+            ("depth_m", r.d[k, i], "<p, u>", STEPPED, "-z", -r.p[k, 2]),
+        ],
+    )
 
 
 @scene
@@ -186,78 +576,212 @@ def rubbed(bench):
     K, M, dt, n, mu_s, mu_f = 5000.0, 0.1, 0.001, 120, 2.0, 20.0
     B = 2 * 0.3 * math.sqrt(K * M)
     push = {"type": "ramp", "start": 0.0, "rate_per_s": -150.0}
-    run = bench.run(bench.scenario(
-        "rubbed", time={"step_s": dt, "steps": n}, environment=BELOW,
-        initial={"position_m": [0, 0, 0], "velocity_m_per_s": [0.01, 0, 0]}, hand={"type": "force", "z_N": push, "x_N": 0.2},
-        rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0.3, "mass_kg": M,
-                   "friction": {"mu_s_N_s_per_m": mu_s, "mu_f_s_per_m": mu_f}}))
+    run = bench.run(
+        bench.scenario(
+            "rubbed",
+            time={"step_s": dt, "steps": n},
+            environment=BELOW,
+            initial={"position_m": [0, 0, 0], "velocity_m_per_s": [0.01, 0, 0]},
+            hand={"type": "force", "z_N": push, "x_N": 0.2},
+            rendering={
+                "algorithm": "summation",
+                "stiffness_N_per_m": K,
+                "damping_ratio": 0.3,
+                "mass_kg": M,
+                "friction": {"mu_s_N_s_per_m": mu_s, "mu_f_s_per_m": mu_f},
+            },
+        )
+    )
     p, v, S = np.zeros((n, 3)), np.zeros((n, 3)), np.diag([0.0, 0, 1])
     f, spring = np.zeros((n, 3)), np.zeros((n, 3))
     v[0, 0] = 0.01
     for k in range(n):
         spring[k] = -K * S @ p[k] * (abs(p[k, 2]) > 0)
-        f[k] = spring[k] - B * S @ v[k] - (mu_s + mu_f * np.linalg.norm(spring[k])) * (v[k] - S @ v[k])
+        f[k] = (
+            spring[k] - B * S @ v[k] - (mu_s + mu_f * np.linalg.norm(spring[k])) * (v[k] - S @ v[k])
+        )
         if k + 1 < n:
             v[k + 1] = v[k] + (f[k] + [0.2, 0, -150 * k * dt]) * dt / M
             p[k + 1] = p[k] + v[k + 1] * dt
     limit = (2 * M / dt - mu_s) / mu_f
     beyond = norms(spring) > limit
-    bench.metrics(run, [
-        ("explicit_friction_limit_N", limit, "(2 M / dt - mu_s) / mu_f", ROUNDING, "without mu_s", 2 * M / dt / mu_f),
-        ("explicit_friction_rows_beyond", int(beyond.sum()), "|f_spring| of the recurrence", EXACT, "|f| in place of |f_spring|",
-         int((norms(f) > limit).sum())),
-        ("explicit_friction_first_step", int(np.flatnonzero(beyond)[0]), "|f_spring| of the recurrence", EXACT, "|f| in place of |f_spring|",
-         int(np.flatnonzero(norms(f) > limit)[0]))])
-    held = Within("120 steps, of which the last enlarge rounding by up to |1 - (mu_s + mu_f |f|) dt / M| each", relative=1e-9, absolute=1e-15)
-    bench.columns(run.table(), [
-        (f"{name}{x}{unit}", series[:, i], "recurrence", held, *(("a row later", np.r_[series[1:, i], 0]) if x != "y" else ()))
-        for name, unit, series in (("p", "_m", p), ("v", "_m_per_s", v), ("f", "_N", f)) for i, x in enumerate("xyz")])
+    bench.metrics(
+        run,
+        [
+            (
+                "explicit_friction_limit_N",
+                limit,
+                "(2 M / dt - mu_s) / mu_f",
+                ROUNDING,
+                "without mu_s",
+                2 * M / dt / mu_f,
+            ),
+            (
+                "explicit_friction_rows_beyond",
+                int(beyond.sum()),
+                "|f_spring| of the recurrence",
+                EXACT,
+                "|f| in place of |f_spring|",
+                int((norms(f) > limit).sum()),
+            ),
+            (
+                "explicit_friction_first_step",
+                int(np.flatnonzero(beyond)[0]),
+                "|f_spring| of the recurrence",
+                EXACT,
+                "|f| in place of |f_spring|",
+                int(np.flatnonzero(norms(f) > limit)[0]),
+            ),
+        ],
+    )
+    held = Within(
+        "120 steps, of which the last enlarge rounding by up to |1 - (mu_s + mu_f |f|) dt / M| each",
+        relative=1e-9,
+        absolute=1e-15,
+    )
+    bench.columns(
+        run.table(),
+        [
+            (
+                f"{name}{x}{unit}",
+                series[:, i],
+                "recurrence",
+                held,
+                *(("a row later", np.r_[series[1:, i], 0]) if x != "y" else ()),
+            )
+            for name, unit, series in (("p", "_m", p), ("v", "_m_per_s", v), ("f", "_N", f))
+            for i, x in enumerate("xyz")
+        ],
+    )
 
 
 @scene
 def from_rows(bench):
     """Bundled scenes on a mesh, in a hole, with devices of both kinds: metrics anew from the rows of trajectory.csv, by their definitions."""
-    for name in ("drag_molar", "peg_in_hole_2d_original_averaging", "impedance_at_wall", "device_in_hole", "tap_corner"):
-        run = bench.run(name, "--set", "record.every=1", "--set", "record.trajectory=true", "--set", "expect={}", statuses=(0, 3))
+    for name in (
+        "drag_molar",
+        "peg_in_hole_2d_original_averaging",
+        "impedance_at_wall",
+        "device_in_hole",
+        "tap_corner",
+    ):
+        run = bench.run(
+            name,
+            "--set",
+            "record.every=1",
+            "--set",
+            "record.trajectory=true",
+            "--set",
+            "expect={}",
+            statuses=(0, 3),
+        )
         rows = run.table()
-        f, spring, p = (rows.vectors(*(f"{part}{x}{unit}" for x in "xyz")) for part, unit in (("f", "_N"), ("fspring_", "_N"), ("p", "_m")))
+        f, spring, p = (
+            rows.vectors(*(f"{part}{x}{unit}" for x in "xyz"))
+            for part, unit in (("f", "_N"), ("fspring_", "_N"), ("p", "_m"))
+        )
         t, colliding, rendered = rows["time_s"], rows["colliding"], rows["rendered"]
         dt, touching, F = t[1] - t[0], colliding > 0, norms(f)
         phases = Phases(touching, dt)
         settled, landing = phases.settled, phases.landing
-        steps, reverses = np.r_[0.0, norms(np.diff(f, axis=0))], np.r_[False, np.sum(f[1:] * f[:-1], axis=1) < 0]
+        steps, reverses = (
+            np.r_[0.0, norms(np.diff(f, axis=0))],
+            np.r_[False, np.sum(f[1:] * f[:-1], axis=1) < 0],
+        )
         enough = settled.sum() * dt >= 1 / 30
         if_settled = lambda make: float(make()) if enough else None
         behind = settled_high_pass(f, phases, dt)
         how = "the rows of trajectory.csv"
-        bench.metrics(run, [
-            ("force_max_N", F.max(), how, ROUNDING, "of f_spring", norms(spring).max() * (1 + 1e-9)),
-            ("force_step_max_N", steps.max(), how, ROUNDING), ("force_reversals", int(reverses.sum()), how, EXACT),
-            ("depth_max_m", rows["depth_max_m"].max(), how, EXACT), ("ratio_min", np.nanmin(rows["ratio_min"]), how, EXACT),
-            ("ratio_max", np.nanmax(rows["ratio_max"]), how, EXACT), ("colliding_mean", colliding.mean(), how, ROUNDING),
-            ("colliding_max", int(colliding.max()), how, EXACT), ("rendered_mean", rendered.mean(), how, ROUNDING),
-            ("rendered_max", int(rendered.max()), how, EXACT), ("steps_in_contact", int(touching.sum()), how, EXACT),
-            ("contact_share", touching.mean(), how, ROUNDING), ("last_contact_s", t[touching][-1], how, EXACT), ("landings", phases.landings, how, EXACT),
-            ("landing_force_max_N", F[landing].max(), how, ROUNDING), ("landing_force_step_max_N", steps[landing].max(), how, ROUNDING),
-            ("settled_s", settled.sum() * dt, how, ROUNDING), ("force_mean_in_contact_N", if_settled(lambda: F[settled].mean()), how, ROUNDING),
-            ("settled_force_max_N", if_settled(lambda: F[settled].max()), how, ROUNDING),
-            ("force_step_p99_N", if_settled(lambda: nearest_rank(steps[settled], 0.99)), how, BINNED),
-            ("settled_force_step_max_N", if_settled(lambda: steps[settled].max()), how, ROUNDING),
-            ("force_rms_above_30Hz_N", if_settled(lambda: rms(behind[settled])), how, FILTERED),
-            ("force_reversals_per_s", if_settled(lambda: (reverses & settled).sum() / (settled.sum() * dt)), how, ROUNDING),
-            *[(f"final_position_m.{x}", p[-1, i], how, EXACT) for i, x in enumerate("xyz")]])
+        bench.metrics(
+            run,
+            [
+                (
+                    "force_max_N",
+                    F.max(),
+                    how,
+                    ROUNDING,
+                    "of f_spring",
+                    norms(spring).max() * (1 + 1e-9),
+                ),
+                ("force_step_max_N", steps.max(), how, ROUNDING),
+                ("force_reversals", int(reverses.sum()), how, EXACT),
+                ("depth_max_m", rows["depth_max_m"].max(), how, EXACT),
+                ("ratio_min", np.nanmin(rows["ratio_min"]), how, EXACT),
+                ("ratio_max", np.nanmax(rows["ratio_max"]), how, EXACT),
+                ("colliding_mean", colliding.mean(), how, ROUNDING),
+                ("colliding_max", int(colliding.max()), how, EXACT),
+                ("rendered_mean", rendered.mean(), how, ROUNDING),
+                ("rendered_max", int(rendered.max()), how, EXACT),
+                ("steps_in_contact", int(touching.sum()), how, EXACT),
+                ("contact_share", touching.mean(), how, ROUNDING),
+                ("last_contact_s", t[touching][-1], how, EXACT),
+                ("landings", phases.landings, how, EXACT),
+                ("landing_force_max_N", F[landing].max(), how, ROUNDING),
+                ("landing_force_step_max_N", steps[landing].max(), how, ROUNDING),
+                ("settled_s", settled.sum() * dt, how, ROUNDING),
+                ("force_mean_in_contact_N", if_settled(lambda: F[settled].mean()), how, ROUNDING),
+                ("settled_force_max_N", if_settled(lambda: F[settled].max()), how, ROUNDING),
+                (
+                    "force_step_p99_N",
+                    if_settled(lambda: nearest_rank(steps[settled], 0.99)),
+                    how,
+                    BINNED,
+                ),
+                (
+                    "settled_force_step_max_N",
+                    if_settled(lambda: steps[settled].max()),
+                    how,
+                    ROUNDING,
+                ),
+                ("force_rms_above_30Hz_N", if_settled(lambda: rms(behind[settled])), how, FILTERED),
+                (
+                    "force_reversals_per_s",
+                    if_settled(lambda: (reverses & settled).sum() / (settled.sum() * dt)),
+                    how,
+                    ROUNDING,
+                ),
+                *[(f"final_position_m.{x}", p[-1, i], how, EXACT) for i, x in enumerate("xyz")],
+            ],
+        )
 
 
 @scene
 def too_coarse(bench):
     """A step of 20 ms, at which nothing above 30 Hz is sampled, and a contact of one row: no number instead of 0."""
-    run = bench.run(bench.scenario(
-        "too_coarse", time={"step_s": 0.02, "steps": 50},
-        environment={"type": "springs", "bilateral": False, "groups": [{"direction": [0, 0, -1], "count": 1}]},
-        motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": {"type": "waypoints", "points": [[0, 1e-3], [0.49, 1e-3], [0.5, -1e-3],
-                                                                                                           [0.51, 1e-3]]}}},
-        rendering={**TOUCHES["rendering"], "reduction": None}))
-    none = ("vibration_power_above_30Hz_m2_per_s2", "force_rms_above_30Hz_N", "vibration_last_quarter_m_per_s", "force_mean_in_contact_N",
-            "settled_force_max_N", "force_step_p99_N", "force_reversals_per_s",
-            "reduction_changes", "inside_max_m")
-    bench.metrics(run, [(name, None, "none is sampled, settled, or there", EXACT, "0", 0.0) for name in none])
+    run = bench.run(
+        bench.scenario(
+            "too_coarse",
+            time={"step_s": 0.02, "steps": 50},
+            environment={
+                "type": "springs",
+                "bilateral": False,
+                "groups": [{"direction": [0, 0, -1], "count": 1}],
+            },
+            motion={
+                "position": {
+                    "type": "prescribed",
+                    "x_m": 0,
+                    "y_m": 0,
+                    "z_m": {
+                        "type": "waypoints",
+                        "points": [[0, 1e-3], [0.49, 1e-3], [0.5, -1e-3], [0.51, 1e-3]],
+                    },
+                }
+            },
+            rendering={**TOUCHES["rendering"], "reduction": None},
+        )
+    )
+    none = (
+        "vibration_power_above_30Hz_m2_per_s2",
+        "force_rms_above_30Hz_N",
+        "vibration_last_quarter_m_per_s",
+        "force_mean_in_contact_N",
+        "settled_force_max_N",
+        "force_step_p99_N",
+        "force_reversals_per_s",
+        "reduction_changes",
+        "inside_max_m",
+    )
+    bench.metrics(
+        run, [(name, None, "none is sampled, settled, or there", EXACT, "0", 0.0) for name in none]
+    )

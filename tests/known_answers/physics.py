@@ -6,20 +6,37 @@ from scipy import linalg, signal
 
 from answers import Within
 
-PLAIN = {"stiffness_N_per_m": 1000, "damping_ratio": 0, "mass_kg": 0.1, "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}
+PLAIN = {
+    "stiffness_N_per_m": 1000,
+    "damping_ratio": 0,
+    "mass_kg": 0.1,
+    "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0},
+}
 SUMMED = {**PLAIN, "algorithm": "summation"}
 SPRING = {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]}
 BELOW = {"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]}
-STEPPED = Within("velocities are differences of positions, known to 1e-17 m, over steps of 0.5 ms", relative=1e-11, absolute=1e-15)
-FILTERED = Within("scipy's second-order sections are ours in another order: rounding times the filter's memory of some hundred rows",
-                  relative=1e-9, absolute=1e-15)
-BINNED = Within("a bin of the histogram of squares is a 32nd of a factor of two: half of sqrt(33/32) - 1", relative=0.0078)
+STEPPED = Within(
+    "velocities are differences of positions, known to 1e-17 m, over steps of 0.5 ms",
+    relative=1e-11,
+    absolute=1e-15,
+)
+FILTERED = Within(
+    "scipy's second-order sections are ours in another order: rounding times the filter's memory of some hundred rows",
+    relative=1e-9,
+    absolute=1e-15,
+)
+BINNED = Within(
+    "a bin of the histogram of squares is a 32nd of a factor of two: half of sqrt(33/32) - 1",
+    relative=0.0078,
+)
 
 
 def high_pass(x, dt):
     """Butterworth's of fourth order at 30 Hz, at rest at the first sample before it."""
     sections = signal.butter(4, 30.0, "high", fs=1 / dt, output="sos")
-    return signal.sosfilt(sections, x, axis=0, zi=signal.sosfilt_zi(sections)[:, :, None] * x[0][None, None, :])[0]
+    return signal.sosfilt(
+        sections, x, axis=0, zi=signal.sosfilt_zi(sections)[:, :, None] * x[0][None, None, :]
+    )[0]
 
 
 class Phases:
@@ -30,7 +47,7 @@ class Phases:
         starts = touches[np.diff(touches, prepend=-rows - 1) > rows]
         self.landings, self.landing = len(starts), np.zeros(len(contact), bool)
         for start in starts:
-            self.landing[start:start + rows] = True
+            self.landing[start : start + rows] = True
         self.settled = contact & ~self.landing
 
 
@@ -74,11 +91,18 @@ def held_loop(m, b, T, K, B, delay=0, spring=0.0):
     """The handle of an impedance device on a spring and damper that hold their force over each period: its exact linear map."""
     whole = int(delay)
     part = delay - whole
-    state = np.eye(3 + whole + (part > 0))  # x, v, x of the last sample, forces under way (the newest first)
+    state = np.eye(
+        3 + whole + (part > 0)
+    )  # x, v, x of the last sample, forces under way (the newest first)
     forces = np.vstack([(-K - B / T) * state[0] + B / T * state[2], state[3:]])
-    A = np.array([[0, 1, 0], [-spring / m, -b / m, 1 / m], [0, 0, 0]])  # of x, v and the force that is held
+    A = np.array(
+        [[0, 1, 0], [-spring / m, -b / m, 1 / m], [0, 0, 0]]
+    )  # of x, v and the force that is held
     moved = state[:2]
-    for t, held in ((part * T, forces[-1]), ((1 - part) * T, forces[whole])):  # until the newer one arrives, and after it
+    for t, held in (
+        (part * T, forces[-1]),
+        ((1 - part) * T, forces[whole]),
+    ):  # until the newer one arrives, and after it
         moved = linalg.expm(A * t)[:2] @ np.vstack([moved, held])
     return np.vstack([moved, state[0], forces[:-1]])
 
@@ -105,10 +129,14 @@ def class_of(matrix, x, n=8000):
     rest = size <= 1e-12 * np.maximum.accumulate(size)
     moving = np.flatnonzero(v)
     turns = moving[1:][v[moving[1:]] * v[moving[:-1]] < 0]
-    if any(rest[i:i + 200].all() for i in range(n - 199)) or np.sum(turns >= 3 * n // 4) < 2:
+    if any(rest[i : i + 200].all() for i in range(n - 199)) or np.sum(turns >= 3 * n // 4) < 2:
         return "stable"
     if all(b > 1.01 * a for a, b in zip(amplitude, amplitude[1:])):
         return "diverged"
     if amplitude[3] < 0.01 * amplitude[0]:
         return "stable"
-    return "dying_out" if amplitude[2] < 0.9 * amplitude[1] and amplitude[3] < 0.9 * amplitude[2] else "vibrating"
+    return (
+        "dying_out"
+        if amplitude[2] < 0.9 * amplitude[1] and amplitude[3] < 0.9 * amplitude[2]
+        else "vibrating"
+    )

@@ -20,7 +20,11 @@ SOURCE = Path(__file__).resolve().parent.parent.parent
 FOLDERS = ("sim", "algorithms", "device_model", "results/observe")
 # Suites of GoogleTest have no dot in their names, tests that are scripts have; one of these looks into the libraries, which
 # the counters change.
-TESTS = (["-L", "^fast$", "-E", "^Library[.]"], ["-L", "^slow$", "-E", "[.]"], ["-R", "^KnownAnswers[.]"])
+TESTS = (
+    ["-L", "^fast$", "-E", "^Library[.]"],
+    ["-L", "^slow$", "-E", "[.]"],
+    ["-R", "^KnownAnswers[.]"],
+)
 MOST_FALL = 1.0  # per cent of a folder's lines
 
 
@@ -28,16 +32,28 @@ def run_tests(build):
     for counts in build.rglob("*.gcda"):
         counts.unlink()
     for selection in TESTS:
-        done = subprocess.run(["ctest", "--test-dir", build, "--parallel", str(os.cpu_count()), *selection],
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run(
+            ["ctest", "--test-dir", build, "--parallel", str(os.cpu_count()), *selection],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         if done.returncode != 0:
             print("\n".join(done.stdout.splitlines()[-20:]), file=sys.stderr)
 
 
 def lines_of(notes):
     """The lines of the tree with code in an object file, as (file, number, whether it was run)."""
-    report = json.loads(subprocess.run(["gcov", "--json-format", "--stdout", notes], cwd=notes.parent,
-                                       stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=True).stdout)
+    report = json.loads(
+        subprocess.run(
+            ["gcov", "--json-format", "--stdout", notes],
+            cwd=notes.parent,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            check=True,
+        ).stdout
+    )
     found = set()
     for file in report["files"]:
         path = Path(report["current_working_directory"], file["file"]).resolve()
@@ -49,23 +65,42 @@ def lines_of(notes):
 def counted(build):
     """Lines, and lines that were run, of each folder."""
     libraries = sorted({folder.split("/")[0] for folder in FOLDERS})
-    notes = [file for library in libraries for file in (build / library).rglob("hapbench_*.dir/**/*.gcno")]
+    notes = [
+        file
+        for library in libraries
+        for file in (build / library).rglob("hapbench_*.dir/**/*.gcno")
+    ]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = set().union(*pool.map(lines_of, notes))
     for folder in FOLDERS:
-        own = [(path, number, ran) for path, number, ran in found if path.is_relative_to(SOURCE / folder)]
-        yield folder, len({(path, number) for path, number, _ in own}), sum(ran for _, _, ran in own)
+        own = [
+            (path, number, ran)
+            for path, number, ran in found
+            if path.is_relative_to(SOURCE / folder)
+        ]
+        yield folder, len({(path, number) for path, number, _ in own}), sum(
+            ran for _, _, ran in own
+        )
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("build", type=Path, help="a build folder of the preset coverage")
-    parser.add_argument("--against", type=Path, metavar="FILE", help="an earlier output to compare with")
+    parser.add_argument(
+        "--against", type=Path, metavar="FILE", help="an earlier output to compare with"
+    )
     options = parser.parse_args()
     build = options.build.resolve()
     run_tests(build)
-    commit = subprocess.check_output(["git", "-C", SOURCE, "describe", "--always", "--dirty"], text=True).strip()
-    print(f"# Lines of code that tests run, by gcov at commit {commit}: ctest " + "; ".join(map(" ".join, TESTS)))
+    commit = subprocess.check_output(
+        ["git", "-C", SOURCE, "describe", "--always", "--dirty"], text=True
+    ).strip()
+    print(
+        f"# Lines of code that tests run, by gcov at commit {commit}: ctest "
+        + "; ".join(map(" ".join, TESTS))
+    )
     print(f"{'# folder':16}{'lines':>7}{'run':>7}{'%':>7}")
     percent = {}
     for folder, lines, ran in counted(build):
@@ -75,7 +110,9 @@ def main():
     rows = [row.split() for row in earlier.splitlines() if not row.startswith("#")]
     fallen = [row[0] for row in rows if percent[row[0]] < float(row[3]) - MOST_FALL]
     if fallen:
-        print(f"more than {MOST_FALL} % below {options.against}: {', '.join(fallen)}", file=sys.stderr)
+        print(
+            f"more than {MOST_FALL} % below {options.against}: {', '.join(fallen)}", file=sys.stderr
+        )
     return 1 if fallen else 0
 
 

@@ -26,18 +26,33 @@ def said(*words):
 
 def make(build, regex):
     """Builds the programs that the tests run which the regular expression selects."""
-    tests = json.loads(said("ctest", "--test-dir", build, "--show-only=json-v1", "-R", regex)[1])["tests"]
+    tests = json.loads(said("ctest", "--test-dir", build, "--show-only=json-v1", "-R", regex)[1])[
+        "tests"
+    ]
     if not tests or any("command" not in test for test in tests):
         raise RuntimeError(f"{build}: no built test is called {regex}; build all tests first")
-    programs = {word for test in tests for word in test["command"] if Path(word).is_relative_to(build / "bin")}
-    status, output = said("cmake", "--build", build, "--target", *sorted(str(Path(word).relative_to(build)) for word in programs))
+    programs = {
+        word
+        for test in tests
+        for word in test["command"]
+        if Path(word).is_relative_to(build / "bin")
+    }
+    status, output = said(
+        "cmake",
+        "--build",
+        build,
+        "--target",
+        *sorted(str(Path(word).relative_to(build)) for word in programs),
+    )
     if status:
         raise RuntimeError("it does not compile:\n" + "\n".join(output.splitlines()[-20:]))
 
 
 def failing(build, regex):
     """The first test that fails of those selected; empty if all pass."""
-    status, output = said("ctest", "--test-dir", build, "--stop-on-failure", "--no-tests=error", "-R", regex)
+    status, output = said(
+        "ctest", "--test-dir", build, "--stop-on-failure", "--no-tests=error", "-R", regex
+    )
     failed = re.search(r"^\s*\d+ - (\S+) \(", output, re.MULTILINE)
     if status and not failed:
         raise RuntimeError("ctest failed without a test:\n" + output[-2000:])
@@ -48,7 +63,9 @@ def mutated(mutant):
     path = SOURCE / mutant["file"]
     text = path.read_text(encoding="utf-8") if path.is_file() else ""
     if (times := text.count(mutant["find"])) != 1:
-        raise RuntimeError(f"{mutant['name']}: {mutant['file']} has {times} times what is to be replaced: {mutant['find']!r}")
+        raise RuntimeError(
+            f"{mutant['name']}: {mutant['file']} has {times} times what is to be replaced: {mutant['find']!r}"
+        )
     return text.replace(mutant["find"], mutant["replace"])
 
 
@@ -84,15 +101,22 @@ def tried(build, names):
     for mutant in mutants:
         killed = killer(mutant, build)
         survivors += not killed
-        print(f"{mutant['name']:32} {'killed by ' + killed if killed else 'SURVIVES: ' + mutant['meaning']}", flush=True)
+        print(
+            f"{mutant['name']:32} {'killed by ' + killed if killed else 'SURVIVES: ' + mutant['meaning']}",
+            flush=True,
+        )
     make(build, killers)
     print(f"{len(mutants) - survivors} of {len(mutants)} killed")
     return survivors
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=Path, nargs="?", help="a build folder with all tests, such as build/release")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "build", type=Path, nargs="?", help="a build folder with all tests, such as build/release"
+    )
     parser.add_argument("names", nargs="*", metavar="NAME", help="mutants to try instead of all")
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores the source

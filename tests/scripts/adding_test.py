@@ -23,13 +23,25 @@ class Tree:
     """A copy of the sources, as they stand now."""
 
     def __init__(self, folder):
-        self.folder = shutil.copytree(SOURCE, folder, symlinks=True, ignore=shutil.ignore_patterns(".git", "build", "out", "__pycache__"))
+        self.folder = shutil.copytree(
+            SOURCE,
+            folder,
+            symlinks=True,
+            ignore=shutil.ignore_patterns(".git", "build", "out", "__pycache__"),
+        )
 
     def edit(self, anchor, new):
         """Puts `new` in place of the anchor in the only place of a source that has it. Returns the file's name."""
-        folders = [self.folder / name for name in ("sim", "algorithms", "device_model", "results", "scenarios")]
+        folders = [
+            self.folder / name
+            for name in ("sim", "algorithms", "device_model", "results", "scenarios")
+        ]
         sources = [file for folder in folders for file in folder.rglob("*.[hc]pp")]
-        found = [str(file.relative_to(self.folder)) for file in sources for _ in range(file.read_text().count(anchor))]
+        found = [
+            str(file.relative_to(self.folder))
+            for file in sources
+            for _ in range(file.read_text().count(anchor))
+        ]
         if len(found) != 1:
             raise AssertionError(f"{anchor!r} stands in {found}; wanted: one place")
         return self.write(found[0], (self.folder / found[0]).read_text().replace(anchor, new))
@@ -55,8 +67,13 @@ static std::unique_ptr<const Solid> make_solid(const RidgeEnvironment& ridge) { 
 
 # Each addition with the most files that it may touch, and its edits.
 ADDITIONS = {
-    "law": (3, [
-        (Tree.write, "algorithms/laws/halved.cpp", """#include "algorithms/registry.hpp"
+    "law": (
+        3,
+        [
+            (
+                Tree.write,
+                "algorithms/laws/halved.cpp",
+                """#include "algorithms/registry.hpp"
 
 namespace hapbench {
 
@@ -81,20 +98,32 @@ AlgorithmEntry halved_entry() {
 }
 
 }  // namespace hapbench
-"""),
-        behind("row(mcneely) row(static_coupling)", " row(halved)"),
-    ]),
-    "environment": (3, [
-        before("using Environment = std::variant<", """struct RidgeEnvironment {
+""",
+            ),
+            behind("row(mcneely) row(static_coupling)", " row(halved)"),
+        ],
+    ),
+    "environment": (
+        3,
+        [
+            before(
+                "using Environment = std::variant<",
+                """struct RidgeEnvironment {
   double height = 0.001;   ///< [m]
   double spacing = 0.0005;  ///< [m]
 };
-"""),
-        behind("using Environment = std::variant<SpringsEnvironment, ", "RidgeEnvironment, "),
-        behind("""{"springs", "springs on the tool's tip, without a surface"},
-""", """             {"ridge", "a row of points"},
-"""),
-        before("void describe(Fields& f, Environment& environment) {", """static void describe(Fields& f, RidgeEnvironment& ridge) {
+""",
+            ),
+            behind("using Environment = std::variant<SpringsEnvironment, ", "RidgeEnvironment, "),
+            behind(
+                """{"springs", "springs on the tool's tip, without a surface"},
+""",
+                """             {"ridge", "a row of points"},
+""",
+            ),
+            before(
+                "void describe(Fields& f, Environment& environment) {",
+                """static void describe(Fields& f, RidgeEnvironment& ridge) {
   f.number("height_m", ridge.height, kLength, "height of the row");
   f.number("spacing_m", ridge.spacing, kLength, "distance of neighbours");
 }
@@ -104,50 +133,98 @@ static std::vector<SurfacePoint> surface_points(const RidgeEnvironment& ridge) {
   for (int i = -5; i <= 5; ++i) points.push_back({{ridge.spacing * i, 0.0, ridge.height}, Vec3::UnitZ()});
   return points;
 }
-""" + INSIDE),
-    ]),
-    "tool": (3, [
-        behind("using ToolFields = std::variant<CylinderFields, ", "TaperFields, "),
-        before("using ToolFields = std::variant<", """struct TaperFields {
+"""
+                + INSIDE,
+            ),
+        ],
+    ),
+    "tool": (
+        3,
+        [
+            behind("using ToolFields = std::variant<CylinderFields, ", "TaperFields, "),
+            before(
+                "using ToolFields = std::variant<",
+                """struct TaperFields {
   double width = 0.002;  ///< at the far end [m]
 };
-"""),
-        behind("""    {"cylinder", "a drill's stylus with a flat or a round tip"},
-""", """    {"taper", "a cone that ends in a narrow tip"},
-"""),
-        before("void describe(Fields& f, ToolFields& tool) {", """static void describe(Fields& f, TaperFields& tool) {
+""",
+            ),
+            behind(
+                """    {"cylinder", "a drill's stylus with a flat or a round tip"},
+""",
+                """    {"taper", "a cone that ends in a narrow tip"},
+""",
+            ),
+            before(
+                "void describe(Fields& f, ToolFields& tool) {",
+                """static void describe(Fields& f, TaperFields& tool) {
   f.number("width_m", tool.width, kLength, "width of the far end");
 }
 
-"""),
-        before("  std::shared_ptr<const ToolShape> operator()(const RevolvedFields& f) const {\n", """  std::shared_ptr<const ToolShape> operator()(const TaperFields& f) const {
+""",
+            ),
+            before(
+                "  std::shared_ptr<const ToolShape> operator()(const RevolvedFields& f) const {\n",
+                """  std::shared_ptr<const ToolShape> operator()(const TaperFields& f) const {
     return std::make_shared<Revolved>(std::vector<ProfilePoint>{{-0.01, f.width / 2.0}, {0.0, 0.0005}}, Tip::flat);
   }
-"""),
-    ]),
-    "named file": (2, [
-        behind("struct PushHandFields {\n", "  std::optional<std::string> file;  ///< of notes\n"),
-        behind("""static void describe(Fields& f, PushHandFields& hand) {
-""", """  f.if_any(kFileField, hand.file, "a stroke to compare with",
+""",
+            ),
+        ],
+    ),
+    "named file": (
+        2,
+        [
+            behind(
+                "struct PushHandFields {\n", "  std::optional<std::string> file;  ///< of notes\n"
+            ),
+            behind(
+                """static void describe(Fields& f, PushHandFields& hand) {
+""",
+                """  f.if_any(kFileField, hand.file, "a stroke to compare with",
            [](Fields& s, std::string& path) { s.file(path, {FileContent::Kind::stroke}); });
-"""),
-    ]),
-    "device field": (2, [
-        behind("struct ImpedanceDeviceConfig {\n", "  double play = 0.0;  ///< of the transmission [m]\n"),
-        before('  f.number("viscous_N_s_per_m", device.viscous,',
-               '  f.number("play_m", device.play, {0.0, 1.0, "m"}, "play of the transmission");\n'),
-    ]),
-    "trajectory column": (2, [
-        behind("struct TrajectoryExtras {\n", "  bool speed = false;\n"),
-        before("constexpr TrajectoryGroup kGroups[] = {\n", """constexpr Column kSpeedColumns[] = {{"speed_m_per_s", "m/s", "norm of its velocity"}};
+""",
+            ),
+        ],
+    ),
+    "device field": (
+        2,
+        [
+            behind(
+                "struct ImpedanceDeviceConfig {\n",
+                "  double play = 0.0;  ///< of the transmission [m]\n",
+            ),
+            before(
+                '  f.number("viscous_N_s_per_m", device.viscous,',
+                '  f.number("play_m", device.play, {0.0, 1.0, "m"}, "play of the transmission");\n',
+            ),
+        ],
+    ),
+    "trajectory column": (
+        2,
+        [
+            behind("struct TrajectoryExtras {\n", "  bool speed = false;\n"),
+            before(
+                "constexpr TrajectoryGroup kGroups[] = {\n",
+                """constexpr Column kSpeedColumns[] = {{"speed_m_per_s", "m/s", "norm of its velocity"}};
 
-"""),
-        behind("constexpr TrajectoryGroup kGroups[] = {\n", """    {&TrajectoryExtras::speed, "speed", "add the tip's speed to trajectory.csv, speed_m_per_s", kSpeedColumns,
+""",
+            ),
+            behind(
+                "constexpr TrajectoryGroup kGroups[] = {\n",
+                """    {&TrajectoryExtras::speed, "speed", "add the tip's speed to trajectory.csv, speed_m_per_s", kSpeedColumns,
      [](const StepRecord& r, const InsideObserver*, std::optional<double>* cells) { *cells = r.tool.velocity.norm(); }},
-"""),
-    ]),
-    "command": (3, [
-        (Tree.write, "scenarios/program/twice.cpp", """#include "scenarios/program/command.hpp"
+""",
+            ),
+        ],
+    ),
+    "command": (
+        3,
+        [
+            (
+                Tree.write,
+                "scenarios/program/twice.cpp",
+                """#include "scenarios/program/command.hpp"
 
 namespace hapbench {
 
@@ -167,12 +244,22 @@ void add_twice(CommandLine& line) {
 }
 
 }  // namespace hapbench
-"""),
-        before("add_validate;", "add_twice, "),
-        behind("constexpr CommandGuide kCommands[] = {", '\n    {"look", "twice", "what is a word two times?", add_twice, "twice this"},'),
-    ]),
-    "metric section": (2, [
-        (Tree.write, "results/observe/stillness.hpp", """#pragma once
+""",
+            ),
+            before("add_validate;", "add_twice, "),
+            behind(
+                "constexpr CommandGuide kCommands[] = {",
+                '\n    {"look", "twice", "what is a word two times?", add_twice, "twice this"},',
+            ),
+        ],
+    ),
+    "metric section": (
+        2,
+        [
+            (
+                Tree.write,
+                "results/observe/stillness.hpp",
+                """#pragma once
 
 #include "results/observe/metric_observer.hpp"
 
@@ -189,13 +276,19 @@ class StillnessObserver final : public MetricObserver {
 };
 
 }  // namespace hapbench
-"""),
-        before('#include "results/observe/ideal_trajectory.hpp"\n#include "results/observe/target_metrics.hpp"\n',
-               '#include "results/observe/stillness.hpp"\n'),
-        behind('make<PassivityObserver>, true},\n',
-               """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; }, make<StillnessObserver>},
-"""),
-    ]),
+""",
+            ),
+            before(
+                '#include "results/observe/ideal_trajectory.hpp"\n#include "results/observe/target_metrics.hpp"\n',
+                '#include "results/observe/stillness.hpp"\n',
+            ),
+            behind(
+                "make<PassivityObserver>, true},\n",
+                """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; }, make<StillnessObserver>},
+""",
+            ),
+        ],
+    ),
 }
 
 # All the new things.
@@ -214,13 +307,34 @@ class Adding(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.scratch = Path(tempfile.mkdtemp(prefix="hapbench_adding_")) if "--keep" in sys.argv else scratch_folder(cls)
+        cls.scratch = (
+            Path(tempfile.mkdtemp(prefix="hapbench_adding_"))
+            if "--keep" in sys.argv
+            else scratch_folder(cls)
+        )
         tree = Tree(cls.scratch / "tree")
-        cls.touched = {thing: {edit(tree, *of) for edit, *of in edits} for thing, (_, edits) in ADDITIONS.items()}
+        cls.touched = {
+            thing: {edit(tree, *of) for edit, *of in edits}
+            for thing, (_, edits) in ADDITIONS.items()
+        }
         build = cls.scratch / "build"
-        must("cmake", "-G", "Ninja", "-S", tree.folder, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
-             "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=24", "-DHAPBENCH_BUILD_TESTS=OFF", "-DHAPBENCH_BUILD_PYTHON=OFF",
-             "-DHAPBENCH_INSTALL=OFF", "-DHAPBENCH_WERROR=ON")
+        must(
+            "cmake",
+            "-G",
+            "Ninja",
+            "-S",
+            tree.folder,
+            "-B",
+            build,
+            "-DCMAKE_BUILD_TYPE=Debug",
+            "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
+            "-DCMAKE_UNITY_BUILD=ON",
+            "-DCMAKE_UNITY_BUILD_BATCH_SIZE=24",
+            "-DHAPBENCH_BUILD_TESTS=OFF",
+            "-DHAPBENCH_BUILD_PYTHON=OFF",
+            "-DHAPBENCH_INSTALL=OFF",
+            "-DHAPBENCH_WERROR=ON",
+        )
         must("cmake", "--build", build, "--target", "bin/hapbench")
         cls.program = build / "bin" / "hapbench"
 
@@ -240,67 +354,150 @@ class Adding(unittest.TestCase):
     def run_scene(self, *words, status=0):
         """Summary and effective scenario of a run of it, in the folder out."""
         self.hapbench("run", "scene.json", *words, "--out", "out", "--quiet", status=status)
-        return [json.loads((self.folder / "out" / name).read_text()) for name in ("summary.json", "scenario.effective.json")]
+        return [
+            json.loads((self.folder / "out" / name).read_text())
+            for name in ("summary.json", "scenario.effective.json")
+        ]
 
     def first_row(self):
-        header, row = (line.split(",") for line in (self.folder / "out/trajectory.csv").read_text().splitlines()[:2])
+        header, row = (
+            line.split(",")
+            for line in (self.folder / "out/trajectory.csv").read_text().splitlines()[:2]
+        )
         return dict(zip(header, row, strict=True))
 
     def test_each_thing_takes_few_files(self):
         for thing, (most, _) in ADDITIONS.items():
-            self.assertLessEqual(len(self.touched[thing]), most, f"{thing}: {sorted(self.touched[thing])}")
+            self.assertLessEqual(
+                len(self.touched[thing]), most, f"{thing}: {sorted(self.touched[thing])}"
+            )
 
     def test_the_reader_accepts_and_refuses(self):
         self.write()
         _, effective = self.run_scene()
-        self.assertEqual(effective["environment"], {"type": "ridge", "height_m": 0.001, "spacing_m": 0.0005})
+        self.assertEqual(
+            effective["environment"], {"type": "ridge", "height_m": 0.001, "spacing_m": 0.0005}
+        )
         self.assertEqual(effective["tool"], {"type": "taper", "width_m": 0.003})
         for field, value, problem in (
-            ("environment.height_m", "-1", "--set environment.height_m=-1: got -1; allowed: a number > 0 and <= 1000 [m]"),
+            (
+                "environment.height_m",
+                "-1",
+                "--set environment.height_m=-1: got -1; allowed: a number > 0 and <= 1000 [m]",
+            ),
             ("environment.heigth_m", "1", 'nearest valid name: "height_m"'),
-            ("tool.width_m", "wide", '--set tool.width_m=wide: got "wide"; allowed: a number > 0 and <= 1000 [m]'),
+            (
+                "tool.width_m",
+                "wide",
+                '--set tool.width_m=wide: got "wide"; allowed: a number > 0 and <= 1000 [m]',
+            ),
             ("tool.type", "tapered", 'nearest valid name: "taper"'),
-            ("device", '{"type":"impedance","handle_mass_kg":0.1,"play_m":2}',
-             "/device/play_m: got 2; allowed: a number >= 0 and <= 1 [m]"),
+            (
+                "device",
+                '{"type":"impedance","handle_mass_kg":0.1,"play_m":2}',
+                "/device/play_m: got 2; allowed: a number >= 0 and <= 1 [m]",
+            ),
             ("hand", '{"type":"push","force_N":1,"file":5}', "/hand/file: got 5; allowed: a text"),
         ):
-            self.assertIn(problem, self.hapbench("run", "scene.json", "--set", f"{field}={value}", status=2))
+            self.assertIn(
+                problem, self.hapbench("run", "scene.json", "--set", f"{field}={value}", status=2)
+            )
 
     def test_schema_describe_and_list_know_them(self):
         schema = json.loads(self.hapbench("describe", "schema"))["else"]["properties"]
         ridge = schema["environment"]["oneOf"][1]["properties"]
         self.assertEqual((ridge["type"]["const"], ridge["height_m"]["default"]), ("ridge", 0.001))
-        self.assertIn("taper", [tool["properties"]["type"]["const"] for tool in schema["tool"]["oneOf"]])
-        devices = {device["properties"]["type"]["const"]: device["properties"] for device in schema["device"]["oneOf"]}
+        self.assertIn(
+            "taper", [tool["properties"]["type"]["const"] for tool in schema["tool"]["oneOf"]]
+        )
+        devices = {
+            device["properties"]["type"]["const"]: device["properties"]
+            for device in schema["device"]["oneOf"]
+        }
         self.assertEqual(devices["impedance"]["play_m"]["description"], "play of the transmission")
         self.assertIn("a cone that ends in a narrow tip", self.hapbench("describe", "tools"))
-        for name, text in (("ridge", "height of the row"), ("taper", "width of the far end"), ("hand.file", "a stroke to compare with"),
-                           ("device.play_m", "a number >= 0 and <= 1 [m]"),
-                           ("environment.type", "a row of points")):
+        for name, text in (
+            ("ridge", "height of the row"),
+            ("taper", "width of the far end"),
+            ("hand.file", "a stroke to compare with"),
+            ("device.play_m", "a number >= 0 and <= 1 [m]"),
+            ("environment.type", "a row of points"),
+        ):
             self.assertIn(text, self.hapbench("describe", name))
 
     def test_an_environment_says_what_its_inside_is(self):
         self.write()
         summary, _ = self.run_scene()
         self.assertAlmostEqual(summary["metrics"]["inside_max_m"], 1e-5, delta=1e-6)
-        self.assertIn("went_through", self.hapbench("run", "scene.json", "--set", "environment.height_m=0.003", "--out", "deep", status=3))
-        silent = (self.scratch / "tree/scenarios/format/environments.cpp").read_text().replace(INSIDE, "")
-        done = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-DEIGEN_DONT_VECTORIZE", "-I", self.scratch / "tree", "-isystem",
-                               "/usr/include/eigen3", "-x", "c++", "-"], input=silent, capture_output=True, text=True)
+        self.assertIn(
+            "went_through",
+            self.hapbench(
+                "run",
+                "scene.json",
+                "--set",
+                "environment.height_m=0.003",
+                "--out",
+                "deep",
+                status=3,
+            ),
+        )
+        silent = (
+            (self.scratch / "tree/scenarios/format/environments.cpp")
+            .read_text()
+            .replace(INSIDE, "")
+        )
+        done = subprocess.run(
+            [
+                "c++",
+                "-std=c++20",
+                "-fsyntax-only",
+                "-DEIGEN_DONT_VECTORIZE",
+                "-I",
+                self.scratch / "tree",
+                "-isystem",
+                "/usr/include/eigen3",
+                "-x",
+                "c++",
+                "-",
+            ],
+            input=silent,
+            capture_output=True,
+            text=True,
+        )
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("make_solid(const hapbench::RidgeEnvironment&)", done.stderr)
 
     def test_the_theory_claims_nothing_of_a_device_with_a_field_that_it_does_not_know(self):
         for play in (0, 1e-4):
-            self.hapbench("limit", "wall_on_handle", "--resolution", 0.5, "--set", f"device.play_m={play}", "--out", "limit", "--quiet")
+            self.hapbench(
+                "limit",
+                "wall_on_handle",
+                "--resolution",
+                0.5,
+                "--set",
+                f"device.play_m={play}",
+                "--out",
+                "limit",
+                "--quiet",
+            )
             header, *rows = csv.reader((self.folder / "limit/limit.csv").read_text().splitlines())
             for row in (dict(zip(header, row)) for row in rows):
-                claims = {name for name in row if name.startswith(("theory", "worst_hand", "passive", "stable_gil", "exact")) and row[name]}
-                self.assertEqual(("device.play_m" in row["no_theory"], bool(claims)), (play > 0, play == 0), row)
+                claims = {
+                    name
+                    for name in row
+                    if name.startswith(("theory", "worst_hand", "passive", "stable_gil", "exact"))
+                    and row[name]
+                }
+                self.assertEqual(
+                    ("device.play_m" in row["no_theory"], bool(claims)), (play > 0, play == 0), row
+                )
 
     def test_a_named_file_is_read_checked_hashed_and_moved(self):
         self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
-        self.assertIn("scene.json: /hand/file: stroke.csv: ", self.hapbench("validate", "scene.json", status=2))
+        self.assertIn(
+            "scene.json: /hand/file: stroke.csv: ",
+            self.hapbench("validate", "scene.json", status=2),
+        )
         hashes = set()
         for more in ("", "1,0,0,0,0,0,-1\n"):
             (self.folder / "stroke.csv").write_text(STROKE + more)
@@ -324,9 +521,14 @@ class Adding(unittest.TestCase):
         self.assertEqual(first["halved"], first["summation"] / 2)
         self.assertIn("c_i = 1/2", self.hapbench("describe", "halved"))
         self.assertIn("half of all penalty springs", self.hapbench("describe", "algorithms"))
-        self.assertIn('nearest valid name: "halved"', self.hapbench("run", "scene.json", "--set", "rendering.algorithm=halvd", status=2))
+        self.assertIn(
+            'nearest valid name: "halved"',
+            self.hapbench("run", "scene.json", "--set", "rendering.algorithm=halvd", status=2),
+        )
         self.assertIn('"halved"', self.hapbench("describe", "schema"))
-        self.assertIn("halved", self.hapbench("compare", "scene.json", "--algorithms", "all", "--out", "all"))
+        self.assertIn(
+            "halved", self.hapbench("compare", "scene.json", "--algorithms", "all", "--out", "all")
+        )
 
     def test_a_command_is_in_the_help(self):
         self.assertEqual(self.hapbench("twice", "this"), "this this\n")
@@ -339,19 +541,45 @@ class Adding(unittest.TestCase):
         self.write()
         for speed, found in (("true", True), ("false", False)):
             self.run_scene("--set", f"record.speed={speed}", "--set", "record.pose=true")
-            self.assertEqual(list(self.first_row())[-5:] == ["speed_m_per_s", "qw", "qx", "qy", "qz"], found)
-            self.assertEqual("speed_m_per_s" in (self.folder / "out/columns.json").read_text(), found)
+            self.assertEqual(
+                list(self.first_row())[-5:] == ["speed_m_per_s", "qw", "qx", "qy", "qz"], found
+            )
+            self.assertEqual(
+                "speed_m_per_s" in (self.folder / "out/columns.json").read_text(), found
+            )
 
     def test_a_section_of_metrics_is_in_all_results(self):
-        self.write(record={"pose": True}, expect={"outcome": ["completes", "no_contact", "lost_contact"],
-                                                  "metrics": {"stillness.still": {"min": 100}}})
+        self.write(
+            record={"pose": True},
+            expect={
+                "outcome": ["completes", "no_contact", "lost_contact"],
+                "metrics": {"stillness.still": {"min": 100}},
+            },
+        )
         summary, _ = self.run_scene(status=3)
         self.assertIn("still", summary["stillness"])
         self.assertIn("stillness.still", (self.folder / "out/columns.json").read_text())
-        self.assertIn("rows in which the tool did not move", self.hapbench("describe", "stillness.still"))
+        self.assertIn(
+            "rows in which the tool did not move", self.hapbench("describe", "stillness.still")
+        )
         self.assertIn("stillness.still", self.hapbench("describe", "metrics"))
-        self.assertIn("stillness.still", json.dumps(json.loads(self.hapbench("describe", "schema"))["else"]["properties"]["expect"]))
+        self.assertIn(
+            "stillness.still",
+            json.dumps(
+                json.loads(self.hapbench("describe", "schema"))["else"]["properties"]["expect"]
+            ),
+        )
         for pose, found in (("true", True), ("false", False)):
-            self.hapbench("sweep", "scene.json", "--vary", "seed=1,2", "--set", f"record.pose={pose}", "--out", f"sweep_{pose}", "--quiet")
+            self.hapbench(
+                "sweep",
+                "scene.json",
+                "--vary",
+                "seed=1,2",
+                "--set",
+                f"record.pose={pose}",
+                "--out",
+                f"sweep_{pose}",
+                "--quiet",
+            )
             header = (self.folder / f"sweep_{pose}/sweep.csv").read_text().splitlines()[0]
             self.assertEqual("stillness.still" in header, found)

@@ -13,10 +13,16 @@ CMAKE, NM, BUILD = sys.argv[2:5]
 CONSUMER = SOURCE / "tests" / "consumer"
 SCENARIO = "peg_in_hole_2d_mean"
 # A parent's flags are its own business; CMake would take these from the environment.
-BARE = {key: value for key, value in ENVIRONMENT.items() if key not in ("CXXFLAGS", "LDFLAGS", "CMAKE_BUILD_TYPE")}
+BARE = {
+    key: value
+    for key, value in ENVIRONMENT.items()
+    if key not in ("CXXFLAGS", "LDFLAGS", "CMAKE_BUILD_TYPE")
+}
 must = partial(must, env=BARE)
 C_FUNCTIONS = re.compile(
-    r" U (a?(?:sin|cos|tan)h?|atan2|sincos|exp2?|expm1|log(?:1p|2|10)?|pow|hypot|cbrt|c(?:abs|arg|exp|log|pow|sqrt))[fl]?$", re.M)
+    r" U (a?(?:sin|cos|tan)h?|atan2|sincos|exp2?|expm1|log(?:1p|2|10)?|pow|hypot|cbrt|c(?:abs|arg|exp|log|pow|sqrt))[fl]?$",
+    re.M,
+)
 # OpenMesh has a cosine among the virtual functions of its mesh, for feature edges, which we do not ask for.
 OPENMESH = {("libhapbench_sim_mesh", "cos"), ("libhapbench_scenarios_format", "cos")}
 
@@ -30,29 +36,61 @@ class Consumer(unittest.TestCase):
 
     def test_an_installed_library_runs_a_law_of_another_project(self):
         build = self.folder / "found"
-        must(CMAKE, "-G", "Ninja", "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_BUILD_TYPE=Debug")
+        must(
+            CMAKE,
+            "-G",
+            "Ninja",
+            "-S",
+            CONSUMER,
+            "-B",
+            build,
+            f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            "-DCMAKE_BUILD_TYPE=Debug",
+        )
         must(CMAKE, "--build", build)
         file, state_hash = must(build / "own_law", cwd=self.folder).splitlines()
-        self.assertTrue(Path(file).is_relative_to(self.prefix / "share" / "hapbench" / "scenarios"), file)
+        self.assertTrue(
+            Path(file).is_relative_to(self.prefix / "share" / "hapbench" / "scenarios"), file
+        )
         out = self.folder / "out"
         must(PROGRAM, "run", SCENARIO, "--out", out)
         self.assertEqual(state_hash, json.loads((out / "summary.json").read_text())["state_hash"])
 
     def test_headers_without_the_flags_that_lay_out_their_types_do_not_compile(self):
         source = self.folder / "bare.cpp"
-        for header, complaint in (("sim/core/types.hpp", "EIGEN_DONT_VECTORIZE"), ("sim/core/simd.hpp", "hapbench's own")):
+        for header, complaint in (
+            ("sim/core/types.hpp", "EIGEN_DONT_VECTORIZE"),
+            ("sim/core/simd.hpp", "hapbench's own"),
+        ):
             source.write_text(f"#include <{header}>\n")
-            run = ran("c++", "-std=c++20", "-fsyntax-only", "-isystem", "/usr/include/eigen3", "-I", self.prefix / "include" / "hapbench", source)
+            run = ran(
+                "c++",
+                "-std=c++20",
+                "-fsyntax-only",
+                "-isystem",
+                "/usr/include/eigen3",
+                "-I",
+                self.prefix / "include" / "hapbench",
+                source,
+            )
             self.assertNotEqual(run.returncode, 0, header)
             self.assertIn(complaint, run.stderr)
 
     def test_a_folder_of_another_project_leaves_that_alone(self):
         build = self.folder / "parent"
         must(CMAKE, "-S", CONSUMER, "-B", build, "-G", "Ninja", f"-DHAPBENCH_SOURCE={SOURCE}")
-        self.assertIn("HAPBENCH_BUILD_TESTS:BOOL=OFF", (build / "CMakeCache.txt").read_text().splitlines())
+        self.assertIn(
+            "HAPBENCH_BUILD_TESTS:BOOL=OFF", (build / "CMakeCache.txt").read_text().splitlines()
+        )
         all_of_parent = must("ninja", "-C", build, "-t", "commands", "all")
-        self.assertNotIn("scenarios/limits", all_of_parent, "nothing is built that the parent does not link")
-        own = next(line for line in all_of_parent.splitlines() if line.rstrip("\"'").endswith("own_law.cpp"))
+        self.assertNotIn(
+            "scenarios/limits", all_of_parent, "nothing is built that the parent does not link"
+        )
+        own = next(
+            line
+            for line in all_of_parent.splitlines()
+            if line.rstrip("\"'").endswith("own_law.cpp")
+        )
         for word in ("-ffp-contract=off", "-DEIGEN_DONT_VECTORIZE"):
             self.assertIn(word, own)
         for word in ("-Wconversion", "-march", "-Werror", "HAPBENCH_SIMD"):
@@ -60,7 +98,13 @@ class Consumer(unittest.TestCase):
 
     def test_it_computes_elementary_functions_itself(self):
         """Not by the C library, whose last digits differ; a call which Eigen or the standard library makes for us is found as well."""
-        archives = sorted(p for p in Path(BUILD).rglob("libhapbench_*.a") if "test_support" not in p.name)
+        archives = sorted(
+            p for p in Path(BUILD).rglob("libhapbench_*.a") if "test_support" not in p.name
+        )
         self.assertTrue(archives, f"no libraries in {BUILD}")
-        found = {(archive.stem.removesuffix("_scalar"), name) for archive in archives for name in C_FUNCTIONS.findall(must(NM, "-u", archive))}
+        found = {
+            (archive.stem.removesuffix("_scalar"), name)
+            for archive in archives
+            for name in C_FUNCTIONS.findall(must(NM, "-u", archive))
+        }
         self.assertEqual(found - OPENMESH, set(), "take these from sim/core/math.hpp")

@@ -27,8 +27,14 @@ UNKNOWN = "--zzzz"
 # Minutes long: parsed, not run.
 LONG = {"reproduce", "stress"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
-SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "converge": [*FEW_STEPS, "--levels", "3"], "limit": [*FEW_STEPS, "--resolution", "0.5"],
-           "tune": [*FEW_STEPS, "--damping-ratio", "0.3:0.7"]}
+SHORTER = {
+    "run": FEW_STEPS,
+    "compare": FEW_STEPS,
+    "sweep": FEW_STEPS,
+    "converge": [*FEW_STEPS, "--levels", "3"],
+    "limit": [*FEW_STEPS, "--resolution", "0.5"],
+    "tune": [*FEW_STEPS, "--damping-ratio", "0.3:0.7"],
+}
 
 
 def of_program(command):
@@ -41,18 +47,27 @@ def text_of(name):
 
 def prepare(folder):
     """Writes the files that manuals call their reader's own."""
-    for name, source in (("my.stl", "tests/data/seeds/cube_text.stl"), ("log.txt", "scenarios/library/examples/data/wipe.hapi.txt"),
-                         ("epfl_paddle.json", "scenarios/library/validation/epfl_paddle.json"),
-                         ("mine.json", "scenarios/library/studies/stability_delay.json")):
+    for name, source in (
+        ("my.stl", "tests/data/seeds/cube_text.stl"),
+        ("log.txt", "scenarios/library/examples/data/wipe.hapi.txt"),
+        ("epfl_paddle.json", "scenarios/library/validation/epfl_paddle.json"),
+        ("mine.json", "scenarios/library/studies/stability_delay.json"),
+    ):
         shutil.copy(SOURCE / source, folder / name)
     # A straight stroke of 20 samples in microseconds and millimetres, with a force and quaternions.
     stroke = "".join(f"{10000 * i},1,0,0,{i / 20},0,0,0,0,0,1\n" for i in range(20))
     # A mass of 0.1 kg that a force of 1 N swings once a second, in steps of 10 um.
     turns = [math.cos(math.tau * i / 100) for i in range(200)]
-    log = "".join(f"{i / 100},{turn},{round(2.533e4 * (1 - turn)) * 1e-5}\n" for i, turn in enumerate(turns))
+    log = "".join(
+        f"{i / 100},{turn},{round(2.533e4 * (1 - turn)) * 1e-5}\n" for i, turn in enumerate(turns)
+    )
     device = re.search(r"^    {\n.*?^    }$", text_of("device_model/README.md"), re.M | re.S)[0]
-    for name, text in (("rec.csv", f"t,fx,fy,fz,x,y,z,qx,qy,qz,qw\n{stroke}"), ("log.csv", f"time_s,force_N,position_m\n{log}"),
-                       ("mydevice.json", device), ("log_device.json", device)):
+    for name, text in (
+        ("rec.csv", f"t,fx,fy,fz,x,y,z,qx,qy,qz,qw\n{stroke}"),
+        ("log.csv", f"time_s,force_N,position_m\n{log}"),
+        ("mydevice.json", device),
+        ("log_device.json", device),
+    ):
         (folder / name).write_text(text, encoding="ascii")
     # The example in C, by the manual's line.
     compiler = re.search(r"^    (gcc .*) -o \S+$", text_of("algorithms/README.md"), re.M)[1].split()
@@ -62,7 +77,17 @@ def prepare(folder):
     for name in "abc":
         shutil.copy(folder / "my.json", folder / f"{name}.json")
     for shard in range(2):
-        made("sweep", "my.json", "--vary", "rendering.stiffness_N_per_m=1e3:2e3:2", *FEW_STEPS, "--shard", f"{shard}/2", "--out", "shards")
+        made(
+            "sweep",
+            "my.json",
+            "--vary",
+            "rendering.stiffness_N_per_m=1e3:2e3:2",
+            *FEW_STEPS,
+            "--shard",
+            f"{shard}/2",
+            "--out",
+            "shards",
+        )
     for out in ("results/good/peg", "results/out/peg"):
         made("run", "peg_in_hole_2d_shaped_stiffness", *FEW_STEPS, "--out", out)
 
@@ -70,11 +95,17 @@ def prepare(folder):
 def shortened(command, folder):
     """A command's words, shorter, and with patterns replaced by the files that they match, in the tree or in the folder."""
     given = list(command.words[1:])
-    if given[0] == "plot" and "--from" in given:  # a span of time that a shortened run does not have
-        given = given[:given.index("--from")]
+    if (
+        given[0] == "plot" and "--from" in given
+    ):  # a span of time that a shortened run does not have
+        given = given[: given.index("--from")]
     runs = given[0] != "sweep" or "--vary" in given and "--row" not in given
     shorter = SHORTER.get(given[0], []) if runs else []
-    if given[0] == "limit" and given[1].startswith("stability_") and not {"--device", "--algorithms"} & set(given):
+    if (
+        given[0] == "limit"
+        and given[1].startswith("stability_")
+        and not {"--device", "--algorithms"} & set(given)
+    ):
         shorter = [*shorter, "--algorithms", "shaped_stiffness"]  # of studies over all laws
     if "--errors" in given:
         shorter = [*shorter, "--set", "environment.spacing_m=4e-4"]  # half of that for the errors
@@ -108,7 +139,11 @@ class Commands(unittest.TestCase):
                 continue  # records of work of minutes; tutorials_test.py runs those in full
             folder = shutil.copytree(prepared, scratch_folder(self), dirs_exist_ok=True)
             for command in manual.commands():
-                if of_program(command) and len(command.words) > 1 and LONG.isdisjoint(command.words):
+                if (
+                    of_program(command)
+                    and len(command.words) > 1
+                    and LONG.isdisjoint(command.words)
+                ):
                     with self.subTest(str(command)):
                         done = started(PROGRAM, *shortened(command, folder), cwd=folder)
                         self.assertIn(done.returncode, (0, 3), done.stderr)
@@ -122,27 +157,42 @@ class Commands(unittest.TestCase):
             with self.subTest(str(command)):
                 self.assertTrue(os.access(script, os.X_OK))
                 says = help_of(script)
-                for option in (word.split("=")[0] for word in command.words[1:] if word.startswith("--")):
+                for option in (
+                    word.split("=")[0] for word in command.words[1:] if word.startswith("--")
+                ):
                     self.assertRegex(says, rf"{option}\b")
 
     def test_commands_in_sentences_exist(self):
         known = set(re.findall(r"^[a-z ]{8}([a-z]+) ", started(PROGRAM).stdout, re.M))
         self.assertIn("run", known)
-        named = [(str(manual.file), name) for manual in MANUALS for name in re.findall(r"`hapbench\s+([a-z]+)", manual.text)]
+        named = [
+            (str(manual.file), name)
+            for manual in MANUALS
+            for name in re.findall(r"`hapbench\s+([a-z]+)", manual.text)
+        ]
         self.assertEqual([(file, name) for file, name in named if name not in known], [])
 
 
 class Pages(unittest.TestCase):
     def test_links_lead_somewhere(self):
-        self.assertEqual([(str(manual.file), link) for manual in MANUALS for link in broken_links(manual)], [])
+        self.assertEqual(
+            [(str(manual.file), link) for manual in MANUALS for link in broken_links(manual)], []
+        )
 
     def test_the_first_page_keeps_its_size(self):
         lines = text_of("README.md").splitlines()
         self.assertLessEqual(len(lines), 60)
-        self.assertEqual([line for line in lines if len(line) > 110 and not line.startswith("|")], [])
+        self.assertEqual(
+            [line for line in lines if len(line) > 110 and not line.startswith("|")], []
+        )
 
     def test_every_algorithm_is_in_the_table(self):
-        names = json.loads(re.search(r'\[\s*"original_averaging",[^]]*\]', text_of("scenarios/library/scenario.schema.json"))[0])
+        names = json.loads(
+            re.search(
+                r'\[\s*"original_averaging",[^]]*\]',
+                text_of("scenarios/library/scenario.schema.json"),
+            )[0]
+        )
         self.assertGreater(len(names), 12)
         rows = re.findall(r"^\| `(\w+)` \|", text_of("algorithms/README.md"), re.M)
         self.assertEqual(set(names) - set(rows), set())
@@ -158,16 +208,24 @@ class Generated(unittest.TestCase):
     def test_tables_are_those_on_record(self):
         for manual in MANUALS:
             with self.subTest(str(manual.file)):
-                self.assertEqual(renewed(manual.text, MAKERS), manual.text, "renew it with scripts/docs --tables")
+                self.assertEqual(
+                    renewed(manual.text, MAKERS), manual.text, "renew it with scripts/docs --tables"
+                )
 
     def test_a_block_without_end_is_refused(self):
         with self.assertRaises(InputError):
             renewed("<!-- generated: robustness -->\n| a |\n", MAKERS)
 
     def test_measured_times_are_no_news(self):
-        old = "    law     force   us/\n                   step\n    ------  -----  ----\n    mean     1.25  0.25\n\n" \
+        old = (
+            "    law     force   us/\n                   step\n    ------  -----  ----\n    mean     1.25  0.25\n\n"
             "    99 % of the steps take at most 0.24 us (mean) to 4.2 us (proxy)"
-        slower = old.replace("0.25", "10.5").replace("  ----", "  -----").replace("4.2 us (proxy)", "14 us (summation)")
+        )
+        slower = (
+            old.replace("0.25", "10.5")
+            .replace("  ----", "  -----")
+            .replace("4.2 us (proxy)", "14 us (summation)")
+        )
         self.assertTrue(same_but_for_times(old, slower))
         self.assertFalse(same_but_for_times(old, slower.replace("1.25", "1.26")))
         self.assertFalse(same_but_for_times(old.replace("us/", "N/"), slower.replace("us/", "N/")))
@@ -177,10 +235,16 @@ class Examples(unittest.TestCase):
     def test_the_force_on_a_sphere_by_python_is_that_of_the_sphere(self):
         """K times the depth, along the line of the centres."""
         folder = scratch_folder(self)
-        must(sys.executable, SOURCE / "algorithms" / "module" / "examples" / "sphere_trace.py", folder)
+        must(
+            sys.executable,
+            SOURCE / "algorithms" / "module" / "examples" / "sphere_trace.py",
+            folder,
+        )
         hapbench("run", folder / "sphere.json", "--out", folder / "out", "--quiet")
         rows = read_columns(folder / "out" / "trajectory.csv")
-        place, force = (np.column_stack([rows[name.format(x)] for x in "xyz"]) for name in ("p{}_m", "f{}_N"))
+        place, force = (
+            np.column_stack([rows[name.format(x)] for x in "xyz"]) for name in ("p{}_m", "f{}_N")
+        )
         distance = np.linalg.norm(place, axis=1, keepdims=True)
         known = 20000 * np.maximum(0, 0.0025 - distance) * place / distance
         self.assertGreater(np.count_nonzero(known[:, 2]), 500)

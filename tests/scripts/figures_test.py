@@ -26,7 +26,10 @@ RUNS = (
     ("springs_*", []),
     ("tilt_sweep_*", []),
     ("vertical_*", ["hand.trials=1", "hand.task.time_limit_s=2", "hand.task.targets_per_place=1"]),
-    ("rotational_*", ["hand.trials=1", "hand.task.time_limit_s=2", "hand.task.targets_per_place=1"]),
+    (
+        "rotational_*",
+        ["hand.trials=1", "hand.task.time_limit_s=2", "hand.task.targets_per_place=1"],
+    ),
 )
 # Figures that between them use every way of drawing: thinned marks, shaded areas, arrows, rasterised marks, limits.
 # They are drawn by the command, in every format; the others as SVG only, which takes a third of the time.
@@ -45,41 +48,99 @@ def make_results(directory):
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--out", out)
     name = "corner_continuous_normal_projection"
     hapbench("run", name, "--out", directory / "run_beyond" / name)
-    fields = ("time_step", "damping_ratio", "z_width", "delay", "velocity_filter", "hand", "integrators")
+    fields = (
+        "time_step",
+        "damping_ratio",
+        "z_width",
+        "delay",
+        "velocity_filter",
+        "hand",
+        "integrators",
+    )
     for ask, study, *words in (
-            ("compare", "stiffness_peg"), ("limit", "spring_stiffness"), ("limit", "spring_damping"), ("limit", "hardware_paddle", "--resolution=0.5"),
-            ("limit", "device_limits", "--device=touch,omega.3", "--resolution=0.5"),
-            ("sweep", "checked_force", "--set=hand.task.time_limit_s=1", "--set=hand.task.targets_per_place=1"),
-            *(("limit", f"stability_{field}", "--algorithms=shaped_stiffness", "--resolution=0.5") for field in fields)):
+        ("compare", "stiffness_peg"),
+        ("limit", "spring_stiffness"),
+        ("limit", "spring_damping"),
+        ("limit", "hardware_paddle", "--resolution=0.5"),
+        ("limit", "device_limits", "--device=touch,omega.3", "--resolution=0.5"),
+        (
+            "sweep",
+            "checked_force",
+            "--set=hand.task.time_limit_s=1",
+            "--set=hand.task.targets_per_place=1",
+        ),
+        *(
+            ("limit", f"stability_{field}", "--algorithms=shaped_stiffness", "--resolution=0.5")
+            for field in fields
+        ),
+    ):
         hapbench(ask, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
-    hapbench(*("sweep", "task2_rotate_signed_distance", "--vary=hand.force_N=0.2,3.5", "--set=time.duration_s=2", "--keep-runs"),
-             *('--set=record={"ideal_trajectory":true,"every":8}', "--out", directory / "task2_hands"))
+    hapbench(
+        *(
+            "sweep",
+            "task2_rotate_signed_distance",
+            "--vary=hand.force_N=0.2,3.5",
+            "--set=time.duration_s=2",
+            "--keep-runs",
+        ),
+        *('--set=record={"ideal_trajectory":true,"every":8}', "--out", directory / "task2_hands"),
+    )
     shutil.copy(REFERENCE / "claims.json", directory)
     # The load of the loop is drawn where it is known.
     loop = directory / "step_latency" / "task2_rotate_signed_distance"
     loop.mkdir(parents=True)
-    (loop / "timing.json").write_text(json.dumps({"step_latency": {"over_time_s": [1e-6, 2e-6, 3e-6]}}))
+    (loop / "timing.json").write_text(
+        json.dumps({"step_latency": {"over_time_s": [1e-6, 2e-6, 3e-6]}})
+    )
 
 
 def make_accuracy(directory):
     """As of hapbench_accuracy, whose runs would take longer than all else here: each setting twice as exact in twice the time, but the last."""
     directory.mkdir()
-    columns = ("error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m", "created_by_sampling_J")
+    columns = (
+        "error_rms_m",
+        "tensor_error_rms",
+        "force_error_relative",
+        "ideal_height_error_rms_m",
+        "created_by_sampling_J",
+    )
     panels = {
-        "integrators": [f"{name} dt={step}" for name in ("leapfrog", "rk4", "implicit_euler") for step in ("0.001", "0.0001")],
+        "integrators": [
+            f"{name} dt={step}"
+            for name in ("leapfrog", "rk4", "implicit_euler")
+            for step in ("0.001", "0.0001")
+        ],
         "shaping": ["m=0", "m=1", "exact"],
         "reduction": ["shaped_stiffness 0.9", "exact_shaping 0.9"],
         "merging": ["merged_shaping 0.0001"],
         "spacing": ["signed_distance 0.0004", "binary 0.0002"],
-        "algorithms": ["original_averaging", "one_without_a_look", "mean", "mean + angular_damping"],
-        "late_contacts": [f"shaped_stiffness {between} {every}" for between in ("hold", "linear") for every in (2, 8)],
+        "algorithms": [
+            "original_averaging",
+            "one_without_a_look",
+            "mean",
+            "mean + angular_damping",
+        ],
+        "late_contacts": [
+            f"shaped_stiffness {between} {every}"
+            for between in ("hold", "linear")
+            for every in (2, 8)
+        ],
         "skips": ["taken", "off"],
         "events": ["leapfrog dt=0.001", "event dt=0.001"],
     }
-    settings = [{"name": f"{panel}/{name}/manual_time", "label": "diverges" if name.startswith("original") else "completes", "step_s": 0.001,
-                 "seconds_per_step": 1e-6 * 2**i, "seconds_per_call": 1e-6 * 2**i, **dict.fromkeys(columns, 0.001 / 2 ** min(i, len(names) - 2))}
-                for panel, names in panels.items() for i, name in enumerate(names)]
+    settings = [
+        {
+            "name": f"{panel}/{name}/manual_time",
+            "label": "diverges" if name.startswith("original") else "completes",
+            "step_s": 0.001,
+            "seconds_per_step": 1e-6 * 2**i,
+            "seconds_per_call": 1e-6 * 2**i,
+            **dict.fromkeys(columns, 0.001 / 2 ** min(i, len(names) - 2)),
+        }
+        for panel, names in panels.items()
+        for i, name in enumerate(names)
+    ]
     (directory / "accuracy.json").write_text(json.dumps({"benchmarks": settings}))
 
 
@@ -93,7 +154,9 @@ class Figures(unittest.TestCase):
             cls.status, _, cls.said = in_process(command.main, cls.results, "--out", cls.drawn)
 
     def index(self, directory=None):
-        return json.loads(((directory or self.drawn) / "figures.json").read_text(encoding="utf-8"))["figures"]
+        return json.loads(((directory or self.drawn) / "figures.json").read_text(encoding="utf-8"))[
+            "figures"
+        ]
 
     def test_every_figure_is_drawn(self):
         self.assertEqual(self.status, 0, self.said)
@@ -120,7 +183,11 @@ class Figures(unittest.TestCase):
         drawn = json.loads((RECORD / command.ROWS).read_text(encoding="utf-8"))
         for figure in command.FIGURES:
             if figure.id in drawn:
-                self.assertEqual(drawn[figure.id], command.measured(figure, claims), f"{figure.id}: draw it with scripts/figures --record")
+                self.assertEqual(
+                    drawn[figure.id],
+                    command.measured(figure, claims),
+                    f"{figure.id}: draw it with scripts/figures --record",
+                )
         self.assertEqual(set(drawn["D.7"]), {"D1", "D2"})
         self.assertEqual(set(drawn["density"]), {"P1"})
 
@@ -134,21 +201,44 @@ class Figures(unittest.TestCase):
                     self.assertTrue((self.results / source).is_file(), source)
                 root = xml.parse(self.drawn / entry["files"][0]).getroot()
                 known = {e.get("id") for e in root.iter()}
-                self.assertLessEqual(set(re.findall(r'(?:href="#|url\(#)(\w+)', (self.drawn / entry["files"][0]).read_text(encoding="utf-8"))), known)
+                self.assertLessEqual(
+                    set(
+                        re.findall(
+                            r'(?:href="#|url\(#)(\w+)',
+                            (self.drawn / entry["files"][0]).read_text(encoding="utf-8"),
+                        )
+                    ),
+                    known,
+                )
                 # An empty pair of axes has about ten paths and no text besides the numbers. Dots of one colour are one path.
                 self.assertGreater(sum(1 for _ in root.iter(f"{SVG}path")), 12)
-                self.assertRegex(" ".join(root.itertext()),
-                                 r"\[(1|%|mm|s|ms|µs|N|N/m|N s/m|Hz|rad|kg|mm/s|m|m/s)\]|/ K|iterations|real part|points in contact|contacts")
+                self.assertRegex(
+                    " ".join(root.itertext()),
+                    r"\[(1|%|mm|s|ms|µs|N|N/m|N s/m|Hz|rad|kg|mm/s|m|m/s)\]|/ K|iterations|real part|points in contact|contacts",
+                )
 
     def test_same_data_same_bytes(self):
         again, alone = self.directory / "again", self.directory / "alone"
         for out, only in ((again, DRAWN_BY_COMMAND), (alone, "A.5")):
-            done = figures(self.results, "--out", out, "--only", only, PYTHONHASHSEED="7" if out == again else "8")
+            done = figures(
+                self.results,
+                "--out",
+                out,
+                "--only",
+                only,
+                PYTHONHASHSEED="7" if out == again else "8",
+            )
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(len(self.index(out)), len(only.split(",")))
         for entry in self.index(again):
-            self.assertEqual({Path(name).suffix for name in entry["files"]}, {".svg", ".pdf", ".png"})
-            self.assertEqual((again / entry["files"][0]).read_bytes(), (self.drawn / entry["files"][0]).read_bytes(), entry["id"])
+            self.assertEqual(
+                {Path(name).suffix for name in entry["files"]}, {".svg", ".pdf", ".png"}
+            )
+            self.assertEqual(
+                (again / entry["files"][0]).read_bytes(),
+                (self.drawn / entry["files"][0]).read_bytes(),
+                entry["id"],
+            )
         for entry in self.index(alone):
             for name in entry["files"]:
                 self.assertEqual((again / name).read_bytes(), (alone / name).read_bytes(), name)
@@ -165,8 +255,13 @@ class Figures(unittest.TestCase):
     def test_usage(self):
         x = self.directory / "x"
         occupied = self.drawn / "figures.json"
-        for words in ([self.results, "--out", x, "--only", "99"], [self.directory / "nowhere", "--out", x], [], ["--no-such"],
-                      [self.results, "--out", occupied, "--only", "6"]):
+        for words in (
+            [self.results, "--out", x, "--only", "99"],
+            [self.directory / "nowhere", "--out", x],
+            [],
+            ["--no-such"],
+            [self.results, "--out", occupied, "--only", "6"],
+        ):
             status, _, said = in_process(command.main, *words)
             self.assertEqual((status, said.count("\n")), (2, 1), said)
             self.assertTrue(said.startswith("hapbench: error: "), said)

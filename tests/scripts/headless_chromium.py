@@ -41,7 +41,13 @@ def started(program):
     options.binary_location = program
     # The sandbox does not start for root, and the page is our own.
     sandbox = ["--no-sandbox"] if os.geteuid() == 0 else []
-    for option in ["--headless=new", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", *sandbox]:
+    for option in [
+        "--headless=new",
+        "--disable-gpu",
+        "--hide-scrollbars",
+        "--disable-dev-shm-usage",
+        *sandbox,
+    ]:
         options.add_argument(option)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(service=Service("chromedriver"), options=options)
@@ -75,7 +81,9 @@ class Page(unittest.TestCase):
     def open(self, hash_=""):
         for url in ("about:blank", self.url + hash_):
             self.driver.get(url)
-            self.wait_for(f"document.readyState === 'complete' && location.href === {json.dumps(url)}")
+            self.wait_for(
+                f"document.readyState === 'complete' && location.href === {json.dumps(url)}"
+            )
         self.js("document.documentElement.style.scrollBehavior = 'auto'")
 
     def wait_for(self, expression):
@@ -93,24 +101,44 @@ class Page(unittest.TestCase):
         """Since the last call: what console and browser say, but for console.log, uncaught exceptions, and requests for anything outside
         the file."""
         # Allowed are console.log (INFO, as console.info) and what the browser itself says at its lowest level.
-        found = [entry for entry in self.driver.get_log("browser")
-                 if entry["level"] != ("INFO" if entry["source"] == "console-api" else "DEBUG")]
-        told = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
-        urls = [message["params"]["request"]["url"] for message in told if message["method"] == "Network.requestWillBeSent"]
+        found = [
+            entry
+            for entry in self.driver.get_log("browser")
+            if entry["level"] != ("INFO" if entry["source"] == "console-api" else "DEBUG")
+        ]
+        told = [
+            json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")
+        ]
+        urls = [
+            message["params"]["request"]["url"]
+            for message in told
+            if message["method"] == "Network.requestWillBeSent"
+        ]
         return found + [url for url in urls if not url.startswith(("file:", "data:", "blob:"))]
 
     def size(self, width, height, scale=1):
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=False)
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=scale,
+            mobile=False,
+        )
 
     def dark(self, dark=True):
-        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        self.call(
+            "Emulation.setEmulatedMedia",
+            features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}],
+        )
 
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
     def centre(self, selector):
-        return self.js(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center'}});"
-                       "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
+        return self.js(
+            f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center'}});"
+            "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()"
+        )
 
     def click(self, selector):
         """Clicks by the mouse, because browsers allow sound only then."""
@@ -119,8 +147,10 @@ class Page(unittest.TestCase):
             self.mouse(kind, x, y, button="left", clickCount=1)
 
     def choose(self, selector, value):
-        self.js(f"(() => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
-                "menu.dispatchEvent(new Event('change')); })()")
+        self.js(
+            f"(() => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
+            "menu.dispatchEvent(new Event('change')); })()"
+        )
 
     def check_every_page(self):
         """It fits a telephone, every control has a name, and every text can be read in both themes."""

@@ -20,17 +20,35 @@ def synthetic(seed):
     """(log, truth of NAMES, what it is)."""
     random = np.random.default_rng(seed)
     kind = list(KINDS)[seed % 3]
-    rate, duration = random.choice([500.0, 1000.0, 2000.0, 4000.0]), float(np.round(np.exp(random.uniform(np.log(2.0), np.log(60.0))), 1))
+    rate, duration = random.choice([500.0, 1000.0, 2000.0, 4000.0]), float(
+        np.round(np.exp(random.uniform(np.log(2.0), np.log(60.0))), 1)
+    )
     mass, force = np.exp(random.uniform(np.log(0.03), np.log(0.8))), random.uniform(0.5, 5.0)
     travel = random.uniform(0.05, 0.2)
     when, push = design(kind, force, travel, rate, duration, mass * random.uniform(0.5, 1.0))
     peak = np.abs(push).max()
-    dry = peak * random.choice([0.0, random.uniform(0.0, 0.2), random.uniform(0.2, 0.6)], p=[0.1, 0.5, 0.4])
-    truth = np.array([mass, np.exp(random.uniform(np.log(0.02), np.log(3.0))), dry, random.uniform(0.0, 6.0) / rate,
-                      peak * random.choice([0.0, 0.02 * random.standard_normal()]), 0.0])
+    dry = peak * random.choice(
+        [0.0, random.uniform(0.0, 0.2), random.uniform(0.2, 0.6)], p=[0.1, 0.5, 0.4]
+    )
+    truth = np.array(
+        [
+            mass,
+            np.exp(random.uniform(np.log(0.02), np.log(3.0))),
+            dry,
+            random.uniform(0.0, 6.0) / rate,
+            peak * random.choice([0.0, 0.02 * random.standard_normal()]),
+            0.0,
+        ]
+    )
     encoder = np.exp(random.uniform(np.log(2e-6), np.log(1e-4)))
-    places = positions(when, push, truth) + encoder * random.choice([0.0, 0.3, 1.0]) * random.standard_normal(len(when))
-    return log_of(when, push, encoder * np.round(places / encoder)), truth, (kind, rate, duration, dry / peak)
+    places = positions(when, push, truth) + encoder * random.choice(
+        [0.0, 0.3, 1.0]
+    ) * random.standard_normal(len(when))
+    return (
+        log_of(when, push, encoder * np.round(places / encoder)),
+        truth,
+        (kind, rate, duration, dry / peak),
+    )
 
 
 def judged(seed):
@@ -41,28 +59,48 @@ def judged(seed):
     try:
         found = fit(log)
     except Faults as refused:
-        return {"seed": seed, "what": what, "refused": str(refused), "holds": dict.fromkeys(PARAMETERS), "over": None, "seconds": 0.0}
+        return {
+            "seed": seed,
+            "what": what,
+            "refused": str(refused),
+            "holds": dict.fromkeys(PARAMETERS),
+            "over": None,
+            "seconds": 0.0,
+        }
     seconds = sum(os.times()[:3]) - begun  # of this process, and of its children in user mode
     with Simulator(log.time, log.force) as simulate:
         at_truth = Cost(simulate, log)(truth)
-    holds = {name: None if name in found.untold else bool(low <= true <= high)
-             for name, true, (low, high) in zip(PARAMETERS, truth, found.intervals)}
-    return {"seed": seed, "what": what, "refused": "", "holds": holds, "over": found.rms / np.sqrt(np.mean(at_truth**2)),
-            "seconds": seconds, "untold": found.untold}
+    holds = {
+        name: None if name in found.untold else bool(low <= true <= high)
+        for name, true, (low, high) in zip(PARAMETERS, truth, found.intervals)
+    }
+    return {
+        "seed": seed,
+        "what": what,
+        "refused": "",
+        "holds": holds,
+        "over": found.rms / np.sqrt(np.mean(at_truth**2)),
+        "seconds": seconds,
+        "untold": found.untold,
+    }
 
 
 def table(ones):
     """Rows of a table in Markdown: what holds of what is told, by the kind of signal and in all."""
-    rows = ["| logs | m | b | c | delay | offset | refused | not told | largest residual / at the truth | CPU, mean, largest |",
-            "|---|---|---|---|---|---|---|---|---|---|"]
+    rows = [
+        "| logs | m | b | c | delay | offset | refused | not told | largest residual / at the truth | CPU, mean, largest |",
+        "|---|---|---|---|---|---|---|---|---|---|",
+    ]
     for kind in (*KINDS, "all"):
         of_kind = [one for one in ones if kind in ("all", one["what"][0])]
         told = [one for one in of_kind if not one["refused"]]
         shares = [f"{100.0 * share(told, name):.0f} %" for name in PARAMETERS]
         untold = sum(holds is None for one in told for holds in one["holds"].values())
         seconds = [one["seconds"] for one in told]
-        rows.append(f"| {len(of_kind)} {kind} | {' | '.join(shares)} | {len(of_kind) - len(told)} | {untold} | "
-                    f"{max(one['over'] for one in told):.4f} | {np.mean(seconds):.1f} s, {max(seconds):.1f} s |")
+        rows.append(
+            f"| {len(of_kind)} {kind} | {' | '.join(shares)} | {len(of_kind) - len(told)} | {untold} | "
+            f"{max(one['over'] for one in told):.4f} | {np.mean(seconds):.1f} s, {max(seconds):.1f} s |"
+        )
     return rows
 
 
@@ -74,10 +112,21 @@ def share(ones, name):
 def main():
     ones = [judged(seed) for seed in range(LOGS)]
     print("\n".join(table(ones)))
-    wrong = [f"seed {one['seed']}: refused or not told: {one['refused'] or one['untold']}" for one in ones if one["refused"] or one["untold"]]
-    wrong += [f"seed {one['seed']}: residual {one['over']:.4f} of that at the truth" for one in ones if one["over"] and one["over"] > 1.002]
-    wrong += [f"{name}: {100.0 * share(ones, name):.1f} % of the intervals hold; allowed: 92 ... 98 %" for name in PARAMETERS
-              if not 0.92 <= share(ones, name) <= 0.98]
+    wrong = [
+        f"seed {one['seed']}: refused or not told: {one['refused'] or one['untold']}"
+        for one in ones
+        if one["refused"] or one["untold"]
+    ]
+    wrong += [
+        f"seed {one['seed']}: residual {one['over']:.4f} of that at the truth"
+        for one in ones
+        if one["over"] and one["over"] > 1.002
+    ]
+    wrong += [
+        f"{name}: {100.0 * share(ones, name):.1f} % of the intervals hold; allowed: 92 ... 98 %"
+        for name in PARAMETERS
+        if not 0.92 <= share(ones, name) <= 0.98
+    ]
     print("\n".join(wrong))
     return len(wrong)
 

@@ -30,13 +30,17 @@ class Live(Page):
         self.wait_for(READY)
 
     def choose(self, selector, value):
-        self.js(f"(async () => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
-                "live.begun = null; menu.dispatchEvent(new Event('change')); })()")
+        self.js(
+            f"(async () => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
+            "live.begun = null; menu.dispatchEvent(new Event('change')); })()"
+        )
         self.wait_for(READY)
 
     def move(self, way, rows):
         """Moves the hand by the given ways [m, rad] over so many rows."""
-        self.js(f"(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + {list(way)}[i])); await live.stepRows({rows}); }})()")
+        self.js(
+            f"(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + {list(way)}[i])); await live.stepRows({rows}); }})()"
+        )
 
     def assert_program_agrees(self, view=0, **files):
         """What is kept of the motion has the same state when the program runs it."""
@@ -46,7 +50,9 @@ class Live(Page):
         for name, content in files.items():
             (folder / name.replace("__", ".")).write_text(content, encoding="utf-8")
         # A tool that went through the surface is not what is expected by default.
-        [run] = json.loads(must(PROGRAM, "run", file, "--json", "--out", folder / "runs", statuses=(0, 3)))
+        [run] = json.loads(
+            must(PROGRAM, "run", file, "--json", "--out", folder / "runs", statuses=(0, 3))
+        )
         self.assertEqual(run["state_hash"], kept["state_hash"], kept["name"])
         return run["metrics"]
 
@@ -77,15 +83,19 @@ class Live(Page):
     def test_an_own_mesh_is_dropped(self):
         cube = (SOURCE / "tests" / "data" / "cube.obj").read_text(encoding="utf-8")
         self.js("document.getElementById('scale').value = '1'")
-        self.js(f"(() => {{ live.begun = null; const given = new DataTransfer(); given.items.add(new File([{json.dumps(cube)}], 'own.obj'));"
-                "document.getElementById('live').dispatchEvent(new DragEvent('drop', {dataTransfer: given, bubbles: true, cancelable: true})); })()")
+        self.js(
+            f"(() => {{ live.begun = null; const given = new DataTransfer(); given.items.add(new File([{json.dumps(cube)}], 'own.obj'));"
+            "document.getElementById('live').dispatchEvent(new DragEvent('drop', {dataTransfer: given, bubbles: true, cancelable: true})); })()"
+        )
         self.wait_for("live.begun && live.scene.id === 'own_obj' ? true : false")
         depth = self.js("2 * live.begun[0].half_width_m")
         self.move((0, 0, -2 * depth, 0, 0), 800)
         self.assertGreater(self.assert_program_agrees(own__obj=cube)["steps_in_contact"], 0)
 
     def test_faults_are_told_and_left(self):
-        self.js("live.takeScenario('wrong.json', '{\"extends\": \"tap_wall\", \"tool\": {\"diameter_m\": -1}}')")
+        self.js(
+            'live.takeScenario(\'wrong.json\', \'{"extends": "tap_wall", "tool": {"diameter_m": -1}}\')'
+        )
         self.wait_for("document.getElementById('said').classList.contains('failed')")
         self.assertIn("diameter_m", self.js("document.getElementById('said').textContent"))
         self.choose("#scene", "0")
@@ -113,8 +123,11 @@ class Live(Page):
 
     def test_every_law_and_stage_is_the_program_s(self):
         self.choose("#views", "1")
-        for menu, values in ((".side select", "PACKED.laws"), ("#stage", "PACKED.stages.map((_, i) => String(i))"),
-                             ("#device", "PACKED.devices.map((_, i) => String(i))")):
+        for menu, values in (
+            (".side select", "PACKED.laws"),
+            ("#stage", "PACKED.stages.map((_, i) => String(i))"),
+            ("#device", "PACKED.devices.map((_, i) => String(i))"),
+        ):
             for value in self.js(values):
                 self.choose(menu, value)
                 self.move((2e-4, -6e-4, 0, 0.2, 0), 250)
@@ -130,12 +143,31 @@ class Live(Page):
             if {"environment", "extends"} & json.loads(file.read_text(encoding="utf-8")).keys():
                 names[f"/scenarios/{file.relative_to(scenarios)}"] = file
         for data in [*scenarios.glob("*/data/*.csv"), *scenarios.glob("*/data/*.obj")]:
-            self.js(f"live.files.set('/scenarios/{data.relative_to(scenarios)}', new TextEncoder().encode({json.dumps(data.read_text(encoding='utf-8'))}))")
-        runs = json.loads(must(PROGRAM, "run", *names.values(), "--set", short, "--json", "--out", folder / "bundled", statuses=(0, 3)))
+            self.js(
+                f"live.files.set('/scenarios/{data.relative_to(scenarios)}', new TextEncoder().encode({json.dumps(data.read_text(encoding='utf-8'))}))"
+            )
+        runs = json.loads(
+            must(
+                PROGRAM,
+                "run",
+                *names.values(),
+                "--set",
+                short,
+                "--json",
+                "--out",
+                folder / "bundled",
+                statuses=(0, 3),
+            )
+        )
         # Several trials are several runs.
-        single = {name: run["state_hash"] for name, run in zip(names, runs, strict=True) if run["steps"] <= 1000}
+        single = {
+            name: run["state_hash"]
+            for name, run in zip(names, runs, strict=True)
+            if run["steps"] <= 1000
+        }
         self.assertGreater(len(single), 100)
-        found = self.js(f"""{json.dumps(list(single))}.map((name) => {{
+        found = self.js(
+            f"""{json.dumps(list(single))}.map((name) => {{
           try {{
             const engine = new Engine(live.module, live.files, name, ["{short}"], false);
             engine.advance(1000);
@@ -143,5 +175,6 @@ class Live(Page):
           }} catch (error) {{
             return [name, error.message];
           }}
-        }})""")
+        }})"""
+        )
         self.assertEqual({name: value for name, value in found if single[name] != value}, {})

@@ -14,14 +14,33 @@ PLAYING = "document.getElementById('replay-player').dataset.playing"
 
 def setUpModule():
     root = scratch_folder(unittest)
-    hapbench("compare", "mesh_molar", "--algorithms", "original_averaging,shaped_stiffness,proxy,mean", "--set", "time.duration_s=0.5",
-             "--set", "record.contacts=true", "--quiet", "--out", root / "molar")
+    hapbench(
+        "compare",
+        "mesh_molar",
+        "--algorithms",
+        "original_averaging,shaped_stiffness,proxy,mean",
+        "--set",
+        "time.duration_s=0.5",
+        "--set",
+        "record.contacts=true",
+        "--quiet",
+        "--out",
+        root / "molar",
+    )
     hapbench("run", "springs_limited_mean", "--quiet", "--out", root / "springs")
     hapbench("report", root / "molar", root / "springs", "--quiet", "--out", root / "page.html")
     make_results(root / "results")
     make_figures(root / "figures")
     make_claims(root / "claims.json")
-    done = report(root / "results", "--figures", root / "figures", "--claims", root / "claims.json", "--out", root / "report.html")
+    done = report(
+        root / "results",
+        "--figures",
+        root / "figures",
+        "--claims",
+        root / "claims.json",
+        "--out",
+        root / "report.html",
+    )
     assert done.returncode == 0, done.stderr
     OwnPage.show(root / "page.html")
     OfThesis.url, OfThesis.driver = (root / "report.html").as_uri(), OwnPage.driver
@@ -38,9 +57,16 @@ class EveryPage:
                 for part in self.PARTS:
                     self.js(f"document.getElementById('{part}').scrollIntoView()")
                     # Text alone has tens of shades of grey.
-                    colours = Image.open(BytesIO(self.driver.get_screenshot_as_png())).getcolors(20)  # None: there are more
+                    colours = Image.open(BytesIO(self.driver.get_screenshot_as_png())).getcolors(
+                        20
+                    )  # None: there are more
                     self.assertIsNone(colours, part)
-        self.assertEqual(self.js("[...document.images].filter((i) => !(i.complete && i.naturalWidth > 0)).length"), 0)
+        self.assertEqual(
+            self.js(
+                "[...document.images].filter((i) => !(i.complete && i.naturalWidth > 0)).length"
+            ),
+            0,
+        )
 
 
 class OwnPage(EveryPage, Page):
@@ -77,10 +103,13 @@ class OfThesis(EveryPage, Page):
     def test_the_points_in_the_tool_are_the_recorded_ones(self):
         """Over rows of all recordings: how many points the page finds in the tool, at least and at most, against the number recorded.
         Places are rounded to half a step of the packing, the pose to single precision: only points within three steps of the
-        surface may change sides. Of a scene with more points than are drawn there may be more in the tool."""
+        surface may change sides. Of a scene with more points than are drawn there may be more in the tool.
+        """
         for scene in range(2):
             self.choose("#replay-scene", scene)
-            self.assertEqual(self.js("""(() => {
+            self.assertEqual(
+                self.js(
+                    """(() => {
               const scene = player.scene, wrong = [], step = 3 * player.packed[%d].shellScale;
               for (const recording of scene.recordings) for (let row = 0; row < recording.length; row += 7) {
                 const depths = scene.points.map((point) => scene.depthIn(point.at, recording.tip(row), recording.axis(row)));
@@ -88,7 +117,11 @@ class OfThesis(EveryPage, Page):
                 if (recording.colliding[row] < least || %s && recording.colliding[row] > most) wrong.push([recording.algorithm, row]);
               }
               return wrong;
-            })()""" % (scene, "true" if scene else "false")), [])
+            })()"""
+                    % (scene, "true" if scene else "false")
+                ),
+                [],
+            )
 
     def test_the_ledger_sorts_and_filters(self):
         ids = "[...document.querySelectorAll('#ledger-table tbody tr:not([hidden])')].map((r) => r.cells[0].textContent)"

@@ -23,7 +23,16 @@ from hapbench_pictures.panels import draw_over_time, looks
 from hapbench_pictures.given import given_runs, labels
 from hapbench_pictures.over_axes import Axis, over_axes
 from hapbench_pictures.quantities import SHORT, Samples, settled_range
-from hapbench_report.recording import force_steps, forces, rows_to_show, settled_rows, sound, strongest, tool_profile
+from hapbench_report.recording import (
+    force_steps,
+    forces,
+    rows_to_show,
+    settled_rows,
+    sound,
+    strongest,
+    tool_profile,
+)
+
 
 def drawn(command, *words, expected=0):
     """What `hapbench plot` or `report` prints, from this process, which has matplotlib loaded; on standard error if input is refused."""
@@ -38,11 +47,36 @@ plotted = partial(drawn, "plot")
 def make_runs():
     """Short runs, a comparison and a sweep, once for a module, as its setUpModule."""
     Given.root = scratch_folder(unittest)
-    made("mesh", "run", "mesh_molar", "--set", "time.duration_s=0.25", "--set", "record.contacts=true", "--set", "expect={}")
+    made(
+        "mesh",
+        "run",
+        "mesh_molar",
+        "--set",
+        "time.duration_s=0.25",
+        "--set",
+        "record.contacts=true",
+        "--set",
+        "expect={}",
+    )
     made("springs", "run", "springs_limited_mean", "--set", "time.steps=300", "--set", "expect={}")
-    made("peg", "compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", "mean,proxy,shaped_stiffness,summation")
-    made("sweep", "sweep", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m=1e3:1e4:4:log", "--vary", "rendering.mass_kg=0.1:0.2:3",
-         "--set", "expect={}")
+    made(
+        "peg",
+        "compare",
+        "peg_in_hole_2d_shaped_stiffness",
+        "--algorithms",
+        "mean,proxy,shaped_stiffness,summation",
+    )
+    made(
+        "sweep",
+        "sweep",
+        "springs_limited_mean",
+        "--vary",
+        "rendering.stiffness_N_per_m=1e3:1e4:4:log",
+        "--vary",
+        "rendering.mass_kg=0.1:0.2:3",
+        "--set",
+        "expect={}",
+    )
 
 
 def made(name, *words):
@@ -84,9 +118,16 @@ class Columns(Given):
     def test_gaps_and_what_is_wrong(self):
         file = self.root / "wrong.csv"
         file.write_text("a,b,c\r\n,,\r\n1,,3\r\n,2,3")
-        np.testing.assert_array_equal(list(columns.read_columns(file).values()), [[np.nan, 1, np.nan], [np.nan, np.nan, 2], [np.nan, 3, 3]])
-        for text, said in (("a,b\n1,2\n3\n", "line 3: got 1 fields; allowed: 2"), ("a,b\n1,2\n3,x\n", "line 3: b: got x; allowed"),
-                           ("a,b\n", "holds no row"), ("a,c\n1,2\n", "line 1: no column b")):
+        np.testing.assert_array_equal(
+            list(columns.read_columns(file).values()),
+            [[np.nan, 1, np.nan], [np.nan, np.nan, 2], [np.nan, 3, 3]],
+        )
+        for text, said in (
+            ("a,b\n1,2\n3\n", "line 3: got 1 fields; allowed: 2"),
+            ("a,b\n1,2\n3,x\n", "line 3: b: got x; allowed"),
+            ("a,b\n", "holds no row"),
+            ("a,c\n1,2\n", "line 1: no column b"),
+        ):
             file.write_text(text)
             with self.assertRaisesRegex(InputError, re.escape(f"{file}: {said}")):
                 columns.read_columns(file, ["a", "b"])
@@ -106,7 +147,11 @@ class Reduction(unittest.TestCase):
 
     def test_the_replay_keeps_the_peaks(self):
         rng, n = np.random.default_rng(5), 30_000
-        table = {"time_s": np.arange(n) * 1e-3, "depth_max_m": rng.random(n), **{f"f{axis}_N": rng.normal(size=n) for axis in "xyz"}}
+        table = {
+            "time_s": np.arange(n) * 1e-3,
+            "depth_max_m": rng.random(n),
+            **{f"f{axis}_N": rng.normal(size=n) for axis in "xyz"},
+        }
         kept = rows_to_show(table)
         self.assertLess(len(kept), n / 10)
         for of in (np.linalg.norm(forces(table), axis=1), force_steps(table), table["depth_max_m"]):
@@ -119,21 +164,41 @@ class Equal(Given):
         a, b = np.arange(9.0), np.ones(9)
         self.assertEqual(style.equal_curves([(a, b), (a, a), (a, b)]), [(0, 2), (0, 1), (1, 2)])
         turns = [style.striped("-", place, 3) for place in range(3)]
-        self.assertEqual({on * 3 for _, (on, _) in turns} | {on + off for _, (on, off) in turns}, {3 * style.STRIPE})
+        self.assertEqual(
+            {on * 3 for _, (on, _) in turns} | {on + off for _, (on, off) in turns},
+            {3 * style.STRIPE},
+        )
         self.assertEqual([offset for offset, _ in turns], [0, style.STRIPE, 2 * style.STRIPE])
         self.assertEqual(style.striped("--", 0, 1), "--")
         _, ax = style.plt.subplots()
-        over_axes(ax, Axis.of("x", a), Axis.of("y", b), [(name, a, b, {"ls": "-", "marker": "o"}) for name in "pq"])
-        marked = [set(range(9)[slice(line.get_markevery()[0], None, line.get_markevery()[1])]) for line in ax.lines]
+        over_axes(
+            ax,
+            Axis.of("x", a),
+            Axis.of("y", b),
+            [(name, a, b, {"ls": "-", "marker": "o"}) for name in "pq"],
+        )
+        marked = [
+            set(range(9)[slice(line.get_markevery()[0], None, line.get_markevery()[1])])
+            for line in ax.lines
+        ]
         self.assertEqual((marked[0] & marked[1], marked[0] | marked[1]), (set(), set(range(9))))
         style.plt.close()
 
     def test_equal_runs_take_turns(self):
         runs = given_runs([self.root / "springs"]) * 2
         _, ax = style.plt.subplots()
-        draw_over_time(ax, SHORT["force"], [Samples(run, [SHORT["force"]]) for run in runs], looks(runs, labels(runs)))
-        self.assertEqual(len({line.get_linestyle() for line in ax.lines if len(line.get_xdata()) > 2}), 1)
-        self.assertEqual(len({line._unscaled_dash_pattern for line in ax.lines if len(line.get_xdata()) > 2}), 2)
+        draw_over_time(
+            ax,
+            SHORT["force"],
+            [Samples(run, [SHORT["force"]]) for run in runs],
+            looks(runs, labels(runs)),
+        )
+        self.assertEqual(
+            len({line.get_linestyle() for line in ax.lines if len(line.get_xdata()) > 2}), 1
+        )
+        self.assertEqual(
+            len({line._unscaled_dash_pattern for line in ax.lines if len(line.get_xdata()) > 2}), 2
+        )
         style.plt.close()
 
 
@@ -144,7 +209,10 @@ class Moments(unittest.TestCase):
         touching = ((1 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7)).astype(int)
         # A gap shorter than the settling time is no landing.
         rows = {"time_s": t, "colliding": touching}
-        for metrics, settled in (({"settling_s": 0.5}, (1.5 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7.5)), ({"from_s": 4.0}, (4 <= t) & (t < 5) | (t >= 7))):
+        for metrics, settled in (
+            ({"settling_s": 0.5}, (1.5 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7.5)),
+            ({"from_s": 4.0}, (4 <= t) & (t < 5) | (t >= 7)),
+        ):
             np.testing.assert_array_equal(settled_rows(rows, {"metrics": metrics}), settled)
 
     def test_a_landing_sets_no_scale(self):
@@ -156,36 +224,62 @@ class Moments(unittest.TestCase):
         self.assertIsNone(settled_range([(calm, np.minimum(force, 3), np.minimum(force, 3))]))
         self.assertIsNone(settled_range([(calm & False, force, force)]))
         hammering = np.where(calm & (np.arange(502) % 2 > 0), 10.0, force)
-        self.assertIsNone(settled_range([(calm & (np.arange(502) < 50) & (hammering < 2), hammering, hammering)]))
+        self.assertIsNone(
+            settled_range([(calm & (np.arange(502) < 50) & (hammering < 2), hammering, hammering)])
+        )
 
 
 class Shapes(unittest.TestCase):
     def test_a_force_that_turns_round_is_heard(self):
         t = np.arange(4096) / 2048
         square, direction = np.sign(np.sin(2 * np.pi * 100 * t)), np.array([0.6, 0.0, 0.8])
-        np.testing.assert_allclose(abs(strongest(np.outer(direction, square)) @ direction), 1, atol=1e-9)
-        packed = sound({"time_s": t, "colliding": np.ones(4096), **{f"f{a}_N": square * d for a, d in zip("xyz", direction)}})
+        np.testing.assert_allclose(
+            abs(strongest(np.outer(direction, square)) @ direction), 1, atol=1e-9
+        )
+        packed = sound(
+            {
+                "time_s": t,
+                "colliding": np.ones(4096),
+                **{f"f{a}_N": square * d for a, d in zip("xyz", direction)},
+            }
+        )
         # A square wave of 100 Hz has little below 30 Hz: its rms of 1 stays within a few per cent.
         self.assertAlmostEqual(packed["rms"], 1, delta=0.05)
 
     def test_the_tool_is_a_cylinder_or_what_the_summary_says(self):
-        self.assertEqual(tool_profile({"tool": {"diameter_m": 2, "length_m": 5, "tip": "flat"}}, {}), [[-5, 0], [-5, 1], [0, 1], [0, 0]])
-        for s, r in tool_profile({"tool": {"diameter_m": 2, "length_m": 5, "tip": "round"}}, {})[2:]:
+        self.assertEqual(
+            tool_profile({"tool": {"diameter_m": 2, "length_m": 5, "tip": "flat"}}, {}),
+            [[-5, 0], [-5, 1], [0, 1], [0, 0]],
+        )
+        for s, r in tool_profile({"tool": {"diameter_m": 2, "length_m": 5, "tip": "round"}}, {})[
+            2:
+        ]:
             self.assertAlmostEqual(s * s + r * r, 1)
         outline = [[-5, 0], [-5, 1], [0, 2.5], [0, 0]]
-        self.assertEqual(tool_profile({"tool": {"type": "bur"}}, {"tool": {"outline_m": outline}}), outline)
+        self.assertEqual(
+            tool_profile({"tool": {"type": "bur"}}, {"tool": {"outline_m": outline}}), outline
+        )
         for wrong in ([], [[0, 1]], [[0, 1], [2]], [[0, 1], [1, None]], "outline"):
-            self.assertIsNone(tool_profile({"tool": {"type": "bur"}}, {"tool": {"outline_m": wrong}}), wrong)
+            self.assertIsNone(
+                tool_profile({"tool": {"type": "bur"}}, {"tool": {"outline_m": wrong}}), wrong
+            )
 
 
 def contrast(first, second):
-    low, high = sorted(hapbench_looks.luminance([int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]) for colour in (first, second))
+    low, high = sorted(
+        hapbench_looks.luminance([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+        for colour in (first, second)
+    )
     return (high + 0.05) / (low + 0.05)
 
 
 class Looks(unittest.TestCase):
     def test_algorithms_are_told_apart(self):
-        names = {entry["name"] for entry in json.loads(hapbench("describe", "--json")) if entry["kind"] == "algorithm"}
+        names = {
+            entry["name"]
+            for entry in json.loads(hapbench("describe", "--json"))
+            if entry["kind"] == "algorithm"
+        }
         self.assertGreaterEqual(names, set(hapbench_looks.ALGORITHMS), "an entry for no algorithm")
         looks = [hapbench_looks.look(name) for name in names]
         for part in ("label", "colour", "dark", "marker"):
@@ -196,18 +290,36 @@ class Looks(unittest.TestCase):
     def test_an_algorithm_without_an_entry_has_a_look_by_its_name(self):
         looks = [hapbench_looks.look(f"law_{i}") for i in range(200)]
         # The same in another process: nothing depends on the order of calls or on the seed of hashes.
-        said = must(sys.executable, "-c", "import hapbench_looks; print(hapbench_looks.look('law_7'))",
-                    PYTHONPATH=str(SOURCE / "scripts" / "python"), PYTHONHASHSEED="1")
+        said = must(
+            sys.executable,
+            "-c",
+            "import hapbench_looks; print(hapbench_looks.look('law_7'))",
+            PYTHONPATH=str(SOURCE / "scripts" / "python"),
+            PYTHONHASHSEED="1",
+        )
         self.assertEqual(said.strip(), repr(looks[7]))
         # Of 360 hues, 4 dashes and 7 markers, 200 names share few.
         self.assertGreater(len({(look.colour, look.dash, look.marker) for look in looks}), 190)
 
     def test_colours_can_be_read(self):
-        sheet = (SOURCE / "scripts/python/hapbench_report/assets/style.css").read_text(encoding="utf-8")
-        light, dark = (re.findall(rf"--{name}: (#[0-9a-f]{{6}})", sheet) for name in ("page", "panel"))
+        sheet = (SOURCE / "scripts/python/hapbench_report/assets/style.css").read_text(
+            encoding="utf-8"
+        )
+        light, dark = (
+            re.findall(rf"--{name}: (#[0-9a-f]{{6}})", sheet) for name in ("page", "panel")
+        )
         light, dark = [light[0], "#ffffff"], [light[1], dark[1]]
-        published = hapbench_looks.Look("", hapbench_looks.PUBLISHED, hapbench_looks.PUBLISHED_DARK, (), "")
-        for look in (*hapbench_looks.ALGORITHMS.values(), *hapbench_looks.SERIES, *map(hapbench_looks.look, map(str, range(400))), published):
+        published = hapbench_looks.Look(
+            "", hapbench_looks.PUBLISHED, hapbench_looks.PUBLISHED_DARK, (), ""
+        )
+        for look in (
+            *hapbench_looks.ALGORITHMS.values(),
+            *hapbench_looks.SERIES,
+            *map(hapbench_looks.look, map(str, range(400))),
+            published,
+        ):
             for colour, grounds in ((look.colour, light), (look.dark, dark)):
                 for ground in grounds:
-                    self.assertGreaterEqual(contrast(colour, ground), 4.5, (look.label, colour, ground))  # WCAG 2.1, level AA, of text
+                    self.assertGreaterEqual(
+                        contrast(colour, ground), 4.5, (look.label, colour, ground)
+                    )  # WCAG 2.1, level AA, of text

@@ -13,7 +13,15 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from fixture import ENVIRONMENT as OF_TESTS, PROGRAM, SOURCE, hapbench as program, must, ran, scratch_folder
+from fixture import (
+    ENVIRONMENT as OF_TESTS,
+    PROGRAM,
+    SOURCE,
+    hapbench as program,
+    must,
+    ran,
+    scratch_folder,
+)
 
 PACKAGES = Path(sys.argv[-1]).resolve()
 sys.path.insert(0, str(PACKAGES))
@@ -25,14 +33,24 @@ PEG = "peg_in_hole_2d_shaped_stiffness"
 WEDGE = "wedge_stiffness"  # in which a hand is free, so that --jitter may shift it
 # Short, and with contact from the first step on.
 SHORT = {"time.steps": 300, "expect": "{}"}
-EVERYTHING = {"record.contacts": True, "record.stiffness_tensor": True, "record.energy": True, "record.torque": True,
-              "record.pose": True, "record.ratio_iterations": "[0,3]"}
+EVERYTHING = {
+    "record.contacts": True,
+    "record.stiffness_tensor": True,
+    "record.energy": True,
+    "record.torque": True,
+    "record.pose": True,
+    "record.ratio_iterations": "[0,3]",
+}
 ENVIRONMENT = {**OF_TESTS, "PYTHONPATH": str(PACKAGES)}
 python = partial(ran, sys.executable, env=ENVIRONMENT)
 
 
 def words_of(overrides):
-    return [word for field, value in overrides.items() for word in ("--set", f"{field}={value if isinstance(value, str) else json.dumps(value)}")]
+    return [
+        word
+        for field, value in overrides.items()
+        for word in ("--set", f"{field}={value if isinstance(value, str) else json.dumps(value)}")
+    ]
 
 
 class Scratch(unittest.TestCase):
@@ -52,7 +70,10 @@ class Runs(Scratch):
         run = hapbench.run(PEG, overrides)
         program("run", PEG, *words_of(overrides), "--out", self.root, "--quiet")
         self.assertEqual(set(run.tables), {file.stem for file in self.root.glob("*.csv")})
-        self.assertEqual(set(run.tables), {"trajectory", "contacts", "contact_trace", "stiffness_tensor", "energy", "ratios"})
+        self.assertEqual(
+            set(run.tables),
+            {"trajectory", "contacts", "contact_trace", "stiffness_tensor", "energy", "ratios"},
+        )
         for name, table in run.tables.items():
             written = read_columns(self.root / f"{name}.csv", may_be_empty=True)
             self.assertEqual(list(table), list(written))
@@ -62,7 +83,9 @@ class Runs(Scratch):
                 # Equal bits, except that there are many NaN.
                 np.testing.assert_array_equal(np.isnan(found), np.isnan(values), f"{name} {column}")
                 known = ~np.isnan(values)
-                np.testing.assert_array_equal(found[known].view(np.int64), values[known].view(np.int64), f"{name} {column}")
+                np.testing.assert_array_equal(
+                    found[known].view(np.int64), values[known].view(np.int64), f"{name} {column}"
+                )
         read = hapbench.load(self.root)
         self.assertEqual(run.summary, without_diagnosis(read))
         self.assertEqual(run.scenario, read.scenario)
@@ -70,13 +93,22 @@ class Runs(Scratch):
         self.assertEqual(run.trajectory.meanings, read.trajectory.meanings)
         self.assertGreater(run.contacts.rows, 1000)
         self.assertEqual(run.trajectory.units["fx_N"], "N")
-        self.assertTrue(np.isnan(run.trajectory.ratio_min).any() or (run.trajectory.rendered > 0).all())
-        self.assertEqual((run.name, run.algorithm, run.outcome), (PEG, "shaped_stiffness", "completes"))
+        self.assertTrue(
+            np.isnan(run.trajectory.ratio_min).any() or (run.trajectory.rendered > 0).all()
+        )
+        self.assertEqual(
+            (run.name, run.algorithm, run.outcome), (PEG, "shaped_stiffness", "completes")
+        )
         self.assertEqual(repr(run.trajectory), repr(read.trajectory))
 
     def test_of_several_trials(self):
         name = "vertical_peg_in_hole_shaped_stiffness"
-        overrides = {"time.duration_s": 0.2, "record.trajectory": True, "hand.trials": 2, "expect": "{}"}
+        overrides = {
+            "time.duration_s": 0.2,
+            "record.trajectory": True,
+            "hand.trials": 2,
+            "expect": "{}",
+        }
         run = hapbench.run(name, overrides)
         program("run", name, *words_of(overrides), "--out", self.root / "trials", "--quiet")
         read = hapbench.load(self.root / "trials")
@@ -111,21 +143,43 @@ class Runs(Scratch):
         by_dict = hapbench.run(scene)
         by_name = hapbench.run("mesh_molar", {"time.duration_s": 0.02, "expect": "{}"})
         self.assertEqual(by_dict.state_hash, by_name.state_hash)
-        self.assertEqual(by_dict.summary["provenance"], by_name.summary["provenance"])  # the scenario's hash in it
+        self.assertEqual(
+            by_dict.summary["provenance"], by_name.summary["provenance"]
+        )  # the scenario's hash in it
 
     def test_threads_compute_at_once(self):
         stiffness = [2e4, 3e4, 4e4, 5e4]
-        alone = [hapbench.run(PEG, {**SHORT, "rendering.stiffness_N_per_m": k}).state_hash for k in stiffness]
+        alone = [
+            hapbench.run(PEG, {**SHORT, "rendering.stiffness_N_per_m": k}).state_hash
+            for k in stiffness
+        ]
         with ThreadPoolExecutor(4) as pool:
-            beside = list(pool.map(lambda k: hapbench.run(PEG, {**SHORT, "rendering.stiffness_N_per_m": k}).state_hash, stiffness))
+            beside = list(
+                pool.map(
+                    lambda k: hapbench.run(
+                        PEG, {**SHORT, "rendering.stiffness_N_per_m": k}
+                    ).state_hash,
+                    stiffness,
+                )
+            )
         self.assertEqual(alone, beside)
 
     def test_the_interpreter_is_released(self):
         counted = []
-        thread = threading.Thread(target=lambda: [counted.append(time.sleep(0.001)) for _ in range(1000)], daemon=True)
+        thread = threading.Thread(
+            target=lambda: [counted.append(time.sleep(0.001)) for _ in range(1000)], daemon=True
+        )
         thread.start()
         before = len(counted)
-        hapbench.run(PEG, {"record.trajectory": False, "time.steps": 20000, "time.stop_when": "[]", "expect": "{}"})
+        hapbench.run(
+            PEG,
+            {
+                "record.trajectory": False,
+                "time.steps": 20000,
+                "time.stop_when": "[]",
+                "expect": "{}",
+            },
+        )
         self.assertGreater(len(counted), before)
 
     def test_progress(self):
@@ -141,17 +195,26 @@ class Errors(Scratch):
     def test_say_where_and_what(self):
         with self.assertRaises(hapbench.ScenarioError) as caught:
             hapbench.run({"extends": PEG, "rendering": {"algoritm": "mean"}})
-        self.assertEqual((caught.exception.pointer, caught.exception.nearest), ("/rendering/algoritm", "algorithm"))
+        self.assertEqual(
+            (caught.exception.pointer, caught.exception.nearest),
+            ("/rendering/algoritm", "algorithm"),
+        )
         self.assertTrue(str(caught.exception).startswith("/rendering/algoritm: "), caught.exception)
         with self.assertRaises(hapbench.ScenarioError) as caught:
             hapbench.run(PEG, {"rendering.algorithm": "shaped_stifness"})
-        self.assertEqual((caught.exception.pointer, caught.exception.nearest), ("/rendering/algorithm", "shaped_stiffness"))
+        self.assertEqual(
+            (caught.exception.pointer, caught.exception.nearest),
+            ("/rendering/algorithm", "shaped_stiffness"),
+        )
         self.assertTrue(caught.exception.file.endswith(f"{PEG}.json"))
         with self.assertRaisesRegex(hapbench.ScenarioError, 'nearest valid name: "drag_molar"'):
             hapbench.run("drag_mola")
         with self.assertRaises(hapbench.ScenarioError) as caught:
             hapbench.run(PEG, {"rendering.mass_kg": -1, "time.step_s": -1})
-        self.assertEqual({fault.pointer for fault in caught.exception.faults}, {"/rendering/mass_kg", "/time/step_s"})
+        self.assertEqual(
+            {fault.pointer for fault in caught.exception.faults},
+            {"/rendering/mass_kg", "/time/step_s"},
+        )
 
     def test_of_results(self):
         for folder, said in ((self.root / "nothing", "is not a folder"), (self.root, "no results")):
@@ -160,12 +223,19 @@ class Errors(Scratch):
 
     def test_without_the_module_results_can_be_read(self):
         program("run", PEG, *words_of(SHORT), "--out", self.root / "run", "--quiet")
-        code = (f"import hapbench; print(hapbench.load({str(self.root / 'run')!r}).trajectory.rows)\n"
-                "try:\n    hapbench.run\nexcept ImportError as error:\n    print(error)")
-        done = ran(sys.executable, "-c", code, env=ENVIRONMENT, PYTHONPATH=str(SOURCE / "scripts/python"))
+        code = (
+            f"import hapbench; print(hapbench.load({str(self.root / 'run')!r}).trajectory.rows)\n"
+            "try:\n    hapbench.run\nexcept ImportError as error:\n    print(error)"
+        )
+        done = ran(
+            sys.executable, "-c", code, env=ENVIRONMENT, PYTHONPATH=str(SOURCE / "scripts/python")
+        )
         self.assertEqual(done.stdout.splitlines()[0], "300", done.stderr)
         self.assertIn("compiled module", done.stdout)
-        self.assertIn("-DHAPBENCH_BUILD_PYTHON=ON && cmake --build --preset release --target bin/hapbench _hapbench", done.stdout)
+        self.assertIn(
+            "-DHAPBENCH_BUILD_PYTHON=ON && cmake --build --preset release --target bin/hapbench _hapbench",
+            done.stdout,
+        )
 
 
 class Studies(Scratch):
@@ -187,12 +257,19 @@ class Studies(Scratch):
 
     def test_sweep(self):
         seen = []
-        report = hapbench.sweep(PEG, {"rendering.stiffness_N_per_m": [2e4, 4e4], "rendering.algorithm": "mean,summation"}, SHORT,
-                                jobs=2, progress=lambda *state: seen.append(state))
+        report = hapbench.sweep(
+            PEG,
+            {"rendering.stiffness_N_per_m": [2e4, 4e4], "rendering.algorithm": "mean,summation"},
+            SHORT,
+            jobs=2,
+            progress=lambda *state: seen.append(state),
+        )
         table = report.sweep
         self.assertEqual(table.rows, 4)
         self.assertEqual(seen[-1][1:], (4, 4))
-        alone = hapbench.run(PEG, {**SHORT, "rendering.stiffness_N_per_m": 4e4, "rendering.algorithm": "mean"})
+        alone = hapbench.run(
+            PEG, {**SHORT, "rendering.stiffness_N_per_m": 4e4, "rendering.algorithm": "mean"}
+        )
         row = table.where(**{"rendering.algorithm": "mean", "rendering.stiffness_N_per_m": 4e4})
         self.assertEqual((row.rows, row["state_hash"][0]), (1, alone.state_hash))
         self.assertEqual(row["force_max_N"][0], alone.metrics["force_max_N"])
@@ -211,10 +288,14 @@ class Steps(Scratch):
                 self.assertEqual(state["step"], row["step"])
                 for name, key in (("p", "position_m"), ("f", "force_N"), ("h", "handle_m")):
                     unit = "N" if key.endswith("N") else "m"
-                    self.assertEqual([row[f"{name}{axis}_{unit}"] for axis in "xyz"], list(state[key]))
+                    self.assertEqual(
+                        [row[f"{name}{axis}_{unit}"] for axis in "xyz"], list(state[key])
+                    )
                 mine = run.contacts.step == rows
                 np.testing.assert_array_equal(contacts["depths_m"], run.contacts.depth_m[mine])
-                np.testing.assert_array_equal(contacts["gradients"][:, 1], run.contacts.gradient_y[mine])
+                np.testing.assert_array_equal(
+                    contacts["gradients"][:, 1], run.contacts.gradient_y[mine]
+                )
                 rows += 1
             self.assertEqual((rows, simulation.rows, simulation.outcome), (300, 300, "completes"))
             simulation.reset()
@@ -225,41 +306,66 @@ class Steps(Scratch):
 
 class Program(Scratch):
     def test_is_the_same(self):
-        for words, expected in ((["describe", "mean"], 0), (["run", "nobody"], 2), (["runn"], 2),
-                                (["run", PEG, *words_of({"expect.outcome": "diverges", "time.steps": 50}), "--out", self.root / "a"], 3)):
+        for words, expected in (
+            (["describe", "mean"], 0),
+            (["run", "nobody"], 2),
+            (["runn"], 2),
+            (
+                [
+                    "run",
+                    PEG,
+                    *words_of({"expect.outcome": "diverges", "time.steps": 50}),
+                    "--out",
+                    self.root / "a",
+                ],
+                3,
+            ),
+        ):
             own, built = python("-m", "hapbench", *words), ran(PROGRAM, *words)
             self.assertEqual((own.returncode, built.returncode), (expected, expected), own.stderr)
-            without_times = [re.sub(r"[0-9.]+ (µs|us|s|ms)\b", "", text) for text in (own.stdout + own.stderr, built.stdout + built.stderr)]
+            without_times = [
+                re.sub(r"[0-9.]+ (µs|us|s|ms)\b", "", text)
+                for text in (own.stdout + own.stderr, built.stdout + built.stderr)
+            ]
             if words[0] != "run" or expected == 2:
                 self.assertEqual(*without_times)
 
     def test_reads_and_writes_numbers_of_no_language(self):
         must("localedef", "-i", "de_DE", "-f", "UTF-8", self.root / "de_DE.UTF-8")
-        code = ("import hapbench, locale, sys\n"
-                "locale.setlocale(locale.LC_ALL, sys.argv[1])\n"
-                "assert locale.str(0.5) == sys.argv[2]\n"
-                f"report = hapbench.compare({WEDGE!r}, ['mean', 'proxy'], {SHORT}, seeds=2, jitter=1.5e-4)\n"
-                "print(*[report.league[name].tolist() for name in report.league])\n"
-                "hapbench.main(['new', 'bur', '--out', sys.argv[3], '--quiet'])\n"
-                "print(open(sys.argv[3], encoding='utf-8').read())\n")
-        comma, point = (must(sys.executable, "-c", code, *words, env=ENVIRONMENT, LOCPATH=str(self.root))
-                        for words in (("de_DE.UTF-8", "0,5", self.root / "a.json"), ("C", "0.5", self.root / "b.json")))
+        code = (
+            "import hapbench, locale, sys\n"
+            "locale.setlocale(locale.LC_ALL, sys.argv[1])\n"
+            "assert locale.str(0.5) == sys.argv[2]\n"
+            f"report = hapbench.compare({WEDGE!r}, ['mean', 'proxy'], {SHORT}, seeds=2, jitter=1.5e-4)\n"
+            "print(*[report.league[name].tolist() for name in report.league])\n"
+            "hapbench.main(['new', 'bur', '--out', sys.argv[3], '--quiet'])\n"
+            "print(open(sys.argv[3], encoding='utf-8').read())\n"
+        )
+        comma, point = (
+            must(sys.executable, "-c", code, *words, env=ENVIRONMENT, LOCPATH=str(self.root))
+            for words in (
+                ("de_DE.UTF-8", "0,5", self.root / "a.json"),
+                ("C", "0.5", self.root / "b.json"),
+            )
+        )
         self.assertEqual(comma, point)
 
     def test_ctrl_c_in_a_script(self):
         """Ends within 0.2 s, also while a slow law is called. The fastest of three, because the machine may be busy."""
-        code = ("import hapbench, os, signal, threading, time\n"
-                "@hapbench.force_law('slow')\n"
-                "def slow(depths):\n    time.sleep(0.002)\n    return 1 / len(depths)\n"
-                "def seconds_to_end(law):\n"
-                "    sent = []\n"
-                "    def send():\n        sent.append(time.monotonic())\n        os.kill(os.getpid(), signal.SIGINT)\n"
-                "    threading.Timer(0.3, send).start()\n"
-                "    try:\n"
-                f"        hapbench.run({PEG!r}, {{'time.steps': 1_000_000_000, 'time.stop_when': '[]', 'record.every': 20_000, 'rendering.algorithm': law}})\n"
-                "    except KeyboardInterrupt:\n        return time.monotonic() - sent[0]\n"
-                "for law in ('shaped_stiffness', 'slow'):\n    print(min(seconds_to_end(law) for _ in range(3)))\n"
-                f"print(hapbench.run({PEG!r}, {{'time.steps': 10}}).trajectory.rows)")
+        code = (
+            "import hapbench, os, signal, threading, time\n"
+            "@hapbench.force_law('slow')\n"
+            "def slow(depths):\n    time.sleep(0.002)\n    return 1 / len(depths)\n"
+            "def seconds_to_end(law):\n"
+            "    sent = []\n"
+            "    def send():\n        sent.append(time.monotonic())\n        os.kill(os.getpid(), signal.SIGINT)\n"
+            "    threading.Timer(0.3, send).start()\n"
+            "    try:\n"
+            f"        hapbench.run({PEG!r}, {{'time.steps': 1_000_000_000, 'time.stop_when': '[]', 'record.every': 20_000, 'rendering.algorithm': law}})\n"
+            "    except KeyboardInterrupt:\n        return time.monotonic() - sent[0]\n"
+            "for law in ('shaped_stiffness', 'slow'):\n    print(min(seconds_to_end(law) for _ in range(3)))\n"
+            f"print(hapbench.run({PEG!r}, {{'time.steps': 10}}).trajectory.rows)"
+        )
         done = python("-c", code)
         *seconds, rows = map(float, done.stdout.split())
         self.assertEqual((len(seconds), rows), (2, 10), done.stderr)

@@ -19,10 +19,18 @@ class Reproduce(unittest.TestCase):
         self.environment = {**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}"}
         (self.root / "results" / "reference").mkdir(parents=True)
         (self.root / "scripts" / "python").mkdir(parents=True)
-        self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
+        self.put(
+            "scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8")
+        )
         for study in ("stability_z_width", "spring_stiffness"):
             self.put(f"scenarios/library/studies/{study}.json", '{\n  "ask": "limit"\n}\n')
-        for name in ("scripts/setup", "scripts/figures", "scripts/report", "bin/cmake", "build/release/bin/hapbench_accuracy"):
+        for name in (
+            "scripts/setup",
+            "scripts/figures",
+            "scripts/report",
+            "bin/cmake",
+            "build/release/bin/hapbench_accuracy",
+        ):
             self.put(name, NOTHING)
 
     def put(self, name, text):
@@ -45,39 +53,66 @@ class Reproduce(unittest.TestCase):
 
     def test_a_second_call_has_nothing_to_do(self):
         self.put("scripts/report", "#!/bin/sh\n: >results/out/reproduce/report.html\n")
-        program = "#!/bin/sh\necho \"$@\" >>ran\n"
+        program = '#!/bin/sh\necho "$@" >>ran\n'
         self.assertEqual(self.run_with(program)[0], 0)
         made = (self.root / "ran").read_text().splitlines()
         self.assertEqual(len(made), 3)
         status, out, _ = self.run_with(program)
         self.assertEqual((status, (self.root / "ran").read_text().splitlines()), (0, made))
         self.assertIn("Nothing has changed", out)
-        self.put("scenarios/library/studies/spring_stiffness.json", '{\n  "ask": "limit", "summary": "another"\n}\n')
+        self.put(
+            "scenarios/library/studies/spring_stiffness.json",
+            '{\n  "ask": "limit", "summary": "another"\n}\n',
+        )
         self.run_with(program)
-        self.assertEqual(sorted((self.root / "ran").read_text().splitlines()), sorted(2 * made))  # two at a time
+        self.assertEqual(
+            sorted((self.root / "ran").read_text().splitlines()), sorted(2 * made)
+        )  # two at a time
 
     def test_a_figure_after_what_it_needs(self):
         """Figures that miss a scene of the thesis, and studies; the program writes what it is asked for."""
         out = "results/out/reproduce"
-        needs = {"2": "thesis/wedge/trajectory.csv", "A.4-root-locus": "spring_stiffness/limit.csv",
-                 "stability-z_width": "stability_z_width/limit.csv", "proxy": "proxy_in_hole/proxy/summary.json"}
+        needs = {
+            "2": "thesis/wedge/trajectory.csv",
+            "A.4-root-locus": "spring_stiffness/limit.csv",
+            "stability-z_width": "stability_z_width/limit.csv",
+            "proxy": "proxy_in_hole/proxy/summary.json",
+        }
         for study in ("spring_stiffness", "proxy_in_hole"):
             self.put(f"scenarios/library/studies/{study}.json", '{\n  "ask": "compare"\n}\n')
-        self.put("scripts/figures", "#!/bin/sh\necho \"$@\" >> asked\n" + "".join(
-            f'[ -e {out}/{file} ] || echo "figures: skipped {name} (no {file})" >&2\n'
-            for name, file in needs.items()) + "exit 0\n")
-        makes = "".join(f"*\" --out {out}/{folder}\"*) mkdir -p {out}/{file.rpartition('/')[0]}; touch {out}/{file};;\n"
-                        for folder, file in (("thesis/wedge", needs["2"]), ("spring_stiffness", needs["A.4-root-locus"]), ("proxy_in_hole", needs["proxy"]),
-                                             ("stability_z_width", needs["stability-z_width"])))
+        self.put(
+            "scripts/figures",
+            '#!/bin/sh\necho "$@" >> asked\n'
+            + "".join(
+                f'[ -e {out}/{file} ] || echo "figures: skipped {name} (no {file})" >&2\n'
+                for name, file in needs.items()
+            )
+            + "exit 0\n",
+        )
+        makes = "".join(
+            f"*\" --out {out}/{folder}\"*) mkdir -p {out}/{file.rpartition('/')[0]}; touch {out}/{file};;\n"
+            for folder, file in (
+                ("thesis/wedge", needs["2"]),
+                ("spring_stiffness", needs["A.4-root-locus"]),
+                ("proxy_in_hole", needs["proxy"]),
+                ("stability_z_width", needs["stability-z_width"]),
+            )
+        )
         program = f'#!/bin/sh\necho "$@" >> ran\ncase "$* " in\n{makes}esac\n'
         status, said, err = self.run_with(program, "--figure", ",".join(needs))
         self.assertEqual(status, 0, err)
         ran = (self.root / "ran").read_text().splitlines()
         self.assertIn(f"run wedge --out {out}/thesis/wedge", ran)
         self.assertEqual(len(ran), 4, ran)  # each once, and nothing else
-        self.assertEqual((self.root / "asked").read_text().splitlines(), 2 * [f"{out} --out {out}/figures --only {','.join(needs)}"])
+        self.assertEqual(
+            (self.root / "asked").read_text().splitlines(),
+            2 * [f"{out} --out {out}/figures --only {','.join(needs)}"],
+        )
         # What nothing makes is told, and ends the attempts.
-        self.put("scripts/figures", '#!/bin/sh\necho "figures: skipped 2 (no nowhere/x.csv)" >&2\nexit 1\n')
+        self.put(
+            "scripts/figures",
+            '#!/bin/sh\necho "figures: skipped 2 (no nowhere/x.csv)" >&2\nexit 1\n',
+        )
         status, said, err = self.run_with(NOTHING, "--figure", "2")
         self.assertEqual(status, 1)
         self.assertIn("no study makes nowhere", err)
@@ -88,14 +123,21 @@ class Reproduce(unittest.TestCase):
         program = '#!/bin/sh\n[ "$1" != describe ] || printf \'{\\n  "place": "2.4, Fig. A.2, Fig. 2c, Table A.1",\\n  "why": "Fig. 9"\\n}\\n\'\n'
         status, out, err = self.run_with(program, "--only", "A1")
         self.assertEqual(status, 0, err)
-        self.assertIn("drawn: results/out/reproduce --out results/out/reproduce/figures --only A.2,2\n", out)
+        self.assertIn(
+            "drawn: results/out/reproduce --out results/out/reproduce/figures --only A.2,2\n", out
+        )
         # A claim that names none.
         self.assertNotIn("drawn", self.run_with(NOTHING, "--only", "T4")[1])
 
     def test_a_signal_ends_its_parts(self):
         # Without a program of its own that would outlive the shell and write while the folder is removed.
         self.put("build/release/bin/hapbench", "#!/bin/sh\n: >began\nexec sleep 50\n")
-        process = subprocess.Popen([self.root / "scripts" / "reproduce"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment)
+        process = subprocess.Popen(
+            [self.root / "scripts" / "reproduce"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=self.environment,
+        )
         while not (self.root / "began").exists():
             self.assertIsNone(process.poll())
             time.sleep(0.02)
@@ -108,7 +150,9 @@ class Reproduce(unittest.TestCase):
 class Readings(unittest.TestCase):
     def test_lie_in_every_stratum_of_each_choice(self):
         readings = list(csv.DictReader(must(SOURCE / "scripts" / "readings.py", "8").splitlines()))
-        choices = json.loads((SOURCE / "results" / "reference" / "choices.json").read_text(encoding="utf-8"))["choices"]
+        choices = json.loads(
+            (SOURCE / "results" / "reference" / "choices.json").read_text(encoding="utf-8")
+        )["choices"]
         self.assertEqual(list(readings[0]), [choice["id"] for choice in choices])
         for choice in choices:
             values = [reading[choice["id"]] for reading in readings]
@@ -118,4 +162,8 @@ class Readings(unittest.TestCase):
                 continue
             scale = math.log if choice.get("scale") == "log" else float
             low, high = map(scale, choice["range"])
-            self.assertEqual(sorted(int(8 * (scale(float(value)) - low) / (high - low)) for value in values), list(range(8)), choice["id"])
+            self.assertEqual(
+                sorted(int(8 * (scale(float(value)) - low) / (high - low)) for value in values),
+                list(range(8)),
+                choice["id"],
+            )

@@ -8,7 +8,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 from fixture import ENVIRONMENT, PROGRAM, SOURCE, must, scratch_folder
 
-TUTORIALS = [file for file in sorted((SOURCE / "scenarios" / "library" / "tutorials").glob("*.md")) if file.name != "README.md"]
+TUTORIALS = [
+    file
+    for file in sorted((SOURCE / "scenarios" / "library" / "tutorials").glob("*.md"))
+    if file.name != "README.md"
+]
 CODE = re.compile(r"^```(bash|python)\n(.*?)^```\n", re.M | re.S)
 CHECKS = re.compile(r"^<!-- checked by .*?^-->\n", re.M | re.S)
 # A number in a sentence; not a part of a name, such as C5 or 2-D.
@@ -30,17 +34,35 @@ def played(text, folder):
     """What the blocks of the text print. A block that fails ends it with what it said."""
     clone = folder / "hapbench"
     clone.mkdir()
-    for name in ("algorithms", "device_model", "scenarios", "scripts", "sim", "tests"):  # commands write to results/
+    for name in (
+        "algorithms",
+        "device_model",
+        "scenarios",
+        "scripts",
+        "sim",
+        "tests",
+    ):  # commands write to results/
         (clone / name).symlink_to(SOURCE / name)
-    environment = {**ENVIRONMENT, "PATH": f"{PROGRAM.parent}:{ENVIRONMENT['PATH']}", "PYTHONPATH": sys.argv[-1], "MPLBACKEND": "Agg",
-                   "HAPBENCH_MODULE_PATH": "", "COLUMNS": "100", "LC_ALL": "C.UTF-8"}
-    return must(sys.executable, "-c", PLAYER, json.dumps(CODE.findall(text)), cwd=clone, env=environment)
+    environment = {
+        **ENVIRONMENT,
+        "PATH": f"{PROGRAM.parent}:{ENVIRONMENT['PATH']}",
+        "PYTHONPATH": sys.argv[-1],
+        "MPLBACKEND": "Agg",
+        "HAPBENCH_MODULE_PATH": "",
+        "COLUMNS": "100",
+        "LC_ALL": "C.UTF-8",
+    }
+    return must(
+        sys.executable, "-c", PLAYER, json.dumps(CODE.findall(text)), cwd=clone, env=environment
+    )
 
 
 def unproven_numbers(text, printed):
     """Numbers in sentences that no block shows or prints."""
     shown = CHECKS.sub("", text)
-    known = set(NUMBER.findall(printed)) | {number for _, code in CODE.findall(shown) for number in NUMBER.findall(code)}
+    known = set(NUMBER.findall(printed)) | {
+        number for _, code in CODE.findall(shown) for number in NUMBER.findall(code)
+    }
     prose = re.sub(r"\]\([^)]*\)|`[^`]*`", "", CODE.sub("", shown))
     return [number for number in NUMBER.findall(prose) if number not in known]
 
@@ -50,7 +72,10 @@ class Tutorials(unittest.TestCase):
         self.assertEqual(len(TUTORIALS), 6)
         texts = {file.stem: file.read_text(encoding="utf-8") for file in TUTORIALS}
         with ThreadPoolExecutor(2) as pool:
-            printed = {name: pool.submit(played, text, scratch_folder(self)) for name, text in texts.items()}
+            printed = {
+                name: pool.submit(played, text, scratch_folder(self))
+                for name, text in texts.items()
+            }
         for name, text in texts.items():
             with self.subTest(name):
                 self.assertEqual(unproven_numbers(text, printed[name].result()), [])

@@ -23,7 +23,14 @@ END_S = 0.02  # of a run [s]: 1.4 periods of the spring
 STEPS = [1e-3 / 2**i for i in range(6)]
 K, M, X0, V0 = 20000.0, 0.1, 1e-3, 0.2
 # Order without damping, and with it. Any force that is sampled and held over a step makes it 1.
-FORMAL = {"leapfrog": (1, 1), "velocity_verlet": (2, 1), "rk4": (4, 4), "implicit_euler": (1, 1), "implicit_midpoint": (2, 2), "event": (4, 4)}
+FORMAL = {
+    "leapfrog": (1, 1),
+    "velocity_verlet": (2, 1),
+    "rk4": (4, 4),
+    "implicit_euler": (1, 1),
+    "implicit_midpoint": (2, 2),
+    "event": (4, 4),
+}
 # An error C h^p (1 + D h) with D h below 0.07 at the finest step but one moves the order by less than log2(1.07) = 0.1.
 WITHIN = 0.1
 NONLINEAR = {"static_coupling"}  # its spring softens: no closed form
@@ -52,7 +59,14 @@ def linear(A, b=0.0, x=(X0, V0), t=END_S):
 
 def driven(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
     """M under a hand's force + amplitude sin(omega t) - k x - b v: the sine is two more states."""
-    A = np.array([[0, 1, 0, 0], [-(K + k) / M, -(B + b) / M, amplitude / M, 0], [0, 0, 0, omega], [0, 0, -omega, 0]])
+    A = np.array(
+        [
+            [0, 1, 0, 0],
+            [-(K + k) / M, -(B + b) / M, amplitude / M, 0],
+            [0, 0, 0, omega],
+            [0, 0, -omega, 0],
+        ]
+    )
     return lambda *_: linear(A, np.array([0, force / M, 0, 0]), (X0, V0, 0.0, 1.0))[:2]
 
 
@@ -61,37 +75,77 @@ def late(K, b, tau):
     whole, part = divmod(END_S, tau)
     begins = np.array([X0, V0])
     for n in range(1, int(whole) + 2):
-        A = np.kron(np.eye(n), [[0, 1], [0, -b / M]]) + np.kron(np.eye(n, k=-1), [[0, 0], [-K / M, 0]])
+        A = np.kron(np.eye(n), [[0, 1], [0, -b / M]]) + np.kron(
+            np.eye(n, k=-1), [[0, 0], [-K / M, 0]]
+        )
         begins = np.append(begins, linear(A, 0.0, begins, tau if n <= whole else part)[-2:])
     return lambda *_: begins[-2:]
 
 
-MOTORS = {"motor_share": 0.4, "stiffness_N_per_m": 20000.0, "damping_N_s_per_m": 4.0}  # on M, an elastic transmission
+MOTORS = {
+    "motor_share": 0.4,
+    "stiffness_N_per_m": 20000.0,
+    "damping_N_s_per_m": 4.0,
+}  # on M, an elastic transmission
 
 
 def geared(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
     """The same of motors at the spring, with the handle at the hand: the motors' motion."""
     share, gear, loss = MOTORS.values()
     m, h = share * M, (1 - share) * M
-    A = np.array([[0, 1, 0, 0, 0, 0], [-(K + gear) / m, -(B + loss) / m, gear / m, loss / m, 0, 0], [0, 0, 0, 1, 0, 0],
-                  [gear / h, loss / h, -(gear + k) / h, -(loss + b) / h, amplitude / h, 0], [0, 0, 0, 0, 0, omega], [0, 0, 0, 0, -omega, 0]])
-    return lambda *_: linear(A, np.array([0, 0, 0, force / h, 0, 0]), (X0, V0, X0, V0, 0.0, 1.0))[:2]
+    A = np.array(
+        [
+            [0, 1, 0, 0, 0, 0],
+            [-(K + gear) / m, -(B + loss) / m, gear / m, loss / m, 0, 0],
+            [0, 0, 0, 1, 0, 0],
+            [gear / h, loss / h, -(gear + k) / h, -(loss + b) / h, amplitude / h, 0],
+            [0, 0, 0, 0, 0, omega],
+            [0, 0, 0, 0, -omega, 0],
+        ]
+    )
+    return lambda *_: linear(A, np.array([0, 0, 0, force / h, 0, 0]), (X0, V0, X0, V0, 0.0, 1.0))[
+        :2
+    ]
 
 
 def scene(integrator="leapfrog", B=0.0, law="summation", **parts):
-    return {"name": "verified", "environment": {"type": "springs", "groups": [{"direction": [0, 0, 1], "count": 1}]},
-            "initial": {"position_m": [0, 0, X0], "velocity_m_per_s": [0, 0, V0]}, "integrator": {"type": integrator},
-            "rendering": {"algorithm": law, "stiffness_N_per_m": K, "damping_N_s_per_m": B, "mass_kg": M,
-                          "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}, **parts}
+    return {
+        "name": "verified",
+        "environment": {"type": "springs", "groups": [{"direction": [0, 0, 1], "count": 1}]},
+        "initial": {"position_m": [0, 0, X0], "velocity_m_per_s": [0, 0, V0]},
+        "integrator": {"type": integrator},
+        "rendering": {
+            "algorithm": law,
+            "stiffness_N_per_m": K,
+            "damping_N_s_per_m": B,
+            "mass_kg": M,
+            "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0},
+        },
+        **parts,
+    }
 
 
 # Name, the hand, and its force as driven() and geared() have it.
-HANDS = (("none", {"type": "none"}, {}), ("force, steady", {"type": "force", "z_N": 3.0}, {"force": 3.0}),
-         ("force, sine", {"type": "force", "z_N": {"type": "sine", "mean": 0, "amplitude": 3.0, "period_s": 0.013}},
-          {"amplitude": 3.0, "omega": 2 * math.pi / 0.013}),
-         ("push", {"type": "push", "force_N": 3.0}, {"force": -3.0}),
-         ("impedance", {"type": "impedance", "stiffness_N_per_m": 500.0, "damping_N_s_per_m": 4.0, "target": {"x_m": 0, "y_m": 0, "z_m": 0.002}},
-          {"force": 500.0 * 0.002, "k": 500.0, "b": 4.0}))
+HANDS = (
+    ("none", {"type": "none"}, {}),
+    ("force, steady", {"type": "force", "z_N": 3.0}, {"force": 3.0}),
+    (
+        "force, sine",
+        {"type": "force", "z_N": {"type": "sine", "mean": 0, "amplitude": 3.0, "period_s": 0.013}},
+        {"amplitude": 3.0, "omega": 2 * math.pi / 0.013},
+    ),
+    ("push", {"type": "push", "force_N": 3.0}, {"force": -3.0}),
+    (
+        "impedance",
+        {
+            "type": "impedance",
+            "stiffness_N_per_m": 500.0,
+            "damping_N_s_per_m": 4.0,
+            "target": {"x_m": 0, "y_m": 0, "z_m": 0.002},
+        },
+        {"force": 500.0 * 0.002, "k": 500.0, "b": 4.0},
+    ),
+)
 GAP, BOUNCES = 4e-4, 32  # [m]
 
 
@@ -107,53 +161,125 @@ def bounce(step, phase):
 
 
 def start_of_bounce(step, phase):
-    return {"initial": {"position_m": [0, 0, -GAP - phase * step * V0], "velocity_m_per_s": [0, 0, V0]},
-            "rendering": scene()["rendering"] | {"stiffness_N_per_m": stiffness_of_bounce(phase)}}
+    return {
+        "initial": {"position_m": [0, 0, -GAP - phase * step * V0], "velocity_m_per_s": [0, 0, V0]},
+        "rendering": scene()["rendering"] | {"stiffness_N_per_m": stiffness_of_bounce(phase)},
+    }
 
 
 def cases(laws):
     for integrator, orders in FORMAL.items():
         for B, order in zip((0.0, 20.0), orders):
-            yield Case("integrator", f"{integrator}, B = {B:g}", order, scene(integrator, B), driven(K, B))
+            yield Case(
+                "integrator", f"{integrator}, B = {B:g}", order, scene(integrator, B), driven(K, B)
+            )
     for law in sorted(set(laws) - NONLINEAR):
-        share = last_row(scene(law=law), 1e-3, 1)["fspring_z_N"] / (-K * X0)  # couplings are in series with the spring
-        yield Case("law", law, 4, scene("rk4", 20.0, law), driven(share * K, share * 20.0), f"renders {share:.4g} K of one spring" if abs(share - 1) > 1e-12 else "")
+        share = last_row(scene(law=law), 1e-3, 1)["fspring_z_N"] / (
+            -K * X0
+        )  # couplings are in series with the spring
+        yield Case(
+            "law",
+            law,
+            4,
+            scene("rk4", 20.0, law),
+            driven(share * K, share * 20.0),
+            f"renders {share:.4g} K of one spring" if abs(share - 1) > 1e-12 else "",
+        )
     for name, hand, force in HANDS:
         why = "its force is sampled and held" if name in ("force, sine", "impedance") else ""
         for integrator, orders in FORMAL.items():
-            yield Case("hand", f"{name}; {integrator}", 1 if why else orders[1], scene(integrator, 20.0, hand=hand, device={"type": "ideal"}),
-                       driven(K, 20.0, **force), why)
+            yield Case(
+                "hand",
+                f"{name}; {integrator}",
+                1 if why else orders[1],
+                scene(integrator, 20.0, hand=hand, device={"type": "ideal"}),
+                driven(K, 20.0, **force),
+                why,
+            )
         if name != "impedance":  # it pulls the handle, which lags behind the virtual tool
-            yield Case("device", f"admittance; {name}", 1, scene("leapfrog", 20.0, hand=hand, device={"type": "admittance", "force_limit_N": None}),
-                       driven(K, 20.0, **force), why)
+            yield Case(
+                "device",
+                f"admittance; {name}",
+                1,
+                scene(
+                    "leapfrog",
+                    20.0,
+                    hand=hand,
+                    device={"type": "admittance", "force_limit_N": None},
+                ),
+                driven(K, 20.0, **force),
+                why,
+            )
     for name, hand, force in HANDS:
         device = {"type": "impedance", "handle_mass_kg": M, "viscous_N_s_per_m": 6.0}
-        yield Case("device", f"impedance; {name}", 1, scene(B=0.0, hand=hand, device=device), driven(K, 6.0, **force), "the rendered force is held")
-        yield Case("device", f"impedance, elastic transmission; {name}", 1, scene(B=0.0, hand=hand, device=device | {"transmission": MOTORS}),
-                   geared(K, 6.0, **force), "the rendered force is held")
+        yield Case(
+            "device",
+            f"impedance; {name}",
+            1,
+            scene(B=0.0, hand=hand, device=device),
+            driven(K, 6.0, **force),
+            "the rendered force is held",
+        )
+        yield Case(
+            "device",
+            f"impedance, elastic transmission; {name}",
+            1,
+            scene(B=0.0, hand=hand, device=device | {"transmission": MOTORS}),
+            geared(K, 6.0, **force),
+            "the rendered force is held",
+        )
     for samples in (1.0, 0.5, 1.37):
         tau = 1e-3 * samples
         device = {"type": "impedance", "handle_mass_kg": M, "viscous_N_s_per_m": 40.0}
-        yield Case("delay", f"{1e3 * tau:g} ms, {samples:g} samples of 1 ms", 1, scene(device=device), late(K, 40.0, tau), "the rendered force is held",
-                   lambda step, _, tau=tau: {"device": {**device, "delay_samples": tau / step}})
-    one_sided = {"environment": {"type": "springs", "bilateral": False, "groups": [{"direction": [0, 0, 1], "count": 1}]}}
+        yield Case(
+            "delay",
+            f"{1e3 * tau:g} ms, {samples:g} samples of 1 ms",
+            1,
+            scene(device=device),
+            late(K, 40.0, tau),
+            "the rendered force is held",
+            lambda step, _, tau=tau: {"device": {**device, "delay_samples": tau / step}},
+        )
+    one_sided = {
+        "environment": {
+            "type": "springs",
+            "bilateral": False,
+            "groups": [{"direction": [0, 0, 1], "count": 1}],
+        }
+    }
     for integrator, orders in FORMAL.items():
         finds = integrator == "event"
         # The force is continuous where a spring begins, its slope is not: second order for all that are of second order
         # without damping. Outside of contact a leapfrog step is one of velocity Verlet, and so is the bounce.
         formal = orders[0] if finds else 1 if integrator == "implicit_euler" else 2
-        yield Case("switching", f"bounce; {integrator}", formal, scene(integrator, 0.0) | one_sided, bounce,
-                   "" if finds else "the spring begins and ends between two rows", start_of_bounce, BOUNCES)
+        yield Case(
+            "switching",
+            f"bounce; {integrator}",
+            formal,
+            scene(integrator, 0.0) | one_sided,
+            bounce,
+            "" if finds else "the spring begins and ends between two rows",
+            start_of_bounce,
+            BOUNCES,
+        )
 
 
 def last_row(content, step, rows):
     """Of trajectory.csv of a run."""
     with tempfile.TemporaryDirectory(prefix="hapbench-orders-") as folder:
         file = Path(folder) / "scene.json"
-        file.write_text(json.dumps(content | {"time": {"step_s": step, "steps": rows}}), encoding="utf-8")
-        done = subprocess.run([PROGRAM, "run", file, "--quiet", "--set", "expect={}", "--out", Path(folder) / "out"], capture_output=True, text=True)
+        file.write_text(
+            json.dumps(content | {"time": {"step_s": step, "steps": rows}}), encoding="utf-8"
+        )
+        done = subprocess.run(
+            [PROGRAM, "run", file, "--quiet", "--set", "expect={}", "--out", Path(folder) / "out"],
+            capture_output=True,
+            text=True,
+        )
         assert done.returncode in (0, 3), done.stderr
-        table = np.atleast_1d(np.genfromtxt(Path(folder) / "out" / "trajectory.csv", delimiter=",", names=True))
+        table = np.atleast_1d(
+            np.genfromtxt(Path(folder) / "out" / "trajectory.csv", delimiter=",", names=True)
+        )
         assert table.size == rows, f"{table.size} of {rows} rows"
         return table[-1]
 
@@ -168,13 +294,23 @@ def error_at(case, step, phase):
 
 def row(case):
     """Part, case, formal and observed order, the errors at the coarsest and the finest step, verdict."""
-    errors = [max(error_at(case, step, i / case.phases) for i in range(case.phases)) for step in STEPS]
+    errors = [
+        max(error_at(case, step, i / case.phases) for i in range(case.phases)) for step in STEPS
+    ]
     useful = [error for error in errors if error > ROUNDING]
     # The largest error of some starts is by chance up to half larger or smaller: log2(1.5) / 3 over three steps.
     halvings, within = (3, 0.3) if case.phases > 1 else (1, WITHIN)
     observed = math.log2(useful[-1 - halvings] / useful[-1]) / halvings
-    return (case.part, case.name, f"{case.formal:g}", f"{observed:.2f}", f"{errors[0]:.1e}", f"{errors[-1]:.1e}",
-            ("passes" if abs(observed - case.formal) <= within else "FAILS") + (f"; {case.why}" if case.why else ""))
+    return (
+        case.part,
+        case.name,
+        f"{case.formal:g}",
+        f"{observed:.2f}",
+        f"{errors[0]:.1e}",
+        f"{errors[-1]:.1e}",
+        ("passes" if abs(observed - case.formal) <= within else "FAILS")
+        + (f"; {case.why}" if case.why else ""),
+    )
 
 
 def table_of(rows):
@@ -182,16 +318,30 @@ def table_of(rows):
     cases_of = {}
     for part, case, *rest in rows:
         cases_of.setdefault((part, *rest), []).append(case)
-    return ["| " + " | ".join((part, BETWEEN.join(shared), *rest)) + " |" for (part, *rest), shared in cases_of.items()]
+    return [
+        "| " + " | ".join((part, BETWEEN.join(shared), *rest)) + " |"
+        for (part, *rest), shared in cases_of.items()
+    ]
 
 
 def rows_in(table):
-    cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in table.splitlines() if line.startswith("|")]
+    cells = [
+        [cell.strip() for cell in line.split("|")[1:-1]]
+        for line in table.splitlines()
+        if line.startswith("|")
+    ]
     return {(part, case, *rest) for part, shared, *rest in cells for case in shared.split(BETWEEN)}
 
 
 def main():
-    listed = json.loads(subprocess.run([PROGRAM, "describe", "algorithms", "--json"], capture_output=True, text=True, check=True).stdout)
+    listed = json.loads(
+        subprocess.run(
+            [PROGRAM, "describe", "algorithms", "--json"],
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+    )
     laws = [entry["name"] for entry in listed]
     write = "--write" in sys.argv
     every = [case for i, case in enumerate(cases(laws)) if write or i % 7 == 0]
@@ -199,10 +349,15 @@ def main():
         rows = list(pool.map(row, every))
     text = PAGE.read_text(encoding="utf-8")
     if write:
-        lines = ["| part | case | formal | observed | error at 1 ms | at 1/32 ms | |", "|---|---|---|---|---|---|---|"]
+        lines = [
+            "| part | case | formal | observed | error at 1 ms | at 1/32 ms | |",
+            "|---|---|---|---|---|---|---|",
+        ]
         lines += table_of(rows)
         head, _, rest = text.partition(BEGIN)
-        PAGE.write_text(head + BEGIN + "\n".join(lines) + "\n" + END + rest.partition(END)[2], encoding="utf-8")
+        PAGE.write_text(
+            head + BEGIN + "\n".join(lines) + "\n" + END + rest.partition(END)[2], encoding="utf-8"
+        )
         print(f"{len(rows)} rows, {sum('FAILS' in r[-1] for r in rows)} fail")
     known = rows_in(PAGE.read_text(encoding="utf-8"))
     missing = [r for r in rows if r not in known]

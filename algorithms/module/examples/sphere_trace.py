@@ -18,9 +18,31 @@ distance = np.linalg.norm(tip, axis=1)
 out = tip / distance[:, None]  # of the sphere, towards the tip
 touches = distance <= 0.0025
 trace = np.column_stack([t, 0.002 * out, -out, 0.0025 - distance])[touches]
-np.savetxt(folder / "sphere.csv", trace, "%.17g", ",", header="time_s,x_m,y_m,z_m,ux,uy,uz,depth_m", comments="")
-scene = {"time": {"step_s": dt, "steps": steps}, "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
-         "tool": {"type": "bur", "family": "ball", "diameter_m": 0.001}, "record": {"trajectory": True},
-         "motion": {"position": {"type": "prescribed", "x_m": {"type": "ramp", "start": -0.001, "rate_per_s": 0.004}, "y_m": 0, "z_m": 0.0024}},
-         "rendering": {"damping_ratio": 0, "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}, "contact_source": {"type": "trace", "file": "sphere.csv"}}}
+np.savetxt(
+    folder / "sphere.csv",
+    trace,
+    "%.17g",
+    ",",
+    header="time_s,x_m,y_m,z_m,ux,uy,uz,depth_m",
+    comments="",
+)
+scene = {
+    "time": {"step_s": dt, "steps": steps},
+    "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+    "tool": {"type": "bur", "family": "ball", "diameter_m": 0.001},
+    "record": {"trajectory": True},
+    "motion": {
+        "position": {
+            "type": "prescribed",
+            "x_m": {"type": "ramp", "start": -0.001, "rate_per_s": 0.004},
+            "y_m": 0,
+            "z_m": 0.0024,
+        }
+    },
+    "rendering": {
+        "damping_ratio": 0,
+        "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0},
+        "contact_source": {"type": "trace", "file": "sphere.csv"},
+    },
+}
 (folder / "sphere.json").write_text(json.dumps(scene, indent=2))

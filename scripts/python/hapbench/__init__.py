@@ -9,8 +9,28 @@ from .errors import InputError, ResultError, ScenarioError, ScenarioWarning
 from .results import Folder, Run, Trial, load
 from .table import Table
 
-__all__ = ["Folder", "InputError", "Parameter", "ResultError", "Run", "ScenarioError", "ScenarioWarning", "Simulation", "Table",
-           "Trial", "algorithms", "command", "compare", "force_law", "limit", "load", "load_plugin", "main", "run", "sweep"]
+__all__ = [
+    "Folder",
+    "InputError",
+    "Parameter",
+    "ResultError",
+    "Run",
+    "ScenarioError",
+    "ScenarioWarning",
+    "Simulation",
+    "Table",
+    "Trial",
+    "algorithms",
+    "command",
+    "compare",
+    "force_law",
+    "limit",
+    "load",
+    "load_plugin",
+    "main",
+    "run",
+    "sweep",
+]
 
 _COMPILED = {"Parameter": "laws", "force_law": "laws"}
 

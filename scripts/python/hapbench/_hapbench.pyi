@@ -7,9 +7,17 @@ import numpy.typing as npt
 
 _Progress = Callable[[str, int, int], object] | bool | None
 
-def add_force_law(name: str, callable: object, is_class: bool, arguments: list[str],
-                  parameters: list[tuple[str, float, float, float, str, str]], texts: tuple[str, str, str, str],
-                  depth_model: str, file: str, source: str) -> None: ...
+def add_force_law(
+    name: str,
+    callable: object,
+    is_class: bool,
+    arguments: list[str],
+    parameters: list[tuple[str, float, float, float, str, str]],
+    texts: tuple[str, str, str, str],
+    depth_model: str,
+    file: str,
+    source: str,
+) -> None: ...
 def algorithms() -> list[str]: ...
 def command(words: list[str], progress: _Progress) -> tuple[int, str, list[str], list[str]]: ...
 def main(words: list[str]) -> int: ...

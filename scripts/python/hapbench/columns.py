@@ -47,7 +47,12 @@ def numbers_in(lines, columns, wanted):
     if lines.count(b",") != (lines.count(b"\n") + 1) * (columns - 1):
         raise ValueError
     fields = lines.replace(b"\n", b",").split(b",")
-    return np.array([[float(field) if field else np.nan for field in fields[column::columns]] for column in wanted]).T
+    return np.array(
+        [
+            [float(field) if field else np.nan for field in fields[column::columns]]
+            for column in wanted
+        ]
+    ).T
 
 
 def fault_of(file, names):
@@ -80,7 +85,9 @@ def read_rows(file):
         raise ResultError(f"{file}: empty; allowed: a header line and rows")
     for line, row in enumerate(rows[1:], start=2):
         if len(row) != len(rows[0]):
-            raise ResultError(f"{file}: line {line}: got {len(row)} fields; allowed: {len(rows[0])}, as in the header")
+            raise ResultError(
+                f"{file}: line {line}: got {len(row)} fields; allowed: {len(rows[0])}, as in the header"
+            )
     return rows[0], rows[1:]
 
 
@@ -96,7 +103,9 @@ def read_mixed(file):
         return read_columns(file, may_be_empty=True)
     except ResultError:
         names, rows = read_rows(file)
-        return {name: numbers_or_texts(name, [row[i] for row in rows]) for i, name in enumerate(names)}
+        return {
+            name: numbers_or_texts(name, [row[i] for row in rows]) for i, name in enumerate(names)
+        }
 
 
 def numbers_or_texts(name, texts):

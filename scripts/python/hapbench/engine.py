@@ -32,7 +32,13 @@ Place = str | os.PathLike | None
 Progress = Callable[[str, int, int], object] | bool | None
 
 
-def run(scenario: Scenario, overrides: Overrides = None, *, record: Iterable[str] = (), progress: Progress = None) -> Run:
+def run(
+    scenario: Scenario,
+    overrides: Overrides = None,
+    *,
+    record: Iterable[str] = (),
+    progress: Progress = None,
+) -> Run:
     """Run a scenario and return its Run, all in memory: the same numbers as `hapbench run` writes.
 
     `scenario`: a file, the name of a bundled one, or a dict; relative paths in a dict start from the working directory.
@@ -46,46 +52,125 @@ def run(scenario: Scenario, overrides: Overrides = None, *, record: Iterable[str
     summary = json.loads(found["summary"])
     for warning in found["warnings"]:
         warnings.warn(warning, ScenarioWarning, stacklevel=2)
-    trials = [{name: _table(name, given) for name, given in trial.items()} for trial in found["trials"]]
+    trials = [
+        {name: _table(name, given) for name, given in trial.items()} for trial in found["trials"]
+    ]
     only = dict(trials[0]) if len(trials) == 1 else {}
     if found["targets"] is not None:
         only["targets"] = _table("targets", found["targets"])
-    return Run(summary, json.loads(found["scenario"]), only, timing=json.loads(found["timing"]),
-               trials=map(Trial, trials) if len(trials) > 1 else (), unmet=found["unmet"])
+    return Run(
+        summary,
+        json.loads(found["scenario"]),
+        only,
+        timing=json.loads(found["timing"]),
+        trials=map(Trial, trials) if len(trials) > 1 else (),
+        unmet=found["unmet"],
+    )
 
 
-def compare(scenarios: Scenario | Sequence[Scenario], algorithms: Names = None, overrides: Overrides = None, *, seeds: int | None = None,
-            jitter: float | None = None, by: Names = None, jobs: int | None = None, out: Place = None,
-            progress: Progress = None) -> "Report":
+def compare(
+    scenarios: Scenario | Sequence[Scenario],
+    algorithms: Names = None,
+    overrides: Overrides = None,
+    *,
+    seeds: int | None = None,
+    jitter: float | None = None,
+    by: Names = None,
+    jobs: int | None = None,
+    out: Place = None,
+    progress: Progress = None,
+) -> "Report":
     """Run scenarios through several algorithms (default: all), as `hapbench compare` does.
 
     Returns a Report: `runs` by their paths ("mean", of several scenarios and seeds "drag_molar/mean/seed_0"), the tables
     `comparison` and, with several scenarios or seeds or `by`, `league`. `out` keeps the folder; without it, it goes with
     the Report. `scenarios`, `overrides` and `progress` as in `run`."""
-    return _report(["compare"], scenarios, overrides, out, progress, algorithms=algorithms, seeds=seeds, jitter=jitter, by=by, jobs=jobs)
+    return _report(
+        ["compare"],
+        scenarios,
+        overrides,
+        out,
+        progress,
+        algorithms=algorithms,
+        seeds=seeds,
+        jitter=jitter,
+        by=by,
+        jobs=jobs,
+    )
 
 
-def sweep(scenario: Scenario, vary: Mapping[str, object], overrides: Overrides = None, *, sample: str | None = None,
-          seed: int | None = None, keep_runs: bool = False, resume: bool = False, jobs: int | None = None, out: Place = None,
-          progress: Progress = None) -> "Report":
+def sweep(
+    scenario: Scenario,
+    vary: Mapping[str, object],
+    overrides: Overrides = None,
+    *,
+    sample: str | None = None,
+    seed: int | None = None,
+    keep_runs: bool = False,
+    resume: bool = False,
+    jobs: int | None = None,
+    out: Place = None,
+    progress: Progress = None,
+) -> "Report":
     """Run a scenario over a grid, or a sample, of values of any fields, as `hapbench sweep` does.
 
     `vary`: {"rendering.stiffness_N_per_m": [2e4, 4e4]}, of which a string is taken as --vary takes it ("1e4:1e5:10:log").
     Returns a Report whose table `sweep` has a row for each run."""
     words = ["sweep"]
     for field, values in vary.items():
-        words += ["--vary", f"{field}={values if isinstance(values, str) else ','.join(map(_value, values))}"]
-    return _report(words, scenario, overrides, out, progress, sample=sample, seed=seed, keep_runs=keep_runs, resume=resume, jobs=jobs)
+        words += [
+            "--vary",
+            f"{field}={values if isinstance(values, str) else ','.join(map(_value, values))}",
+        ]
+    return _report(
+        words,
+        scenario,
+        overrides,
+        out,
+        progress,
+        sample=sample,
+        seed=seed,
+        keep_runs=keep_runs,
+        resume=resume,
+        jobs=jobs,
+    )
 
 
-def limit(scenarios: Scenario | Sequence[Scenario], overrides: Overrides = None, *, vary: str | None = None, between: str | None = None,
-          over: Mapping[str, str] | None = None, algorithms: Names = None, device: Names = None, stable: str | None = None,
-          resolution: float | None = None, jobs: int | None = None, out: Place = None, progress: Progress = None) -> "Report":
+def limit(
+    scenarios: Scenario | Sequence[Scenario],
+    overrides: Overrides = None,
+    *,
+    vary: str | None = None,
+    between: str | None = None,
+    over: Mapping[str, str] | None = None,
+    algorithms: Names = None,
+    device: Names = None,
+    stable: str | None = None,
+    resolution: float | None = None,
+    jobs: int | None = None,
+    out: Place = None,
+    progress: Progress = None,
+) -> "Report":
     """How far a field may go, as `hapbench limit` finds it, for each value of other fields (`over`, as --over takes them): a Report with
     the tables `limit` and `limit_runs`."""
-    words = ["limit", *(word for path, values in (over or {}).items() for word in ("--over", f"{path}={values}"))]
-    return _report(words, scenarios, overrides, out, progress, vary=vary, between=between, algorithms=algorithms, device=device, stable=stable,
-                   resolution=resolution, jobs=jobs)
+    words = [
+        "limit",
+        *(word for path, values in (over or {}).items() for word in ("--over", f"{path}={values}")),
+    ]
+    return _report(
+        words,
+        scenarios,
+        overrides,
+        out,
+        progress,
+        vary=vary,
+        between=between,
+        algorithms=algorithms,
+        device=device,
+        stable=stable,
+        resolution=resolution,
+        jobs=jobs,
+    )
 
 
 def command(*words: object, progress: Progress = None) -> Any:
@@ -141,7 +226,8 @@ class Simulation(_hapbench.Simulation):
 
     `state` is the last row as a dict, everything before the integrator moved the tool: step, time_s, position_m, velocity_m_per_s, axis,
     force_N, spring_force_N, stiffness_tensor (in units of K), measured_force_N, input_force_N, handle_m, colliding, depth_max_m.
-    `contacts` are its rendered ones as a dict of arrays: index, points_m, normals, depths_m, gradients, weights."""
+    `contacts` are its rendered ones as a dict of arrays: index, points_m, normals, depths_m, gradients, weights.
+    """
 
     def __init__(self, scenario: Scenario, overrides: Overrides = None):
         with _Scratch() as scratch:
@@ -167,7 +253,9 @@ class _Scratch:
             return os.fspath(scenario)
         scenario = json.loads(json.dumps(scenario, default=_plain))
         extended = scenario.get("extends")
-        if isinstance(extended, str) and Path(extended).is_file():  # else it may be the name of a bundled scenario
+        if (
+            isinstance(extended, str) and Path(extended).is_file()
+        ):  # else it may be the name of a bundled scenario
             scenario["extends"] = str(Path(extended).absolute())
         _name_files(scenario)
         name = str(scenario.get("name") or "scenario").replace("/", "_")
@@ -182,7 +270,9 @@ class _Scratch:
         except ScenarioError as error:
             if not error.file.startswith(str(self.path)):
                 raise
-            raise ScenarioError([(fault.pointer, fault.problem) for fault in error.faults]) from None
+            raise ScenarioError(
+                [(fault.pointer, fault.problem) for fault in error.faults]
+            ) from None
 
 
 def _name_files(part):
@@ -203,7 +293,13 @@ def _report(words, scenarios, overrides, out, progress, **options):
             continue
         words = [*words, option]
         if value is not True:
-            words.append(value if isinstance(value, str) else _value(value) if isinstance(value, (int, float)) else ",".join(value))
+            words.append(
+                value
+                if isinstance(value, str)
+                else _value(value)
+                if isinstance(value, (int, float))
+                else ",".join(value)
+            )
     for word in _words(overrides or {}):
         words = [*words, "--set", word]
     folder = Path(out) if out is not None else scratch.path / "out"
@@ -237,5 +333,9 @@ def _plain(value):
 def _table(name, given):
     columns, numbers = given
     names = [column for column, _, _ in columns]
-    return Table(zip(names, numbers.T.copy()), {column: unit for column, unit, _ in columns},
-                 {column: meaning for column, _, meaning in columns}, name)
+    return Table(
+        zip(names, numbers.T.copy()),
+        {column: unit for column, unit, _ in columns},
+        {column: meaning for column, _, meaning in columns},
+        name,
+    )

@@ -15,7 +15,8 @@ class ScenarioError(InputError):
     """A scenario or an argument that the engine refuses: the message stands for the first of `faults`.
 
     `file` is the scenario's file ("" for none), `pointer` the JSON pointer of the field ("" for the whole), `problem`
-    what is wrong with it and what is allowed, `nearest` the valid name nearest to the one given, or None."""
+    what is wrong with it and what is allowed, `nearest` the valid name nearest to the one given, or None.
+    """
 
     def __init__(self, faults):
         place, problem = faults[0]

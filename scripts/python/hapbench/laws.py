@@ -22,8 +22,15 @@ class Parameter:
     meaning: str = "parameter of a law in Python"
 
 
-def force_law(name: str, parameters: Mapping[str, Parameter | float] | None = None, *, depth_model: str | None = None,
-              formula: str | None = None, source: str | None = None, known_failure: str | None = None) -> Callable[[Law], Law]:
+def force_law(
+    name: str,
+    parameters: Mapping[str, Parameter | float] | None = None,
+    *,
+    depth_model: str | None = None,
+    formula: str | None = None,
+    source: str | None = None,
+    known_failure: str | None = None,
+) -> Callable[[Law], Law]:
     """Make a function a force law, known by its name to every scenario, study and map of this process.
 
         @hapbench.force_law("mine", parameters={"share": hapbench.Parameter(0.5, 0, 1)})
@@ -43,15 +50,34 @@ def force_law(name: str, parameters: Mapping[str, Parameter | float] | None = No
 
     An exception in the law ends what is computed and is raised there. A law of the same name gives way to a new one.
     `parameters`: names with a Parameter, or with a number, its default, which may then be 0 … 1e12.
-    `depth_model`: the only one the law is for. The first line of the docstring is the law's summary."""
+    `depth_model`: the only one the law is for. The first line of the docstring is the law's summary.
+    """
 
     def add(law):
         is_class = inspect.isclass(law)
-        own = {key: value if isinstance(value, Parameter) else Parameter(float(value), min(0.0, float(value)), 1e12)
-               for key, value in (parameters or {}).items()}
-        texts = (_summary(law), formula or "as written in Python", source or _place(law), known_failure or "unknown")
+        own = {
+            key: value
+            if isinstance(value, Parameter)
+            else Parameter(float(value), min(0.0, float(value)), 1e12)
+            for key, value in (parameters or {}).items()
+        }
+        texts = (
+            _summary(law),
+            formula or "as written in Python",
+            source or _place(law),
+            known_failure or "unknown",
+        )
         table = [(key, p.default, p.least, p.greatest, p.unit, p.meaning) for key, p in own.items()]
-        _hapbench.add_force_law(name, law, is_class, _arguments(name, law, own), table, texts, depth_model or "", *_origin(law))
+        _hapbench.add_force_law(
+            name,
+            law,
+            is_class,
+            _arguments(name, law, own),
+            table,
+            texts,
+            depth_model or "",
+            *_origin(law),
+        )
         return law
 
     return add
@@ -59,12 +85,18 @@ def force_law(name: str, parameters: Mapping[str, Parameter | float] | None = No
 
 def _arguments(name, law, own):
     function = law.__call__ if inspect.isclass(law) else law
-    given = list(inspect.signature(function).parameters.values())[1 if inspect.isclass(law) else 0:]
+    given = list(inspect.signature(function).parameters.values())[
+        1 if inspect.isclass(law) else 0 :
+    ]
     for parameter in given:
         if parameter.kind not in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD):
-            raise TypeError(f"force law {name!r}: argument {parameter.name!r} must be one that is given by its place")
+            raise TypeError(
+                f"force law {name!r}: argument {parameter.name!r} must be one that is given by its place"
+            )
         if parameter.name not in (*_ARGUMENTS, *own):
-            raise TypeError(f"force law {name!r}: unknown argument {parameter.name!r}; allowed: {', '.join((*_ARGUMENTS, *own))}")
+            raise TypeError(
+                f"force law {name!r}: unknown argument {parameter.name!r}; allowed: {', '.join((*_ARGUMENTS, *own))}"
+            )
     unused = set(own) - {parameter.name for parameter in given}
     if unused:
         raise TypeError(f"force law {name!r}: parameter {min(unused)!r} is none of its arguments")

@@ -69,7 +69,9 @@ def objects_in(value):
     """Every object in a value of JSON, itself first."""
     if isinstance(value, dict):
         yield value
-    for part in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+    for part in (
+        value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    ):
         yield from objects_in(part)
 
 
@@ -162,9 +164,18 @@ class Run(_WithTables):
         return self.summary.get("state_hash")
 
     def _no_table(self, name):
-        fields = {"contacts", "energy", "stiffness_tensor", "ideal_trajectory", "force_reference", "trajectory"}
+        fields = {
+            "contacts",
+            "energy",
+            "stiffness_tensor",
+            "ideal_trajectory",
+            "force_reference",
+            "trajectory",
+        }
         hint = f"; hapbench.run(…, record=[{name!r}]) records it" if name in fields else ""
-        trials = f"; it has {len(self.trials)} trials with tables of their own" if self.trials else ""
+        trials = (
+            f"; it has {len(self.trials)} trials with tables of their own" if self.trials else ""
+        )
         return super()._no_table(name) + trials + hint
 
     def __repr__(self):
@@ -173,17 +184,25 @@ class Run(_WithTables):
 
 class Folder(_WithTables):
     """A folder that sweep, compare, limit … wrote: `tables` of its CSV files by their paths, those of its runs
-    aside, `runs` below it by theirs, `json` of its other files. `folder.sweep` is the table of sweep.csv."""
+    aside, `runs` below it by theirs, `json` of its other files. `folder.sweep` is the table of sweep.csv.
+    """
 
     def __init__(self, folder):
         self.folder = Path(folder)
         files = [file for file in sorted(self.folder.rglob("*.csv")) if not _is_of_run(file)]
-        self.tables = Tables({file.relative_to(self.folder).with_suffix("").as_posix(): _reader(file) for file in files})
+        self.tables = Tables(
+            {
+                file.relative_to(self.folder).with_suffix("").as_posix(): _reader(file)
+                for file in files
+            }
+        )
 
     @cached_property
     def runs(self):
         files = sorted(self.folder.rglob(SUMMARY))
-        found = {file.parent.relative_to(self.folder).as_posix(): load_run(file.parent) for file in files}
+        found = {
+            file.parent.relative_to(self.folder).as_posix(): load_run(file.parent) for file in files
+        }
         for run in found.values():
             run.part_of = self  # whose files may go with it
         return found
@@ -200,7 +219,9 @@ def load(folder: str | os.PathLike) -> "Run | Folder":
     """Reads a folder of results: a Run, or else a Folder of tables and runs. Raises ResultError."""
     folder = Path(folder)
     if not folder.is_dir():
-        raise ResultError(f"{folder}: is not a folder; allowed: one that run, compare, sweep, limit … wrote")
+        raise ResultError(
+            f"{folder}: is not a folder; allowed: one that run, compare, sweep, limit … wrote"
+        )
     if (folder / SUMMARY).is_file():
         return load_run(folder)
     found = Folder(folder)
@@ -212,9 +233,18 @@ def load(folder: str | os.PathLike) -> "Run | Folder":
 def load_run(folder, kind=Run):
     """The run of one folder, of a class derived from Run."""
     folder = Path(folder)
-    trials = sorted(folder.glob("subject_*_trial_*"), key=lambda trial: [int(number) for number in re.findall(r"\d+", trial.name)])
-    return kind(read_object(folder / SUMMARY), _optional(folder / SCENARIO), _tables_of(folder), timing=_optional(folder / "timing.json"),
-                folder=folder, trials=[Trial(_tables_of(trial, folder)) for trial in trials])
+    trials = sorted(
+        folder.glob("subject_*_trial_*"),
+        key=lambda trial: [int(number) for number in re.findall(r"\d+", trial.name)],
+    )
+    return kind(
+        read_object(folder / SUMMARY),
+        _optional(folder / SCENARIO),
+        _tables_of(folder),
+        timing=_optional(folder / "timing.json"),
+        folder=folder,
+        trials=[Trial(_tables_of(trial, folder)) for trial in trials],
+    )
 
 
 class Trial(_WithTables):
@@ -233,15 +263,21 @@ def _is_of_run(file):
 
 def _tables_of(folder, described=None):
     columns = _optional((described or folder) / "columns.json")
-    return Tables({file.stem: _reader(file, columns.get(file.name)) for file in sorted(folder.glob("*.csv"))})
+    return Tables(
+        {file.stem: _reader(file, columns.get(file.name)) for file in sorted(folder.glob("*.csv"))}
+    )
 
 
 def _reader(file, described=None):
     def read():
         if not described:
             return Table(read_mixed(file), name=file.stem)
-        return Table(read_columns(file, may_be_empty=True), {c["name"]: c["unit"] for c in described},
-                     {c["name"]: c["meaning"] for c in described}, file.stem)
+        return Table(
+            read_columns(file, may_be_empty=True),
+            {c["name"]: c["unit"] for c in described},
+            {c["name"]: c["meaning"] for c in described},
+            file.stem,
+        )
 
     return read
 

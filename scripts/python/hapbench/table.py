@@ -4,9 +4,26 @@ from collections.abc import Mapping
 
 # Ending of a name -> unit; the longest that fits.
 UNITS = {
-    "N_per_m": "N/m", "N_s_per_m": "N s/m", "m_per_s": "m/s", "m_per_s2": "m/s²", "m2_per_s2": "m²/s²", "rad_per_s": "rad/s",
-    "s_per_m": "s/m", "per_s": "1/s",
-    "m": "m", "mm": "mm", "s": "s", "N": "N", "Nm": "N m", "J": "J", "W": "W", "kg": "kg", "rad": "rad", "Hz": "Hz", "bytes": "bytes"}
+    "N_per_m": "N/m",
+    "N_s_per_m": "N s/m",
+    "m_per_s": "m/s",
+    "m_per_s2": "m/s²",
+    "m2_per_s2": "m²/s²",
+    "rad_per_s": "rad/s",
+    "s_per_m": "s/m",
+    "per_s": "1/s",
+    "m": "m",
+    "mm": "mm",
+    "s": "s",
+    "N": "N",
+    "Nm": "N m",
+    "J": "J",
+    "W": "W",
+    "kg": "kg",
+    "rad": "rad",
+    "Hz": "Hz",
+    "bytes": "bytes",
+}
 MOST_NAMED = 16
 MOST_PRINTED, WIDEST = 20, 100  # rows and characters of a printed table
 
@@ -29,7 +46,9 @@ class Table(Mapping):
 
     def __init__(self, columns, units=None, meanings=None, name="table"):
         self._columns = dict(columns)
-        self.units = {column: (units or {}).get(column, unit_of(column)) for column in self._columns}
+        self.units = {
+            column: (units or {}).get(column, unit_of(column)) for column in self._columns
+        }
         self.meanings = dict(meanings or {})
         self.name = name
 
@@ -37,7 +56,9 @@ class Table(Mapping):
         try:
             return self._columns[column]
         except KeyError:
-            raise KeyError(f"{self.name} has no column {column!r}; it has {', '.join(self._columns)}") from None
+            raise KeyError(
+                f"{self.name} has no column {column!r}; it has {', '.join(self._columns)}"
+            ) from None
 
     def __getattr__(self, column):
         if column.startswith("_") or column not in self._columns:
@@ -63,7 +84,12 @@ class Table(Mapping):
         found = self
         for column, value in chosen.items():
             rows = found[column] == value
-            found = Table({name: values[rows] for name, values in found.items()}, self.units, self.meanings, self.name)
+            found = Table(
+                {name: values[rows] for name, values in found.items()},
+                self.units,
+                self.meanings,
+                self.name,
+            )
         return found
 
     def __repr__(self):
@@ -84,7 +110,7 @@ class Table(Mapping):
         lines = ["  ".join(row) for row in zip(*shown)]
         if self.rows > MOST_PRINTED:
             lines.append(f"and {self.rows - MOST_PRINTED} more rows")
-        if left := list(self._columns)[len(shown):]:
+        if left := list(self._columns)[len(shown) :]:
             lines += textwrap.wrap(f"and columns {', '.join(left)}", WIDEST)
         return "\n".join(lines)
 
@@ -93,4 +119,10 @@ def _cell(value):
     """A number in short, a count in full, nothing for NaN."""
     if isinstance(value, str):
         return value
-    return "" if value != value else f"{value:.0f}" if value % 1 == 0 and abs(value) < 1e9 else f"{value:.5g}"
+    return (
+        ""
+        if value != value
+        else f"{value:.0f}"
+        if value % 1 == 0 and abs(value) < 1e9
+        else f"{value:.5g}"
+    )

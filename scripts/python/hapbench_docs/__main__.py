@@ -21,17 +21,32 @@ Measured times are left as they are. Exit status 1 if --check finds something to
 
 def arguments(words):
     parser = Arguments(prog="scripts/docs", description=DESCRIPTION)
-    parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bin" / "hapbench", metavar="FILE",
-                        help="default: build/release/bin/hapbench")
-    parser.add_argument("--tables", action="store_true", help="the tables from results/reference only, which need no program")
-    parser.add_argument("--gallery", action="store_true", help="also the pictures of results/reference/gallery")
-    parser.add_argument("--check", action="store_true", help="write nothing; show what is not current")
+    parser.add_argument(
+        "--program",
+        type=Path,
+        default=ROOT / "build" / "release" / "bin" / "hapbench",
+        metavar="FILE",
+        help="default: build/release/bin/hapbench",
+    )
+    parser.add_argument(
+        "--tables",
+        action="store_true",
+        help="the tables from results/reference only, which need no program",
+    )
+    parser.add_argument(
+        "--gallery", action="store_true", help="also the pictures of results/reference/gallery"
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; show what is not current"
+    )
     return parser.parse_args(words)
 
 
 def draw_gallery(program, scratch):
     """The pictures that manuals show below the commands that draw them."""
-    pictures = [found for manual in map(Manual, manuals()) for found in ILLUSTRATED.findall(manual.text)]
+    pictures = [
+        found for manual in map(Manual, manuals()) for found in ILLUSTRATED.findall(manual.text)
+    ]
     for commands, picture in pictures:
         *runs, plot = (shlex.split(line, comments=True)[1:] for line in commands.splitlines())
         for words in runs:
@@ -45,14 +60,26 @@ def run(chosen):
     with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
         if chosen.gallery and program:
             draw_gallery(program, Path(scratch))
-        of_program = {"session": lambda old: session(old, program, Path(scratch))} if program else {}
+        of_program = (
+            {"session": lambda old: session(old, program, Path(scratch))} if program else {}
+        )
         for manual in map(Manual, manuals()):
             text = renewed(manual.text, MAKERS | of_program)
             if text == manual.text:
                 continue
             name = str(manual.file.relative_to(ROOT))
             if chosen.check:
-                print("\n".join(difflib.unified_diff(manual.text.splitlines(), text.splitlines(), name, f"{name}, renewed", lineterm="")))
+                print(
+                    "\n".join(
+                        difflib.unified_diff(
+                            manual.text.splitlines(),
+                            text.splitlines(),
+                            name,
+                            f"{name}, renewed",
+                            lineterm="",
+                        )
+                    )
+                )
                 stale = True
             else:
                 write(manual.file, text)

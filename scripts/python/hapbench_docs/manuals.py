@@ -24,7 +24,12 @@ BLOCK = re.compile(r"(<!-- generated: (\S+)[^\n]*-->\n)(.*?)(<!-- /generated -->
 BEGIN = "<!-- generated:"
 COLUMNS = 100  # of a session in a manual
 REFERENCE = ROOT / "results" / "reference"
-TASKS = {"D1": "upright, 0.52 mm aside", "D2": "upright, centre", "D3": "turning, 3 mm high", "D4": "turning, 4 mm high"}
+TASKS = {
+    "D1": "upright, 0.52 mm aside",
+    "D2": "upright, centre",
+    "D3": "turning, 3 mm high",
+    "D4": "turning, 4 mm high",
+}
 PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 
 
@@ -76,7 +81,10 @@ class Manual:
 
     def anchors(self):
         """Anchors of its headings, as GitHub makes them."""
-        return {re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-") for title in HEADING.findall(self.text)}
+        return {
+            re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
+            for title in HEADING.findall(self.text)
+        }
 
 
 def broken_links(manual):
@@ -86,14 +94,21 @@ def broken_links(manual):
             continue
         path, _, fragment = link.partition("#")
         target = (manual.file.parent / path) if path else manual.file
-        if not target.exists() or fragment and target.suffix == ".md" and fragment not in Manual(target).anchors():
+        if (
+            not target.exists()
+            or fragment
+            and target.suffix == ".md"
+            and fragment not in Manual(target).anchors()
+        ):
             yield link
 
 
 def renewed(text, makers):
     """The text with each block made anew by `makers[NAME](old)`; blocks without a maker stay."""
     if text.count(BEGIN) != len(BLOCK.findall(text)):
-        raise InputError('a block that begins with "<!-- generated: NAME -->" lacks its end "<!-- /generated -->"')
+        raise InputError(
+            'a block that begins with "<!-- generated: NAME -->" lacks its end "<!-- /generated -->"'
+        )
 
     def replaced(found):
         head, name, old, tail = found.groups()
@@ -104,11 +119,15 @@ def renewed(text, makers):
 
 def session(old, program, directory):
     """A command in a manual with what it printed, on which commit and machine: the block with the output of its first command."""
-    line = next((line.strip() for line in old.splitlines() if line.strip().startswith("$ hapbench ")), None)
+    line = next(
+        (line.strip() for line in old.splitlines() if line.strip().startswith("$ hapbench ")), None
+    )
     if line is None:
         raise InputError("a session begins with an indented line: $ hapbench …")
     output = program.run(shlex.split(line)[2:], directory)
-    shown = "\n".join(f"    {text}".rstrip() for text in [line, "", *output.strip("\n").splitlines()])
+    shown = "\n".join(
+        f"    {text}".rstrip() for text in [line, "", *output.strip("\n").splitlines()]
+    )
     return program.stamped(shown, old)
 
 
@@ -124,7 +143,10 @@ def main_results(_old=""):
 def experiments(_old=""):
     """Success in the thesis's experiments, measured with simulated subjects and published with people."""
     by_id = {claim["id"]: claim for claim in read("claims.json")["claims"]}
-    lines = ["| task and target | original algorithm, ours (published) | stiffness shaping, ours (published) |", "|---|---|---|"]
+    lines = [
+        "| task and target | original algorithm, ours (published) | stiffness shaping, ours (published) |",
+        "|---|---|---|",
+    ]
     for id_, task in TASKS.items():
         published = PAIR.search(re.sub(r" \(printed [^)]*\)", "", by_id[id_]["published"]))
         measured = PAIR.search(by_id[id_]["measured"])
@@ -137,20 +159,34 @@ def robustness(_old=""):
     """How firmly the verdicts hold over the choices on record: and the fragile ones."""
     claims = read("claims.json")["claims"]
     sampled = [claim for claim in claims if claim["robustness"]]
-    always = [claim for claim in sampled if claim["robustness"]["holds"] == claim["robustness"]["judged"]]
+    always = [
+        claim for claim in sampled if claim["robustness"]["holds"] == claim["robustness"]["judged"]
+    ]
     fragile = [claim for claim in sampled if claim["sureness"] == "fragile"]
-    untouched = [claim["id"] for claim in claims if not claim["choices_reach_it"] and claim["verdict"] != "not reproducible"]
+    untouched = [
+        claim["id"]
+        for claim in claims
+        if not claim["choices_reach_it"] and claim["verdict"] != "not reproducible"
+    ]
     judged = [claim["robustness"]["judged"] for claim in sampled]
-    lines = [f"Of {len(sampled)} verdicts that were sampled, in {min(judged)} to {max(judged)} readings, "
-             f" {len(always)} are the same in every sample. No recorded choice reaches {' '.join(untouched)}. Fragile are "
-             "these; the ledger has the others:",
-             "", "| claim | recorded | recorded verdict in | decided by (first-order Sobol index) |", "|---|---|---|---|"]
+    lines = [
+        f"Of {len(sampled)} verdicts that were sampled, in {min(judged)} to {max(judged)} readings, "
+        f" {len(always)} are the same in every sample. No recorded choice reaches {' '.join(untouched)}. Fragile are "
+        "these; the ledger has the others:",
+        "",
+        "| claim | recorded | recorded verdict in | decided by (first-order Sobol index) |",
+        "|---|---|---|---|",
+    ]
     for claim in fragile:
         counts = claim["robustness"]
         by = counts["decided_by"]
         decided = f"`{by['choice']}` ({by['index']:.2f})" if by else "no single choice"
-        lines.append(f"| {claim['id']} | {claim['verdict']} | {counts['holds']} of {counts['judged']} | {decided} |")
-    return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, 110)) for line in lines)
+        lines.append(
+            f"| {claim['id']} | {claim['verdict']} | {counts['holds']} of {counts['judged']} | {decided} |"
+        )
+    return "\n".join(
+        line if line.startswith("|") else "\n".join(textwrap.wrap(line, 110)) for line in lines
+    )
 
 
 class Program:
@@ -162,22 +198,37 @@ class Program:
     def run(self, words, directory):
         """Standard output. A run that ends other than expected (3) has output, too."""
         # The tables are over the algorithms of this tree.
-        environment = {name: value for name, value in os.environ.items() if name != "HAPBENCH_MODULE_PATH"}
-        done = subprocess.run([self.file, *words], cwd=directory, capture_output=True, text=True, encoding="utf-8",
-                              env={**environment, "COLUMNS": str(COLUMNS), "LC_ALL": "C.UTF-8"}, stdin=subprocess.DEVNULL)
+        environment = {
+            name: value for name, value in os.environ.items() if name != "HAPBENCH_MODULE_PATH"
+        }
+        done = subprocess.run(
+            [self.file, *words],
+            cwd=directory,
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            env={**environment, "COLUMNS": str(COLUMNS), "LC_ALL": "C.UTF-8"},
+            stdin=subprocess.DEVNULL,
+        )
         if done.returncode not in (0, 3):
-            raise InputError(f"hapbench {' '.join(map(str, words))}: exit status {done.returncode}: {done.stderr.strip()}")
+            raise InputError(
+                f"hapbench {' '.join(map(str, words))}: exit status {done.returncode}: {done.stderr.strip()}"
+            )
         return done.stdout
 
     def stamped(self, text, old):
         """The text and where it comes from; the old block where the text says the same, since a date or a time is no news."""
         known = old.rpartition("\n\nPrinted by ")[0]
-        return old if same_but_for_times(text, known) else f"{text}\n\nPrinted by {self.provenance()}."
+        return (
+            old if same_but_for_times(text, known) else f"{text}\n\nPrinted by {self.provenance()}."
+        )
 
     def provenance(self):
         """Commit, date and processor: "commit 5e60010bc2c9, 2026-11-21, AMD EPYC"."""
         commit = re.search(r"\(([^)]+)\)", self.run(["--version"], "."))
-        return f"commit {commit[1] if commit else 'unknown'}, {datetime.date.today()}, {processor()}"
+        return (
+            f"commit {commit[1] if commit else 'unknown'}, {datetime.date.today()}, {processor()}"
+        )
 
 
 def same_but_for_times(a, b):
@@ -196,10 +247,16 @@ def _words(text):
 def processor():
     """The processor's name without what it says of its cores."""
     try:
-        found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
+        found = re.search(
+            r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M
+        )
     except OSError:
         found = None
-    return re.sub(r"\s+\d+-Core.*|\s*@.*|\(R\)|\(TM\)", "", found[1]).strip() if found else "unknown processor"
+    return (
+        re.sub(r"\s+\d+-Core.*|\s*@.*|\(R\)|\(TM\)", "", found[1]).strip()
+        if found
+        else "unknown processor"
+    )
 
 
 # The tables that need no program.

@@ -59,8 +59,19 @@ def catalogue():
         id_, thesis, module, function, argument, title = HEAD.fullmatch(head).groups()
         text, _, rows = " ".join(lines).partition(" Rows: ")
         caption, _, differs = text.partition(" Differs: ")
-        found.append(Figure(id_, thesis.removeprefix("-"), module, function, argument, title, caption or found[-1].caption, differs,
-                            tuple(rows.rstrip(".").split())))
+        found.append(
+            Figure(
+                id_,
+                thesis.removeprefix("-"),
+                module,
+                function,
+                argument,
+                title,
+                caption or found[-1].caption,
+                differs,
+                tuple(rows.rstrip(".").split()),
+            )
+        )
     return found
 
 
@@ -68,13 +79,26 @@ FIGURES = catalogue()
 
 
 def arguments(argv):
-    parser = Arguments(prog="scripts/figures", description="Draws the figures of the thesis with our data, and ours, as SVG, PDF and "
-                       "PNG. A figure whose data is missing is skipped, with a message.")
-    parser.add_argument("results", nargs="?", metavar="RESULTS_DIR", help="results as scripts/reproduce leaves them")
+    parser = Arguments(
+        prog="scripts/figures",
+        description="Draws the figures of the thesis with our data, and ours, as SVG, PDF and "
+        "PNG. A figure whose data is missing is skipped, with a message.",
+    )
+    parser.add_argument(
+        "results", nargs="?", metavar="RESULTS_DIR", help="results as scripts/reproduce leaves them"
+    )
     parser.add_argument("--out", metavar="DIR", help="directory of the figures and of figures.json")
-    parser.add_argument("--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too")
-    parser.add_argument("--record", metavar="DIR", help="also copy the SVGs of the thesis's figures, and of ours that lie there, "
-                        "into DIR, with figures.md, a page of them all")
+    parser.add_argument(
+        "--only",
+        metavar="ID,…",
+        help="draw these; an id stands for those that begin with it and a hyphen, too",
+    )
+    parser.add_argument(
+        "--record",
+        metavar="DIR",
+        help="also copy the SVGs of the thesis's figures, and of ours that lie there, "
+        "into DIR, with figures.md, a page of them all",
+    )
     parser.add_argument("--list", action="store_true", help="list the figures")
     chosen = parser.parse_args(argv)
     if not chosen.list and not (chosen.results and chosen.out):
@@ -88,7 +112,9 @@ def selection(only):
     for id_ in only.split(",") if only else ():
         found = [f for f in FIGURES if f.id == id_ or f.id.startswith(id_ + "-")]
         if not found:
-            raise InputError(f"--only: no figure {id_!r}; there are {', '.join(f.id for f in FIGURES)}")
+            raise InputError(
+                f"--only: no figure {id_!r}; there are {', '.join(f.id for f in FIGURES)}"
+            )
         chosen += [f for f in found if f not in chosen]
     return chosen or FIGURES
 
@@ -100,8 +126,14 @@ def draw(figure, results, directory):
     for kind, name in zip(FORMATS, files):
         write(directory / name, style.picture(drawing, kind, salt=figure.stem))
     style.plt.close(drawing)
-    return {"id": figure.id, "title": figure.title, "thesis_figure": figure.thesis or None, "caption": figure.caption.format(**values), "files": files,
-            "sources": sorted(results.sources)}
+    return {
+        "id": figure.id,
+        "title": figure.title,
+        "thesis_figure": figure.thesis or None,
+        "caption": figure.caption.format(**values),
+        "files": files,
+        "sources": sorted(results.sources),
+    }
 
 
 def write_index(directory, entries):
@@ -109,7 +141,11 @@ def write_index(directory, entries):
     file = directory / "figures.json"
     known = {entry["id"]: entry for entry in read_json(file)["figures"]} if file.is_file() else {}
     known |= {entry["id"]: entry for entry in entries}
-    known = {f.id: known[f.id] for f in FIGURES if f.id in known and (directory / f"{f.stem}.svg").is_file()}
+    known = {
+        f.id: known[f.id]
+        for f in FIGURES
+        if f.id in known and (directory / f"{f.stem}.svg").is_file()
+    }
     write(file, json.dumps({"figures": list(known.values())}, indent=2, ensure_ascii=False) + "\n")
     return known
 
@@ -119,7 +155,12 @@ def measured(figure, claims):
     numbers = set(NUMBER.findall(figure.thesis))
     drawn = {}
     for claim in claims:
-        named = {number for part in claim["place"].split(", ") if part.startswith("Fig. ") for number in NUMBER.findall(part)}
+        named = {
+            number
+            for part in claim["place"].split(", ")
+            if part.startswith("Fig. ")
+            for number in NUMBER.findall(part)
+        }
         if not claim["timing"] and (claim["id"] in figure.rows or named & numbers):
             drawn[claim["id"]] = claim["measured"]
     return drawn
@@ -164,12 +205,17 @@ def run(chosen):
             bad[str(error)] = None
         except (KeyError, IndexError, TypeError, ValueError) as error:
             # A file that can be read but has not the columns, rows or members of hapbench's.
-            bad[f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}"] = None
+            bad[
+                f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}"
+            ] = None
     index = write_index(directory, entries)
     if chosen.record and entries:
         record(directory, Path(chosen.record), index, Files(chosen.results).json(LEDGER)["claims"])
     if skipped:
-        print("figures: \"scripts/reproduce --figure ID\" makes what a figure needs, and draws it", file=sys.stderr)
+        print(
+            'figures: "scripts/reproduce --figure ID" makes what a figure needs, and draws it',
+            file=sys.stderr,
+        )
     for line in bad:
         say_error(line)
     print(f"{len(entries)} figures in {directory}, {time.monotonic() - started:.0f} s")

@@ -30,7 +30,14 @@ def draw_forces(ax, at, direction, spring, damping, named_at):
     scene.draw_arrow(ax, at, 90 * VELOCITY, style.AMBER, "velocity", at=(-14, -9))
     scene.draw_arrow(ax, at, MM_PER_N * (-damping * normal), style.BLACK, "normal")
     upright = abs(direction[0]) < 0.1
-    scene.draw_arrow(ax, at, MM_PER_N * tangential, style.PETROL, "tangential", at=(-30, -18) if upright else (6, -10))
+    scene.draw_arrow(
+        ax,
+        at,
+        MM_PER_N * tangential,
+        style.PETROL,
+        "tangential",
+        at=(-30, -18) if upright else (6, -10),
+    )
     ax.text(*named_at, "implicit\nplane", color=style.PLUM, fontsize=7, va="bottom", zorder=7)
 
 
@@ -46,7 +53,14 @@ def draw_flat(ax, scenario):
     scene.draw_peg(ax, peg)
     ax.set_aspect("equal")
     ax.grid(False)
-    draw_forces(ax, np.zeros(2), np.array([0, -1.0]), scenario["rendering"]["stiffness_N_per_m"] * depth, damping, (-1.6, 0.08))
+    draw_forces(
+        ax,
+        np.zeros(2),
+        np.array([0, -1.0]),
+        scenario["rendering"]["stiffness_N_per_m"] * depth,
+        damping,
+        (-1.6, 0.08),
+    )
     scene.frame(ax, (-1.7, 1.7), (-1.9, 1.9))
     ax.set_title("one surface")
 
@@ -58,7 +72,14 @@ def draw_distributed(ax, sweep):
     scene.draw_peg(ax, peg)
     ax.plot(*(scene.MM * contacts.point).T, ".", color=style.GREY, ms=3)
     size = np.linalg.norm(force)
-    draw_forces(ax, scene.MM * peg.tip, -force / size, size, damping_coefficient(sweep.scenario), (-1.9, -3.7))
+    draw_forces(
+        ax,
+        scene.MM * peg.tip,
+        -force / size,
+        size,
+        damping_coefficient(sweep.scenario),
+        (-1.9, -3.7),
+    )
     scene.frame(ax, (-1.95, 1.45), (-4.6, -1.2 + 0.4))
     ax.set_title("peg in hole")
 
@@ -74,7 +95,12 @@ def wall_damping(ax, results):
     ax.plot(hs.tilt[pick], tensor["sxx"][pick], color=style.look("shaped_stiffness").colour, lw=1.1)
     ax.text(0.6, 1.06, "stiffness shaping", ha="right")
     ax.text(0.05, 0.3, "original", color=style.look("original_averaging").colour)
-    ax.set(xlabel="tilt [rad]", ylabel="damping across the walls / B", ylim=(-0.03, 1.25), title="damping across the walls")
+    ax.set(
+        xlabel="tilt [rad]",
+        ylabel="damping across the walls / B",
+        ylim=(-0.03, 1.25),
+        title="damping across the walls",
+    )
 
 
 def implicit_plane(results):
@@ -88,7 +114,9 @@ def implicit_plane(results):
 
 def force_limit(results):
     figure, ((ax,),) = style.panels(1, 1, 2.9)
-    stiffness = results.json("thesis/force_limit_on/scenario.effective.json")["rendering"]["stiffness_N_per_m"]
+    stiffness = results.json("thesis/force_limit_on/scenario.effective.json")["rendering"][
+        "stiffness_N_per_m"
+    ]
     offset, limit = scene.published("L1.offset"), scene.published("L1.threshold")
     ideal = np.array([offset, limit + offset, 5.8])
     ax.plot(ideal, 1e3 * (ideal - offset) / stiffness, color=style.BLACK, lw=0.9)
@@ -101,8 +129,19 @@ def force_limit(results):
     style.note(ax, 0.13, 0.42, "black: ideal, (force − 0.7 N) / K")
     threshold = scene.published("L1.measured")
     ax.axvline(threshold, **style.PUBLISHED_LINE)
-    ax.set(xlabel="measured force [N]", ylabel="displacement into the flat [mm]", xlim=(0.5, 5.8), ylim=(-0.01, 0.27))
+    ax.set(
+        xlabel="measured force [N]",
+        ylabel="displacement into the flat [mm]",
+        xlim=(0.5, 5.8),
+        ylim=(-0.01, 0.27),
+    )
     ax.text(4.0, 0.19, "without limit", color=style.AMBER, ha="right")
     ax.text(4.2, 0.113, "input force limited to 2 N", color=style.PETROL)
-    ax.text(threshold + 0.05, 0.245, "published: 2.7 N measured = 2.0 N + 0.7 N weight", color=style.RED, fontsize=7)
+    ax.text(
+        threshold + 0.05,
+        0.245,
+        "published: 2.7 N measured = 2.0 N + 0.7 N weight",
+        color=style.RED,
+        fontsize=7,
+    )
     return figure, {}

@@ -14,33 +14,59 @@ FRAME = (-1.9, 1.9), (-4.3, 1.0)  # of the contacts [mm]
 # Without the yellow end, which white paper swallows.
 TILT_COLOURS = ListedColormap(style.plt.get_cmap("viridis")(np.linspace(0, 0.75, 256)))
 # Directory, algorithm, name of its depth; the wide line shows below the one that covers it.
-STROKES = (("thesis/corner_normal_projection", "normal_projection", "normal projection", {"lw": 1.1}),
-           ("thesis/corner_shaped_stiffness", "shaped_stiffness", "shortest distance", {"lw": 3.2, "alpha": 0.35}))
+STROKES = (
+    ("thesis/corner_normal_projection", "normal_projection", "normal projection", {"lw": 1.1}),
+    (
+        "thesis/corner_shaped_stiffness",
+        "shaped_stiffness",
+        "shortest distance",
+        {"lw": 3.2, "alpha": 0.35},
+    ),
+)
 # Not of the thesis, so the figure is drawn without it too.
 CONTINUOUS = (
-    "run_beyond/corner_continuous_normal_projection", "continuous_normal_projection", "continuous (ours)", {"lw": 1.1})
+    "run_beyond/corner_continuous_normal_projection",
+    "continuous_normal_projection",
+    "continuous (ours)",
+    {"lw": 1.1},
+)
 
 
 def shortest_distance_and_normal(results):
     figure, axes = style.panels(1, 2, 4.3)
-    for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
+    for ax, name, title in (
+        (axes[0, 0], SHORTEST, "shortest distance"),
+        (axes[0, 1], NORMAL, "surface normal"),
+    ):
         sweep = scene.Sweep(results, name)
         scene.draw_contacts(ax, sweep, sweep.step_at(DEEP), *FRAME, flips=True)
         ax.set_title(title)
     style.note(axes[0, 0], 0.02, 0.98, "flipped gradients", style.PETROL)
     style.note(axes[0, 0], 0.98, 0.04, "dashed: median line", style.GREY, ha="right", va="bottom")
-    style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.AMBER, ha="right")
+    style.note(
+        axes[0, 1],
+        0.98,
+        0.14,
+        "too short: the segments end\ninside the tool",
+        style.AMBER,
+        ha="right",
+    )
     return style.lettered(figure, axes[0]), {"tilt": DEEP}
 
 
 def gradient_flipping(results):
     figure, axes = style.panels(1, 3, 3.2, gridspec_kw={"width_ratios": [1, 1, 1.15]})
     sweep = scene.Sweep(results, SHORTEST)
-    for ax, tilt, title in ((axes[0, 0], SHALLOW, "shallow"), (axes[0, 1], DEEP, "beyond the median line")):
+    for ax, tilt, title in (
+        (axes[0, 0], SHALLOW, "shallow"),
+        (axes[0, 1], DEEP, "beyond the median line"),
+    ):
         step = sweep.step_at(tilt)
         scene.draw_contacts(ax, sweep, step, *FRAME, flips=True)
         force = sweep.force(step)
-        scene.draw_arrow(ax, scene.MM * sweep.peg(step).tip, 1.2 * force / np.linalg.norm(force), style.BLACK)
+        scene.draw_arrow(
+            ax, scene.MM * sweep.peg(step).tip, 1.2 * force / np.linalg.norm(force), style.BLACK
+        )
         style.note(ax, 0.03, 0.03, f"{np.linalg.norm(force):.1f} N", va="bottom")
         ax.set_title(title)
     axes[0, 1].set_ylabel("")
@@ -62,7 +88,9 @@ def draw_flip_count(ax, sweep):
     ax.plot(tilt, pull, color=style.PLUM, marker="o", markevery=8, ls=(0, (4, 1.2)))
     ax.axhline(0, color=style.BLACK, lw=0.7)
     ax.set(xlabel="tilt [rad]", ylabel="share of contacts | mean pull [1]", ylim=(-1.08, 0.75))
-    ax.text(tilt[-1], share[-1] + 0.05, "share flipped", color=style.PETROL, ha="right", va="bottom")
+    ax.text(
+        tilt[-1], share[-1] + 0.05, "share flipped", color=style.PETROL, ha="right", va="bottom"
+    )
     ax.text(0.36, -0.75, "mean pull", color=style.PLUM)
     ax.text(0.03, 0.62, "+1: all pull in", fontsize=7)
     ax.text(0.3, -1.0, "−1: all push off", fontsize=7)
@@ -70,7 +98,10 @@ def draw_flip_count(ax, sweep):
 
 def underestimation(results):
     figure, axes = style.panels(1, 3, 3.0, gridspec_kw={"width_ratios": [0.85, 0.85, 1.3]})
-    for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
+    for ax, name, title in (
+        (axes[0, 0], SHORTEST, "shortest distance"),
+        (axes[0, 1], NORMAL, "surface normal"),
+    ):
         sweep = scene.Sweep(results, name)
         scene.draw_contacts(ax, sweep, sweep.step_at(0.3), *FRAME, flips=True)
         ax.set_title(title)
@@ -89,12 +120,25 @@ def draw_error(ax, sweep):
         true.append(exits[near])
         tilt.append(np.full(near.sum(), sweep.tilt[step]))
     used, true, tilt = (np.concatenate(part) for part in (used, true, tilt))
-    marks = ax.scatter(1e3 * true, 1e3 * (true - used), c=tilt, cmap=TILT_COLOURS, s=6, linewidths=0, rasterized=True)
+    marks = ax.scatter(
+        1e3 * true,
+        1e3 * (true - used),
+        c=tilt,
+        cmap=TILT_COLOURS,
+        s=6,
+        linewidths=0,
+        rasterized=True,
+    )
     ax.figure.colorbar(marks, ax=ax, label="tilt [rad]", shrink=0.9)
     ax.axvline(1e3 * scene.PUBLISHED["G1.negligible"]["at_most"], **style.PUBLISHED_LINE)
     style.note(ax, 0.22, 0.98, "published: negligible\nup to 0.25 mm", style.RED)
-    ax.set(xlabel="distance along the normal [mm]", ylabel="depth too small by [mm]", title="underestimation", xlim=(0, 1.3),
-           ylim=(-0.02, 0.85))
+    ax.set(
+        xlabel="distance along the normal [mm]",
+        ylabel="depth too small by [mm]",
+        title="underestimation",
+        xlim=(0, 1.3),
+        ylim=(-0.02, 0.85),
+    )
 
 
 def corner(results):

@@ -18,10 +18,17 @@ def samples(results, run):
     millimetres."""
     rows = results.table(f"{HANDS}/runs/{run:06d}/ideal_trajectory.csv")
     range_ = scene.PUBLISHED["J1.tilt"]
-    own = (rows["time_s"] > SETTLED) & (rows["tilt_rad"] >= range_["at_least"]) & (rows["tilt_rad"] <= range_["at_most"])
+    own = (
+        (rows["time_s"] > SETTLED)
+        & (rows["tilt_rad"] >= range_["at_least"])
+        & (rows["tilt_rad"] <= range_["at_most"])
+    )
     if not own.any():
         raise MissingResult(f"no row at the compared tilts in {HANDS}/runs/{run:06d}")
-    rows = {key: column[own] * (1 if key in ("time_s", "tilt_rad", "hand_force_N") else 1e3) for key, column in rows.items()}
+    rows = {
+        key: column[own] * (1 if key in ("time_s", "tilt_rad", "hand_force_N") else 1e3)
+        for key, column in rows.items()
+    }
     on_wall = np.abs(rows["lateral_m"]) > np.abs(rows["ideal_lateral_m"]) - SLID
     return {key: column[on_wall] for key, column in rows.items()}
 
@@ -37,12 +44,26 @@ def ideal(rows_list):
 def draw_block(ax, environment):
     radius, depth = 500 * environment["hole_diameter_m"], 1e3 * environment["hole_depth_m"]
     wall = np.array(
-        [[-2.2, 0], [-radius, 0], [-radius, -depth], [radius, -depth], [radius, 0], [2.2, 0], [2.2, -depth - 0.6],
-         [-2.2, -depth - 0.6]]
+        [
+            [-2.2, 0],
+            [-radius, 0],
+            [-radius, -depth],
+            [radius, -depth],
+            [radius, 0],
+            [2.2, 0],
+            [2.2, -depth - 0.6],
+            [-2.2, -depth - 0.6],
+        ]
     )
     ax.add_patch(Polygon(wall, closed=True, facecolor=style.SAND, edgecolor=style.SOIL, lw=0.8))
-    ax.set(xlim=(-1.65, 1.35), xticks=[-1, 0, 1], ylim=(-5.4, 0.8), aspect="equal", xlabel="x [mm]",
-           ylabel="height over the mouth [mm]")
+    ax.set(
+        xlim=(-1.65, 1.35),
+        xticks=[-1, 0, 1],
+        ylim=(-5.4, 0.8),
+        aspect="equal",
+        xlabel="x [mm]",
+        ylabel="height over the mouth [mm]",
+    )
 
 
 def trajectory(results):
@@ -57,12 +78,21 @@ def trajectory(results):
         force = float(hand["hand.force_N"])
         rows = samples(results, run)
         drawn.append(rows)
-        errors.append(f"{force:.2g} N {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f}/"
-                      f"{rows['interpenetration_m'].max():.2f} mm")
+        errors.append(
+            f"{force:.2g} N {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f}/"
+            f"{rows['interpenetration_m'].max():.2f} mm"
+        )
         pick = slice(None, None, max(1, len(rows["tilt_rad"]) // MARKS))
         thin = {key: column[pick] for key, column in rows.items()}
         # The firmest hand is hollow and lies over its neighbour, whose places it shares.
-        look = {"color": own.colour, "marker": own.marker, "ls": "none", "ms": 2.3, "mec": "none", "alpha": 0.7}
+        look = {
+            "color": own.colour,
+            "marker": own.marker,
+            "ls": "none",
+            "ms": 2.3,
+            "mec": "none",
+            "alpha": 0.7,
+        }
         if force > scene.published("J1.split"):
             look |= {"ms": 4, "mec": own.colour, "mfc": "none", "mew": 0.6}
         section.plot(thin["lateral_m"], thin["height_m"], **look)
@@ -73,7 +103,9 @@ def trajectory(results):
     height.plot(tilt, y + bottom, color=style.BLACK, label="ideal")
     distance.plot(tilt, np.abs(x), color=style.BLACK)
     inside = 1e3 * scene.published("J1.lateral")
-    distance.fill_between(tilt, np.abs(x) - inside, np.abs(x) + inside, color=style.RED, alpha=0.13, lw=0)
+    distance.fill_between(
+        tilt, np.abs(x) - inside, np.abs(x) + inside, color=style.RED, alpha=0.13, lw=0
+    )
     height.set(title="height over the bottom", xlabel="tilt α [rad]", ylabel="height [mm]")
     distance.set(title="distance to the median line", xlabel="tilt α [rad]", ylabel="distance [mm]")
     section.set_title("section")
@@ -82,4 +114,4 @@ def trajectory(results):
     height.legend(loc="upper left", markerscale=1.8, fontsize=6.5)
     height.margins(y=0.12)
     style.note(distance, 0.03, 0.3, "shaded: published,\nerror up to about\n0.25 mm", style.RED)
-    return style.lettered(figure, axes[0]), {"errors": ', '.join(errors)}
+    return style.lettered(figure, axes[0]), {"errors": ", ".join(errors)}

@@ -17,8 +17,10 @@ MEASURES = (
     ("speed", "speed_m_per_s", "velocity [mm/s]", 1e3),
 )
 # Of each task its two targets: place, claim, title.
-TARGETS = {"vertical": ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
-           "rotational": ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm"))}
+TARGETS = {
+    "vertical": ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
+    "rotational": ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")),
+}
 DP, HS = "original_averaging", "shaped_stiffness"
 METHODS = ((DP, "DP"), (HS, "HS"))
 
@@ -29,7 +31,9 @@ def subject_means(records, place, column):
     subjects = numbers(own, "subject")
     values = numbers(own, column)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # a subject who never was on the target has no mean
+        warnings.simplefilter(
+            "ignore", RuntimeWarning
+        )  # a subject who never was on the target has no mean
         return np.array([np.nanmean(values[subjects == s]) for s in np.unique(subjects)])
 
 
@@ -38,8 +42,14 @@ def significance(first, second):
     both = np.isfinite(first) & np.isfinite(second)
     difference = (first - second)[both]
     if len(difference) < 2 or np.ptp(difference) == 0:
-        return "equal in all subjects" if len(difference) and not difference.any() else "same difference in all"
-    from scipy.stats import ttest_rel  # takes a quarter of the time of starting, and few figures need it
+        return (
+            "equal in all subjects"
+            if len(difference) and not difference.any()
+            else "same difference in all"
+        )
+    from scipy.stats import (
+        ttest_rel,
+    )  # takes a quarter of the time of starting, and few figures need it
 
     t, p = ttest_rel(first[both], second[both])
     return f"t = {signed(t)}, p {'< 0.001' if p < 0.001 else f'= {p:.3f}'}"
@@ -64,13 +74,33 @@ def draw_measure(ax, tables, place, claim, measure):
         both.append(values)
         finite = scale * values[np.isfinite(values)]
         look = style.look(method)
-        ax.plot(x - 0.24 + np.linspace(-0.05, 0.05, len(finite)), finite, "o", color=style.GREY, ms=2.2, mec="none")
+        ax.plot(
+            x - 0.24 + np.linspace(-0.05, 0.05, len(finite)),
+            finite,
+            "o",
+            color=style.GREY,
+            ms=2.2,
+            mec="none",
+        )
         error = finite.std(ddof=1) / np.sqrt(len(finite)) if len(finite) > 1 else 0
         if len(finite):
-            ax.errorbar([x], [finite.mean()], yerr=[error], marker=look.marker, color=look.colour, ms=5, capsize=2.5,
-                        elinewidth=1.2)
+            ax.errorbar(
+                [x],
+                [finite.mean()],
+                yerr=[error],
+                marker=look.marker,
+                color=look.colour,
+                ms=5,
+                capsize=2.5,
+                elinewidth=1.2,
+            )
         id_ = f"{claim}.{name}.{method}"
-        ax.errorbar([x + 0.24], [scale * scene.published(id_)], yerr=[scale * scene.spread(id_)], **style.PUBLISHED)
+        ax.errorbar(
+            [x + 0.24],
+            [scale * scene.published(id_)],
+            yerr=[scale * scene.spread(id_)],
+            **style.PUBLISHED,
+        )
     ax.set_xlim(-0.5, 1.5)
     ax.set_xticks([0, 1], [short for _, short in METHODS])
     ax.grid(axis="x", visible=False)
@@ -81,7 +111,10 @@ def draw_measure(ax, tables, place, claim, measure):
 
 
 def experiment(results, task):
-    tables = {method: results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv") for method, _ in METHODS}
+    tables = {
+        method: results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv")
+        for method, _ in METHODS
+    }
     figure, axes = style.panels(2, 4, 5.0, sharex=True, sharey="col")
     for row, (place, claim, title) in zip(axes, TARGETS[task]):
         for ax, measure in zip(row, MEASURES):
@@ -98,8 +131,12 @@ def experiment(results, task):
     return style.lettered(figure, axes[0]), {}
 
 
-CHECKED = (("vertical", 0, "D2", "centre"), ("vertical", 1, "D1", "0.52 mm aside"), ("rotational", 0, "D3", "3 mm high"),
-           ("rotational", 1, "D4", "4 mm high"))
+CHECKED = (
+    ("vertical", 0, "D2", "centre"),
+    ("vertical", 1, "D1", "0.52 mm aside"),
+    ("rotational", 0, "D3", "3 mm high"),
+    ("rotational", 1, "D4", "4 mm high"),
+)
 
 
 def recorded(results, task, place, method):
@@ -113,7 +150,9 @@ def checked(results, task, place):
     for row in results.records("checked_force/sweep.csv"):
         if row["scenario"] == f"{task}_peg_in_hole_{DP}":
             threshold = json.loads(row["hand.task.threshold"])
-            yield threshold["cutoff_Hz"], threshold["grace_s"], float(row[f"targets.{place}.success_rate.mean"])
+            yield threshold["cutoff_Hz"], threshold["grace_s"], float(
+                row[f"targets.{place}.success_rate.mean"]
+            )
 
 
 def threshold(results):
@@ -123,12 +162,26 @@ def threshold(results):
     for ax, (task, place, claim, title) in zip(axes[0], CHECKED):
         every = recorded(results, task, place, DP)
         others = list(checked(results, task, place))
-        graces = [(0.0, every)] + sorted((1e3 * grace, success) for cutoff, grace, success in others if cutoff is None)
+        graces = [(0.0, every)] + sorted(
+            (1e3 * grace, success) for cutoff, grace, success in others if cutoff is None
+        )
         slow = [(1e3 * grace, success) for cutoff, grace, success in others if cutoff is not None]
         look = style.look(DP)
         ax.plot(*zip(*graces), color=look.colour, marker="o", label="DP, every sample")
-        ax.plot(*zip(*slow), color=look.colour, marker="s", mfc="white", ls="none", ms=5, label="DP, 30 Hz")
-        ax.axhline(recorded(results, task, place, HS), color=style.look(HS).colour, label="HS, every sample")
+        ax.plot(
+            *zip(*slow),
+            color=look.colour,
+            marker="s",
+            mfc="white",
+            ls="none",
+            ms=5,
+            label="DP, 30 Hz",
+        )
+        ax.axhline(
+            recorded(results, task, place, HS),
+            color=style.look(HS).colour,
+            label="HS, every sample",
+        )
         for at, method in ((12, DP), (18, HS)):
             id_ = f"{claim}.success.{method}"
             ax.errorbar([at], [scene.published(id_)], yerr=[scene.spread(id_)], **style.PUBLISHED)
@@ -136,7 +189,9 @@ def threshold(results):
         ax.set(title=title, xlabel="grace [ms]", xlim=(-0.3, 25), ylim=(-0.05, 1.08))
         ax.set_xticks([0, 1, 2, 5], ["0", "1", "2", "5"])
         ax.minorticks_off()
-        said.append(f"{title} {every:.2f}, {graces[-1][1]:.2f} and {max(success for _, success in slow):.2f}")
+        said.append(
+            f"{title} {every:.2f}, {graces[-1][1]:.2f} and {max(success for _, success in slow):.2f}"
+        )
     axes[0, 0].set_ylabel("success rate")
     axes[0, 3].legend(loc="lower right", fontsize=6)
     return style.lettered(figure, axes[0]), {"success": ", ".join(said)}

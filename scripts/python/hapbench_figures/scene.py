@@ -10,7 +10,12 @@ import hapbench_style as style
 
 MM = 1e3
 ROOT = Path(__file__).resolve().parents[3]
-PUBLISHED = {entry["id"]: entry for entry in json.loads((ROOT / "results/reference/published.json").read_text(encoding="utf-8"))["values"]}
+PUBLISHED = {
+    entry["id"]: entry
+    for entry in json.loads(
+        (ROOT / "results/reference/published.json").read_text(encoding="utf-8")
+    )["values"]
+}
 LEDGER = "claims.json"  # beside the results: what was measured for each claim
 
 
@@ -74,7 +79,10 @@ class Peg:
 
 def peg_of(tool, rows, step):
     """The tool of a scenario in a row of its trajectory."""
-    tip, axis = (np.array([rows[name][step] for name in names]) for names in (("px_m", "py_m"), ("axis_x", "axis_y")))
+    tip, axis = (
+        np.array([rows[name][step] for name in names])
+        for names in (("px_m", "py_m"), ("axis_x", "axis_y"))
+    )
     return Peg(tip, axis, tool["diameter_m"], tool["length_m"])
 
 
@@ -93,8 +101,13 @@ class Sweep:
     def contacts(self, step):
         own = self.all["step"] == self.rows["step"][step]
         pick = {name: column[own] for name, column in self.all.items()}
-        return Contacts(np.stack([pick["x_m"], pick["y_m"]], 1), np.stack([pick["nx"], pick["ny"]], 1), pick["depth_m"],
-                        np.stack([pick["gradient_x"], pick["gradient_y"]], 1), pick["weight"])
+        return Contacts(
+            np.stack([pick["x_m"], pick["y_m"]], 1),
+            np.stack([pick["nx"], pick["ny"]], 1),
+            pick["depth_m"],
+            np.stack([pick["gradient_x"], pick["gradient_y"]], 1),
+            pick["weight"],
+        )
 
     def peg(self, step):
         return peg_of(self.scenario["tool"], self.rows, step)
@@ -106,15 +119,31 @@ class Sweep:
 def draw_hole(ax, environment, points=False):
     half, depth, mouth = environment["width_m"] / 2, environment["depth_m"], environment["mouth_m"]
     corners = np.array(
-        [[-half - mouth, 0], [-half, 0], [-half, -depth], [half, -depth], [half, 0], [half + mouth, 0],
-         [half + mouth, -depth - 0.5e-3], [-half - mouth, -depth - 0.5e-3]]
+        [
+            [-half - mouth, 0],
+            [-half, 0],
+            [-half, -depth],
+            [half, -depth],
+            [half, 0],
+            [half + mouth, 0],
+            [half + mouth, -depth - 0.5e-3],
+            [-half - mouth, -depth - 0.5e-3],
+        ]
     )
-    ax.add_patch(Polygon(corners * MM, closed=True, facecolor=style.SAND, edgecolor="none", zorder=0))
+    ax.add_patch(
+        Polygon(corners * MM, closed=True, facecolor=style.SAND, edgecolor="none", zorder=0)
+    )
     ax.plot(*(corners[:6] * MM).T, color=style.SOIL, lw=0.9, zorder=1)
     if points:
         way = np.append(0, np.cumsum(np.linalg.norm(np.diff(corners[:6], axis=0), axis=1)))
         places = np.arange(0, way[-1] + 1e-9, environment["spacing_m"])
-        ax.plot(*(np.interp(places, way, corners[:6, i]) * MM for i in (0, 1)), ".", color=style.PETROL, ms=2.2, zorder=2)
+        ax.plot(
+            *(np.interp(places, way, corners[:6, i]) * MM for i in (0, 1)),
+            ".",
+            color=style.PETROL,
+            ms=2.2,
+            zorder=2,
+        )
     ax.set_aspect("equal")
     ax.grid(False)
 
@@ -133,7 +162,12 @@ def draw_segments(ax, contacts, colours):
     for colour in dict.fromkeys(colours):
         own = [c == colour for c in colours]
         # One line with gaps, and one row of marks: an SVG of them is much smaller.
-        lines = np.stack([contacts.point[own], ends[own], np.full_like(ends[own], np.nan)], 1).reshape(-1, 2) * MM
+        lines = (
+            np.stack([contacts.point[own], ends[own], np.full_like(ends[own], np.nan)], 1).reshape(
+                -1, 2
+            )
+            * MM
+        )
         ax.plot(*lines.T, color=colour, lw=1.0, zorder=4)
         ax.plot(*(contacts.point[own] * MM).T, "o", ms=2.65, color=colour, mec="none", zorder=5)
 
@@ -141,10 +175,27 @@ def draw_segments(ax, contacts, colours):
 def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
     """An arrow, both ends in the units of the axes; the label at its head."""
     head = np.asarray(start) + vector
-    style_ = {"arrowstyle": "-|>", "color": colour, "lw": 1.8, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9, **keywords}
+    style_ = {
+        "arrowstyle": "-|>",
+        "color": colour,
+        "lw": 1.8,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "mutation_scale": 9,
+        **keywords,
+    }
     ax.annotate("", xy=head, xytext=start, arrowprops=style_, zorder=6)
     if label:
-        ax.annotate(label, xy=head, xytext=at, textcoords="offset points", color=colour, fontsize=7.5, bbox=style.PLATE, zorder=7)
+        ax.annotate(
+            label,
+            xy=head,
+            xytext=at,
+            textcoords="offset points",
+            color=colour,
+            fontsize=7.5,
+            bbox=style.PLATE,
+            zorder=7,
+        )
 
 
 def frame(ax, x, y):

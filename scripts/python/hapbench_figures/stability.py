@@ -34,7 +34,11 @@ def paths(results, kind):
     """Damping and force "limited" or "unlimited"."""
     figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
     proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
-    own = [name for name in style.ALGORITHMS if results.has(f"thesis/springs_{kind}_{name}/trajectory.csv")]
+    own = [
+        name
+        for name in style.ALGORITHMS
+        if results.has(f"thesis/springs_{kind}_{name}/trajectory.csv")
+    ]
     for ax, name in zip(axes.flat, own):
         look = style.look(name)
         rows = results.table(f"thesis/springs_{kind}_{name}/trajectory.csv")
@@ -42,9 +46,17 @@ def paths(results, kind):
         if name != "shaped_stiffness":
             ax.plot(1e3 * proposed["px_m"], 1e3 * proposed["py_m"], color="#8A8A8A", lw=0.9)
         draw_path(ax, rows, look)
-        ax.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal", xticks=[-5, 0, 5], yticks=[-5, 0, 5])
+        ax.set(
+            xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal", xticks=[-5, 0, 5], yticks=[-5, 0, 5]
+        )
         time = settling(rows)
-        text = ("diverges" if outcome == "diverges" else f"settles in {time:.0f} ms" if time is not None else "has not settled")
+        text = (
+            "diverges"
+            if outcome == "diverges"
+            else f"settles in {time:.0f} ms"
+            if time is not None
+            else "has not settled"
+        )
         # Above the frame: some curves fill it.
         ax.set_title(look.label, color=look.colour, pad=14)
         ax.text(0, 1.03, text, transform=ax.transAxes, fontsize=7)
@@ -60,25 +72,52 @@ def spaced(number):
 
 def root_locus(results):
     spring = json.loads(SPRING.read_text(encoding="utf-8"))
-    dt, M, zeta = spring["time"]["step_s"], spring["rendering"]["mass_kg"], spring["rendering"]["damping_ratio"]
-    poles = lambda K, B: sorted(np.linalg.eigvals([[1 - K * dt * dt / M, dt - B * dt * dt / M], [-K * dt / M, 1 - B * dt / M]]),
-                                key=lambda pole: (-pole.imag, -pole.real))
+    dt, M, zeta = (
+        spring["time"]["step_s"],
+        spring["rendering"]["mass_kg"],
+        spring["rendering"]["damping_ratio"],
+    )
+    poles = lambda K, B: sorted(
+        np.linalg.eigvals(
+            [[1 - K * dt * dt / M, dt - B * dt * dt / M], [-K * dt / M, 1 - B * dt / M]]
+        ),
+        key=lambda pole: (-pole.imag, -pole.real),
+    )
     undamped, damped = results.records("spring_stiffness/limit.csv")
     damper = results.records("spring_damping/limit.csv")[0]
-    cases = (("A4.stiffness", "B = 0, K grows", "K", "N/m", undamped, lambda K: poles(K, 0)),
-             ("A4.damping", "K = 0, B grows", "B", "N s/m", damper, lambda B: poles(0, B)),
-             ("A4.stiffness.damped", f"ζ = {zeta:g}, K grows", "K", "N/m", damped, lambda K: poles(K, 2 * zeta * np.sqrt(K * M))))
+    cases = (
+        ("A4.stiffness", "B = 0, K grows", "K", "N/m", undamped, lambda K: poles(K, 0)),
+        ("A4.damping", "K = 0, B grows", "B", "N s/m", damper, lambda B: poles(0, B)),
+        (
+            "A4.stiffness.damped",
+            f"ζ = {zeta:g}, K grows",
+            "K",
+            "N/m",
+            damped,
+            lambda K: poles(K, 2 * zeta * np.sqrt(K * M)),
+        ),
+    )
     figure, axes = style.panels(1, 3, 2.7, sharey=True)
     turn = np.linspace(0, 2 * np.pi, 181)
     for ax, (id_, title, symbol, unit, ours, at) in zip(axes[0], cases):
         value = scene.published(id_)
         ax.plot(np.cos(turn), np.sin(turn), color=style.BLACK, lw=0.8)
-        for way, colour, line in zip(np.array([at(v) for v in np.linspace(0, 1.25 * value, 401)]).T, (style.PETROL, style.AMBER), ("-", (0, (4, 1.2)))):
+        for way, colour, line in zip(
+            np.array([at(v) for v in np.linspace(0, 1.25 * value, 401)]).T,
+            (style.PETROL, style.AMBER),
+            ("-", (0, (4, 1.2))),
+        ):
             ax.plot(way.real, way.imag, color=colour, ls=line, lw=1.5)
-        leaving = min(at(value), key=lambda pole: pole.real)  # at -1; the other one stays inside or at 1
+        leaving = min(
+            at(value), key=lambda pole: pole.real
+        )  # at -1; the other one stays inside or at 1
         ax.plot(leaving.real, leaving.imag, marker="D", mfc="white", mec=style.RED, ms=5, zorder=5)
-        style.note(ax, 0.5, 0.98, f"published {symbol} = {spaced(value)} {unit}", style.RED, ha="center")
-        style.note(ax, 0.5, 0.02, f"ours {spaced(float(ours['limit']))} {unit}", ha="center", va="bottom")
+        style.note(
+            ax, 0.5, 0.98, f"published {symbol} = {spaced(value)} {unit}", style.RED, ha="center"
+        )
+        style.note(
+            ax, 0.5, 0.02, f"ours {spaced(float(ours['limit']))} {unit}", ha="center", va="bottom"
+        )
         ax.set(title=title, xlabel="real part", xlim=(-1.75, 1.4), ylim=(-1.6, 1.6), aspect="equal")
     axes[0, 0].set_ylabel("imaginary part")
     return style.lettered(figure, axes[0]), {"mass": M, "step": 1000.0 * dt}
@@ -88,13 +127,19 @@ def over(results, study):
     """What the study of this name found."""
     found = Limits(results, f"stability_{study}/")
     return draw_over(found), {
-        "field": axis(found.field), "over": axis(found.over[-1]),
-        "theory": "its ratio to the limit from theory; then " if any(row["theory"] for row in found.rows) else "",
-        "known": "Thin lines: known limits, and the least over passive hands. " if found.known(found.rows) else ""}
+        "field": axis(found.field),
+        "over": axis(found.over[-1]),
+        "theory": "its ratio to the limit from theory; then "
+        if any(row["theory"] for row in found.rows)
+        else "",
+        "known": "Thin lines: known limits, and the least over passive hands. "
+        if found.known(found.rows)
+        else "",
+    }
 
 
 def of_all_devices(results):
-    return draw_limits(results, 'device_limits/'), {}
+    return draw_limits(results, "device_limits/"), {}
 
 
 MEASURED = scene.ROOT / "scenarios" / "library" / "validation" / "measured.csv"
@@ -103,16 +148,37 @@ SCATTER = 1.3  # of sessions of measuring one setting, a factor
 
 def hardware(results):
     """K over B of the EPFL paddle behind its three velocity filters: measured in sessions, and predicted."""
-    predicted, (damping, stiffness) = results.records("hardware_paddle/limit.csv"), ("damping_N_s_per_m", "stiffness_N_per_m")
+    predicted, (damping, stiffness) = results.records("hardware_paddle/limit.csv"), (
+        "damping_N_s_per_m",
+        "stiffness_N_per_m",
+    )
     filters = {"A": "10 Hz filter", "A'": "50 Hz filter", "A''": "1 kHz filter"}
     figure, axes = style.panels(1, len(filters), 2.7, sharey=True)
     for ax, (case, title) in zip(axes[0], filters.items()):
         measured = [row for row in read_records(MEASURED) if row["case"] == case]
-        rows = [row for row in predicted if float(row["device.velocity_filter.cutoff_Hz"]) == float(measured[0]["velocity_filter_Hz"])]
-        ax.plot(numbers(rows, f"rendering.{damping}"), numbers(rows, "limit"), color=style.PETROL, label="predicted")
+        rows = [
+            row
+            for row in predicted
+            if float(row["device.velocity_filter.cutoff_Hz"])
+            == float(measured[0]["velocity_filter_Hz"])
+        ]
+        ax.plot(
+            numbers(rows, f"rendering.{damping}"),
+            numbers(rows, "limit"),
+            color=style.PETROL,
+            label="predicted",
+        )
         K = numbers(measured, stiffness)
-        ax.errorbar(numbers(measured, damping), K, yerr=[K - K / SCATTER, K * SCATTER - K], fmt="o", color=style.AMBER, ms=3, lw=0.8,
-                    label=f"measured, x{SCATTER:g}")
+        ax.errorbar(
+            numbers(measured, damping),
+            K,
+            yerr=[K - K / SCATTER, K * SCATTER - K],
+            fmt="o",
+            color=style.AMBER,
+            ms=3,
+            lw=0.8,
+            label=f"measured, x{SCATTER:g}",
+        )
         ax.set(title=title, yscale="log", xlabel="damping B [N s/m]")
     axes[0, 0].set_ylabel("largest stable stiffness K [N/m]")
     axes[0, 0].legend()

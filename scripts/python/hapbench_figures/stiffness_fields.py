@@ -12,7 +12,12 @@ from . import scene
 
 SWEEP = "tilt_sweep_shaped_stiffness"
 PEG = "stiffness_peg"  # the same sweep under every algorithm
-TITLES = {"summation": "sum", "mean": "mean", "virtual_coupling": "coupling", "shaped_stiffness": "shaping"}
+TITLES = {
+    "summation": "sum",
+    "mean": "mean",
+    "virtual_coupling": "coupling",
+    "shaped_stiffness": "shaping",
+}
 PEG_TILT = 0.12  # of figure 2 and of all algorithms [rad]
 DIRECTIONS = np.linspace(0, 2 * np.pi, 73)
 FRAME = (-1.3, 1.3), (-4.2, 0.9)  # of the contacts [mm]
@@ -23,7 +28,10 @@ SUMMATION_REACH, SUMMATION_TICKS = 45, (-40, 0, 40)
 
 def rendered_tensor(results, directory, step):
     """S of one row in the plane, as the algorithm rendered it."""
-    row = {name: column[step] for name, column in results.table(f"{directory}/stiffness_tensor.csv").items()}
+    row = {
+        name: column[step]
+        for name, column in results.table(f"{directory}/stiffness_tensor.csv").items()
+    }
     return np.array([[row["sxx"], row["sxy"]], [row["sxy"], row["syy"]]])
 
 
@@ -38,8 +46,12 @@ def draw_field(ax, name, tensor, contacts, reach, ticks):
     curve, colour = field(tensor), style.look(name).colour
     limit = scene.PUBLISHED["C4.ratio"]["at_most"]
     ax.fill(*curve.T, facecolor=(*to_rgb(colour), 0.22), edgecolor=colour, lw=1.1)
-    ax.add_patch(Circle((0, 0), limit, fill=False, edgecolor=style.RED, lw=1.1, ls=(0, (1, 1)), zorder=2))
-    ax.add_patch(Circle((0, 0), 1, fill=False, edgecolor=style.BLACK, lw=0.8, ls=(0, (3, 2)), zorder=2))
+    ax.add_patch(
+        Circle((0, 0), limit, fill=False, edgecolor=style.RED, lw=1.1, ls=(0, (1, 1)), zorder=2)
+    )
+    ax.add_patch(
+        Circle((0, 0), 1, fill=False, edgecolor=style.BLACK, lw=0.8, ls=(0, (3, 2)), zorder=2)
+    )
     ratio = np.einsum("ij,jk,ik->i", contacts.gradient, tensor, contacts.gradient)
     ax.plot(*(-contacts.gradient * ratio[:, None]).T, ".", color=style.AMBER, ms=3.5)
     ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=ticks, yticks=ticks)
@@ -50,15 +62,26 @@ def draw_field(ax, name, tensor, contacts, reach, ticks):
 def of_four_laws(results, tilts, height):
     """A row for each tilt: the contacts, and the fields of four laws, the sum on a scale of its own; with what is drawn of each law."""
     sweep, drawn = scene.Sweep(results, SWEEP), []
-    figure, axes = style.panels(len(tilts), 5, height, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]})
+    figure, axes = style.panels(
+        len(tilts), 5, height, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]}
+    )
     for row, tilt in zip(axes, tilts):
         step = sweep.step_at(tilt)
         contacts = scene.draw_contacts(row[0], sweep, step, *FRAME)
         for ax, (name, title) in zip(row[1:], TITLES.items()):
             tensor = rendered_tensor(results, f"{PEG}/{name}", step)
             reach = (SUMMATION_REACH, SUMMATION_TICKS) if name == "summation" else (REACH, TICKS)
-            drawn.append((ax, draw_field(ax, name, tensor, contacts, *reach), scene.Sweep(results, name, PEG).force(step)))
-            ax.set(title=title if row is axes[0] else "", xlabel="stiffness / K" if row is axes[-1] else "")
+            drawn.append(
+                (
+                    ax,
+                    draw_field(ax, name, tensor, contacts, *reach),
+                    scene.Sweep(results, name, PEG).force(step),
+                )
+            )
+            ax.set(
+                title=title if row is axes[0] else "",
+                xlabel="stiffness / K" if row is axes[-1] else "",
+            )
         if row is not axes[-1]:
             row[0].set_xlabel("")
         if len(tilts) > 1:
@@ -70,7 +93,15 @@ def of_four_laws(results, tilts, height):
 def excessive_stiffness(results):
     figure, axes, drawn = of_four_laws(results, (PEG_TILT,), 2.15)
     for ax, ratio, _ in drawn:
-        style.note(ax, 0.5, 0.02, f"{ratio.min():.2g} … {ratio.max():.3g}", style.AMBER, ha="center", va="bottom")
+        style.note(
+            ax,
+            0.5,
+            0.02,
+            f"{ratio.min():.2g} … {ratio.max():.3g}",
+            style.AMBER,
+            ha="center",
+            va="bottom",
+        )
     style.note(axes[0, 1], 0.5, 0.985, "published: 4 K", style.RED, ha="center")
     style.note(axes[0, 4], 0.5, 0.985, "K", ha="center")
     return figure, {}
@@ -79,7 +110,9 @@ def excessive_stiffness(results):
 def fields_over_tilt(results):
     figure, _, drawn = of_four_laws(results, (0.06, 0.2, 0.4), 5.2)
     for ax, _, force in drawn:
-        scene.draw_arrow(ax, (0, 0), 0.75 * ax.get_xlim()[1] * force / np.linalg.norm(force), style.BLACK)
+        scene.draw_arrow(
+            ax, (0, 0), 0.75 * ax.get_xlim()[1] * force / np.linalg.norm(force), style.BLACK
+        )
     return figure, {}
 
 
@@ -105,13 +138,21 @@ def of_all_algorithms(results):
         step = run.step_at(PEG_TILT)
         tensor = rendered_tensor(results, f"{PEG}/{name}", step)
         ratio = draw_field(ax, name, tensor, run.contacts(step), *own_scale(tensor))
-        ax.set_title("\n".join(wrap(name.replace("_", " "), 15)), fontsize=6.5, color=style.look(name).colour)
+        ax.set_title(
+            "\n".join(wrap(name.replace("_", " "), 15)), fontsize=6.5, color=style.look(name).colour
+        )
         ax.set_xlabel(f"{ratio.min():.2g} … {ratio.max():.3g}", fontsize=6.5)
     for ax in axes.flat:
         ax.tick_params(labelsize=6.5)
-    for ax in axes.flat[len(names) + 1:]:
+    for ax in axes.flat[len(names) + 1 :]:
         ax.axis("off")
-    style.legend_above(figure, [Line2D([], [], color=style.BLACK, lw=0.8, ls=(0, (3, 2))), Line2D([], [], color=style.RED, lw=1.1, ls=(0, (1, 1))),
-                                Line2D([], [], color=style.AMBER, marker=".", ls="none")],
-                       ["K", "published: largest renderable, 4 K", "ratio along a contact"])
+    style.legend_above(
+        figure,
+        [
+            Line2D([], [], color=style.BLACK, lw=0.8, ls=(0, (3, 2))),
+            Line2D([], [], color=style.RED, lw=1.1, ls=(0, (1, 1))),
+            Line2D([], [], color=style.AMBER, marker=".", ls="none"),
+        ],
+        ["K", "published: largest renderable, 4 K", "ratio along a contact"],
+    )
     return figure, {}

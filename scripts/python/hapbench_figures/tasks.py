@@ -29,7 +29,9 @@ def ratios(results, task, iteration, density="signed_distance"):
 
 def cases(results, id_):
     """The cases of a claim in the ledger: name and numbers of each."""
-    return next(claim["cases"] for claim in results.json(scene.LEDGER)["claims"] if claim["id"] == id_)
+    return next(
+        claim["cases"] for claim in results.json(scene.LEDGER)["claims"] if claim["id"] == id_
+    )
 
 
 def thin(*columns, count=80):
@@ -41,7 +43,13 @@ def thin(*columns, count=80):
 def published_count(ax, x, task, what):
     """Mean and standard deviation at the right edge of a time axis."""
     id_ = f"{task}.{what}"
-    ax.errorbar([x], [scene.published(id_)], yerr=scene.PUBLISHED[id_].get("std"), **style.PUBLISHED, clip_on=False)
+    ax.errorbar(
+        [x],
+        [scene.published(id_)],
+        yerr=scene.PUBLISHED[id_].get("std"),
+        **style.PUBLISHED,
+        clip_on=False,
+    )
 
 
 def span(time, values, bins=BINS):
@@ -109,8 +117,10 @@ def point_counts(results):
 
 def count_distribution(results):
     figure, axes = style.panels(1, 2, 2.9, sharey=True)
-    for ax, column, what, title in ((axes[0, 0], "colliding", "raw", "before the reduction"),
-                                    (axes[0, 1], "rendered", "reduced", "after the reduction")):
+    for ax, column, what, title in (
+        (axes[0, 0], "colliding", "raw", "before the reduction"),
+        (axes[0, 1], "rendered", "reduced", "after the reduction"),
+    ):
         for place, (id_, task, _) in enumerate(TASKS):
             y = len(TASKS) - place
             for (density, name), above, marker in zip(DENSITIES, (0.2, 0.0), "os"):
@@ -120,40 +130,67 @@ def count_distribution(results):
             for k, suffix in enumerate(("", ".C3")):
                 if f"{id_}.{what}{suffix}" in scene.PUBLISHED:
                     entry = scene.PUBLISHED[f"{id_}.{what}{suffix}"]
-                    ax.errorbar([scene.published(entry["id"])], [y - 0.2 - 0.13 * k], xerr=[[entry.get("std", 0)]] * 2,
-                                **style.PUBLISHED)
+                    ax.errorbar(
+                        [scene.published(entry["id"])],
+                        [y - 0.2 - 0.13 * k],
+                        xerr=[[entry.get("std", 0)]] * 2,
+                        **style.PUBLISHED,
+                    )
         ax.set(title=title, xlabel="points in contact", xscale="log")
         ax.set_xlim((1, 1000) if what == "raw" else (0.8, 100))
         ax.set_ylim(0.5, 3.5)
     axes[0, 0].set_yticks([3, 2, 1], [title.replace(": ", ":\n") for _, _, title in TASKS])
-    axes[0, 1].legend(*axes[0, 0].get_legend_handles_labels(), loc="upper right", bbox_to_anchor=(1, 0.93))
+    axes[0, 1].legend(
+        *axes[0, 0].get_legend_handles_labels(), loc="upper right", bbox_to_anchor=(1, 0.93)
+    )
     style.note(axes[0, 1], 0.98, 0.68, "thick: ± SD\nthin: 5 to 95 %", style.PETROL, ha="right")
-    style.note(axes[0, 1], 0.98, 0.44, "◇ published, 3.3 and C.3\n(mean ± SD)", style.RED, ha="right")
+    style.note(
+        axes[0, 1], 0.98, 0.44, "◇ published, 3.3 and C.3\n(mean ± SD)", style.RED, ha="right"
+    )
     return style.lettered(figure, axes[0]), {}
 
 
 def draw_distribution(ax, y, values, marker, label):
     mean, spread = values.mean(), values.std()
     ax.plot(np.percentile(values, [5, 95]), [y, y], color=style.PETROL, lw=0.8)
-    ax.plot([max(mean - spread, 0.1), mean + spread], [y, y], color=style.PETROL, lw=2.4, solid_capstyle="butt")
-    ax.plot([mean], [y], marker, color=style.PETROL, mec="white", ms=5, mew=0.6, label=label, ls="none")
+    ax.plot(
+        [max(mean - spread, 0.1), mean + spread],
+        [y, y],
+        color=style.PETROL,
+        lw=2.4,
+        solid_capstyle="butt",
+    )
+    ax.plot(
+        [mean], [y], marker, color=style.PETROL, mec="white", ms=5, mew=0.6, label=label, ls="none"
+    )
 
 
 def quantiles(results, column, tasks, density):
     """Percentiles 0, 5, 50, 95, 100 of a ratio over all rows of the tasks, a row for each number of iterations."""
-    values = (np.concatenate([ratios(results, task, iteration, density)[column] for _, task, _ in tasks]) for iteration in ITERATIONS)
+    values = (
+        np.concatenate([ratios(results, task, iteration, density)[column] for _, task, _ in tasks])
+        for iteration in ITERATIONS
+    )
     return np.array([np.percentile(of_tasks, [0, 5, 50, 95, 100]) for of_tasks in values])
 
 
 def draw_quantiles(ax, results, tasks, density="signed_distance"):
     """Of the greatest and of the least ratio, with the published range after one iteration at the left edge."""
-    for column, colour, marker, extreme in (("ratio_max", style.PETROL, "o", 4), ("ratio_min", style.AMBER, "s", 0)):
+    for column, colour, marker, extreme in (
+        ("ratio_max", style.PETROL, "o", 4),
+        ("ratio_min", style.AMBER, "s", 0),
+    ):
         values = quantiles(results, column, tasks, density)
         ax.fill_between(ITERATIONS, values[:, 1], values[:, 3], color=colour, alpha=0.3, lw=0)
         ax.plot(ITERATIONS, values[:, 2], color=colour, marker=marker)
         ax.plot(ITERATIONS, values[:, extreme], color=colour, ls=":", lw=1.1)
     once = scene.PUBLISHED["R1.once"]
-    ax.errorbar([0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
+    ax.errorbar(
+        [0.8],
+        [1],
+        yerr=[[1 - once["at_least"]], [once["at_most"] - 1]],
+        **{**style.PUBLISHED, "marker": "none"},
+    )
     ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
 
 
@@ -166,7 +203,9 @@ def convergence_by_task(results):
         ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
-    style.note(axes[0, 0], 0.5, 0.36, "one contact: greatest and\nleast are 1 throughout", ha="center")
+    style.note(
+        axes[0, 0], 0.5, 0.36, "one contact: greatest and\nleast are 1 throughout", ha="center"
+    )
     style.note(axes[0, 0], 0.97, 0.92, "published bound 1.5", style.RED, ha="right")
     style.note(axes[0, 1], 0.97, 0.86, "greatest", style.PETROL, ha="right")
     style.note(axes[0, 1], 0.97, 0.3, "least", style.AMBER, ha="right")
@@ -177,13 +216,30 @@ def convergence(results):
     figure, axes = style.panels(1, 2, 2.7, sharey=True)
     for ax, (density, name) in zip(axes[0], DENSITIES):
         draw_quantiles(ax, results, TASKS[1:], density)
-        ax.set(xscale="log", yscale="log", title=f"density: {name}", xlabel="iterations", xlim=(0.75, 200), ylim=(0.42, 1.6))
-        ax.set_xticks(ITERATIONS, [str(i) if i in (1, 2, 3, 5, 10, 20, 40, 80, 160) else "" for i in ITERATIONS])
+        ax.set(
+            xscale="log",
+            yscale="log",
+            title=f"density: {name}",
+            xlabel="iterations",
+            xlim=(0.75, 200),
+            ylim=(0.42, 1.6),
+        )
+        ax.set_xticks(
+            ITERATIONS,
+            [str(i) if i in (1, 2, 3, 5, 10, 20, 40, 80, 160) else "" for i in ITERATIONS],
+        )
         ticks = (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.4, 1.6)
         ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
-    style.note(axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.PETROL, ha="right")
+    style.note(
+        axes[0, 0],
+        0.97,
+        0.95,
+        "greatest: stays above 1 where\na contact's weight vanishes",
+        style.PETROL,
+        ha="right",
+    )
     style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", style.AMBER, ha="right", va="bottom")
     return style.lettered(figure, axes[0]), {}
 
@@ -202,7 +258,11 @@ def over_time(draw, label, height=2.6, rows=1):
 
 
 def positions(results):
-    coordinates = (("px_m", "x", style.PETROL, "-"), ("py_m", "y", style.AMBER, (0, (4, 1.5))), ("pz_m", "z", style.BLACK, "-"))
+    coordinates = (
+        ("px_m", "x", style.PETROL, "-"),
+        ("py_m", "y", style.AMBER, (0, (4, 1.5))),
+        ("pz_m", "z", style.BLACK, "-"),
+    )
 
     def draw(ax, _, task):
         rows = trajectory(results, task)
@@ -213,7 +273,9 @@ def positions(results):
 
     figure, axes = over_time(draw, ["position of the tip [mm]"])
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.92))
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper center", ncol=3, handlelength=2)
+    figure.legend(
+        *axes[0, 0].get_legend_handles_labels(), loc="upper center", ncol=3, handlelength=2
+    )
     return figure, {}
 
 
@@ -230,19 +292,25 @@ def model_force(results):
     # The taps of task 2 are ten times as strong as all else.
     axes[0, 0].set_yscale("symlog", linthresh=0.5, linscale=1.2)
     axes[0, 0].set_ylim(0, 1.15 * max(ax.dataLim.y1 for ax in axes[0]))
-    axes[0, 0].set_yticks((0, 0.1, 0.2, 0.3, 0.4, 0.5, 1, 2), ("0", "0.1", "0.2", "0.3", "0.4", "0.5", "1", "2"))
+    axes[0, 0].set_yticks(
+        (0, 0.1, 0.2, 0.3, 0.4, 0.5, 1, 2), ("0", "0.1", "0.2", "0.3", "0.4", "0.5", "1", "2")
+    )
     axes[0, 0].axhline(0.5, color=style.GREY, lw=0.5)
     axes[0, 0].minorticks_off()
     style.note(axes[0, 0], 0.98, 0.8, "logarithmic above 0.5 N", style.GREY, ha="right")
     limit = scene.published("L1.threshold")
-    axes[0, 0].text(0, 0.95 * limit, "published limit of the input force", color=style.RED, fontsize=7, va="top")
+    axes[0, 0].text(
+        0, 0.95 * limit, "published limit of the input force", color=style.RED, fontsize=7, va="top"
+    )
     return figure, {"spans": BINS}
 
 
 def ratio_over_time(results, extreme):
     """The "greatest" or the "least" of a step's contacts after each number of iterations."""
     above = extreme == "greatest"
-    column, colour, published_end = ("ratio_max", style.PETROL, "at_most") if above else ("ratio_min", style.AMBER, "at_least")
+    column, colour, published_end = (
+        ("ratio_max", style.PETROL, "at_most") if above else ("ratio_min", style.AMBER, "at_least")
+    )
 
     def draw(ax, i, task):
         rows = ratios(results, task, ITERATIONS[i])
@@ -262,8 +330,15 @@ def ratio_over_time(results, extreme):
         ax.set_ylim((0.95, 1.4) if above else (0.4, 1.05))
         ax.locator_params(nbins=3)
         ax.grid(False)
-    style.note(axes[0, 0], 0.98, 0.3 if above else 0.1, f"published: {'1.3' if above else '0.8'}", style.RED, ha="right",
-               va="bottom")
+    style.note(
+        axes[0, 0],
+        0.98,
+        0.3 if above else 0.1,
+        f"published: {'1.3' if above else '0.8'}",
+        style.RED,
+        ha="right",
+        va="bottom",
+    )
     return figure, {"first": ", ".join(labels[:-1]), "last": labels[-1], "spans": FEW_BINS}
 
 
@@ -272,14 +347,28 @@ TIMES = (40, 10, 4)  # the points, of which a curve each
 
 def decoupling(results):
     """How far stiffness shaping decouples the force from the density of points (P1; ours): error over the updates."""
-    shaped = [case["values"] for case in cases(results, "P1") if case["name"].startswith(("m = ", "shaped_stiffness"))]
+    shaped = [
+        case["values"]
+        for case in cases(results, "P1")
+        if case["name"].startswith(("m = ", "shaped_stiffness"))
+    ]
     shaped.sort(key=lambda values: values["updates"])
     figure, ((ax,),) = style.panels(1, 1, 2.6)
     figure.set_size_inches(3.8, 2.6)
     for times, look in zip(TIMES, style.SERIES):
-        ax.plot([values["updates"] for values in shaped], [100 * values[f"x{times}"] for values in shaped], color=look.colour,
-                marker=look.marker, label=f"{times} times the points")
-    ax.set(xscale="log", yscale="log", xlabel="updates of the weights", ylabel="change of the force, rms [%]")
+        ax.plot(
+            [values["updates"] for values in shaped],
+            [100 * values[f"x{times}"] for values in shaped],
+            color=look.colour,
+            marker=look.marker,
+            label=f"{times} times the points",
+        )
+    ax.set(
+        xscale="log",
+        yscale="log",
+        xlabel="updates of the weights",
+        ylabel="change of the force, rms [%]",
+    )
     ax.axhline(5, color=style.GREY, ls="--", lw=0.9)
     ax.axvline(3, color=style.RED, ls=(0, (1, 1.5)), lw=1)
     ax.legend(loc="lower left", fontsize=6.5)

@@ -6,7 +6,18 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from hapbench_command import CommandLine, answer, exit_status, fail, finite_number, refuse_source, require_name, shell_line, table_text, write
+from hapbench_command import (
+    CommandLine,
+    answer,
+    exit_status,
+    fail,
+    finite_number,
+    refuse_source,
+    require_name,
+    shell_line,
+    table_text,
+    write,
+)
 from hapbench_import.stroke import number_text
 
 from .fit import fit
@@ -25,82 +36,154 @@ positive in the direction of the position.
   hapbench import device --design chirp,force=2,travel=0.08,mass=0.1 --out chirp.csv
   hapbench import device log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
   hapbench limit tap_wall --device log_device.json"""
-UNITS = {"handle_mass_kg": "kg", "viscous_N_s_per_m": "N s/m", "coulomb_N": "N", "delay_s": "s", "delay_samples": "samples", "encoder_step_m": "m",
-         "position_noise_m": "m", "offset_N": "N"}
+UNITS = {
+    "handle_mass_kg": "kg",
+    "viscous_N_s_per_m": "N s/m",
+    "coulomb_N": "N",
+    "delay_s": "s",
+    "delay_samples": "samples",
+    "encoder_step_m": "m",
+    "position_noise_m": "m",
+    "offset_N": "N",
+}
 MOST_DRAWN = 6000  # samples, so that a picture of a long log is not megabytes
-IN_DEVICE = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "encoder_step_m", "position_noise_m")
+IN_DEVICE = (
+    "handle_mass_kg",
+    "viscous_N_s_per_m",
+    "coulomb_N",
+    "delay_s",
+    "encoder_step_m",
+    "position_noise_m",
+)
 
 
 def command_line():
-    line = CommandLine("import device", "Make a device's file from its log: mass, friction, delay, encoder", FOOTER)
-    line.text("log", "CSV of one axis: time, commanded force, position of the handle, no hand on it", nargs="?", metavar="log")
+    line = CommandLine(
+        "import device", "Make a device's file from its log: mass, friction, delay, encoder", FOOTER
+    )
+    line.text(
+        "log",
+        "CSV of one axis: time, commanded force, position of the handle, no hand on it",
+        nargs="?",
+        metavar="log",
+    )
     line.texts("--columns", "where quantities are, by name or number from 1 (below)")
     line.texts("--scale", "what units are: time [s], force [N], position [m] (below)")
     line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
-    line.texts("--design", "instead of reading a log, make the signal to play: chirp, steps or multisine, and numbers (below)")
-    line.text("--out", "the device, LOG_device.json by default, with a picture of the residual beside it; or the signal, signal_KIND.csv")
+    line.texts(
+        "--design",
+        "instead of reading a log, make the signal to play: chirp, steps or multisine, and numbers (below)",
+    )
+    line.text(
+        "--out",
+        "the device, LOG_device.json by default, with a picture of the residual beside it; or the signal, signal_KIND.csv",
+    )
     line.add_output_options()
     return line
 
 
 def run(options):
     if bool(options.design) == bool(options.log):
-        fail("import device takes either a LOG or --design, which makes the signal to play and to log")
+        fail(
+            "import device takes either a LOG or --design, which makes the signal to play and to log"
+        )
     kind, numbers = design_of(options.design) if options.design else ("", {})
     out = options.out or (f"signal_{kind}.csv" if kind else f"{Path(options.log).stem}_device.json")
     if options.log:
         refuse_source(out, options.log, "log")
     table, data = play(kind, numbers, out) if kind else identify(options, out)
     headings = ["of the signal" if options.design else "of the device", "", "from", "to, 95 %"]
-    next_line = (f"command these forces, log time_s,force_N,position_m, then {shell_line('hapbench', 'import', 'device', 'LOG.csv')}" if options.design
-                 else shell_line("hapbench", "limit", "tap_wall", "--device", out))
-    answer(options, f"{out}\n{table_text(headings, table, options.wide, numbers=True)}\nnext: {next_line}", data | {"next": next_line})
+    next_line = (
+        f"command these forces, log time_s,force_N,position_m, then {shell_line('hapbench', 'import', 'device', 'LOG.csv')}"
+        if options.design
+        else shell_line("hapbench", "limit", "tap_wall", "--device", out)
+    )
+    answer(
+        options,
+        f"{out}\n{table_text(headings, table, options.wide, numbers=True)}\nnext: {next_line}",
+        data | {"next": next_line},
+    )
 
 
 def identify(options, out):
     log = read_log(options)
     found = fit(log)
-    told = {name: {"value": None if name in found.untold else value, "interval": ends}
-            for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())}
+    told = {
+        name: {"value": None if name in found.untold else value, "interval": ends}
+        for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
+    }
     late = told["delay_s"]
-    told["delay_samples"] = {"value": late["value"] if late["value"] is None else late["value"] / log.step,
-                             "interval": [end / log.step for end in late["interval"]]}
+    told["delay_samples"] = {
+        "value": late["value"] if late["value"] is None else late["value"] / log.step,
+        "interval": [end / log.step for end in late["interval"]],
+    }
     step = log.encoder_step
     told["encoder_step_m"] = {"value": step, "interval": [step * (1.0 - 1e-9), step * (1.0 + 1e-9)]}
     count = np.isfinite(found.residual).sum() / found.memory
     beyond = found.rms**2 - step**2 / 12.0
     spread = found.rms**2 * math.sqrt(2.0 / count) * 1.96
-    told["position_noise_m"] = unless_wide(math.sqrt(max(beyond, 0.0)), [math.sqrt(max(beyond + way * spread, 0.0)) for way in (-1.0, 1.0)])
+    told["position_noise_m"] = unless_wide(
+        math.sqrt(max(beyond, 0.0)),
+        [math.sqrt(max(beyond + way * spread, 0.0)) for way in (-1.0, 1.0)],
+    )
     if told["offset_N"]["value"] is not None:
         told["offset_N"] = unless_wide(*told["offset_N"].values())
-    told = {name: told[name] | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]} for name in UNITS}
+    told = {
+        name: told[name]
+        | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]}
+        for name in UNITS
+    }
     require_likely_units(options, found.values[0], step)
     if told["handle_mass_kg"]["value"] is None:
-        fail(f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. Is a hand or a spring on the handle, or is a "
-             "sign or a unit wrong? hapbench import device --design makes a signal that tells", options.log)
+        fail(
+            f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. Is a hand or a spring on the handle, or is a "
+            "sign or a unit wrong? hapbench import device --design makes a signal that tells",
+            options.log,
+        )
     warnings = log.warnings + warnings_of(told, found, log)
-    device = {"type": "impedance"} | {name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]}
+    device = {"type": "impedance"} | {
+        name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]
+    }
     write(Path(out), json.dumps(device, indent=2) + "\n")
     picture = Path(out).with_suffix(".svg")
     draw(picture, log, found)
-    table = [[f"{name} [{UNITS[name]}]", "cannot be told" if one["value"] is None else f"{one['value']:.4g}", *map(shown_end, one["interval"])] for name, one in told.items()]
+    table = [
+        [
+            f"{name} [{UNITS[name]}]",
+            "cannot be told" if one["value"] is None else f"{one['value']:.4g}",
+            *map(shown_end, one["interval"]),
+        ]
+        for name, one in told.items()
+    ]
     table.append(["residual [m]", f"{found.rms:.3g}", "", ""])
-    return table, told | {"step_s": log.step, "residual_m": found.rms, "samples": int(np.isfinite(log.position).sum()),
-                          "device": out, "picture": str(picture), "warnings": warnings}
+    return table, told | {
+        "step_s": log.step,
+        "residual_m": found.rms,
+        "samples": int(np.isfinite(log.position).sum()),
+        "device": out,
+        "picture": str(picture),
+        "warnings": warnings,
+    }
 
 
 def unless_wide(value, interval):
     """No value where the interval is wider than it; the interval then still says what it is not."""
     low, high = interval
-    return {"value": value if high - low <= abs(value) or low == high else None, "interval": interval}
+    return {
+        "value": value if high - low <= abs(value) or low == high else None,
+        "interval": interval,
+    }
 
 
 def require_likely_units(options, mass, encoder_step):
     """A log in milliseconds and millimetres fits as well as any, with a handle of tons."""
     if options.scale or (1e-3 <= mass <= 20.0 and encoder_step <= 1e-3):
         return
-    fail(f"a handle of {mass:.3g} kg, an encoder's step of {encoder_step:.3g} m: are the units s, N, m? For a log in ms and mm: --scale "
-         "time=1e-3,position=1e-3. If they are, --scale time=1 says so", options.log)
+    fail(
+        f"a handle of {mass:.3g} kg, an encoder's step of {encoder_step:.3g} m: are the units s, N, m? For a log in ms and mm: --scale "
+        "time=1e-3,position=1e-3. If they are, --scale time=1 says so",
+        options.log,
+    )
 
 
 def shown_end(end):
@@ -108,24 +191,48 @@ def shown_end(end):
 
 
 def warnings_of(told, found, log):
-    warnings = [f"{name}: the log cannot tell it: {why}; 95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}"
-                for name, why in found.untold.items() if name in IN_DEVICE]
+    warnings = [
+        f"{name}: the log cannot tell it: {why}; 95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}"
+        for name, why in found.untold.items()
+        if name in IN_DEVICE
+    ]
     if told["offset_N"]["value"] is not None:
-        warnings.append(f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands (weight, a cable): no device file has it")
+        warnings.append(
+            f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands (weight, a cable): no device file has it"
+        )
     if found.misfit:
-        warnings.append(f"the residual, {found.rms:.3g} m, is not noise. The device has something that this model has not (a hand on it, elasticity, "
-                        "friction that depends on the place): look at the picture. The parameters are those of pieces of 0.2 s, and the intervals "
-                        "those of leaving out one twelfth of the log after another")
+        warnings.append(
+            f"the residual, {found.rms:.3g} m, is not noise. The device has something that this model has not (a hand on it, elasticity, "
+            "friction that depends on the place): look at the picture. The parameters are those of pieces of 0.2 s, and the intervals "
+            "those of leaving out one twelfth of the log after another"
+        )
     return warnings
 
 
 def draw(file, log, found):
-    from hapbench_style import AMBER, PETROL, SETTINGS, panels, picture, plt  # loads matplotlib, which --design does without
+    from hapbench_style import (
+        AMBER,
+        PETROL,
+        SETTINGS,
+        panels,
+        picture,
+        plt,
+    )  # loads matplotlib, which --design does without
+
     plt.rcParams.update(SETTINGS)
     figure, ((above,), (below,)) = panels(2, 1, 4.0, sharex=True)
     every = max(1, len(log.time) // MOST_DRAWN)
-    time, position, residual = log.time[::every] - log.time[0], log.position[::every], found.residual[::every]
-    above.plot(time, 1e3 * position, color=PETROL, label="measured" if every == 1 else f"measured, one sample in {every}")
+    time, position, residual = (
+        log.time[::every] - log.time[0],
+        log.position[::every],
+        found.residual[::every],
+    )
+    above.plot(
+        time,
+        1e3 * position,
+        color=PETROL,
+        label="measured" if every == 1 else f"measured, one sample in {every}",
+    )
     above.plot(time, 1e3 * (position - residual), color=AMBER, ls="--", label="device identified")
     above.set_ylabel("position [mm]")
     above.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2)
@@ -152,24 +259,45 @@ def design_of(words):
 
 def play(kind, numbers, out):
     time, force = design(kind, **numbers)
-    rows = "\n".join(f"{number_text(t)},{number_text(f)}" for t, f in zip(time.tolist(), force.tolist()))
+    rows = "\n".join(
+        f"{number_text(t)},{number_text(f)}" for t, f in zip(time.tolist(), force.tolist())
+    )
     write(Path(out), f"time_s,force_N\n{rows}\n")
     travel, peak = float(travel_of(time, force, numbers["mass"])), float(np.abs(force).max())
-    table = [["signal", KINDS[kind], "", ""], ["samples", str(len(time)), "", ""], ["largest force [N]", f"{peak:.3g}", "", ""],
-             ["tells dry friction up to [N]", f"{FRICTION_TOLD * peak:.3g}", "", ""], [f"way of {numbers['mass']:g} kg without friction [m]", f"{travel:.3g}", "", ""]]
-    return table, {"file": out, "design": kind, "samples": len(time), "force_max_N": peak,
-                   "travel_m": travel, "warnings": limited_by_travel(kind, numbers, peak)}
+    table = [
+        ["signal", KINDS[kind], "", ""],
+        ["samples", str(len(time)), "", ""],
+        ["largest force [N]", f"{peak:.3g}", "", ""],
+        ["tells dry friction up to [N]", f"{FRICTION_TOLD * peak:.3g}", "", ""],
+        [f"way of {numbers['mass']:g} kg without friction [m]", f"{travel:.3g}", "", ""],
+    ]
+    return table, {
+        "file": out,
+        "design": kind,
+        "samples": len(time),
+        "force_max_N": peak,
+        "travel_m": travel,
+        "warnings": limited_by_travel(kind, numbers, peak),
+    }
 
 
 def limited_by_travel(kind, numbers, peak):
     force = numbers["force"]
     if peak > 0.99 * force:
         return []
-    said = (f"the travel of {numbers['travel']:g} m limits the force to {peak:.3g} N of {force:g} N: the log tells dry friction up to "
-            f"{FRICTION_TOLD * peak:.3g} N. ")
+    said = (
+        f"the travel of {numbers['travel']:g} m limits the force to {peak:.3g} N of {force:g} N: the log tells dry friction up to "
+        f"{FRICTION_TOLD * peak:.3g} N. "
+    )
     asked = force_to_ask(kind, numbers)
-    return [said + (f"force={asked:.3g} begins at a higher frequency and reaches {force:g} N, which tells {FRICTION_TOLD * force:.3g} N" if asked
-                    else f"A device with more of it needs more travel, or a mass of more than {numbers['mass']:g} kg if it is known to have it")]
+    return [
+        said
+        + (
+            f"force={asked:.3g} begins at a higher frequency and reaches {force:g} N, which tells {FRICTION_TOLD * force:.3g} N"
+            if asked
+            else f"A device with more of it needs more travel, or a mass of more than {numbers['mass']:g} kg if it is known to have it"
+        )
+    ]
 
 
 if __name__ == "__main__":

@@ -9,24 +9,30 @@ from .model import NAMES, Simulator
 
 MASS, VISCOUS, DRY, DELAY, OFFSET, SPEED = range(len(NAMES))
 TWO_SIDED = float(norm.ppf(0.975))
-SCORED, PIECE, SHORT_PIECE = 20.0, 0.5, 0.2  # how much of a log starts are scored on; pieces that have a mean of their own [s]
+SCORED, PIECE, SHORT_PIECE = (
+    20.0,
+    0.5,
+    0.2,
+)  # how much of a log starts are scored on; pieces that have a mean of their own [s]
 KEPT, DISTINCT, BLOCKS = 8, 3, 12
 LONGEST = 20.0  # the longest delay looked for [samples]
 FEWEST_COUNTS = 10.0
 DELAYS = np.arange(0.0, 8.5, 0.5)  # that a start may have [samples]
-SMOOTHINGS = (0.02, 0.05, 0.1)     # whole width of a kernel [s]
-GRID = [(m, c, d) for m in (0.05, 0.2, 0.8) for c in (0.02, 0.2, 0.5) for d in (1.0, 4.0)]  # kg, of the peak, samples
+SMOOTHINGS = (0.02, 0.05, 0.1)  # whole width of a kernel [s]
+GRID = [
+    (m, c, d) for m in (0.05, 0.2, 0.8) for c in (0.02, 0.2, 0.5) for d in (1.0, 4.0)
+]  # kg, of the peak, samples
 FROM_REST = 12.0  # sum of squares over the variance by which a first speed must be better than none
 
 
 @dataclass
 class Fit:
-    values: np.ndarray     # of NAMES
+    values: np.ndarray  # of NAMES
     intervals: np.ndarray  # 95 %, a row [low, high] each
-    residual: np.ndarray   # measured less simulated position of each sample [m]; NaN where it is missing
-    rms: float             # of it [m]
-    memory: float          # how many samples of the residual count as one, from its autocorrelation
-    misfit: bool           # the residual is more than noise and encoder: the device has what the model has not
+    residual: np.ndarray  # measured less simulated position of each sample [m]; NaN where it is missing
+    rms: float  # of it [m]
+    memory: float  # how many samples of the residual count as one, from its autocorrelation
+    misfit: bool  # the residual is more than noise and encoder: the device has what the model has not
     untold: dict = field(default_factory=dict)  # names of what the log cannot tell, with the reason
 
 
@@ -36,7 +42,7 @@ class Cost:
 
     def __init__(self, simulate, log, seconds=np.inf, piece=np.inf):
         self.rows = int(min(len(log.time), max(100.0, seconds / log.step)))
-        known = np.flatnonzero(np.isfinite(log.position[:self.rows]))
+        known = np.flatnonzero(np.isfinite(log.position[: self.rows]))
         self.all_known = len(known) == self.rows
         self.known, self._simulate, self._asked = known, simulate, None
         pieces = known // max(8.0, piece / log.step)
@@ -53,7 +59,10 @@ class Cost:
         """The last answer is kept: derivatives are asked for where the residual just was."""
         if not np.array_equal(parameters, self._asked):
             places = self._simulate(parameters, self.rows)
-            self._asked, self._answer = np.array(parameters), places if self.all_known else places[self.known]
+            self._asked, self._answer = (
+                np.array(parameters),
+                places if self.all_known else places[self.known],
+            )
         return self._answer
 
     def __call__(self, parameters):
@@ -68,9 +77,13 @@ class Cost:
             above, below = x.copy(), x.copy()
             above[i] += h[i]
             if central:
-                below[i] = max(x[i] - h[i], 0.0) if i in (MASS, VISCOUS, DRY, DELAY) else x[i] - h[i]
+                below[i] = (
+                    max(x[i] - h[i], 0.0) if i in (MASS, VISCOUS, DRY, DELAY) else x[i] - h[i]
+                )
             before = self.simulated(below) if central else here
-            rows.append(self._centred(self.simulated(above) - before) * (scale[i] / (above[i] - below[i])))
+            rows.append(
+                self._centred(self.simulated(above) - before) * (scale[i] / (above[i] - below[i]))
+            )
         return np.array(rows)
 
 
@@ -103,7 +116,9 @@ def least_squares(cost, start, scale, steps, tolerance, held=()):
         before = squares
         for _ in range(12):
             trial = x.copy()
-            trial[free] += units[free] * np.clip(np.linalg.solve(H + damping * np.diag(weight), g), -1.0, 1.0)
+            trial[free] += units[free] * np.clip(
+                np.linalg.solve(H + damping * np.diag(weight), g), -1.0, 1.0
+            )
             trial = np.clip(trial, low, high)
             trial[MASS] = max(trial[MASS], 0.2 * x[MASS])
             missed = cost(trial)
@@ -128,8 +143,10 @@ def _fit(log, simulate):
     noise, way = noise_of(log.position[known]), np.ptp(place)
     count = max(log.encoder_step, 1e-9 * way)
     if way < FEWEST_COUNTS * max(count, noise):
-        fail(f"the handle hardly moves: {way:.3g} m, {way / count:.3g} steps of the encoder, noise of {noise:.3g} m; nothing to identify. More "
-             "force, or slower changes of it, move it further")
+        fail(
+            f"the handle hardly moves: {way:.3g} m, {way / count:.3g} steps of the encoder, noise of {noise:.3g} m; nothing to identify. More "
+            "force, or slower changes of it, move it further"
+        )
     peak = float(np.abs(log.force).max())
     lag = max(1, round(0.01 / log.step))
     fast = max(float(np.abs(place[lag:] - place[:-lag]).max()) / (lag * log.step), 1e-9)
@@ -137,7 +154,14 @@ def _fit(log, simulate):
     whole = Cost(simulate, log)
     found = _search(Cost(simulate, log, SCORED, PIECE), whole, log, place, scale)
     samples = len(whole.known)
-    resting = least_squares(whole, np.where(np.arange(len(NAMES)) == SPEED, 0.0, found.x), scale, 60, 1e-8, held=(SPEED,))
+    resting = least_squares(
+        whole,
+        np.where(np.arange(len(NAMES)) == SPEED, 0.0, found.x),
+        scale,
+        60,
+        1e-8,
+        held=(SPEED,),
+    )
     if resting.squares <= found.squares * (1.0 + FROM_REST / samples):
         found = resting
     misfit = found.squares / samples > 2.0 * (noise**2 + log.encoder_step**2 / 12.0)
@@ -147,23 +171,36 @@ def _fit(log, simulate):
         found, spread = _by_pieces(Cost(simulate, log, piece=SHORT_PIECE), found, scale)
     residual = whole(found.x)
     memory = memory_of(residual)
-    intervals, untold, seen = _intervals(whole, log, found, scale, residual, memory, noise, spread if by_pieces else None)
+    intervals, untold, seen = _intervals(
+        whole, log, found, scale, residual, memory, noise, spread if by_pieces else None
+    )
     half = 0.5 * np.diff(intervals)[:, 0]
-    for i, most, said in ((MASS, 0.25 * found.x[MASS], "25 % of it"), (DELAY, 2.0 * log.step, "2 samples"),
-                          (DRY, 0.1 * peak, "10 % of the largest force"), (VISCOUS, 0.1 * peak / fast, "10 % of the largest force at full speed")):
+    for i, most, said in (
+        (MASS, 0.25 * found.x[MASS], "25 % of it"),
+        (DELAY, 2.0 * log.step, "2 samples"),
+        (DRY, 0.1 * peak, "10 % of the largest force"),
+        (VISCOUS, 0.1 * peak / fast, "10 % of the largest force at full speed"),
+    ):
         if i not in untold and not half[i] <= most:
             untold[i] = f"the interval is wider than {said} either way"
     intervals[:OFFSET, 0] = np.maximum(intervals[:OFFSET, 0], 0.0)
     filled = np.full(len(log.time), np.nan)
     filled[whole.known] = residual
-    return Fit(found.x, intervals, filled, float(np.sqrt(np.mean(residual**2))), memory, misfit,
-               {NAMES[i]: f"{why} ({seen})" for i, why in sorted(untold.items()) if i != SPEED})
+    return Fit(
+        found.x,
+        intervals,
+        filled,
+        float(np.sqrt(np.mean(residual**2))),
+        memory,
+        misfit,
+        {NAMES[i]: f"{why} ({seen})" for i, why in sorted(untold.items()) if i != SPEED},
+    )
 
 
 def _search(first, whole, log, place, scale):
     """The least sum of squares on the `whole` log, from starts that the `first` part of it chooses."""
-    starts = starts_of(log, place[:first.rows], log.force[:first.rows])
-    scores = [np.sum(first(start)**2) for start in starts]
+    starts = starts_of(log, place[: first.rows], log.force[: first.rows])
+    scores = [np.sum(first(start) ** 2) for start in starts]
     tried = [least_squares(first, starts[i], scale, 15, 1e-4) for i in np.argsort(scores)[:KEPT]]
     distinct = []
     for one in sorted(tried, key=lambda one: one.squares):
@@ -173,9 +210,12 @@ def _search(first, whole, log, place, scale):
     # Once more from there, with other shares of friction and constant force; on the whole log only what may be better.
     again = np.array([found.x, found.x])
     again[:, OFFSET], again[:, DRY] = 0.0, found.x[DRY] * np.array([0.5, 2.0])
-    reached = np.sum(first(found.x)**2)
-    others = [one for one in (least_squares(first, start, scale, 15, 1e-4) for start in again)
-              if one.squares < 1.5 * reached and _differs(one.x, found.x, scale)]
+    reached = np.sum(first(found.x) ** 2)
+    others = [
+        one
+        for one in (least_squares(first, start, scale, 15, 1e-4) for start in again)
+        if one.squares < 1.5 * reached and _differs(one.x, found.x, scale)
+    ]
     return min([found, *_refined(whole, others, scale)], key=lambda one: one.squares)
 
 
@@ -183,7 +223,12 @@ def _intervals(cost, log, found, scale, residual, memory, noise, spread):
     """Intervals, what is untold by its index, and what the handle was seen to do. `spread`: half the intervals, where they are known."""
     units = _units(scale, found.x)
     places = cost.simulated(found.x)
-    J = np.vstack([cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), np.ones(len(residual))])
+    J = np.vstack(
+        [
+            cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True),
+            np.ones(len(residual)),
+        ]
+    )
     if found.x[SPEED] == 0.0:
         J[SPEED] = 0.0
     strokes = Strokes(places, 3.0 * max(log.encoder_step, noise))
@@ -191,11 +236,15 @@ def _intervals(cost, log, found, scale, residual, memory, noise, spread):
     rms = np.sqrt(np.mean(residual**2))
     by_samples, by_dwells = (units * one for one in _spreads(J, places, log.encoder_step, rms))
     errors = np.maximum(by_dwells, by_samples * np.sqrt(memory))
-    profiled = [i for i in (DRY, OFFSET) if strokes.one_way and i not in untold] if spread is None else []
+    profiled = (
+        [i for i in (DRY, OFFSET) if strokes.one_way and i not in untold] if spread is None else []
+    )
     spread = TWO_SIDED * errors if spread is None else spread
     intervals = found.x[:, None] + spread[:, None] * np.array([-1.0, 1.0])
     for i in profiled:
-        intervals[i] = profile(cost, found, scale, i, errors[i], (rms * errors[i] / by_samples[i])**2)
+        intervals[i] = profile(
+            cost, found, scale, i, errors[i], (rms * errors[i] / by_samples[i]) ** 2
+        )
     return intervals, untold, strokes.said(log.encoder_step)
 
 
@@ -227,7 +276,11 @@ class Strokes:
         self.one_way = not (self.up and self.down)
 
     def said(self, encoder_step):
-        counts = f"{self.travel / encoder_step:.0f} steps of the encoder" if encoder_step else f"{self.travel:.3g} m"
+        counts = (
+            f"{self.travel / encoder_step:.0f} steps of the encoder"
+            if encoder_step
+            else f"{self.travel:.3g} m"
+        )
         return f"at rest for {100.0 * self.rest:.0f} % of the log, {self.up} strokes one way and {self.down} the other, travel {counts}"
 
 
@@ -249,13 +302,18 @@ def _degenerate(J, strokes):
 
 def _spreads(J, places, encoder_step, rms):
     """Standard errors in units of the rows of J but its last: of a residual whose samples are independent, and of an encoder, whose error
-    stands still while the handle dwells in one count, so that samples of one dwell count as one for its share of the residual."""
+    stands still while the handle dwells in one count, so that samples of one dwell count as one for its share of the residual.
+    """
     H = J @ J.T
     inverse = np.linalg.pinv(H, rcond=1e-14, hermitian=True)
     of_encoder = 0.0
     if encoder_step:
         beyond, h = max(rms**2 - encoder_step**2 / 12.0, 0.0), np.arange(1, 30)
-        waves = encoder_step**2 / (2.0 * np.pi**2 * h**2) * np.exp(-4.0 * np.pi**2 * h**2 * beyond / encoder_step**2)
+        waves = (
+            encoder_step**2
+            / (2.0 * np.pi**2 * h**2)
+            * np.exp(-4.0 * np.pi**2 * h**2 * beyond / encoder_step**2)
+        )
         of_encoder = min(rms**2, float(waves.sum()))
     middle = (rms**2 - of_encoder) * H
     if of_encoder:
@@ -267,7 +325,10 @@ def _spreads(J, places, encoder_step, rms):
         sums = np.add.reduceat(J, begins, axis=1)
         middle = middle + of_encoder * sums @ sums.T
     felt = np.any(J[:-1] != 0.0, axis=1)
-    return [np.where(felt, np.sqrt(np.maximum(np.diag(one)[:-1], 0.0)), np.inf) for one in (rms**2 * inverse, inverse @ middle @ inverse)]
+    return [
+        np.where(felt, np.sqrt(np.maximum(np.diag(one)[:-1], 0.0)), np.inf)
+        for one in (rms**2 * inverse, inverse @ middle @ inverse)
+    ]
 
 
 def _by_pieces(cost, found, scale):
@@ -275,11 +336,18 @@ def _by_pieces(cost, found, scale):
     another, which assumes nothing about it."""
     found = least_squares(cost, found.x, scale, 60, 1e-8)
     units = _units(scale, found.x)
-    J, residual = cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), cost(found.x)
+    J, residual = cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), cost(
+        found.x
+    )
     parts = np.array_split(np.arange(J.shape[1]), BLOCKS)
     H, g = J @ J.T, J @ residual
-    without = np.array([np.linalg.pinv(H - J[:, part] @ J[:, part].T, rcond=1e-14, hermitian=True) @ (g - J[:, part] @ residual[part])
-                        for part in parts])
+    without = np.array(
+        [
+            np.linalg.pinv(H - J[:, part] @ J[:, part].T, rcond=1e-14, hermitian=True)
+            @ (g - J[:, part] @ residual[part])
+            for part in parts
+        ]
+    )
     spread = units * np.sqrt((BLOCKS - 1.0) * np.var(without, axis=0))
     return found, float(t.ppf(0.975, BLOCKS - 1)) * spread
 
@@ -287,12 +355,12 @@ def _by_pieces(cost, found, scale):
 def memory_of(residual):
     """1 + 2 times the sum of the autocorrelations up to the first below 0.05: as many samples count as one."""
     centred = residual - residual.mean()
-    power = np.abs(np.fft.rfft(centred, 1 << (2 * len(centred) - 1).bit_length()))**2
-    correlation = np.fft.irfft(power)[:len(centred)]
+    power = np.abs(np.fft.rfft(centred, 1 << (2 * len(centred) - 1).bit_length())) ** 2
+    correlation = np.fft.irfft(power)[: len(centred)]
     if correlation[0] <= 0.0:
         return 1.0
     correlation /= correlation[0]
-    return float(1.0 + 2.0 * np.sum(correlation[1:max(1, int(np.argmax(correlation < 0.05)))]))
+    return float(1.0 + 2.0 * np.sum(correlation[1 : max(1, int(np.argmax(correlation < 0.05)))]))
 
 
 def profile(cost, found, scale, i, spread, variance):
@@ -306,7 +374,13 @@ def profile(cost, found, scale, i, spread, variance):
                 break
             start = found.x.copy()
             start[i] = at
-            growth = np.sqrt(max((least_squares(cost, start, scale, 8, 1e-6, held=(i,)).squares - found.squares) / variance, 1e-6))
+            growth = np.sqrt(
+                max(
+                    (least_squares(cost, start, scale, 8, 1e-6, held=(i,)).squares - found.squares)
+                    / variance,
+                    1e-6,
+                )
+            )
             if (at == 0.0 and i == DRY and growth <= TWO_SIDED) or abs(growth - TWO_SIDED) < 0.05:
                 break
             at = best + (at - best) * min(TWO_SIDED / growth, 4.0)
@@ -319,7 +393,7 @@ def profile(cost, found, scale, i, spread, variance):
 
 def noise_of(place):
     """Standard deviation of what changes from sample to sample [m]: third differences of white noise have 20 times its variance."""
-    return float(np.sqrt(np.mean(np.diff(place, 3)**2) / 20.0)) if len(place) > 3 else 0.0
+    return float(np.sqrt(np.mean(np.diff(place, 3) ** 2) / 20.0)) if len(place) > 3 else 0.0
 
 
 def kernel(rows):
@@ -355,30 +429,43 @@ def _regressions(bell, place, force, step, noise):
     slope = (place[2:] - place[:-2]) / (2.0 * step)
     speed = np.convolve(slope, bell, "valid")
     acceleration = np.convolve(np.diff(place, 2) / step**2, bell, "valid")
-    held = np.concatenate([[0.0], 0.5 * (force[1:] + force[:-1])])  # what a second difference of positions sees
-    push = np.concatenate([np.zeros(9), held[middle]])              # no force before the log
-    push = np.convolve(push, bell, "valid")                         # push[k + 9] belongs to speed[k]
-    least = 4.0 * noise * np.sqrt(np.sum(np.convolve(bell, [0.5, 0.0, -0.5])**2)) / step
+    held = np.concatenate(
+        [[0.0], 0.5 * (force[1:] + force[:-1])]
+    )  # what a second difference of positions sees
+    push = np.concatenate([np.zeros(9), held[middle]])  # no force before the log
+    push = np.convolve(push, bell, "valid")  # push[k + 9] belongs to speed[k]
+    least = 4.0 * noise * np.sqrt(np.sum(np.convolve(bell, [0.5, 0.0, -0.5]) ** 2)) / step
     way = np.where(np.abs(speed) > least, np.sign(speed), 0.0)
     # Where the whole kernel sees one direction, the smoothed friction is all of it.
     half = len(bell) // 2
     sums = np.cumsum(np.concatenate([np.zeros(half + 1), way, np.zeros(half)]))
-    one_way = np.abs(sums[2 * half + 1:] - sums[:-2 * half - 1]) == 2 * half + 1
+    one_way = np.abs(sums[2 * half + 1 :] - sums[: -2 * half - 1]) == 2 * half + 1
     rows = np.flatnonzero(one_way)
     if len(rows) < 40:
         rows = np.flatnonzero(way)
     if len(rows) < 10:
         return []
     known = np.column_stack([acceleration, speed, way, -np.ones_like(way)])[rows]
-    late = np.stack([np.where(d % 1.0 == 0.0, push[rows + 9 - int(d)], 0.5 * (push[rows + 9 - int(d)] + push[rows + 8 - int(d)]))
-                     for d in DELAYS], axis=1)
+    late = np.stack(
+        [
+            np.where(
+                d % 1.0 == 0.0,
+                push[rows + 9 - int(d)],
+                0.5 * (push[rows + 9 - int(d)] + push[rows + 8 - int(d)]),
+            )
+            for d in DELAYS
+        ],
+        axis=1,
+    )
     size = np.maximum(np.abs(known).max(axis=0), 1e-300)
     terms = np.linalg.lstsq(known / size, late, rcond=1e-10)[0]
     wrong = terms[1] < 0.0
     without = [0, 2, 3]
     terms[:, wrong] = 0.0
-    terms[np.ix_(without, wrong)] = np.linalg.lstsq((known / size)[:, without], late[:, wrong], rcond=1e-10)[0]
-    misses = np.sum((late - known / size @ terms)**2, axis=0)
+    terms[np.ix_(without, wrong)] = np.linalg.lstsq(
+        (known / size)[:, without], late[:, wrong], rcond=1e-10
+    )[0]
+    misses = np.sum((late - known / size @ terms) ** 2, axis=0)
     terms /= size[:, None]
     order = [i for i in np.argsort(misses) if terms[0, i] > 0.0]
     best = order[:1] + [i for i in order if abs(DELAYS[i] - DELAYS[order[0]]) >= 1.0][:1]
@@ -391,4 +478,8 @@ def first_speed(place, step, encoder_step):
     powers = np.vander(step * np.arange(rows), 3, increasing=True)
     terms, *_ = np.linalg.lstsq(powers, place[:rows], rcond=None)
     spread = np.std(place[:rows] - powers @ terms) + encoder_step / np.sqrt(12.0)
-    return float(terms[1]) if abs(terms[1]) > 4.0 * spread * np.sqrt(np.linalg.inv(powers.T @ powers)[1, 1]) else 0.0
+    return (
+        float(terms[1])
+        if abs(terms[1]) > 4.0 * spread * np.sqrt(np.linalg.inv(powers.T @ powers)[1, 1])
+        else 0.0
+    )

@@ -7,24 +7,31 @@ import numpy as np
 from hapbench_command import MOST_FAULTS, Faults, fail, finite_number, quoted, require_name
 from hapbench_import.recording import open_recording
 
-NAMES = {"time": "time_s", "force": "force_N", "position": "position_m"}  # of the columns unless --columns says otherwise
+NAMES = {
+    "time": "time_s",
+    "force": "force_N",
+    "position": "position_m",
+}  # of the columns unless --columns says otherwise
 FEWEST = 50  # samples
 
 
 @dataclass
 class Log:
-    time: np.ndarray      # [s], increasing; those of samples that are missing included
-    force: np.ndarray     # commanded at that time and held until the next [N]
+    time: np.ndarray  # [s], increasing; those of samples that are missing included
+    force: np.ndarray  # commanded at that time and held until the next [N]
     position: np.ndarray  # [m]; NaN where the sample is missing
-    step: float           # mean interval without a gap [s]
-    encoder_step: float   # 0: positions are not multiples of anything
+    step: float  # mean interval without a gap [s]
+    encoder_step: float  # 0: positions are not multiples of anything
     warnings: list
 
 
 def read_log(options):
     """The log that the command line names (__main__)."""
     columns, scale = dict(NAMES), dict.fromkeys(NAMES, 1.0)
-    for option, words, target in (("columns", options.columns, columns), ("scale", options.scale, scale)):
+    for option, words, target in (
+        ("columns", options.columns, columns),
+        ("scale", options.scale, scale),
+    ):
         for word in words:
             name, equals, value = word.partition("=")
             if not equals:
@@ -32,7 +39,10 @@ def read_log(options):
             require_name(f"--{option}: got", name, list(NAMES))
             target[name] = value if option == "columns" else _factor(name, value)
     recording = open_recording(options.log, SimpleNamespace(format="csv", floats=False))
-    time, force, position = (scale[name] * recording.column(_index(recording, name, column)) for name, column in columns.items())
+    time, force, position = (
+        scale[name] * recording.column(_index(recording, name, column))
+        for name, column in columns.items()
+    )
     bad, last = recording.problems(), -math.inf
     usual = not bad and np.isfinite((time, force, position)).all() and (np.diff(time) > 0.0).all()
     for row in () if usual else range(len(time)):
@@ -47,10 +57,14 @@ def read_log(options):
         raise Faults(faults[:MOST_FAULTS])
     kept = [row for row in range(len(time)) if row not in bad]
     if len(kept) < FEWEST:
-        fail(f"{len(kept)} usable samples of {len(time)}; allowed: at least {FEWEST}", recording.file)
+        fail(
+            f"{len(kept)} usable samples of {len(time)}; allowed: at least {FEWEST}", recording.file
+        )
     log = log_of(time[kept], force[kept], position[kept])
     if faults:
-        log.warnings.insert(0, f"{len(faults)} bad rows left out, the first: {faults[0][0]}: {faults[0][1]}")
+        log.warnings.insert(
+            0, f"{len(faults)} bad rows left out, the first: {faults[0][0]}: {faults[0][1]}"
+        )
     for name, values in (("force", force[kept]), ("position", position[kept])):
         if np.ptp(values) == 0.0:
             fail(f"every {name} is {values[0]:g}: nothing to identify", recording.file)
@@ -65,21 +79,37 @@ def log_of(time, force, position):
     even = missing == 0
     step = float(intervals[even].mean())
     if missing.any():
-        warnings.append(f"{missing.sum()} samples are missing, at most {missing.max()} together: their forces were taken on the line "
-                        "between their neighbours'")
+        warnings.append(
+            f"{missing.sum()} samples are missing, at most {missing.max()} together: their forces were taken on the line "
+            "between their neighbours'"
+        )
     if np.ptp(intervals[even]) > 0.05 * step:
-        warnings.append(f"the clock is not even: intervals of {1e3 * intervals[even].min():.3g} ... {1e3 * intervals[even].max():.3g} ms; "
-                        "times are taken as those of the samples")
-    all_times = np.concatenate([np.linspace(a, b, n + 1, endpoint=False) for a, b, n in zip(time, time[1:], missing)] + [time[-1:]])
+        warnings.append(
+            f"the clock is not even: intervals of {1e3 * intervals[even].min():.3g} ... {1e3 * intervals[even].max():.3g} ms; "
+            "times are taken as those of the samples"
+        )
+    all_times = np.concatenate(
+        [np.linspace(a, b, n + 1, endpoint=False) for a, b, n in zip(time, time[1:], missing)]
+        + [time[-1:]]
+    )
     known = np.full(len(all_times), math.nan)
     known[np.searchsorted(all_times, time)] = position
-    return Log(all_times, np.interp(all_times, time, force), known, step, encoder_step_of(position), warnings)
+    return Log(
+        all_times,
+        np.interp(all_times, time, force),
+        known,
+        step,
+        encoder_step_of(position),
+        warnings,
+    )
 
 
 def encoder_step_of(position):
     """The least spacing of positions [m] if 98 % of their spacings are multiples of it, or else 0."""
     spacings = np.diff(np.unique(position))
-    spacings = spacings[spacings > max(1e-10, 1e-9 * np.abs(position).max())]  # the rounding of what is written
+    spacings = spacings[
+        spacings > max(1e-10, 1e-9 * np.abs(position).max())
+    ]  # the rounding of what is written
     if not len(spacings):
         return 0.0
     counts = np.rint(spacings / spacings.min())
@@ -100,4 +130,7 @@ def _index(recording, quantity, word):
     if word.isascii() and word.isdigit() and 1 <= int(word) <= len(recording.names):
         return int(word) - 1
     known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(recording.names[:20], 1))
-    fail(f"columns: {quantity}: no {quoted(word)}; the file has {known} (--columns {quantity}=NAME or number)", recording.file)
+    fail(
+        f"columns: {quantity}: no {quoted(word)}; the file has {known} (--columns {quantity}=NAME or number)",
+        recording.file,
+    )

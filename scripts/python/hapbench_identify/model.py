@@ -8,7 +8,11 @@ import numpy as np
 from hapbench_command import Faults, fail
 
 NAMES = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "offset_N", "start_m_per_s")
-KINDS = {"chirp": "a sine from slow to fast", "steps": "pushes to and fro, from short to long", "multisine": "thirty sines at once"}
+KINDS = {
+    "chirp": "a sine from slow to fast",
+    "steps": "pushes to and fro, from short to long",
+    "multisine": "thirty sines at once",
+}
 FRICTION_TOLD = 0.6  # of the largest force; more dry friction leaves too little motion
 HIGHEST = 100.0  # frequency [Hz]; more tells little of a handle's mass and friction
 
@@ -20,7 +24,11 @@ class Simulator(subprocess.Popen):
         program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
         if not program:
             fail("the program hapbench, which simulates the handle, is not in the path")
-        super().__init__([program, "import", "device", "--simulate-log"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        super().__init__(
+            [program, "import", "device", "--simulate-log"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        )
         self._send(np.concatenate([[len(time)], time, force]))
         self.rows = len(time)
 
@@ -48,14 +56,18 @@ def design(kind, force, travel, rate, duration, mass):
     """(time, force): no larger than `force` [N]; a handle of `mass` [kg] or more without friction keeps within `travel` [m]."""
     steps = int(round(duration * rate))
     if steps < 100:
-        fail(f"--design: duration: got {duration:g} s, {steps} samples; allowed: at least 100 of them")
+        fail(
+            f"--design: duration: got {duration:g} s, {steps} samples; allowed: at least 100 of them"
+        )
     time = np.arange(steps) / rate
     # From rest, F cos(w t) moves a mass between 0 and 2 F / (m w^2): no drift.
     slowest = max(np.sqrt(2.0 * force / (mass * travel)) / (2.0 * np.pi), 2.0 / duration)
     fastest = min(0.1 * rate, HIGHEST)
     if slowest > 0.5 * fastest:
-        fail(f"--design: travel: a handle of {mass:g} kg moves further than {travel:g} m at {force:g} N below {slowest:.3g} Hz; allowed: less "
-             "force, or more travel")
+        fail(
+            f"--design: travel: a handle of {mass:g} kg moves further than {travel:g} m at {force:g} N below {slowest:.3g} Hz; allowed: less "
+            "force, or more travel"
+        )
     if kind == "chirp":
         growth = np.log(fastest / slowest) / duration
         values = np.cos(2.0 * np.pi * slowest * np.expm1(growth * time) / growth)
@@ -81,7 +93,10 @@ def _steps(steps, rate, slowest, fastest):
 
 def travel_of(time, force, mass):
     """The way between the ends of the motion [m] of a handle without friction, and with the friction that it moves in oil."""
-    return max(np.ptp(positions(time, force, (mass, rate * mass, 0.0, 0.0, 0.0, 0.0))) for rate in (0.0, 1.0, 10.0))
+    return max(
+        np.ptp(positions(time, force, (mass, rate * mass, 0.0, 0.0, 0.0, 0.0)))
+        for rate in (0.0, 1.0, 10.0)
+    )
 
 
 def force_to_ask(kind, numbers):
@@ -93,7 +108,7 @@ def force_to_ask(kind, numbers):
             peak = np.abs(design(kind, **(numbers | {"force": asked}))[1]).max()
             if peak >= 0.99 * wanted:
                 return asked
-            digit = 10.0**(np.floor(np.log10(asked * wanted / peak)) - 1.0)
+            digit = 10.0 ** (np.floor(np.log10(asked * wanted / peak)) - 1.0)
             asked = float(digit * np.ceil(1.001 * asked * wanted / peak / digit))
     except Faults:
         pass

@@ -2,7 +2,16 @@
 import sys
 from pathlib import Path
 
-from hapbench_command import CommandLine, answer, exit_status, fail, refuse_source, shell_line, table_text, write
+from hapbench_command import (
+    CommandLine,
+    answer,
+    exit_status,
+    fail,
+    refuse_source,
+    shell_line,
+    table_text,
+    write,
+)
 
 from .options import FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
 
@@ -23,16 +32,39 @@ nothing is written.
 
 
 def command_line():
-    line = CommandLine("import stroke", "Make a stroke to play back from a recording: poses and measured forces", FOOTER)
-    line.text("file", "the recording; without it, the presets are listed", nargs="?", metavar="file")
+    line = CommandLine(
+        "import stroke",
+        "Make a stroke to play back from a recording: poses and measured forces",
+        FOOTER,
+    )
+    line.text(
+        "file", "the recording; without it, the presets are listed", nargs="?", metavar="file"
+    )
     line.text("--preset", "a layout by name or from FILE.json; options below override it")
-    line.text("--set", "any field of such a file: NAME=VALUE (below); repeatable", metavar="TEXT ...", action="append", default=[])
-    line.one_of(FORMATS, "--format", "csv (default), traj (blanks between numbers), hapi, hapi-binary")
+    line.text(
+        "--set",
+        "any field of such a file: NAME=VALUE (below); repeatable",
+        metavar="TEXT ...",
+        action="append",
+        default=[],
+    )
+    line.one_of(
+        FORMATS, "--format", "csv (default), traj (blanks between numbers), hapi, hapi-binary"
+    )
     line.texts("--columns", "where quantities are, by name or number from 1 (below)")
     line.texts("--scale", "what units are: time [s], position [m], angle [rad], force [N] (below)")
-    line.one_of(list(ORIENTATIONS), "--orientation", "what its columns hold; default none: the tool never turns")
+    line.one_of(
+        list(ORIENTATIONS),
+        "--orientation",
+        "what its columns hold; default none: the tool never turns",
+    )
     line.texts("--frame", "recorded directions that are the scenario's x, y, z; y up: x,-z,y")
-    line.text("--rate", "[Hz] of the stroke; default: as recorded, or the median's if irregular", metavar="FLOAT", type=float)
+    line.text(
+        "--rate",
+        "[Hz] of the stroke; default: as recorded, or the median's if irregular",
+        metavar="FLOAT",
+        type=float,
+    )
     line.texts("--smooth", "window=N,order=M: Savitzky-Golay over N samples, an odd number")
     line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
     line.text("--out", "the stroke; default: FILE_stroke.csv here")
@@ -43,12 +75,19 @@ def command_line():
 def run(options):
     if not options.file:
         presets = list_of_presets()
-        table = table_text(["PRESET", "of"], [[one["preset"], one["description"]] for one in presets], options.wide)
-        return answer(options, f"{table}\nCopy one from {PRESETS}, correct it and give it as --preset FILE.json.", presets)
+        table = table_text(
+            ["PRESET", "of"], [[one["preset"], one["description"]] for one in presets], options.wide
+        )
+        return answer(
+            options,
+            f"{table}\nCopy one from {PRESETS}, correct it and give it as --preset FILE.json.",
+            presets,
+        )
     if not options.preset and not options.columns:
         fail("--columns or --preset is missing: which columns hold time and position?")
     from .recording import open_recording  # loads numpy and scipy, which the help does without
     from .stroke import import_stroke, stroke_text, table_of
+
     out = options.out or f"{Path(options.file).stem}_stroke.csv"
     refuse_source(out, options.file, "recording")
     asked = options_of(options)
@@ -57,9 +96,13 @@ def run(options):
     scenario = f"{Path(out).stem}.json"
     next_line = f"{shell_line('hapbench', 'new', 'stroke', '--from', out, '--out', scenario)} && {shell_line('hapbench', 'run', scenario)}"
     table = table_text(["of the stroke", ""], table_of(found), options.wide)
-    answer(options, f"{out}\n{table}\nnext: {next_line}", {"file": out} | found | {"next": next_line})
+    answer(
+        options, f"{out}\n{table}\nnext: {next_line}", {"file": out} | found | {"next": next_line}
+    )
 
 
 if __name__ == "__main__":
     asked_for = command_line().parse(sys.argv[1:])
-    sys.exit(exit_status("import stroke", "" if asked_for.quiet else "importing", lambda: run(asked_for)))
+    sys.exit(
+        exit_status("import stroke", "" if asked_for.quiet else "importing", lambda: run(asked_for))
+    )

@@ -18,28 +18,58 @@ ORIENTATIONS = {
     "axis_angle": ("axis_x", "axis_y", "axis_z", "angle"),
     "matrix": ("r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"),
 }
-QUANTITIES = list(dict.fromkeys(
-    ["time", "position", "px", "py", "pz", "orientation", "force", "mfx", "mfy", "mfz", *sum(ORIENTATIONS.values(), ())]))
+QUANTITIES = list(
+    dict.fromkeys(
+        [
+            "time",
+            "position",
+            "px",
+            "py",
+            "pz",
+            "orientation",
+            "force",
+            "mfx",
+            "mfy",
+            "mfz",
+            *sum(ORIENTATIONS.values(), ()),
+        ]
+    )
+)
 
 
 @dataclass
 class Options:
     """What the numbers of a recording mean. Defaults: metres, seconds, newtons, radians; the tip points along -z."""
+
     format: str = "csv"
-    floats: bool = False                        # hapi-binary: numbers of four bytes
-    columns: dict = field(default_factory=dict)  # of each quantity: the names or numbers, from 1, that its column may have
-    optional: set = field(default_factory=set)  # quantities of `columns` that the file need not have
-    sample_rate_Hz: float | None = None         # of a file without times
-    scale: dict = field(default_factory=dict)   # of "time", "position", "angle", "force": SI units in one of the file's
+    floats: bool = False  # hapi-binary: numbers of four bytes
+    columns: dict = field(
+        default_factory=dict
+    )  # of each quantity: the names or numbers, from 1, that its column may have
+    optional: set = field(
+        default_factory=set
+    )  # quantities of `columns` that the file need not have
+    sample_rate_Hz: float | None = None  # of a file without times
+    scale: dict = field(
+        default_factory=dict
+    )  # of "time", "position", "angle", "force": SI units in one of the file's
     orientation: str = "none"
-    tip_axis: tuple = (0.0, 0.0, -1.0)          # direction out of the tip in the recorded tool's frame, any length
-    frame: tuple = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))  # from the recorded world to the scenario's
-    shift: tuple = (0.0, 0.0, 0.0)              # added to positions in the scenario's frame [m]
-    force_by_tool: bool = False                 # recorded forces act on the object and are negated
-    rate: float | None = None                   # of the stroke [Hz]; None: as recorded
-    smooth: dict | None = None                  # window [samples] and order
-    max_speed: float = 5.0                      # [m/s]
-    max_gap: float = 0.5                        # [s]
+    tip_axis: tuple = (
+        0.0,
+        0.0,
+        -1.0,
+    )  # direction out of the tip in the recorded tool's frame, any length
+    frame: tuple = (
+        (1.0, 0.0, 0.0),
+        (0.0, 1.0, 0.0),
+        (0.0, 0.0, 1.0),
+    )  # from the recorded world to the scenario's
+    shift: tuple = (0.0, 0.0, 0.0)  # added to positions in the scenario's frame [m]
+    force_by_tool: bool = False  # recorded forces act on the object and are negated
+    rate: float | None = None  # of the stroke [Hz]; None: as recorded
+    smooth: dict | None = None  # window [samples] and order
+    max_speed: float = 5.0  # [m/s]
+    max_gap: float = 0.5  # [s]
     skip_bad_rows: bool = False
 
     def set(self, name, value):
@@ -62,7 +92,13 @@ def options_of(asked):
     columns = dict(_assignments("columns", asked.columns))
     options.set("columns", columns)
     options.optional -= set(columns)
-    options.set("scale", {quantity: _number("--scale", factor) for quantity, factor in _assignments("scale", asked.scale)})
+    options.set(
+        "scale",
+        {
+            quantity: _number("--scale", factor)
+            for quantity, factor in _assignments("scale", asked.scale)
+        },
+    )
     if asked.smooth:
         options.smooth = _smoothing(asked.smooth)
     if "time" in columns:
@@ -80,7 +116,10 @@ def options_of(asked):
 
 
 def list_of_presets():
-    return [{"preset": name, "description": _read_preset(file).get("description", ""), "file": file} for name, file in _presets().items()]
+    return [
+        {"preset": name, "description": _read_preset(file).get("description", ""), "file": file}
+        for name, file in _presets().items()
+    ]
 
 
 def _presets():
@@ -153,12 +192,21 @@ def _smoothing(words):
 
 def _is_number(value):
     """A finite number of double precision, as JSON writes it; Python also reads NaN and integers of any length."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
+    return (
+        isinstance(value, (int, float))
+        and not isinstance(value, bool)
+        and abs(value) <= sys.float_info.max
+    )
 
 
 def _is_column(value):
     """A name, a number, or a list of them."""
-    return isinstance(value, str) or _is_number(value) or isinstance(value, list) and all(map(_is_column, value))
+    return (
+        isinstance(value, str)
+        or _is_number(value)
+        or isinstance(value, list)
+        and all(map(_is_column, value))
+    )
 
 
 def _is_vector(value):
@@ -173,13 +221,17 @@ def _named(name, valid):
     def read(_, value):
         require_name(f"{name}: got", value, list(valid))
         return value
+
     return read
 
 
 def _columns(options, value):
     for quantity in value:
         require_name("columns: got", quantity, QUANTITIES)
-    return options.columns | {quantity: list(map(str, column if isinstance(column, list) else [column])) for quantity, column in value.items()}
+    return options.columns | {
+        quantity: list(map(str, column if isinstance(column, list) else [column]))
+        for quantity, column in value.items()
+    }
 
 
 def _scale(options, value):
@@ -192,10 +244,25 @@ def _scale(options, value):
 
 def _frame(_, words):
     """Three words, as in x, -z, y: which recorded directions are the scenario's x, y and z."""
-    rows = [[0.0 if word.removeprefix("-") != letter else -1.0 if word.startswith("-") else 1.0 for letter in "xyz"] for word in words]
+    rows = [
+        [
+            0.0 if word.removeprefix("-") != letter else -1.0 if word.startswith("-") else 1.0
+            for letter in "xyz"
+        ]
+        for word in words
+    ]
     # Each row is a unit vector or zero. The triple product is -1 for a mirror image, which no tool can follow.
-    if len(rows) != 3 or sum(rows[0][i] * (rows[1][i - 2] * rows[2][i - 1] - rows[1][i - 1] * rows[2][i - 2]) for i in range(3)) < 0.5:
-        fail('frame: allowed: three of x, y, z, each once, with or without "-", as in "x,-z,y", that make a right-handed frame')
+    if (
+        len(rows) != 3
+        or sum(
+            rows[0][i] * (rows[1][i - 2] * rows[2][i - 1] - rows[1][i - 1] * rows[2][i - 2])
+            for i in range(3)
+        )
+        < 0.5
+    ):
+        fail(
+            'frame: allowed: three of x, y, z, each once, with or without "-", as in "x,-z,y", that make a right-handed frame'
+        )
     return rows
 
 
@@ -204,14 +271,26 @@ _FIELDS = {
     "description": ("a text", lambda v: isinstance(v, str), None),
     "format": ("a text", lambda v: isinstance(v, str), _named("format", FORMATS)),
     "floats": ("true, false", lambda v: isinstance(v, bool), lambda _, v: v),
-    "columns": ("an object of names or numbers", lambda v: isinstance(v, dict) and all(map(_is_column, v.values())), _columns),
+    "columns": (
+        "an object of names or numbers",
+        lambda v: isinstance(v, dict) and all(map(_is_column, v.values())),
+        _columns,
+    ),
     "sample_rate_Hz": ("a number", _is_number, lambda _, v: float(v)),
-    "scale": ("an object of numbers", lambda v: isinstance(v, dict) and all(map(_is_number, v.values())), _scale),
+    "scale": (
+        "an object of numbers",
+        lambda v: isinstance(v, dict) and all(map(_is_number, v.values())),
+        _scale,
+    ),
     "orientation": ("a text", lambda v: isinstance(v, str), _named("orientation", ORIENTATIONS)),
     "tip_axis": ("three numbers", _is_vector, _vector),
     "shift": ("three numbers", _is_vector, _vector),
     "max_speed": ("a number", _is_number, lambda _, v: float(v)),
     "max_gap": ("a number", _is_number, lambda _, v: float(v)),
-    "frame": ("a list of texts", lambda v: isinstance(v, list) and all(isinstance(one, str) for one in v), _frame),
+    "frame": (
+        "a list of texts",
+        lambda v: isinstance(v, list) and all(isinstance(one, str) for one in v),
+        _frame,
+    ),
     "force_by_tool": ("true, false", lambda v: isinstance(v, bool), lambda _, v: v),
 }

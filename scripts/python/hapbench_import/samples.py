@@ -10,28 +10,31 @@ from .options import ORIENTATIONS
 
 MOST_SAMPLES = 10_000_000
 UNIT_TOLERANCE = 1e-3  # of norms: numbers further from 1 are not rounded but wrong
-LEAST_JUMP = 1e-3  # [m]: below, a jump may be jitter of a clock that wrote two samples almost at once
+LEAST_JUMP = (
+    1e-3  # [m]: below, a jump may be jitter of a clock that wrote two samples almost at once
+)
 DOWN = np.array([0.0, 0.0, -1.0])  # the tool's axis in its own frame
 
 
 @dataclass
 class Samples:
-    time: np.ndarray      # [s], strictly increasing
+    time: np.ndarray  # [s], strictly increasing
     position: np.ndarray  # of the tip [m]
-    turn: Rotation        # from the tool's frame to the world's
+    turn: Rotation  # from the tool's frame to the world's
     force: np.ndarray | None  # on the tool [N]; None: not measured
-    has_roll: bool        # False: only the axis is known, and `turn` has any roll
+    has_roll: bool  # False: only the axis is known, and `turn` has any roll
 
 
 @dataclass
 class Read:
     """A recording as it was read."""
+
     samples: Samples
     recording: object
-    kept: np.ndarray         # rows of the samples
-    left_out: list           # faults of rows that were left out: (place, problem)
-    unit_deviation: float    # largest |norm - 1| of an orientation before it was normalised
-    notes: list              # what a reader of the stroke must know
+    kept: np.ndarray  # rows of the samples
+    left_out: list  # faults of rows that were left out: (place, problem)
+    unit_deviation: float  # largest |norm - 1| of an orientation before it was normalised
+    notes: list  # what a reader of the stroke must know
     coordinates: np.ndarray  # positions before they were turned and shifted [m]
 
 
@@ -47,13 +50,19 @@ class Columns:
         if not options.sample_rate_Hz and not self.time:
             self._fail("time", "is missing (or give --set sample_rate_Hz=...)")
         self.orientation = self._group("orientation", ORIENTATIONS[options.orientation])
-        if not self.orientation and options.orientation != "none" and "orientation" not in options.optional:
+        if (
+            not self.orientation
+            and options.orientation != "none"
+            and "orientation" not in options.optional
+        ):
             self._fail("orientation", "is missing")
         self.force = self._group("force", ("mfx", "mfy", "mfz"))
 
     def _fail(self, quantity, problem):
         names = self._recording.names
-        known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(names[:20], 1)) + (", ..." if len(names) > 20 else "")
+        known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(names[:20], 1)) + (
+            ", ..." if len(names) > 20 else ""
+        )
         fail(f"columns: {quantity}: {problem}; the file has {known}", self._recording.file)
 
     def _group(self, group, parts):
@@ -95,7 +104,10 @@ class Rows:
 
     def __init__(self, recording, columns, options):
         self.problems, self.unit_deviation, self._recording = recording.problems(), 0.0, recording
-        scale = {quantity: options.scale.get(quantity, 1.0) for quantity in ("time", "position", "angle", "force")}
+        scale = {
+            quantity: options.scale.get(quantity, 1.0)
+            for quantity in ("time", "position", "angle", "force")
+        }
         frame = np.array(options.frame).T
         if columns.time:
             self.time = scale["time"] * self._numbers(columns.time)[:, 0]
@@ -105,7 +117,11 @@ class Rows:
         self.recorded = scale["position"] * self._numbers(columns.position)
         self.position = self.recorded @ frame + options.shift
         sign = -1.0 if options.force_by_tool else 1.0
-        self.force = sign * scale["force"] * (self._numbers(columns.force) @ frame) if columns.force else None
+        self.force = (
+            sign * scale["force"] * (self._numbers(columns.force) @ frame)
+            if columns.force
+            else None
+        )
         self.kind = options.orientation if columns.orientation else "none"
         if columns.orientation:
             self.orientation = self._numbers(columns.orientation)
@@ -113,8 +129,15 @@ class Rows:
                 self.orientation[:, 3] *= scale["angle"]
             self._check_orientation()
         forces = np.zeros(1) if self.force is None else np.linalg.norm(self.force, axis=1)
-        fits = (np.linalg.norm(self.position, axis=1) < 1e6) & (forces < 1e9) & (np.abs(self.time) < 1e12)
-        self._refuse(~fits, lambda row: "too large a number; allowed: positions below 1e6 m, forces below 1e9 N, times below 1e12 s")
+        fits = (
+            (np.linalg.norm(self.position, axis=1) < 1e6)
+            & (forces < 1e9)
+            & (np.abs(self.time) < 1e12)
+        )
+        self._refuse(
+            ~fits,
+            lambda row: "too large a number; allowed: positions below 1e6 m, forces below 1e9 N, times below 1e12 s",
+        )
 
     def turns(self, kept, options):
         """The orientations of the rows that were kept, from the tool's frame to the world's."""
@@ -127,18 +150,33 @@ class Rows:
         if self.kind == "matrix":
             recorded = Rotation.from_matrix(values.reshape(-1, 3, 3))
         elif self.kind == "axis_angle":
-            half, lengths = 0.5 * values[:, 3:], np.linalg.norm(values[:, :3], axis=1, keepdims=True)
-            recorded = Rotation.from_quat(np.column_stack([np.sin(half) / np.where(lengths > 0.0, lengths, 1.0) * values[:, :3], np.cos(half)]))
+            half, lengths = 0.5 * values[:, 3:], np.linalg.norm(
+                values[:, :3], axis=1, keepdims=True
+            )
+            recorded = Rotation.from_quat(
+                np.column_stack(
+                    [
+                        np.sin(half) / np.where(lengths > 0.0, lengths, 1.0) * values[:, :3],
+                        np.cos(half),
+                    ]
+                )
+            )
         else:
-            recorded = Rotation.from_quat(np.roll(values, -1, axis=1) if self.kind == "quat_wxyz" else values)
+            recorded = Rotation.from_quat(
+                np.roll(values, -1, axis=1) if self.kind == "quat_wxyz" else values
+            )
         return Rotation.from_matrix(frame) * recorded * tool
 
     def _numbers(self, columns):
         values = np.column_stack([self._recording.column(column) for column in columns])
         for column, numbers in zip(columns, values.T):
             name = self._recording.names[column]
-            self._refuse(np.isnan(numbers), lambda row: (
-                f"column {column + 1}{' ' if name else ''}{name}: got {self._recording.shown(column, row)}; allowed: a finite number"))
+            self._refuse(
+                np.isnan(numbers),
+                lambda row: (
+                    f"column {column + 1}{' ' if name else ''}{name}: got {self._recording.shown(column, row)}; allowed: a finite number"
+                ),
+            )
         return values
 
     def _refuse(self, wrong, problem):
@@ -148,22 +186,34 @@ class Rows:
 
     def _check_orientation(self):
         values = self.orientation
-        lengths = np.linalg.norm(values[:, :3] if self.kind in ("axis", "axis_angle") else values, axis=1)
+        lengths = np.linalg.norm(
+            values[:, :3] if self.kind in ("axis", "axis_angle") else values, axis=1
+        )
         if self.kind == "axis":
-            self._refuse(~((lengths > 1e-12) & (lengths < 1e12)), lambda row: f"got an axis of length {lengths[row]:g}; allowed: 1e-12 ... 1e12")
+            self._refuse(
+                ~((lengths > 1e-12) & (lengths < 1e12)),
+                lambda row: f"got an axis of length {lengths[row]:g}; allowed: 1e-12 ... 1e12",
+            )
             return
         if self.kind == "matrix":
             m = values.reshape(-1, 3, 3)
             deviation = np.abs(m.transpose(0, 2, 1) @ m - np.eye(3)).max(axis=(1, 2))
             right_handed = np.einsum("ij,ij->i", m[:, 0], np.cross(m[:, 1], m[:, 2])) > 0.0
-            self._refuse(~((deviation <= UNIT_TOLERANCE) & right_handed), lambda row: (
-                f"got a matrix that is not a rotation; allowed: rows of length 1, perpendicular within {UNIT_TOLERANCE:g}, determinant 1"))
+            self._refuse(
+                ~((deviation <= UNIT_TOLERANCE) & right_handed),
+                lambda row: (
+                    f"got a matrix that is not a rotation; allowed: rows of length 1, perpendicular within {UNIT_TOLERANCE:g}, determinant 1"
+                ),
+            )
         else:
             # No turn needs no axis.
             no_turn = (self.kind == "axis_angle") & (lengths == 0.0) & (values[:, 3] == 0.0)
             deviation = np.where(no_turn, 0.0, np.abs(lengths - 1.0))
             what = "a turn's axis" if self.kind == "axis_angle" else "a quaternion"
-            self._refuse(~(deviation <= UNIT_TOLERANCE), lambda row: f"got {what} of norm {lengths[row]:.6g}; allowed: 1 within {UNIT_TOLERANCE:g}")
+            self._refuse(
+                ~(deviation <= UNIT_TOLERANCE),
+                lambda row: f"got {what} of norm {lengths[row]:.6g}; allowed: 1 within {UNIT_TOLERANCE:g}",
+            )
         self.unit_deviation = float(np.delete(deviation, list(self.problems)).max(initial=0.0))
 
 
@@ -177,7 +227,8 @@ def _from_down_to(axes):
 
 def read_samples(recording, options):
     """Reads a recording. Bad rows (too few values, no finite number, time that does not increase, an orientation that is
-    none, a jump faster than max_speed) are refused all together, each with its place, or left out when the options say so."""
+    none, a jump faster than max_speed) are refused all together, each with its place, or left out when the options say so.
+    """
     columns = Columns(recording, options)
     with np.errstate(invalid="ignore", over="ignore"):
         rows = Rows(recording, columns, options)
@@ -188,9 +239,17 @@ def read_samples(recording, options):
     if faults and not options.skip_bad_rows:
         raise Faults(faults[:MOST_FAULTS])
     if len(kept) < 2:
-        fail(f"{len(kept)} usable samples of {len(recording.rows)}; allowed: at least 2", recording.file)
-    samples = Samples(rows.time[kept], rows.position[kept], rows.turns(kept, options), None if rows.force is None else rows.force[kept],
-                      rows.kind not in ("none", "axis"))
+        fail(
+            f"{len(kept)} usable samples of {len(recording.rows)}; allowed: at least 2",
+            recording.file,
+        )
+    samples = Samples(
+        rows.time[kept],
+        rows.position[kept],
+        rows.turns(kept, options),
+        None if rows.force is None else rows.force[kept],
+        rows.kind not in ("none", "axis"),
+    )
     notes = columns.notes + ([recording.remark] if recording.remark else [])
     return Read(samples, recording, kept, faults, rows.unit_deviation, notes, rows.recorded[kept])
 
@@ -204,11 +263,15 @@ def _in_sequence(rows, max_speed):
         if kept:
             step, way = time[row] - time[kept[-1]], math.dist(position[row], position[kept[-1]])
             if not step > 0.0:
-                rows.problems[row] = f"got time {time[row]:.9g} s after {time[kept[-1]]:.9g} s; allowed: increasing times"
+                rows.problems[
+                    row
+                ] = f"got time {time[row]:.9g} s after {time[kept[-1]]:.9g} s; allowed: increasing times"
                 continue
             if way > LEAST_JUMP and way > max_speed * step:
-                rows.problems[row] = (f"got a jump of {1e3 * way:.4g} mm in {1e3 * step:.4g} ms, {way / step:.3g} m/s; allowed: "
-                                      f"{max_speed:g} m/s (is the scale right?)")
+                rows.problems[row] = (
+                    f"got a jump of {1e3 * way:.4g} mm in {1e3 * step:.4g} ms, {way / step:.3g} m/s; allowed: "
+                    f"{max_speed:g} m/s (is the scale right?)"
+                )
                 continue
         kept.append(row)
     return np.array(kept, int)

@@ -23,12 +23,18 @@ def import_stroke(recording, options):
     clock, is_regular = clock_of(read.samples.time)
     gaps = gaps_in(read, clock["interval_s"]["median"], options.max_gap)
     resampled = options.rate is not None or not is_regular
-    rate = options.rate if options.rate is not None else usual_rate(clock, is_regular, len(read.samples.time))
+    rate = (
+        options.rate
+        if options.rate is not None
+        else usual_rate(clock, is_regular, len(read.samples.time))
+    )
     stroke = resample(read.samples, rate) if resampled else read.samples
     if not resampled:
         stroke.time = stroke.time - clock["first_time_s"]
     smoothing = smooth(stroke, **options.smooth) if options.smooth else None
-    speeds = sorted((np.linalg.norm(np.diff(stroke.position, axis=0), axis=1) / np.diff(stroke.time)).tolist()) or [0.0]
+    speeds = sorted(
+        (np.linalg.norm(np.diff(stroke.position, axis=0), axis=1) / np.diff(stroke.time)).tolist()
+    ) or [0.0]
     resolution = [resolution_of(column) for column in read.coordinates.T]
     coarsest = max((step for step in resolution if step is not None), default=None)
     axes = stroke.turn.apply(DOWN)
@@ -36,15 +42,26 @@ def import_stroke(recording, options):
     mean = mean / np.linalg.norm(mean) if np.linalg.norm(mean) > 1e-9 else axes[0]
     forces = None if stroke.force is None else np.linalg.norm(stroke.force, axis=1)
     found = {
-        "rows_read": len(recording.rows), "rows_left_out": len(read.left_out), "samples": len(stroke.time),
-        "rate_Hz": rate, "resampled": resampled, **clock,
-        "gaps": len(gaps), "box_m": [stroke.position.min(axis=0).tolist(), stroke.position.max(axis=0).tolist()],
-        "speed_p99_m_per_s": speeds[int(0.99 * (len(speeds) - 1))], "speed_max_m_per_s": speeds[-1], "has_roll": stroke.has_roll,
-        "tip_direction": mean.tolist(), "tip_direction_spread_rad": float(np.arccos(np.clip(axes @ mean, -1.0, 1.0)).max()),
-        "unit_deviation": read.unit_deviation, "quantum_m": resolution,
+        "rows_read": len(recording.rows),
+        "rows_left_out": len(read.left_out),
+        "samples": len(stroke.time),
+        "rate_Hz": rate,
+        "resampled": resampled,
+        **clock,
+        "gaps": len(gaps),
+        "box_m": [stroke.position.min(axis=0).tolist(), stroke.position.max(axis=0).tolist()],
+        "speed_p99_m_per_s": speeds[int(0.99 * (len(speeds) - 1))],
+        "speed_max_m_per_s": speeds[-1],
+        "has_roll": stroke.has_roll,
+        "tip_direction": mean.tolist(),
+        "tip_direction_spread_rad": float(np.arccos(np.clip(axes @ mean, -1.0, 1.0)).max()),
+        "unit_deviation": read.unit_deviation,
+        "quantum_m": resolution,
         "quantum_force_N": None if coarsest is None else STIFFNESS * coarsest,
-        "force_min_N": None if forces is None else float(forces.min()), "force_max_N": None if forces is None else float(forces.max()),
-        "smoothing": smoothing}
+        "force_min_N": None if forces is None else float(forces.min()),
+        "force_max_N": None if forces is None else float(forces.max()),
+        "smoothing": smoothing,
+    }
     return stroke, found | {"warnings": _warnings(read, gaps, found)}
 
 
@@ -53,8 +70,14 @@ def clock_of(time):
     first, duration, intervals = float(time[0]), float(time[-1] - time[0]), np.diff(time)
     even = duration / len(intervals)
     off = time - first - np.arange(len(time)) * even
-    interval = {"min": float(intervals.min()), "median": float(np.sort(intervals)[len(intervals) // 2]), "max": float(intervals.max())}
-    return {"first_time_s": first, "duration_s": duration, "interval_s": interval}, bool((np.abs(off) <= 1e-3 * even).all())
+    interval = {
+        "min": float(intervals.min()),
+        "median": float(np.sort(intervals)[len(intervals) // 2]),
+        "max": float(intervals.max()),
+    }
+    return {"first_time_s": first, "duration_s": duration, "interval_s": interval}, bool(
+        (np.abs(off) <= 1e-3 * even).all()
+    )
 
 
 def usual_rate(clock, is_regular, samples):
@@ -70,14 +93,25 @@ def gaps_in(read, median, longest):
     there are."""
     if median > longest:
         factor = next((unit for unit in (1e-3, 1e-6, 1e-9) if median * unit <= longest), 1e-9)
-        fail(f"got intervals of {median:.4g} s in the median; allowed: {longest:g} s (--set max_gap=...); are times in "
-             f"other units? (--scale time={factor:g})", read.recording.file)
+        fail(
+            f"got intervals of {median:.4g} s in the median; allowed: {longest:g} s (--set max_gap=...); are times in "
+            f"other units? (--scale time={factor:g})",
+            read.recording.file,
+        )
     intervals = np.diff(read.samples.time)
-    faults = [(read.recording.place(read.kept[i]), f"a gap of {intervals[i]:.4g} s follows; allowed: {longest:g} s (--set max_gap=...)")
-              for i in np.flatnonzero(intervals > longest).tolist()]
+    faults = [
+        (
+            read.recording.place(read.kept[i]),
+            f"a gap of {intervals[i]:.4g} s follows; allowed: {longest:g} s (--set max_gap=...)",
+        )
+        for i in np.flatnonzero(intervals > longest).tolist()
+    ]
     if faults:
         raise Faults(faults[:MOST_FAULTS])
-    return [(i, float(intervals[i])) for i in np.flatnonzero(intervals >= LONG_INTERVALS * median).tolist()]
+    return [
+        (i, float(intervals[i]))
+        for i in np.flatnonzero(intervals >= LONG_INTERVALS * median).tolist()
+    ]
 
 
 def resolution_of(values):
@@ -109,7 +143,9 @@ def resample(samples, rate):
     orientations along the arc between them."""
     time, duration = samples.time, samples.time[-1] - samples.time[0]
     if not (rate > 0.0 and math.isfinite(rate) and duration * rate < MOST_SAMPLES):
-        fail(f"rate: got {rate:g} Hz for {duration:.6g} s; allowed: above 0, and up to {MOST_SAMPLES:g} samples")
+        fail(
+            f"rate: got {rate:g} Hz for {duration:.6g} s; allowed: above 0, and up to {MOST_SAMPLES:g} samples"
+        )
     # A last sample that is on the grid but for rounding belongs to it.
     grid = np.arange(math.floor(duration * rate * (1.0 + 1e-12)) + 1) / rate
     recorded = time[0] + grid
@@ -121,7 +157,13 @@ def resample(samples, rate):
         return values[before] + part[:, None] * (values[after] - values[before])
 
     turn = Slerp(time, samples.turn)(np.minimum(recorded, time[-1]))
-    return Samples(grid, between(samples.position), turn, None if samples.force is None else between(samples.force), samples.has_roll)
+    return Samples(
+        grid,
+        between(samples.position),
+        turn,
+        None if samples.force is None else between(samples.force),
+        samples.has_roll,
+    )
 
 
 def smooth(stroke, window, order):
@@ -135,17 +177,34 @@ def smooth(stroke, window, order):
         fail(f"smooth: got order {order}; allowed: 0 ... {min(window - 1, 20)}")
     half = window // 2
     # Orthogonal polynomials keep high orders accurate; scipy.signal.savgol_filter uses powers.
-    basis, _ = np.linalg.qr(np.polynomial.chebyshev.chebvander(np.arange(-half, half + 1) / half, order))
+    basis, _ = np.linalg.qr(
+        np.polynomial.chebyshev.chebvander(np.arange(-half, half + 1) / half, order)
+    )
     before = np.column_stack([stroke.position, of_one_sign(stroke.turn.as_quat())])
-    after = np.column_stack([np.convolve(column, (basis @ basis[half])[::-1], "valid") for column in before.T])
-    after = np.concatenate([basis[:half] @ (basis.T @ before[:window]), after, basis[half + 1:] @ (basis.T @ before[n - window:])])
+    after = np.column_stack(
+        [np.convolve(column, (basis @ basis[half])[::-1], "valid") for column in before.T]
+    )
+    after = np.concatenate(
+        [
+            basis[:half] @ (basis.T @ before[:window]),
+            after,
+            basis[half + 1 :] @ (basis.T @ before[n - window :]),
+        ]
+    )
     # A window over half a turn may average to nothing; such samples keep what they have.
     is_turn = np.linalg.norm(after[:, 3:], axis=1, keepdims=True) > 0.1
     turn = Rotation.from_quat(np.where(is_turn, after[:, 3:], before[:, 3:]))
-    moved, turned = np.linalg.norm(after[:, :3] - stroke.position, axis=1), (turn.inv() * stroke.turn).magnitude()
+    moved, turned = (
+        np.linalg.norm(after[:, :3] - stroke.position, axis=1),
+        (turn.inv() * stroke.turn).magnitude(),
+    )
     stroke.position, stroke.turn = after[:, :3], turn
-    return {"position_largest_m": float(moved.max()), "position_rms_m": float(np.sqrt(np.mean(moved**2))),
-            "angle_largest_rad": float(turned.max()), "angle_rms_rad": float(np.sqrt(np.mean(turned**2)))}
+    return {
+        "position_largest_m": float(moved.max()),
+        "position_rms_m": float(np.sqrt(np.mean(moved**2))),
+        "angle_largest_rad": float(turned.max()),
+        "angle_rms_rad": float(np.sqrt(np.mean(turned**2))),
+    }
 
 
 def of_one_sign(quaternions):
@@ -162,8 +221,12 @@ def stroke_text(stroke):
     else:
         names, pose = "axis_x,axis_y,axis_z", stroke.turn.apply(DOWN)
     names = f"time_s,px_m,py_m,pz_m,{names}{'' if stroke.force is None else ',mfx_N,mfy_N,mfz_N'}"
-    columns = [stroke.time, stroke.position, pose] + ([] if stroke.force is None else [stroke.force])
-    return "\n".join([names, *(",".join(map(number_text, row)) for row in np.column_stack(columns).tolist()), ""])
+    columns = [stroke.time, stroke.position, pose] + (
+        [] if stroke.force is None else [stroke.force]
+    )
+    return "\n".join(
+        [names, *(",".join(map(number_text, row)) for row in np.column_stack(columns).tolist()), ""]
+    )
 
 
 def number_text(value):
@@ -171,7 +234,9 @@ def number_text(value):
     text = repr(value)
     if "e" not in text and abs(value) >= 1e-3 and not text.endswith(".0"):
         return text
-    fixed, scientific = np.format_float_positional(value, trim="-"), np.format_float_scientific(value, trim="-", exp_digits=2)
+    fixed, scientific = np.format_float_positional(value, trim="-"), np.format_float_scientific(
+        value, trim="-", exp_digits=2
+    )
     return fixed if len(fixed) <= len(scientific) else scientific
 
 
@@ -180,25 +245,77 @@ def table_of(found):
     interval, (low, high) = found["interval_s"], found["box_m"]
     bad, smoothing = found["rows_left_out"], found["smoothing"]
     rows = [
-        ("rows", f"{found['rows_read']} read, " + (f"{bad} bad ones left out" if bad else "all used")),
-        ("clock", f"began at {found['first_time_s']:.9g} s; intervals {1e3 * interval['median']:.4g} ms in the median, "
-                  f"{1e3 * interval['min']:.4g} ... {1e3 * interval['max']:.4g} ms"),
-        ("stroke", f"{found['duration_s']:.6g} s in {found['samples']} samples, {found['rate_Hz']:.6g} Hz" + (", resampled" if found["resampled"] else "")),
-        ("gaps", f"{found['gaps']}, bridged" if found["gaps"] else "none (of ten median intervals and more)"),
-        ("tip", ", ".join(f"{axis} {1e3 * a:.4g} ... {1e3 * b:.4g}" for axis, a, b in zip("xyz", low, high)) + " mm"),
-        ("speed", f"{found['speed_max_m_per_s']:.4g} m/s at most, 99 % below {found['speed_p99_m_per_s']:.4g} m/s"),
-        ("pose", f"quaternions; norms were within {found['unit_deviation']:.1e} of 1" if found["has_roll"] else "the axis alone; the roll is unknown"),
-        ("tip points", f"along [{', '.join(f'{part + 0.0:.3g}' for part in found['tip_direction'])}] in the mean, within "
-                       f"{math.degrees(found['tip_direction_spread_rad']):.3g} degrees of it"),
-        ("resolution", ", ".join(f"{axis} {'none' if step is None else f'{1e6 * step:.4g} um'}" for axis, step in zip("xyz", found["quantum_m"])))]
+        (
+            "rows",
+            f"{found['rows_read']} read, " + (f"{bad} bad ones left out" if bad else "all used"),
+        ),
+        (
+            "clock",
+            f"began at {found['first_time_s']:.9g} s; intervals {1e3 * interval['median']:.4g} ms in the median, "
+            f"{1e3 * interval['min']:.4g} ... {1e3 * interval['max']:.4g} ms",
+        ),
+        (
+            "stroke",
+            f"{found['duration_s']:.6g} s in {found['samples']} samples, {found['rate_Hz']:.6g} Hz"
+            + (", resampled" if found["resampled"] else ""),
+        ),
+        (
+            "gaps",
+            f"{found['gaps']}, bridged"
+            if found["gaps"]
+            else "none (of ten median intervals and more)",
+        ),
+        (
+            "tip",
+            ", ".join(
+                f"{axis} {1e3 * a:.4g} ... {1e3 * b:.4g}" for axis, a, b in zip("xyz", low, high)
+            )
+            + " mm",
+        ),
+        (
+            "speed",
+            f"{found['speed_max_m_per_s']:.4g} m/s at most, 99 % below {found['speed_p99_m_per_s']:.4g} m/s",
+        ),
+        (
+            "pose",
+            f"quaternions; norms were within {found['unit_deviation']:.1e} of 1"
+            if found["has_roll"]
+            else "the axis alone; the roll is unknown",
+        ),
+        (
+            "tip points",
+            f"along [{', '.join(f'{part + 0.0:.3g}' for part in found['tip_direction'])}] in the mean, within "
+            f"{math.degrees(found['tip_direction_spread_rad']):.3g} degrees of it",
+        ),
+        (
+            "resolution",
+            ", ".join(
+                f"{axis} {'none' if step is None else f'{1e6 * step:.4g} um'}"
+                for axis, step in zip("xyz", found["quantum_m"])
+            ),
+        ),
+    ]
     if found["quantum_force_N"] is not None:
-        rows.append(("", f"alone makes steps of K q = {found['quantum_force_N']:.4g} N at the default K = {STIFFNESS:g} N/m"))
+        rows.append(
+            (
+                "",
+                f"alone makes steps of K q = {found['quantum_force_N']:.4g} N at the default K = {STIFFNESS:g} N/m",
+            )
+        )
     if smoothing:
         moved, moved_rms, turned, turned_rms = smoothing.values()
-        rows.append(("smoothing", f"moved the tip by {1e6 * moved:.4g} um at most, {1e6 * moved_rms:.4g} um rms; turned it by "
-                                  f"{1e3 * turned:.4g} mrad, {1e3 * turned_rms:.4g} rms"))
+        rows.append(
+            (
+                "smoothing",
+                f"moved the tip by {1e6 * moved:.4g} um at most, {1e6 * moved_rms:.4g} um rms; turned it by "
+                f"{1e3 * turned:.4g} mrad, {1e3 * turned_rms:.4g} rms",
+            )
+        )
     least, most = found["force_min_N"], found["force_max_N"]
-    return [*rows, ("force", "not measured" if least is None else f"measured, {least:.4g} ... {most:.4g} N")]
+    return [
+        *rows,
+        ("force", "not measured" if least is None else f"measured, {least:.4g} ... {most:.4g} N"),
+    ]
 
 
 def _warnings(read, gaps, found):
@@ -206,17 +323,25 @@ def _warnings(read, gaps, found):
     if read.left_out:
         warnings.append(f"{len(read.left_out)} bad rows were left out")
     warnings += [f"{place}: {problem}" for place, problem in read.left_out[:20]]
-    warnings += [f"a gap of {duration:.4g} s behind {read.recording.row_word} {read.recording.places[read.kept[i]]} is bridged by a straight line"
-                 for i, duration in gaps[:MOST_GAPS]]
+    warnings += [
+        f"a gap of {duration:.4g} s behind {read.recording.row_word} {read.recording.places[read.kept[i]]} is bridged by a straight line"
+        for i, duration in gaps[:MOST_GAPS]
+    ]
     if len(gaps) > MOST_GAPS:
         warnings.append(f"{len(gaps)} gaps in all")
     extent = float(np.ptp(found["box_m"], axis=0).max())
     if not SHORTEST <= extent <= LONGEST:
-        warnings.append(f"the tip's places are within {extent:.4g} m, which is not a stroke of a hand: is the scale right? "
-                        "(--scale position=0.001 is for millimetres)")
+        warnings.append(
+            f"the tip's places are within {extent:.4g} m, which is not a stroke of a hand: is the scale right? "
+            "(--scale position=0.001 is for millimetres)"
+        )
     if not USUAL_RATES[0] <= found["rate_Hz"] <= USUAL_RATES[1]:
-        warnings.append(f"{found['rate_Hz']:.4g} samples a second is an unusual rate: is the scale of time right? (--scale time=1e-3 is for "
-                        "milliseconds)")
+        warnings.append(
+            f"{found['rate_Hz']:.4g} samples a second is an unusual rate: is the scale of time right? (--scale time=1e-3 is for "
+            "milliseconds)"
+        )
     if found["tip_direction"][2] > 0.5:
-        warnings.append("the tip points upwards in the mean: are --orientation (the order of a quaternion), tip_axis and --frame right?")
+        warnings.append(
+            "the tip points upwards in the mean: are --orientation (the order of a quaternion), tip_axis and --frame right?"
+        )
     return warnings

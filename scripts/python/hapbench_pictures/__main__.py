@@ -32,33 +32,53 @@ but do not count; provenance, times and counted work are not looked at.
 def plot_line():
     line = CommandLine("plot", "Draw runs over time and in space, a sweep, limits", PLOT_FOOTER)
     line.text("runs", "folders that run, compare, sweep or limit wrote", nargs="+", metavar="RUN")
-    line.text("--out", "FILE.svg, .png or .pdf (default: plot.svg in the folder of the runs)", type=Path)
+    line.text(
+        "--out", "FILE.svg, .png or .pdf (default: plot.svg in the folder of the runs)", type=Path
+    )
     line.flag("--quiet", SHARED)
     line.texts("--y", "the quantities to draw, separated by commas (below)")
     line.text("--metric", "for a sweep: the column of sweep.csv to draw")
-    line.text("--where", "for a sweep: only runs with this, as 'inside_max_m<3e-4' (sweep --help)", metavar="TEXT ...", action="append",
-              default=[])
+    line.text(
+        "--where",
+        "for a sweep: only runs with this, as 'inside_max_m<3e-4' (sweep --help)",
+        metavar="TEXT ...",
+        action="append",
+        default=[],
+    )
     line.text("--from", "time from which to draw [s]", dest="start")
     line.text("--to", "time up to which to draw [s]", dest="end")
     return line
 
 
 def report_line():
-    line = CommandLine("report", "Write a page of runs: curves, replay with sound, metrics, scenario, commands", REPORT_FOOTER)
+    line = CommandLine(
+        "report",
+        "Write a page of runs: curves, replay with sound, metrics, scenario, commands",
+        REPORT_FOOTER,
+    )
     line.text("runs", "folders that run or compare wrote", nargs="+", metavar="RUN")
     line.text("--out", "FILE.html (default: report.html in the folder of the runs)", type=Path)
     line.flag("--quiet", SHARED)
-    line.text("--tolerance", "no page: compare the results of two folders, in status 3 if they differ by more than this, of a metric relative "
-              "to the larger of the two, of a column to its largest magnitude; 0: the same digits")
+    line.text(
+        "--tolerance",
+        "no page: compare the results of two folders, in status 3 if they differ by more than this, of a metric relative "
+        "to the larger of the two, of a column to its largest magnitude; 0: the same digits",
+    )
     return line
 
 
 def main(words):
     command, *rest = words
-    line, doing = {"plot": (plot_line, "drawing"), "report": (report_line, "writing the report")}[command]
+    line, doing = {"plot": (plot_line, "drawing"), "report": (report_line, "writing the report")}[
+        command
+    ]
     options = line().parse(rest)
     # The module loads matplotlib, which the help does without.
-    return exit_status(command, "" if options.quiet else doing, lambda: getattr(import_module(f"hapbench_pictures.{command}"), command)(options))
+    return exit_status(
+        command,
+        "" if options.quiet else doing,
+        lambda: getattr(import_module(f"hapbench_pictures.{command}"), command)(options),
+    )
 
 
 if __name__ == "__main__":

@@ -11,7 +11,16 @@ from hapbench.errors import InputError
 from hapbench.results import SCENARIO, SUMMARY, read_object
 
 SWEEP, TRAJECTORY = "sweep.csv", "trajectory.csv"
-NO_RESULTS = ("name", "algorithm", "expected", "warnings", "diagnosis", "work", "provenance", "state_hash")
+NO_RESULTS = (
+    "name",
+    "algorithm",
+    "expected",
+    "warnings",
+    "diagnosis",
+    "work",
+    "provenance",
+    "state_hash",
+)
 LONGEST = 24  # of a printed value
 NO_NUMBER = math.inf  # the size of a difference of which not both are numbers
 
@@ -22,11 +31,17 @@ def differences(a, b):
     in_a, in_b = results_below(a), results_below(b)
     pairs = [path for path in in_a if path in in_b]
     if not pairs:
-        raise InputError(f"{a} has {in_a[0]} and {b} has {in_b[0]}, nothing by the same name; allowed: the folders of two runs, or of "
-                         "several each")
+        raise InputError(
+            f"{a} has {in_a[0]} and {b} has {in_b[0]}, nothing by the same name; allowed: the folders of two runs, or of "
+            "several each"
+        )
     found = {}
     for path in pairs:
-        found[str(path)] = of_runs(a / path.parent, b / path.parent) if path.name == SUMMARY else {path.name: of_tables(a / path, b / path)}
+        found[str(path)] = (
+            of_runs(a / path.parent, b / path.parent)
+            if path.name == SUMMARY
+            else {path.name: of_tables(a / path, b / path)}
+        )
     alone = [(str(path), "there", "-", NO_NUMBER, NO_NUMBER) for path in in_a if path not in in_b]
     alone += [(str(path), "-", "there", NO_NUMBER, NO_NUMBER) for path in in_b if path not in in_a]
     return found | ({"": {"in one of them alone": alone}} if alone else {})
@@ -35,24 +50,40 @@ def differences(a, b):
 def results_below(folder):
     if not folder.is_dir():
         raise InputError(f"{folder}: is not a folder; allowed: that of a run, or of several")
-    found = sorted(file.relative_to(folder) for name in (SUMMARY, SWEEP) for file in folder.rglob(name))
+    found = sorted(
+        file.relative_to(folder) for name in (SUMMARY, SWEEP) for file in folder.rglob(name)
+    )
     if not found:
-        raise InputError(f"{folder}: is not the folder of a run: it has no {SUMMARY}, nor has any below it")
+        raise InputError(
+            f"{folder}: is not the folder of a run: it has no {SUMMARY}, nor has any below it"
+        )
     return found
 
 
 def of_runs(a, b):
     told = [read_object(folder / SUMMARY, parse_float=str, parse_int=str) for folder in (a, b)]
     tables = [(folder / TRAJECTORY).is_file() for folder in (a, b)]
-    return {"field": changed(*map(fields_of, (a, b))), "result": changed(*map(results_of, told)),
-            "state hash": changed(*({"state_hash": of.get("state_hash", "")} for of in told)),
-            TRAJECTORY: of_tables(a / TRAJECTORY, b / TRAJECTORY) if all(tables) else
-            [(TRAJECTORY, *("there" if there else "-" for there in tables), NO_NUMBER, NO_NUMBER)] if any(tables) else []}
+    return {
+        "field": changed(*map(fields_of, (a, b))),
+        "result": changed(*map(results_of, told)),
+        "state hash": changed(*({"state_hash": of.get("state_hash", "")} for of in told)),
+        TRAJECTORY: of_tables(a / TRAJECTORY, b / TRAJECTORY)
+        if all(tables)
+        else [(TRAJECTORY, *("there" if there else "-" for there in tables), NO_NUMBER, NO_NUMBER)]
+        if any(tables)
+        else [],
+    }
 
 
 def flat(value, path=""):
     """The leaves as texts, by their paths."""
-    parts = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    parts = (
+        value.items()
+        if isinstance(value, dict)
+        else enumerate(value)
+        if isinstance(value, list)
+        else ()
+    )
     if not parts:
         yield path, value if isinstance(value, str) else "" if value is None else json.dumps(value)
     for key, part in parts:
@@ -61,7 +92,12 @@ def flat(value, path=""):
 
 def results_of(told):
     """Metrics have no section in front of their names, as in `expect`; warnings stand for themselves."""
-    found = [pair for key, value in told.items() if key not in NO_RESULTS for pair in flat(value, "" if key == "metrics" else key)]
+    found = [
+        pair
+        for key, value in told.items()
+        if key not in NO_RESULTS
+        for pair in flat(value, "" if key == "metrics" else key)
+    ]
     return dict(found) | {f"warning: {text}": "there" for text in told.get("warnings", ())}
 
 
@@ -69,13 +105,23 @@ def fields_of(run):
     """Files, which a scenario names from its own folder, by what they hold. Expectations do not change a run."""
     scenario = read_object(run / SCENARIO, parse_float=str, parse_int=str)
     found = dict(flat({key: value for key, value in scenario.items() if key != "expect"}))
-    files = {path: run / name for path, name in found.items() if path.endswith(".file") and (run / name).is_file()}
-    return found | {path: f"{file.name}, {zlib.crc32(file.read_bytes()):08x}" for path, file in files.items()}
+    files = {
+        path: run / name
+        for path, name in found.items()
+        if path.endswith(".file") and (run / name).is_file()
+    }
+    return found | {
+        path: f"{file.name}, {zlib.crc32(file.read_bytes()):08x}" for path, file in files.items()
+    }
 
 
 def changed(a, b):
     """What has another text, of both or of one alone."""
-    return [(name, a.get(name, "-"), b.get(name, "-"), *sizes(a.get(name, "-"), b.get(name, "-"))) for name in {**a, **b} if a.get(name) != b.get(name)]
+    return [
+        (name, a.get(name, "-"), b.get(name, "-"), *sizes(a.get(name, "-"), b.get(name, "-")))
+        for name in {**a, **b}
+        if a.get(name) != b.get(name)
+    ]
 
 
 def number(text):
@@ -92,46 +138,81 @@ def sizes(a, b, largest=0.0):
 def of_tables(a, b):
     """Of each column that differs the row with the largest difference, which is relative to the column's largest magnitude."""
     (names_a, rows_a), (names_b, rows_b) = read_rows(a), read_rows(b)
-    found = [(what, one, other, NO_NUMBER, NO_NUMBER) for what, one, other in (
-        ("rows", len(rows_a), len(rows_b)), ("columns", ", ".join(names_a), ", ".join(names_b))) if one != other]
+    found = [
+        (what, one, other, NO_NUMBER, NO_NUMBER)
+        for what, one, other in (
+            ("rows", len(rows_a), len(rows_b)),
+            ("columns", ", ".join(names_a), ", ".join(names_b)),
+        )
+        if one != other
+    ]
     for name in (name for name in names_a if name in names_b):
-        values = [[row[names.index(name)] for row in rows] for names, rows in ((names_a, rows_a), (names_b, rows_b))]
+        values = [
+            [row[names.index(name)] for row in rows]
+            for names, rows in ((names_a, rows_a), (names_b, rows_b))
+        ]
         if values[0] == values[1]:
             continue
-        largest = max((abs(x) for x in map(number, values[0] + values[1]) if math.isfinite(x)), default=0.0)
-        by_row = [(sizes(x, y, largest), -row, x, y) for row, (x, y) in enumerate(zip(*values)) if x != y]
+        largest = max(
+            (abs(x) for x in map(number, values[0] + values[1]) if math.isfinite(x)), default=0.0
+        )
+        by_row = [
+            (sizes(x, y, largest), -row, x, y) for row, (x, y) in enumerate(zip(*values)) if x != y
+        ]
         if by_row:
             (size, relative), row, x, y = max(by_row)
-            found.append((f"{name}, row {-row} (first {min(-entry[1] for entry in by_row)})", x, y, size, relative))
+            found.append(
+                (
+                    f"{name}, row {-row} (first {min(-entry[1] for entry in by_row)})",
+                    x,
+                    y,
+                    size,
+                    relative,
+                )
+            )
     return found
 
 
 def are_equal(found, tolerance):
     """Whether nothing but numbers within a relative tolerance differs. What one of them alone has always counts; the state hash, which
     changes with any bit, at a tolerance of 0."""
-    return all(relative <= tolerance and tolerance > 0 or (tolerance > 0 and name.startswith("state_hash"))
-               for tables in found.values() for kind, entries in tables.items() if kind != "field" for name, _, _, _, relative in entries)
+    return all(
+        relative <= tolerance and tolerance > 0 or (tolerance > 0 and name.startswith("state_hash"))
+        for tables in found.values()
+        for kind, entries in tables.items()
+        if kind != "field"
+        for name, _, _, _, relative in entries
+    )
 
 
 def cut(value):
     text = str(value)
-    return text if len(text) <= LONGEST else text[:LONGEST - 3] + "..."
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
 def in_words(a, b, found, tolerance):
     """For people."""
     lines = [f"A {a}", f"B {b}", ""]
     for path, tables in found.items():
-        rows = [(kind, name, cut(one), cut(other), "" if relative == NO_NUMBER else f"{relative:.3g}")
-                for kind, entries in tables.items() for name, one, other, _, relative in entries]
+        rows = [
+            (kind, name, cut(one), cut(other), "" if relative == NO_NUMBER else f"{relative:.3g}")
+            for kind, entries in tables.items()
+            for name, one, other, _, relative in entries
+        ]
         if len(found) > 1:
             lines += [f"{path or 'paths'}: {len(rows) or 'nothing'} different"]
         if rows:
             rows.insert(0, ("", "", "A", "B", "relative"))
             widths = [max(map(len, column)) for column in zip(*rows)]
             for kind, name, *numbers in rows:
-                cells = [kind.ljust(widths[0]), name.ljust(widths[1]), *(text.rjust(width) for text, width in zip(numbers, widths[2:]))]
+                cells = [
+                    kind.ljust(widths[0]),
+                    name.ljust(widths[1]),
+                    *(text.rjust(width) for text, width in zip(numbers, widths[2:])),
+                ]
                 lines.append("  ".join(cells).rstrip())
             lines.append("")
     within = f" within a relative tolerance of {tolerance:g}" if tolerance else ""
-    return "\n".join([*lines, f"the results are {'' if are_equal(found, tolerance) else 'not '}equal{within}"])
+    return "\n".join(
+        [*lines, f"the results are {'' if are_equal(found, tolerance) else 'not '}equal{within}"]
+    )

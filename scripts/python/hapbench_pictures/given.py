@@ -14,15 +14,24 @@ from hapbench_report.runs import load_run, load_runs
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
 SEED_FOLDER = re.compile(r"seed_\d+")  # of a comparison with --seeds
 # Titles of fields whose last name says too little, and symbols in formulas.
-TITLES, SYMBOLS = {"time.step_s": "time step", "rendering.damping_ratio": "damping ratio ζ"}, {"rendering.stiffness_N_per_m": "K"}
+TITLES, SYMBOLS = {"time.step_s": "time step", "rendering.damping_ratio": "damping ratio ζ"}, {
+    "rendering.stiffness_N_per_m": "K"
+}
 NO_INPUT = ("expect", "description", "name", "source")
 
 
 def given_alone(words, files, what):
     """The folder among the words with one of these files, and no run; None without any. It is drawn alone."""
-    found = [Path(word) for word in words if any((Path(word) / name).is_file() for name in files) and not (Path(word) / SUMMARY).is_file()]
+    found = [
+        Path(word)
+        for word in words
+        if any((Path(word) / name).is_file() for name in files)
+        and not (Path(word) / SUMMARY).is_file()
+    ]
     if found and len(words) > 1:
-        raise InputError(f"{found[0]}: {what}; allowed: one such folder alone, or any number of runs")
+        raise InputError(
+            f"{found[0]}: {what}; allowed: one such folder alone, or any number of runs"
+        )
     return found[0] if found else None
 
 
@@ -38,12 +47,16 @@ def given_runs(words):
         if folder.is_file() and (folder.parent / SUMMARY).is_file():
             folder = folder.parent  # whoever types RUN/trajectory.csv means RUN
         if not folder.is_dir():
-            raise InputError(f"{folder}: no such folder; allowed: a folder that \"hapbench run\", "
-                             f"\"compare\" or \"sweep\" wrote{nearest(folder.name, [beside.name for beside in folder.parent.glob('*/')])}")
+            raise InputError(
+                f'{folder}: no such folder; allowed: a folder that "hapbench run", '
+                f"\"compare\" or \"sweep\" wrote{nearest(folder.name, [beside.name for beside in folder.parent.glob('*/')])}"
+            )
         runs = [load_run(folder, folder.name)] if (folder / SUMMARY).is_file() else compared(folder)
         if not runs:
-            raise InputError(f"{folder}: holds neither {SUMMARY} nor folders with one nor {SWEEP}; allowed: a folder that "
-                             "\"hapbench run\", \"compare\" or \"sweep\" wrote")
+            raise InputError(
+                f"{folder}: holds neither {SUMMARY} nor folders with one nor {SWEEP}; allowed: a folder that "
+                '"hapbench run", "compare" or "sweep" wrote'
+            )
         for run in runs:
             found.setdefault(os.path.realpath(run.folder), run)
     return list(found.values())
@@ -56,7 +69,9 @@ def compared(folder):
     if not table.is_file():
         return runs
     named = [row.get("algorithm") for row in read_records(table)]
-    return sorted((run for run in runs if run.algorithm in named), key=lambda run: named.index(run.algorithm))
+    return sorted(
+        (run for run in runs if run.algorithm in named), key=lambda run: named.index(run.algorithm)
+    )
 
 
 def labels(runs):
@@ -66,8 +81,15 @@ def labels(runs):
 
 def named(runs):
     """These names; and the same without the seed, which is one name for all runs that differ in nothing else."""
-    parts = [part for part in ([run.name for run in runs], [plain(run) for run in runs]) if len(runs) == 1 or len(set(part)) > 1]
-    groups = [", ".join([*(part[i] for part in parts), *fields]) or plain(runs[i]) for i, fields in enumerate(field_entries(runs))]
+    parts = [
+        part
+        for part in ([run.name for run in runs], [plain(run) for run in runs])
+        if len(runs) == 1 or len(set(part)) > 1
+    ]
+    groups = [
+        ", ".join([*(part[i] for part in parts), *fields]) or plain(runs[i])
+        for i, fields in enumerate(field_entries(runs))
+    ]
     folders = relative_folders(runs)
     seeded = [f"{group}, seed {run.scenario.get('seed')}" for group, run in zip(groups, runs)]
     placed = [f"{group}, {folder}" for group, folder in zip(groups, folders)]
@@ -88,9 +110,16 @@ def by_seed(run):
 
 def field_entries(runs):
     """For each run the fields, with their values, in which it differs from others of its scene and algorithm."""
-    fields = [{path: value for path, value in fields_of(run).items() if path not in by_seed(run)} for run in runs]
+    fields = [
+        {path: value for path, value in fields_of(run).items() if path not in by_seed(run)}
+        for run in runs
+    ]
     scenes = [(run.name, run.algorithm) for run in runs]
-    paths = {path: None for scene in dict.fromkeys(scenes) for path in differing([of for of, own in zip(fields, scenes) if own == scene and of])}
+    paths = {
+        path: None
+        for scene in dict.fromkeys(scenes)
+        for path in differing([of for of, own in zip(fields, scenes) if own == scene and of])
+    }
     return [[entry(path, of[path], paths) for path in paths if path in of] for of in fields]
 
 
@@ -103,20 +132,35 @@ def relative_folders(runs):
 
 def common_folder(words):
     """The folder that holds all of the runs: of a single one, its own."""
-    return Path(os.path.commonpath([os.path.abspath(word) for word in words])) if len(words) > 1 else Path(words[0])
+    return (
+        Path(os.path.commonpath([os.path.abspath(word) for word in words]))
+        if len(words) > 1
+        else Path(words[0])
+    )
 
 
 def fields_of(run):
     """The scenario's fields by their paths. Files, which it names from its own folder, are named from here, where they are one."""
-    return {path: os.path.relpath(run.folder / value) if path.rpartition(".")[2] == "file" and isinstance(value, str) else value
-            for path, value in leaves(run.scenario)}
+    return {
+        path: os.path.relpath(run.folder / value)
+        if path.rpartition(".")[2] == "file" and isinstance(value, str)
+        else value
+        for path, value in leaves(run.scenario)
+    }
 
 
 def differing(flat):
     """The paths at which these fields differ, with the value of each; names, descriptions and expectations aside."""
-    values = {path: [fields.get(path) for fields in flat] for path in dict.fromkeys(p for fields in flat for p in fields)}
-    return {path: of for path, of in values.items()
-            if len({json.dumps(value, sort_keys=True) for value in of}) > 1 and not path.startswith(NO_INPUT)}
+    values = {
+        path: [fields.get(path) for fields in flat]
+        for path in dict.fromkeys(p for fields in flat for p in fields)
+    }
+    return {
+        path: of
+        for path, of in values.items()
+        if len({json.dumps(value, sort_keys=True) for value in of}) > 1
+        and not path.startswith(NO_INPUT)
+    }
 
 
 def leaves(value, path=""):
@@ -134,7 +178,9 @@ def title_and_unit(path):
 
 
 def is_ambiguous(path, among):
-    return any(other != path and title_and_unit(other)[0] == title_and_unit(path)[0] for other in among)
+    return any(
+        other != path and title_and_unit(other)[0] == title_and_unit(path)[0] for other in among
+    )
 
 
 def axis(path, among=()):

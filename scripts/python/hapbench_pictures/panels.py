@@ -43,15 +43,33 @@ def looks(runs, labels, groups=()):
     for run, label, group in zip(runs, labels, groups):
         own, of_series = look(run.algorithm), SERIES[nth[group] % len(SERIES)]
         colours = of_series if alike and not one_each else own
-        found.append(RunLook(label, colours.colour, colours.dark, own.dash if one_each else of_series.dash, width=width, group=group))
+        found.append(
+            RunLook(
+                label,
+                colours.colour,
+                colours.dark,
+                own.dash if one_each else of_series.dash,
+                width=width,
+                group=group,
+            )
+        )
     return found
 
 
 def settings(paper):
     """matplotlib's colours for LIGHT or DARK."""
     ink, ground, grid, *_ = paper
-    return {"text.color": ink, "axes.labelcolor": ink, "xtick.color": ink, "ytick.color": ink, "axes.edgecolor": ink,
-            "axes.facecolor": ground, "figure.facecolor": ground, "savefig.facecolor": ground, "grid.color": grid}
+    return {
+        "text.color": ink,
+        "axes.labelcolor": ink,
+        "xtick.color": ink,
+        "ytick.color": ink,
+        "axes.edgecolor": ink,
+        "axes.facecolor": ground,
+        "figure.facecolor": ground,
+        "savefig.facecolor": ground,
+        "grid.color": grid,
+    }
 
 
 def draw_over_time(ax, quantity, samples, looks):
@@ -68,7 +86,13 @@ def draw_over_time(ax, quantity, samples, looks):
             time, low, high = reduced(time, low, high, SPANS)
             ax.fill_between(time, low, high, color=one.colour, alpha=0.2, lw=0)
             for edge in (low, high):
-                ax.plot(time, edge, lw=min(0.8, one.width), label=one.label if edge is low else None, **line)
+                ax.plot(
+                    time,
+                    edge,
+                    lw=min(0.8, one.width),
+                    label=one.label if edge is low else None,
+                    **line,
+                )
         mark_first_touch(ax, s, one)
     ax.set_ylabel(quantity.axis)
     ax.margins(x=0.01)
@@ -77,7 +101,9 @@ def draw_over_time(ax, quantity, samples, looks):
 def share_an_axis(ax, heights):
     """A linear axis; where a run is thrown about, linear up to the calmest run's peak and logarithmic beyond.
     Whether it is the latter."""
-    peaks = [peak for peak in (float(np.nanmax(np.abs(h), initial=0.0)) for h in heights) if peak > 0]
+    peaks = [
+        peak for peak in (float(np.nanmax(np.abs(h), initial=0.0)) for h in heights) if peak > 0
+    ]
     if peaks and max(peaks) > LARGEST_RATIO * min(peaks):
         ax.set_yscale("symlog", linthresh=min(peaks))
         return True
@@ -90,21 +116,53 @@ def cut_off_peaks(ax, quantity, drawn):
     if shown is None:
         return
     ax.set_ylim(*shown)
-    at, value, colour = max(((time[row], edge[row], one.colour) for _, one, (time, *edges) in drawn for edge in edges
-                             if np.isfinite(edge).any() for row in [np.nanargmax(np.abs(edge))]), key=lambda peak: abs(peak[1]))
+    at, value, colour = max(
+        (
+            (time[row], edge[row], one.colour)
+            for _, one, (time, *edges) in drawn
+            for edge in edges
+            if np.isfinite(edge).any()
+            for row in [np.nanargmax(np.abs(edge))]
+        ),
+        key=lambda peak: abs(peak[1]),
+    )
     ends = [time[end] for _, _, (time, *_) in drawn for end in (0, -1)]
     left, above = at <= (min(ends) + max(ends)) / 2, value > 0
-    ax.plot(at, float(above), marker="^" if above else "v", ms=4, color=colour, transform=ax.get_xaxis_transform(), clip_on=False)
-    ax.annotate(f"peak {value:.3g} {quantity.unit}".strip(), (at, float(above)), xycoords=ax.get_xaxis_transform(), color=colour,
-                xytext=(5 if left else -5, 1), textcoords="offset points", fontsize=7,
-                ha="left" if left else "right", va="bottom")
+    ax.plot(
+        at,
+        float(above),
+        marker="^" if above else "v",
+        ms=4,
+        color=colour,
+        transform=ax.get_xaxis_transform(),
+        clip_on=False,
+    )
+    ax.annotate(
+        f"peak {value:.3g} {quantity.unit}".strip(),
+        (at, float(above)),
+        xycoords=ax.get_xaxis_transform(),
+        color=colour,
+        xytext=(5 if left else -5, 1),
+        textcoords="offset points",
+        fontsize=7,
+        ha="left" if left else "right",
+        va="bottom",
+    )
 
 
 def mark_first_touch(ax, samples, look):
     at = samples.first_touch_s
     if at is not None:
         ax.axvline(at, color=look.colour, ls=(0, (1, 2)), lw=0.8)
-        ax.plot(at, 0, marker="v", ms=5, color=look.colour, transform=ax.get_xaxis_transform(), clip_on=False)
+        ax.plot(
+            at,
+            0,
+            marker="v",
+            ms=5,
+            color=look.colour,
+            transform=ax.get_xaxis_transform(),
+            clip_on=False,
+        )
 
 
 def tip_of(samples, which=PATH_COLUMNS):
@@ -114,7 +172,9 @@ def tip_of(samples, which=PATH_COLUMNS):
 def framed(samples):
     """The rows that a picture of the scene is about, a tool that is thrown away aside: the start and those in contact, or all."""
     touching = np.flatnonzero(samples.trajectory["colliding"] > 0)
-    return np.append(touching, 0) if touching.size else np.arange(len(samples.trajectory["colliding"]))
+    return (
+        np.append(touching, 0) if touching.size else np.arange(len(samples.trajectory["colliding"]))
+    )
 
 
 def plane_of(samples):
@@ -136,10 +196,19 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
     middle, half = (low + high) / 2, np.maximum(0.53 * (high - low), 6e-6)
     all_ways = [1e3 * tip_of(s)[:, plane] for s in samples]
     if surface is not None:
-        draw_surface(ax, plane, np.median(np.vstack([tip_of(s) for s in samples]), axis=0), surface, half.max(), paper)
+        draw_surface(
+            ax,
+            plane,
+            np.median(np.vstack([tip_of(s) for s in samples]), axis=0),
+            surface,
+            half.max(),
+            paper,
+        )
     if profile:
         draw_tool(ax, plane, samples[0], profile, looks[0].colour)
-    for s, way, one, equal in zip(samples, all_ways, looks, equal_curves([(way,) for way in all_ways])):
+    for s, way, one, equal in zip(
+        samples, all_ways, looks, equal_curves([(way,) for way in all_ways])
+    ):
         rows = corners(s.trajectory)
         ax.plot(*way[rows].T, color=one.colour, ls=striped(one.line, *equal), lw=min(1, one.width))
         ax.plot(*way[0], marker="o", ms=3.5, mfc="none", color=one.colour)
@@ -147,7 +216,12 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
         if touching.size:
             ax.plot(*way[touching[0]], marker="v", ms=5, color=one.colour)
     low, high = 1e3 * (middle - half), 1e3 * (middle + half)
-    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel=f"tip {'xyz'[plane[0]]} [mm]", ylabel=f"tip {'xyz'[plane[1]]} [mm]")
+    ax.set(
+        xlim=(low[0], high[0]),
+        ylim=(low[1], high[1]),
+        xlabel=f"tip {'xyz'[plane[0]]} [mm]",
+        ylabel=f"tip {'xyz'[plane[1]]} [mm]",
+    )
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(False)
     if any((np.abs(way - (low + high) / 2) > (high - low) / 2).any() for way in all_ways):
@@ -174,7 +248,10 @@ def draw_surface(ax, plane, middle, surface, reach, paper):
 
 def spacing_of(places):
     """The usual distance of a point to the nearest one at another place."""
-    squares = [((places - one) ** 2).sum(axis=1) for one in places[np.linspace(0, len(places) - 1, min(len(places), 60)).astype(int)]]
+    squares = [
+        ((places - one) ** 2).sum(axis=1)
+        for one in places[np.linspace(0, len(places) - 1, min(len(places), 60)).astype(int)]
+    ]
     return float(np.sqrt(np.median([square[square > 0].min(initial=np.inf) for square in squares])))
 
 
@@ -194,8 +271,19 @@ def draw_tool(ax, plane, samples, profile, colour):
     rows = rows[np.linalg.norm(axis[rows], axis=1) >= LEAST_IN_PLANE]
     if not rows.size:
         return
-    for row, alpha in zip(rows[np.linspace(0, len(rows) - 1, len(SNAPSHOTS)).astype(int)], SNAPSHOTS):
-        ax.add_patch(Polygon(1e3 * outline(profile, tip[row], axis[row]), facecolor="none", edgecolor=colour, lw=0.9, alpha=alpha, zorder=1))
+    for row, alpha in zip(
+        rows[np.linspace(0, len(rows) - 1, len(SNAPSHOTS)).astype(int)], SNAPSHOTS
+    ):
+        ax.add_patch(
+            Polygon(
+                1e3 * outline(profile, tip[row], axis[row]),
+                facecolor="none",
+                edgecolor=colour,
+                lw=0.9,
+                alpha=alpha,
+                zorder=1,
+            )
+        )
 
 
 def corners(trajectory, spans=300):

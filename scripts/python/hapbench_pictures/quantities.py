@@ -52,25 +52,40 @@ def vector(prefix, unit):
     return tuple(f"{prefix}{axis}_{unit}" for axis in "xyz")
 
 
-SHORT = {q.name: q for q in (
-    Quantity("force", "rendered force", "N", 1, TRAJECTORY, vector("f", "N"), "norm"),
-    Quantity("spring", "spring force", "N", 1, TRAJECTORY, vector("fspring_", "N"), "norm"),
-    Quantity("measured", "measured force", "N", 1, TRAJECTORY, vector("fmeas_", "N"), "norm"),
-    Quantity("input", "input force", "N", 1, TRAJECTORY, vector("fin_", "N"), "norm"),
-    Quantity("reference", "force of the stroke", "N", 1, REFERENCE, vector("mf", "N"), "norm"),
-    Quantity("force_error", "force error", "N", 1, REFERENCE, vector("force_error_", "N"), "norm"),
-    Quantity("torque", "torque that is lost", "mN m", 1e3, TRAJECTORY, vector("t", "Nm"), "norm"),
-    Quantity("depth", "largest depth", "mm", 1e3, TRAJECTORY, ("depth_max_m",)),
-    Quantity("ratio", "stiffness ratio", "K", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"),
-    Quantity("contacts", "colliding points", "", 1, TRAJECTORY, ("colliding",)),
-    Quantity("rendered", "rendered points", "", 1, TRAJECTORY, ("rendered",)),
-    Quantity("speed", "velocity of the tip", "m/s", 1, TRAJECTORY, vector("v", "m_per_s"), "norm"),
-    Quantity("x", "tip x", "mm", 1e3, TRAJECTORY, ("px_m",)),
-    Quantity("y", "tip y", "mm", 1e3, TRAJECTORY, ("py_m",)),
-    Quantity("z", "tip z", "mm", 1e3, TRAJECTORY, ("pz_m",)),
-    Quantity("energy", "energy created by the rendering", "mJ", 1e3, "energy.csv", ("created_J",)),
-    Quantity("input_energy", "energy put in by the hand", "mJ", 1e3, "energy.csv", ("input_J",)),
-)}
+SHORT = {
+    q.name: q
+    for q in (
+        Quantity("force", "rendered force", "N", 1, TRAJECTORY, vector("f", "N"), "norm"),
+        Quantity("spring", "spring force", "N", 1, TRAJECTORY, vector("fspring_", "N"), "norm"),
+        Quantity("measured", "measured force", "N", 1, TRAJECTORY, vector("fmeas_", "N"), "norm"),
+        Quantity("input", "input force", "N", 1, TRAJECTORY, vector("fin_", "N"), "norm"),
+        Quantity("reference", "force of the stroke", "N", 1, REFERENCE, vector("mf", "N"), "norm"),
+        Quantity(
+            "force_error", "force error", "N", 1, REFERENCE, vector("force_error_", "N"), "norm"
+        ),
+        Quantity(
+            "torque", "torque that is lost", "mN m", 1e3, TRAJECTORY, vector("t", "Nm"), "norm"
+        ),
+        Quantity("depth", "largest depth", "mm", 1e3, TRAJECTORY, ("depth_max_m",)),
+        Quantity(
+            "ratio", "stiffness ratio", "K", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"
+        ),
+        Quantity("contacts", "colliding points", "", 1, TRAJECTORY, ("colliding",)),
+        Quantity("rendered", "rendered points", "", 1, TRAJECTORY, ("rendered",)),
+        Quantity(
+            "speed", "velocity of the tip", "m/s", 1, TRAJECTORY, vector("v", "m_per_s"), "norm"
+        ),
+        Quantity("x", "tip x", "mm", 1e3, TRAJECTORY, ("px_m",)),
+        Quantity("y", "tip y", "mm", 1e3, TRAJECTORY, ("py_m",)),
+        Quantity("z", "tip z", "mm", 1e3, TRAJECTORY, ("pz_m",)),
+        Quantity(
+            "energy", "energy created by the rendering", "mJ", 1e3, "energy.csv", ("created_J",)
+        ),
+        Quantity(
+            "input_energy", "energy put in by the hand", "mJ", 1e3, "energy.csv", ("input_J",)
+        ),
+    )
+}
 PATH = "path"  # the tip's way in space, which is not a function of time
 # Drawn by default, as far as a run recorded them.
 USUAL = ("force", "reference", "force_error", "depth", "ratio", "contacts", "energy", PATH)
@@ -90,25 +105,39 @@ def quantity(name, runs):
         for file in tables_of(run):
             for title in header(run.folder / file):
                 known.setdefault(title, file)
-    found = SHORT.get(name) or (Quantity(name, *column(name, (1e-3,)), known[name], (name,)) if name in known else None)
+    found = SHORT.get(name) or (
+        Quantity(name, *column(name, (1e-3,)), known[name], (name,)) if name in known else None
+    )
     if not found:
         hint = nearest(name, [*SHORT, PATH, *known]) or f": {', '.join(known)}"
-        raise InputError(f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "
-                         f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{hint}")
+        raise InputError(
+            f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "
+            f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{hint}"
+        )
     if not any(has(run, found) for run in runs):
         lacks = found.columns[0] if found.file in tables_of(runs[0]) else found.file
-        raise InputError(f"--y {name}: {runs[0].folder}: has no {lacks}; run it with --set {switch_of(lacks)}=true")
+        raise InputError(
+            f"--y {name}: {runs[0].folder}: has no {lacks}; run it with --set {switch_of(lacks)}=true"
+        )
     return found
 
 
 def switch_of(lacks):
     """The field that makes a run write a table or a column: the first one whose description names it."""
-    record = json.loads(SCHEMA.read_text(encoding="utf-8"))["else"]["properties"]["record"]["properties"]
-    return next(f"record.{field}" for field, about in record.items() if re.search(rf"\b{re.escape(lacks)}\b", about["description"]))
+    record = json.loads(SCHEMA.read_text(encoding="utf-8"))["else"]["properties"]["record"][
+        "properties"
+    ]
+    return next(
+        f"record.{field}"
+        for field, about in record.items()
+        if re.search(rf"\b{re.escape(lacks)}\b", about["description"])
+    )
 
 
 def has(run, quantity):
-    return quantity.file in tables_of(run) and set(quantity.columns) <= set(header(run.folder / quantity.file))
+    return quantity.file in tables_of(run) and set(quantity.columns) <= set(
+        header(run.folder / quantity.file)
+    )
 
 
 def tables_of(run):
@@ -125,19 +154,29 @@ class Samples:
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
         present = tables_of(run)
         if TRAJECTORY not in present:
-            raise InputError(f"{run.folder}: has no {TRAJECTORY}; run it with --set {switch_of(TRAJECTORY)}=true")
-        tables = {file: read_columns(run.folder / file, sorted(columns)) for file, columns in wanted.items() if file in present}
+            raise InputError(
+                f"{run.folder}: has no {TRAJECTORY}; run it with --set {switch_of(TRAJECTORY)}=true"
+            )
+        tables = {
+            file: read_columns(run.folder / file, sorted(columns))
+            for file, columns in wanted.items()
+            if file in present
+        }
         time = tables[TRAJECTORY]["time_s"]
         touching = time[tables[TRAJECTORY]["colliding"] > 0]
         # Time of the first recorded row in contact; None without one, and outside the window.
-        self.first_touch_s = float(touching[0]) if touching.size and window[0] <= touching[0] <= window[1] else None
+        self.first_touch_s = (
+            float(touching[0]) if touching.size and window[0] <= touching[0] <= window[1] else None
+        )
         settled = settled_rows(tables[TRAJECTORY], run.scenario)
         self.tables, self.settled = {}, {}
         for file, table in tables.items():
             rows = (table["time_s"] >= window[0]) & (table["time_s"] <= window[1])
             if not rows.any():
-                raise InputError(f"--from, --to: {run.folder}: no row of {file} between {window[0]:g} and {window[1]:g} s; "
-                                 f"allowed: a span with rows between {time[0]:.4g} and {time[-1]:.4g} s")
+                raise InputError(
+                    f"--from, --to: {run.folder}: no row of {file} between {window[0]:g} and {window[1]:g} s; "
+                    f"allowed: a span with rows between {time[0]:.4g} and {time[-1]:.4g} s"
+                )
             self.tables[file] = {name: values[rows] for name, values in table.items()}
             beside = np.minimum(np.searchsorted(time, table["time_s"][rows]), len(time) - 1)
             self.settled[file] = settled[beside]
@@ -155,8 +194,11 @@ class Samples:
 def settled_range(curves):
     """The least and the greatest value of the bulk of settled contact with some air; None when all is to be shown. Each
     curve: which rows are settled, and the lower and upper edge of every row."""
-    ends = [(np.nanpercentile(low[calm], BULK[0]), np.nanpercentile(high[calm], BULK[1])) for calm, low, high in curves
-            if np.isfinite(low[calm]).any() and np.isfinite(high[calm]).any()]
+    ends = [
+        (np.nanpercentile(low[calm], BULK[0]), np.nanpercentile(high[calm], BULK[1]))
+        for calm, low, high in curves
+        if np.isfinite(low[calm]).any() and np.isfinite(high[calm]).any()
+    ]
     if not ends:
         return None
     low, high = min(a for a, _ in ends), max(b for _, b in ends)
@@ -166,5 +208,7 @@ def settled_range(curves):
         return None
     air = max(0.25 * (high - low), 0.05 * size)
     bottom, top = float(low - air), float(high + air)
-    left_out = max(np.mean((lows < bottom) | (highs > top)) for _, lows, highs in curves if len(lows))
+    left_out = max(
+        np.mean((lows < bottom) | (highs > top)) for _, lows, highs in curves if len(lows)
+    )
     return (bottom, top) if left_out <= LARGEST_LEFT_OUT else None

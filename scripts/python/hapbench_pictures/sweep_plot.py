@@ -25,7 +25,14 @@ FAILURES = ("diverges", "error")
 # The look of places without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 WIDTH = 100  # of text
-SIGNS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "=": operator.eq, "!=": operator.ne}
+SIGNS = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "=": operator.eq,
+    "!=": operator.ne,
+}
 PANELS_WIDE = 3
 MOST_COSINES, ROWS_PER_COSINE = 6, 10
 LEAST_ROWS = 20  # of a sample that tells how much a field matters
@@ -35,10 +42,14 @@ def keeps(row, condition):
     """Whether a row keeps a condition such as "inside_max_m<3e-4", as `hapbench sweep --where` has it."""
     parts = re.fullmatch(r"([^<>=!]+)(<=|>=|!=|<|>|=)(.+)", condition)
     if not parts or not (is_number(parts[3]) or parts[2] in ("=", "!=")):
-        raise InputError(f"--where: got \"{condition}\"; allowed: a column, one of {' '.join(SIGNS)}, and a number or a text")
+        raise InputError(
+            f"--where: got \"{condition}\"; allowed: a column, one of {' '.join(SIGNS)}, and a number or a text"
+        )
     name, sign, value = parts.groups()
     if name not in row:
-        raise InputError(f"--where: got \"{name}\"; allowed: a column of sweep.csv{nearest(name, list(row))}")
+        raise InputError(
+            f'--where: got "{name}"; allowed: a column of sweep.csv{nearest(name, list(row))}'
+        )
     if is_number(value):
         return is_number(row[name]) and SIGNS[sign](float(row[name]), float(value))
     return SIGNS[sign](row[name], value)
@@ -48,23 +59,42 @@ class Sweep:
     def __init__(self, folder, metric, where=()):
         file = folder / "sweep.csv"
         rows = read_records(file)
-        self.name, self.rows = folder.name, [row for row in rows if all(keeps(row, condition) for condition in where)]
+        self.name, self.rows = folder.name, [
+            row for row in rows if all(keeps(row, condition) for condition in where)
+        ]
         if not self.rows:
-            raise InputError(f"{file}: holds no row{' with ' + ' and '.join(where) if rows else ''}")
+            raise InputError(
+                f"{file}: holds no row{' with ' + ' and '.join(where) if rows else ''}"
+            )
         names = list(self.rows[0])
         plan = read_object(folder / "sweep.json") if (folder / "sweep.json").is_file() else {}
-        self.axes = at(plan, "/vary") or [{"path": name} for name in names[1:names.index("outcome")]]
+        self.axes = at(plan, "/vary") or [
+            {"path": name} for name in names[1 : names.index("outcome")]
+        ]
         self.fields, self.sampled = [entry["path"] for entry in self.axes], "sample" in plan
         self.of_file = at(plan, "/sample/method") == "points"
-        metrics = [name for name in names[names.index("outcome") + 1:] if any(is_number(row[name]) for row in self.rows)]
+        metrics = [
+            name
+            for name in names[names.index("outcome") + 1 :]
+            if any(is_number(row[name]) for row in self.rows)
+        ]
         self.metric = metric or next((name for name in USUAL if name in metrics), metrics[0])
         if self.metric not in metrics:
-            raise InputError(f"--metric: got \"{self.metric}\"; allowed: {', '.join(metrics)}{nearest(self.metric, metrics)}")
+            raise InputError(
+                f"--metric: got \"{self.metric}\"; allowed: {', '.join(metrics)}{nearest(self.metric, metrics)}"
+            )
         outcomes = np.array([row["outcome"] for row in self.rows])
-        failed = np.array([row["outcome"] in FAILURES or row.get("expected") == "false" for row in self.rows])
+        failed = np.array(
+            [row["outcome"] in FAILURES or row.get("expected") == "false" for row in self.rows]
+        )
         # Whose outcome is each of those whose metric says nothing: diverged, not computed, or ended not as expected.
         self.classes = {name: failed & (outcomes == name) for name in by_class(outcomes[failed])}
-        self.values = np.array([float(row[self.metric]) if is_number(row[self.metric]) and not bad else np.nan for row, bad in zip(self.rows, failed)])
+        self.values = np.array(
+            [
+                float(row[self.metric]) if is_number(row[self.metric]) and not bad else np.nan
+                for row, bad in zip(self.rows, failed)
+            ]
+        )
 
     def column(self, field):
         """The numbers of a field, or its texts as they are."""
@@ -81,8 +111,15 @@ class Sweep:
         values = np.unique(values)
         if len(values) < 3:
             return spread_logarithmically(values)
-        even = [np.allclose(np.diff(of), of[-1] - of[-2], rtol=1e-6) for of in (values, np.log(values) if values[0] > 0 else values)]
-        return even[1] if values[0] > 0 and even[0] != even[1] else not even[0] and spread_logarithmically(values)
+        even = [
+            np.allclose(np.diff(of), of[-1] - of[-2], rtol=1e-6)
+            for of in (values, np.log(values) if values[0] > 0 else values)
+        ]
+        return (
+            even[1]
+            if values[0] > 0 and even[0] != even[1]
+            else not even[0] and spread_logarithmically(values)
+        )
 
     def sensitivities(self):
         """One for each field, over the runs that have the metric; empty where there is none."""
@@ -90,9 +127,15 @@ class Sweep:
         found = []
         for i, entry in enumerate(self.axes):
             column = self.column(self.fields[i])
-            column = [value for value, yes in zip(column, ok) if yes] if isinstance(column, list) else column[ok]
+            column = (
+                [value for value, yes in zip(column, ok) if yes]
+                if isinstance(column, list)
+                else column[ok]
+            )
             place = None
-            if ("range" in entry or self.of_file and isinstance(column, np.ndarray)) and len(column):
+            if ("range" in entry or self.of_file and isinstance(column, np.ndarray)) and len(
+                column
+            ):
                 place = np.log(column) if self.is_logarithmic(i) else column
                 place = (place - place.min()) / (np.ptp(place) or 1.0)
             found.append(sensitivity(column, place, self.values[ok]))
@@ -106,7 +149,10 @@ class Sweep:
 
 def draw_sweep(sweep):
     with plt.rc_context(SETTINGS):
-        axes = [Axis.of(axis(field, sweep.fields), sweep.column(field), sweep.is_logarithmic(i)) for i, field in enumerate(sweep.fields)]
+        axes = [
+            Axis.of(axis(field, sweep.fields), sweep.column(field), sweep.is_logarithmic(i))
+            for i, field in enumerate(sweep.fields)
+        ]
         of_numbers = len(axes) == 2 and not any(of.names for of in axes)
         if sweep.is_cloud or of_numbers and on_grid(axes, sweep.values) is None:
             return draw_cloud(sweep, axes)
@@ -125,11 +171,25 @@ def draw_cloud(sweep, over):
     value = Axis.of(axis(sweep.metric), sweep.values)
     wide = min(PANELS_WIDE, len(over))
     high = -(-len(over) // wide)
-    figure, axes = plt.subplots(high, wide, figsize=(0.6 + 2.6 * wide, 0.4 + 2.5 * high), squeeze=False)
+    figure, axes = plt.subplots(
+        high, wide, figsize=(0.6 + 2.6 * wide, 0.4 + 2.5 * high), squeeze=False
+    )
     figure.suptitle(sweep.name, x=0.01, ha="left", fontsize=9, weight="bold")
     found = sweep.sensitivities() if sweep.sampled else [None] * len(over)
     for i, (ax, x) in enumerate(zip(axes.flat, over)):
-        over_axes(ax, x, value, [(None, x.values, value.values, {"ls": "none", "marker": "o", "ms": 2.5, "alpha": 0.7, "color": PETROL})])
+        over_axes(
+            ax,
+            x,
+            value,
+            [
+                (
+                    None,
+                    x.values,
+                    value.values,
+                    {"ls": "none", "marker": "o", "ms": 2.5, "alpha": 0.7, "color": PETROL},
+                )
+            ],
+        )
         mark_classes(ax, sweep, x.values)
         if found[i]:
             ax.set_title(sensitivity_text(found[i]), fontsize=7.5)
@@ -137,7 +197,7 @@ def draw_cloud(sweep, over):
             ax.set_ylabel("")
     if sweep.classes:
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper right", ncol=4)
-    for ax in axes.flat[len(over):]:
+    for ax in axes.flat[len(over) :]:
         ax.axis("off")
     return figure
 
@@ -146,7 +206,16 @@ def mark_classes(ax, sweep, x):
     """Marks below the axis of runs without a number, in the looks of their classes."""
     for name, mine in sweep.classes.items():
         title, colour, _ = look_of_class(name)
-        ax.plot(x[mine], np.zeros(mine.sum()), ls="", marker="x", color=colour, label=title, transform=ax.get_xaxis_transform(), clip_on=False)
+        ax.plot(
+            x[mine],
+            np.zeros(mine.sum()),
+            ls="",
+            marker="x",
+            color=colour,
+            label=title,
+            transform=ax.get_xaxis_transform(),
+            clip_on=False,
+        )
 
 
 def sensitivity_text(found):
@@ -167,7 +236,14 @@ def draw_curves(ax, sweep, over):
     for i, name in enumerate(other.names if other else ("",)):
         rows = np.flatnonzero(other.values == i) if other else np.arange(len(sweep.rows))
         rows = rows if x.names else rows[np.argsort(x.values[rows], kind="stable")]
-        series.append((name.replace("_", " ") or None, x.values[rows], value.values[rows], look_of(name) if name else {"color": PETROL, "marker": "o", "ls": "-"}))
+        series.append(
+            (
+                name.replace("_", " ") or None,
+                x.values[rows],
+                value.values[rows],
+                look_of(name) if name else {"color": PETROL, "marker": "o", "ls": "-"},
+            )
+        )
     over_axes(ax, x, value, series)
     mark_classes(ax, sweep, x.values)
 
@@ -182,12 +258,25 @@ def draw_map(figure, ax, sweep, over):
     drawn = ax.pcolormesh(x, y, np.ma.masked_invalid(grid[2]), norm=norm, cmap="viridis")
     for name, cells in shown.items():
         for line, column in np.argwhere(cells):
-            ax.add_patch(Rectangle((x[column], y[line]), x[column + 1] - x[column], y[line + 1] - y[line], **patch_of(name)))
+            ax.add_patch(
+                Rectangle(
+                    (x[column], y[line]),
+                    x[column + 1] - x[column],
+                    y[line + 1] - y[line],
+                    **patch_of(name),
+                )
+            )
     ax.grid(False)
     over_axes(ax, x_axis, y_axis)
-    entries = [Patch(label=look_of_class(name)[0] if name else "no value", **patch_of(name)) for name, cells in shown.items() if cells.any()]
+    entries = [
+        Patch(label=look_of_class(name)[0] if name else "no value", **patch_of(name))
+        for name, cells in shown.items()
+        if cells.any()
+    ]
     if entries:
-        ax.legend(handles=entries, loc="lower right", bbox_to_anchor=(1, 1), ncol=2, borderaxespad=0.2)
+        ax.legend(
+            handles=entries, loc="lower right", bbox_to_anchor=(1, 1), ncol=2, borderaxespad=0.2
+        )
     if np.isfinite(values).any():
         figure.colorbar(drawn, label=axis(sweep.metric))
 
@@ -223,29 +312,58 @@ def sensitivity_table(sweep):
     if not (sweep.sampled and sweep.is_cloud):
         return []
     found, runs = sweep.sensitivities(), np.isfinite(sweep.values).sum()
-    without = "".join(f"; {mine.sum()} {name.replace('_', ' ')}" for name, mine in sweep.classes.items())
+    without = "".join(
+        f"; {mine.sum()} {name.replace('_', ' ')}" for name, mine in sweep.classes.items()
+    )
     if not any(found):
-        return [f"how much each field matters cannot be told from {runs} runs with this metric{without}; needed: {LEAST_ROWS}, of several values"]
-    rows = [[field, *(("-" if number is None else hundredths(number) for number in (of.rank, of.first_order, of.error)) if of else "---")]
-            for field, of in sorted(zip(sweep.fields, found), key=lambda pair: -(pair[1].first_order if pair[1] else -1))]
+        return [
+            f"how much each field matters cannot be told from {runs} runs with this metric{without}; needed: {LEAST_ROWS}, of several values"
+        ]
+    rows = [
+        [
+            field,
+            *(
+                (
+                    "-" if number is None else hundredths(number)
+                    for number in (of.rank, of.first_order, of.error)
+                )
+                if of
+                else "---"
+            ),
+        ]
+        for field, of in sorted(
+            zip(sweep.fields, found), key=lambda pair: -(pair[1].first_order if pair[1] else -1)
+        )
+    ]
     together = hundredths(sum(of.first_order for of in found if of))
-    return [table_text(["how much each field matters", "rank correlation", "first order", "+-"], rows, wide=True, numbers=True), *textwrap.wrap(
-        f"rank correlation: Spearman's; first order: Sobol's index, the share of the variance of {sweep.metric} that the field explains "
-        f"alone; together {together}, the rest is fields that act together, and what depends on none. By regression on at most "
-        f"{MOST_COSINES} cosines of the field's place in its range, or on the values of a list, over {runs} runs{without}; +-: standard "
-        "error, by jackknife", WIDTH)]
+    return [
+        table_text(
+            ["how much each field matters", "rank correlation", "first order", "+-"],
+            rows,
+            wide=True,
+            numbers=True,
+        ),
+        *textwrap.wrap(
+            f"rank correlation: Spearman's; first order: Sobol's index, the share of the variance of {sweep.metric} that the field explains "
+            f"alone; together {together}, the rest is fields that act together, and what depends on none. By regression on at most "
+            f"{MOST_COSINES} cosines of the field's place in its range, or on the values of a list, over {runs} runs{without}; +-: standard "
+            "error, by jackknife",
+            WIDTH,
+        ),
+    ]
 
 
 @dataclass(frozen=True)
 class Sensitivity:
     """How much each field of a sampled sweep matters for a metric, from the sweep's rows alone: Spearman's rank correlation, and the
     first-order Sobol index S_i = Var(E[y | x_i]) / Var(y), the share of the metric's variance that the field explains by itself.
-    
+
     E[y | x_i] is a least-squares fit: up to six cosines of the field's place in its range, cos(pi k u) (Plischke, "How to compute
     variance-based sensitivity indicators with your spreadsheet software", Environmental Modelling & Software 35, 2012), or for listed
     values the mean of each. S_i is the fit's R^2, adjusted for the number of functions (Ezekiel), so that a field without influence
     has 0 in the mean. Its standard error is the jackknife's over the rows; a Latin hypercube or a Sobol sequence errs less. What
-    changes faster than the sixth cosine, as the edge of a jump, is not seen: of a step in the middle a fifteenth."""
+    changes faster than the sixth cosine, as the edge of a jump, is not seen: of a step in the middle a fifteenth.
+    """
 
     rank: float | None  # none for texts, which have no order
     first_order: float
@@ -262,22 +380,31 @@ def sensitivity(column, place, y):
         functions = np.array([[float(value == other) for other in values] for value in column])
     else:
         count = min(MOST_COSINES, len(y) // ROWS_PER_COSINE)
-        functions = np.column_stack([np.ones(len(y)), np.cos(np.pi * np.outer(place, np.arange(1, count + 1)))])
+        functions = np.column_stack(
+            [np.ones(len(y)), np.cos(np.pi * np.outer(place, np.arange(1, count + 1)))]
+        )
     share, error = adjusted_share(functions, y)
-    return Sensitivity(None if isinstance(column, list) else float(spearmanr(column, y).statistic), share, error)
+    return Sensitivity(
+        None if isinstance(column, list) else float(spearmanr(column, y).statistic), share, error
+    )
 
 
 def adjusted_share(functions, y):
     """The adjusted R^2 of a fit by functions that span the constant, and the jackknife's standard error: without row i the squares
-    of the residuals e sum up to less by e_i^2 / (1 - h_i), h_i the row's leverage, those of y - mean by n / (n - 1) (y_i - mean)^2."""
+    of the residuals e sum up to less by e_i^2 / (1 - h_i), h_i the row's leverage, those of y - mean by n / (n - 1) (y_i - mean)^2.
+    """
     n, fitted = len(y), functions.shape[1]
     q, _ = np.linalg.qr(functions)
-    residual, leverage, off = y - q @ (q.T @ y), (q ** 2).sum(axis=1), y - y.mean()
+    residual, leverage, off = y - q @ (q.T @ y), (q**2).sum(axis=1), y - y.mean()
 
     def adjusted(residuals, total, rows):
         return 1 - residuals / total * (rows - 1) / (rows - fitted)
 
-    alone = leverage > 1 - 1e-9  # a listed value that one row has: it is fitted without the row, too
-    without = np.where(alone, 0.0, residual ** 2 / np.where(alone, 1.0, 1 - leverage))
-    each = adjusted(residual @ residual - without, off @ off - n / (n - 1) * off ** 2, n - 1)
-    return adjusted(residual @ residual, off @ off, n), float(np.sqrt((n - 1) / n * ((each - each.mean()) ** 2).sum()))
+    alone = (
+        leverage > 1 - 1e-9
+    )  # a listed value that one row has: it is fitted without the row, too
+    without = np.where(alone, 0.0, residual**2 / np.where(alone, 1.0, 1 - leverage))
+    each = adjusted(residual @ residual - without, off @ off - n / (n - 1) * off**2, n - 1)
+    return adjusted(residual @ residual, off @ off, n), float(
+        np.sqrt((n - 1) / n * ((each - each.mean()) ** 2).sum())
+    )

@@ -14,20 +14,51 @@ from .runs import REPLAY_DIRECTORY, load_runs
 
 # Scenes of the replay: a scenario, further settings, and its algorithms, of which the first two are shown at first.
 REPLAYED = (
-    ("task2_rotate_signed_distance", ("time.duration_s=6",), ("original_averaging", "shaped_stiffness")),
-    ("peg_in_hole_2d_shaped_stiffness", (), ("original_averaging", "shaped_stiffness", "summation", "mean", "exact_shaping")),
+    (
+        "task2_rotate_signed_distance",
+        ("time.duration_s=6",),
+        ("original_averaging", "shaped_stiffness"),
+    ),
+    (
+        "peg_in_hole_2d_shaped_stiffness",
+        (),
+        ("original_averaging", "shaped_stiffness", "summation", "mean", "exact_shaping"),
+    ),
 )
 # Every step, for the sound and the peaks. The bundled expectations are for the scenario's own algorithm.
-RECORDED = ("record.contacts=true", "record.stiffness_tensor=true", "record.every=1", "record.ratio_iterations=[]", "expect={}")
+RECORDED = (
+    "record.contacts=true",
+    "record.stiffness_tensor=true",
+    "record.every=1",
+    "record.ratio_iterations=[]",
+    "expect={}",
+)
 
 
 def arguments(words):
-    parser = Arguments(prog="scripts/report", description="Writes one self-contained HTML file: ledger, figures, all runs, and a replay.")
-    parser.add_argument("results", type=Path, metavar="RESULTS_DIR", help="what scripts/reproduce wrote")
-    parser.add_argument("--figures", type=Path, metavar="DIR", help="what scripts/figures wrote; default: no figures")
-    parser.add_argument("--claims", type=Path, metavar="FILE", help="the ledger, claims.json; default: no ledger")
-    parser.add_argument("--program", type=Path, metavar="FILE", help=f"a built hapbench, to record the runs of the replay into RESULTS_DIR/"
-                        f"{REPLAY_DIRECTORY}; default: the replay shows those that are there")
+    parser = Arguments(
+        prog="scripts/report",
+        description="Writes one self-contained HTML file: ledger, figures, all runs, and a replay.",
+    )
+    parser.add_argument(
+        "results", type=Path, metavar="RESULTS_DIR", help="what scripts/reproduce wrote"
+    )
+    parser.add_argument(
+        "--figures",
+        type=Path,
+        metavar="DIR",
+        help="what scripts/figures wrote; default: no figures",
+    )
+    parser.add_argument(
+        "--claims", type=Path, metavar="FILE", help="the ledger, claims.json; default: no ledger"
+    )
+    parser.add_argument(
+        "--program",
+        type=Path,
+        metavar="FILE",
+        help=f"a built hapbench, to record the runs of the replay into RESULTS_DIR/"
+        f"{REPLAY_DIRECTORY}; default: the replay shows those that are there",
+    )
     parser.add_argument("--out", type=Path, metavar="FILE", help="default: RESULTS_DIR/report.html")
     return parser.parse_args(words)
 
@@ -35,15 +66,30 @@ def arguments(words):
 def record(program, directory):
     for scenario, further, algorithms in REPLAYED:
         for algorithm in algorithms:
-            settings = [f"--set={text}" for text in (*RECORDED, *further, f"rendering.algorithm={algorithm}")]
-            line = [program, "run", scenario, *settings, "--quiet", "--out", directory / scenario / algorithm]
+            settings = [
+                f"--set={text}"
+                for text in (*RECORDED, *further, f"rendering.algorithm={algorithm}")
+            ]
+            line = [
+                program,
+                "run",
+                scenario,
+                *settings,
+                "--quiet",
+                "--out",
+                directory / scenario / algorithm,
+            ]
             try:
-                done = subprocess.run(line, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+                done = subprocess.run(
+                    line, capture_output=True, text=True, stdin=subprocess.DEVNULL
+                )
             except OSError as error:
                 raise InputError(f"{program}: {error}") from error
             if done.returncode not in (SUCCESS, DIFFERENT):
                 said = done.stderr.strip().splitlines() or ["no message"]
-                raise InputError(f"{program} run {scenario}: exit status {done.returncode}: {said[-1]}")
+                raise InputError(
+                    f"{program} run {scenario}: exit status {done.returncode}: {said[-1]}"
+                )
 
 
 def run(options):
@@ -51,15 +97,23 @@ def run(options):
         raise InputError(f"{options.results}: no such directory; scripts/reproduce writes one")
     runs = load_runs(options.results, but=REPLAY_DIRECTORY)
     if not runs:
-        raise InputError(f"{options.results}: holds no summary.json; allowed: a directory that scripts/reproduce wrote")
+        raise InputError(
+            f"{options.results}: holds no summary.json; allowed: a directory that scripts/reproduce wrote"
+        )
     if options.program:
         record(options.program, options.results / REPLAY_DIRECTORY)
         os.environ["HAPBENCH_PROGRAM"] = str(options.program)
     recorded = {run.path: run for run in load_runs(options.results / REPLAY_DIRECTORY)}
-    replayed = [f"{scenario}/{algorithm}" for scenario, _, algorithms in REPLAYED for algorithm in algorithms]
+    replayed = [
+        f"{scenario}/{algorithm}"
+        for scenario, _, algorithms in REPLAYED
+        for algorithm in algorithms
+    ]
     claims, headline = load_claims(options.claims) if options.claims else ([], "")
     figures = load_figures(options.figures) if options.figures else []
-    page = thesis_page(runs, claims, headline, figures, [recorded[path] for path in replayed if path in recorded])
+    page = thesis_page(
+        runs, claims, headline, figures, [recorded[path] for path in replayed if path in recorded]
+    )
     out = options.out or options.results / "report.html"
     write(out, page)
     place_live_page(out.parent)

@@ -21,19 +21,31 @@ class Figure:
 
     @property
     def name(self):
-        return f"Fig. {self.thesis_figure.removeprefix('Fig. ')}" if self.thesis_figure else self.title or self.id
+        return (
+            f"Fig. {self.thesis_figure.removeprefix('Fig. ')}"
+            if self.thesis_figure
+            else self.title or self.id
+        )
 
     def is_about(self, claim):
         """The claim's place names the figure, or a scenario that decides it is drawn there."""
         named = " ".join(re.findall(r"Fig\. (?:[A-F]\.?)?\d+", str(claim.get("place", ""))))
         drawn = {Path(source).parent.name for source in self.sources}
-        return bool(labels(named) & labels(self.thesis_figure) or drawn & set(map(str, claim.get("scenarios") or ())))
+        return bool(
+            labels(named) & labels(self.thesis_figure)
+            or drawn & set(map(str, claim.get("scenarios") or ()))
+        )
 
 
 def labels(thesis_figure):
-    """"7a–c, B.4" -> {"7", "B.4"}: the numbers without their parts."""
-    return {prefix + digits for prefix, digits in
-            re.findall(r"(?<![A-Za-z0-9.])((?:[A-F]\.)?)(\d+)(?![0-9])", re.sub(r"\b([A-F])(?=\d)", r"\1.", thesis_figure))}
+    """ "7a–c, B.4" -> {"7", "B.4"}: the numbers without their parts."""
+    return {
+        prefix + digits
+        for prefix, digits in re.findall(
+            r"(?<![A-Za-z0-9.])((?:[A-F]\.)?)(\d+)(?![0-9])",
+            re.sub(r"\b([A-F])(?=\d)", r"\1.", thesis_figure),
+        )
+    }
 
 
 def load_figures(directory: Path):
@@ -45,33 +57,54 @@ def load_figures(directory: Path):
 
 def figure(entry, i, file):
     place = f"/figures/{i}"
-    id_, title, caption = (member(entry, key, str, file, place, "") for key in ("id", "title", "caption"))
+    id_, title, caption = (
+        member(entry, key, str, file, place, "") for key in ("id", "title", "caption")
+    )
     sources, files = (member(entry, key, list, file, place, []) for key in ("sources", "files"))
     # Only the name: a figure lies beside its list.
-    drawing = next((file.parent / Path(str(name)).name for name in files if str(name).endswith(".svg")), None)
+    drawing = next(
+        (file.parent / Path(str(name)).name for name in files if str(name).endswith(".svg")), None
+    )
     if drawing is None or not drawing.is_file():
-        raise InputError(f"{file}: {place}/files: got {shown(files)}; allowed: an SVG file beside it")
-    return Figure(id_ or f"figure-{i + 1}", title, str(entry.get("thesis_figure") or ""), caption, list(map(str, sources)), drawing.read_bytes())
+        raise InputError(
+            f"{file}: {place}/files: got {shown(files)}; allowed: an SVG file beside it"
+        )
+    return Figure(
+        id_ or f"figure-{i + 1}",
+        title,
+        str(entry.get("thesis_figure") or ""),
+        caption,
+        list(map(str, sources)),
+        drawing.read_bytes(),
+    )
 
 
 def figures_section(figures, claims):
     if not figures:
         return '<p class="note">No figures were given (<code>--figures</code>).</p>'
-    return ("<p>Redrawn from the results above, published numbers as red hollow marks where the thesis gives them. A click enlarges a figure. "
-            "<span class=dark-only>On the dark page black and white have changed places; captions name the colours of the light one. </span>"
-            f"To draw them again:</p>{command('scripts/figures results/out/reproduce --out results/out/figures')}"
-            f"<div class=figures>{''.join(figure_markup(figure, claims) for figure in figures)}</div>")
+    return (
+        "<p>Redrawn from the results above, published numbers as red hollow marks where the thesis gives them. A click enlarges a figure. "
+        "<span class=dark-only>On the dark page black and white have changed places; captions name the colours of the light one. </span>"
+        f"To draw them again:</p>{command('scripts/figures results/out/reproduce --out results/out/figures')}"
+        f"<div class=figures>{''.join(figure_markup(figure, claims) for figure in figures)}</div>"
+    )
 
 
 def figure_markup(figure, claims):
     about = [claim_link(claim) for claim in claims if figure.is_about(claim)]
     files = "<br>".join(f"<code>{text(source)}</code>" for source in figure.sources)
-    title, name = text(figure.title or figure.id), f"{text(figure.name)}: " if figure.thesis_figure else ""
+    title, name = (
+        text(figure.title or figure.id),
+        f"{text(figure.name)}: " if figure.thesis_figure else "",
+    )
     image = f"data:image/svg+xml;base64,{base64.b64encode(figure.drawing).decode()}"
-    return (f'<figure id="figure-{text(figure.id)}"><h3>{name}{title}</h3>'
-            f'<button type="button" class="enlarge" aria-label="Enlarge {title}"><img src="{image}" alt="{title}"></button>'
-            f"<figcaption>{typeset(figure.caption)}</figcaption>{listed('Claims', about)}"
-            + (folded("Files", f"<p>{files}</p>") if files else "") + "</figure>")
+    return (
+        f'<figure id="figure-{text(figure.id)}"><h3>{name}{title}</h3>'
+        f'<button type="button" class="enlarge" aria-label="Enlarge {title}"><img src="{image}" alt="{title}"></button>'
+        f"<figcaption>{typeset(figure.caption)}</figcaption>{listed('Claims', about)}"
+        + (folded("Files", f"<p>{files}</p>") if files else "")
+        + "</figure>"
+    )
 
 
 def claim_link(claim):

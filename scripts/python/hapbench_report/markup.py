@@ -33,7 +33,10 @@ SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 def typeset(value):
     """Text whose numbers are set as printers do: "-1.2e-07" as "−1.2 × 10⁻⁷"."""
-    shown = EXPONENT.sub(lambda found: " × 10" + (found[1].replace("+", "") + found[2]).translate(SUPERSCRIPT), str(value))
+    shown = EXPONENT.sub(
+        lambda found: " × 10" + (found[1].replace("+", "") + found[2]).translate(SUPERSCRIPT),
+        str(value),
+    )
     return text(MINUS.sub("−", shown))
 
 
@@ -42,7 +45,7 @@ def number(value, digits=4):
     value = number_or_none(value)
     if value is None:
         return ABSENT
-    if isinstance(value, int) and abs(value) < 10 ** 7:
+    if isinstance(value, int) and abs(value) < 10**7:
         return str(value)
     short = f"{value:.{digits}g}"
     # Powers of ten only where the zeros would have to be counted.
@@ -77,15 +80,24 @@ def table(headings, rows, caption="", classes="", element_id=""):
     if "stack" in classes.split():
         # A table that is laid out otherwise stays one to those who hear it.
         role = ' role="table"'
-        names = [text(" ".join(strip(heading.replace("<br>", " ")).split())) for heading in headings]
+        names = [
+            text(" ".join(strip(heading.replace("<br>", " ")).split())) for heading in headings
+        ]
         shown_headings = shown_headings.replace("<th ", '<th role="columnheader" ')
-        shown_rows = ["".join(one.replace("<td", f'<td role="cell" data-label="{name}"', 1) for one, name in zip(row, names, strict=True))
-                      for row in rows]
+        shown_rows = [
+            "".join(
+                one.replace("<td", f'<td role="cell" data-label="{name}"', 1)
+                for one, name in zip(row, names, strict=True)
+            )
+            for row in rows
+        ]
     row_role = ' role="row"' if role else ""
     body = "\n".join(f"<tr{row_role}>{row}</tr>" for row in shown_rows)
-    return (f'<div class="wide" tabindex="0" role="region" aria-label="{text(strip(caption) or "table")}">'
-            f'<table class="{classes}"{identity}{role}>{shown_caption}<thead><tr{row_role}>{shown_headings}</tr></thead>\n'
-            f"<tbody>\n{body}\n</tbody></table></div>")
+    return (
+        f'<div class="wide" tabindex="0" role="region" aria-label="{text(strip(caption) or "table")}">'
+        f'<table class="{classes}"{identity}{role}>{shown_caption}<thead><tr{row_role}>{shown_headings}</tr></thead>\n'
+        f"<tbody>\n{body}\n</tbody></table></div>"
+    )
 
 
 def folded(summary, content, classes=""):
@@ -119,30 +131,50 @@ def column(name, values=()):
     if name.startswith(PER):
         return f"time of a {name.removeprefix(PER)}", "µs", 1e6
     ending = ending_of(name)
-    title, unit = (name.removesuffix("_" + ending) if ending else name).replace("_", " "), unit_of(name)
+    title, unit = (name.removesuffix("_" + ending) if ending else name).replace("_", " "), unit_of(
+        name
+    )
     sizes = [abs(value) for value in values if value]
-    return (title, "mm", 1e3) if unit == "m" and sizes and median(sizes) < SMALL_M else (title, unit, 1)
+    return (
+        (title, "mm", 1e3)
+        if unit == "m" and sizes and median(sizes) < SMALL_M
+        else (title, unit, 1)
+    )
 
 
 def deserved_digits(value, tolerance, most):
     """How many of `most` significant digits a tolerance leaves a number, one at least."""
     if not value or not tolerance:
         return most
-    return max(1, min(most, math.floor(math.log10(abs(value))) - math.floor(math.log10(tolerance)) + 1))
+    return max(
+        1, min(most, math.floor(math.log10(abs(value))) - math.floor(math.log10(tolerance)) + 1)
+    )
 
 
 def columns(names, rows, tolerances):
     """Heading cells of numbers, and for each row its cells; `rows`: lists of numbers or None, of these names, `tolerances`: of them."""
-    heads = [column(name, [v for v in values if v is not None]) for name, values in zip(names, zip(*rows))]
-    return ([heading_cell(text(title), True, unit) for title, unit, _ in heads],
-            [[number_cell(None if v is None else v * factor, deserved_digits(v, t, 3)) for v, t, (_, _, factor) in zip(row, within, heads)]
-             for row, within in zip(rows, tolerances)])
+    heads = [
+        column(name, [v for v in values if v is not None])
+        for name, values in zip(names, zip(*rows))
+    ]
+    return (
+        [heading_cell(text(title), True, unit) for title, unit, _ in heads],
+        [
+            [
+                number_cell(None if v is None else v * factor, deserved_digits(v, t, 3))
+                for v, t, (_, _, factor) in zip(row, within, heads)
+            ]
+            for row, within in zip(rows, tolerances)
+        ],
+    )
 
 
 def fill(file, values):
     """The file's text with values in the places of {{name}}."""
     # In one pass, so that a value which looks like a placeholder stays what it is.
-    return re.sub(r"\{\{(\w+)\}\}", lambda match: values[match[1]], file.read_text(encoding="utf-8"))
+    return re.sub(
+        r"\{\{(\w+)\}\}", lambda match: values[match[1]], file.read_text(encoding="utf-8")
+    )
 
 
 def listed(title, links):

@@ -15,8 +15,21 @@ from .replay import player, replays
 from .runs import provenance_of, provenance_section
 
 STYLES = ("style.css", "replay.css")
-SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js",
-           "replay_tracks.js", "replay_sound.js", "replay_export.js", "replay_player.js", "replay_controls.js")
+SCRIPTS = (
+    "theme.js",
+    "tables.js",
+    "page.js",
+    "replay_data.js",
+    "replay_camera.js",
+    "replay_scene.js",
+    "replay_tool.js",
+    "replay_field.js",
+    "replay_tracks.js",
+    "replay_sound.js",
+    "replay_export.js",
+    "replay_player.js",
+    "replay_controls.js",
+)
 LIVE = "live.html"  # a copy of it lies beside every page that links to it
 BUILT = Path(__file__).resolve().parents[3] / "build" / "live" / LIVE  # by scripts/live/make
 NO_REPLAY = '<p class="note">No recorded runs were given (<code>--program</code>).</p>'
@@ -24,26 +37,38 @@ NO_REPLAY = '<p class="note">No recorded runs were given (<code>--program</code>
 
 def thesis_page(runs, claims, headline, figures, replayed):
     """The HTML of the report on the thesis. Depends on nothing but its arguments."""
-    replay = player(replays(replayed, [run.algorithm.replace("_", " ") for run in replayed])) if replayed else NO_REPLAY
-    return whole_page((
-        ("summary", "Summary", "Summary", summary_section(runs, claims, headline, figures)),
-        ("ledger", "Ledger", "Ledger", ledger_section(claims, figures)),
-        ("replay", "Replay", "Replay", replay),
-        ("figures", "Figures", "Figures", figures_section(figures, claims)),
-        ("rerun", "Rerun", "Run it again", rerun_section()),
-        ("provenance", "Provenance", "Provenance", provenance_section(provenance_of(runs))),
-    ))
+    replay = (
+        player(replays(replayed, [run.algorithm.replace("_", " ") for run in replayed]))
+        if replayed
+        else NO_REPLAY
+    )
+    return whole_page(
+        (
+            ("summary", "Summary", "Summary", summary_section(runs, claims, headline, figures)),
+            ("ledger", "Ledger", "Ledger", ledger_section(claims, figures)),
+            ("replay", "Replay", "Replay", replay),
+            ("figures", "Figures", "Figures", figures_section(figures, claims)),
+            ("rerun", "Rerun", "Run it again", rerun_section()),
+            ("provenance", "Provenance", "Provenance", provenance_section(provenance_of(runs))),
+        )
+    )
 
 
 def whole_page(sections, title="hapbench report", further_style=""):
     """The page of sections, each a key, a short title for the navigation, a title and its HTML."""
-    return fill(ASSETS / "page.html", {
-        "style": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in STYLES) + further_style,
-        "title": text(title),
-        "navigation": "".join(f'<a href="#{key}">{text(title)}</a>' for key, title, _, _ in sections),
-        "sections": "\n".join(section(*entry) for entry in sections),
-        "script": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in SCRIPTS),
-    })
+    return fill(
+        ASSETS / "page.html",
+        {
+            "style": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in STYLES)
+            + further_style,
+            "title": text(title),
+            "navigation": "".join(
+                f'<a href="#{key}">{text(title)}</a>' for key, title, _, _ in sections
+            ),
+            "sections": "\n".join(section(*entry) for entry in sections),
+            "script": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in SCRIPTS),
+        },
+    )
 
 
 def section(key, _, title, body):
@@ -53,15 +78,22 @@ def section(key, _, title, body):
 
 
 def rerun_section():
-    return ("<p>From the root of the repository. Everything, installing what is missing:</p>" + command("scripts/reproduce")
-            + "<p>One part:</p>" + command(
-                "hapbench=build/release/bin/hapbench\n"
-                "$hapbench run scenarios/library/thesis/*.json --out results/out/reproduce/thesis       # the thesis's scenes\n"
-                "$hapbench limit stability_z_width --out results/out/reproduce/stability_z_width  # a study; all: $hapbench describe studies\n"
-                "$hapbench describe scenario                                                    # what every field means")
-            + "<p>This report:</p>" + command(
-                "scripts/report results/out/reproduce --figures results/out/figures --claims results/reference/claims.json \\\n"
-                "  --out results/out/reproduce/report.html"))
+    return (
+        "<p>From the root of the repository. Everything, installing what is missing:</p>"
+        + command("scripts/reproduce")
+        + "<p>One part:</p>"
+        + command(
+            "hapbench=build/release/bin/hapbench\n"
+            "$hapbench run scenarios/library/thesis/*.json --out results/out/reproduce/thesis       # the thesis's scenes\n"
+            "$hapbench limit stability_z_width --out results/out/reproduce/stability_z_width  # a study; all: $hapbench describe studies\n"
+            "$hapbench describe scenario                                                    # what every field means"
+        )
+        + "<p>This report:</p>"
+        + command(
+            "scripts/report results/out/reproduce --figures results/out/figures --claims results/reference/claims.json \\\n"
+            "  --out results/out/reproduce/report.html"
+        )
+    )
 
 
 def live_page():
@@ -78,7 +110,11 @@ def live_link(scenario):
     names_a_file = any(isinstance(part.get("file"), str) for part in objects_in(scenario))
     if live_page() is None or not scenario or not is_free or names_a_file:
         return ""
-    led = {key: value for key, value in scenario.items() if key not in ("$schema", "record", "expect", "description", "reference_force")}
+    led = {
+        key: value
+        for key, value in scenario.items()
+        if key not in ("$schema", "record", "expect", "description", "reference_force")
+    }
     scene = quote(json.dumps(led, separators=(",", ":"), ensure_ascii=False))
     return f'<p><a href="{LIVE}#scenario={scene}">Take this scene in hand</a></p>'
 

@@ -13,16 +13,40 @@ from hapbench.results import at, number_or_none
 
 TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
 # Per row: time, tip, axis, rendered force, ratio range, deepest point; with the tensor S where it was recorded.
-MEASURED_COLUMNS = ("time_s", "px_m", "py_m", "pz_m", "axis_x", "axis_y", "axis_z", "fx_N", "fy_N", "fz_N",
-                    "ratio_min", "ratio_max", "depth_max_m")
-CONTACT_COLUMNS = ("x_m", "y_m", "z_m", "depth_m", "gradient_x", "gradient_y", "gradient_z", "weight")
+MEASURED_COLUMNS = (
+    "time_s",
+    "px_m",
+    "py_m",
+    "pz_m",
+    "axis_x",
+    "axis_y",
+    "axis_z",
+    "fx_N",
+    "fy_N",
+    "fz_N",
+    "ratio_min",
+    "ratio_max",
+    "depth_max_m",
+)
+CONTACT_COLUMNS = (
+    "x_m",
+    "y_m",
+    "z_m",
+    "depth_m",
+    "gradient_x",
+    "gradient_y",
+    "gradient_z",
+    "weight",
+)
 NORMAL_COLUMNS = ("nx", "ny", "nz")
 ARC_POINTS = 48  # of a rounded tip: off the circle by 0.013 % of its radius
 SPANS = 500  # of a run; each keeps up to five rows
 SETTLING_S = 0.05
 CUTOFF_HZ = 30.0
 LONGEST = 1 << 18  # of a sound [rows]: two minutes at 2 kHz, half a megabyte in the page
-LEAST_SETTLED_S = 1 / 30  # less tells nothing: the run hammers, and it has no metrics of settled contact
+LEAST_SETTLED_S = (
+    1 / 30
+)  # less tells nothing: the run hammers, and it has no metrics of settled contact
 
 
 def tool_profile(scenario, summary):
@@ -31,9 +55,15 @@ def tool_profile(scenario, summary):
     summary; of a mesh it is the silhouette. None if there is neither."""
     outline = at(summary, "/tool/outline_m")
     if outline is not None:
-        pairs = [[number_or_none(x) for x in pair] for pair in outline] if is_list_of_pairs(outline) else []
+        pairs = (
+            [[number_or_none(x) for x in pair] for pair in outline]
+            if is_list_of_pairs(outline)
+            else []
+        )
         return pairs if len(pairs) > 1 and None not in sum(pairs, []) else None
-    diameter, length = (number_or_none(at(scenario, f"/tool/{key}")) for key in ("diameter_m", "length_m"))
+    diameter, length = (
+        number_or_none(at(scenario, f"/tool/{key}")) for key in ("diameter_m", "length_m")
+    )
     if diameter is None or length is None:
         return None
     radius = diameter / 2
@@ -45,7 +75,9 @@ def tool_profile(scenario, summary):
 
 
 def is_list_of_pairs(value):
-    return isinstance(value, list) and all(isinstance(pair, list) and len(pair) == 2 for pair in value)
+    return isinstance(value, list) and all(
+        isinstance(pair, list) and len(pair) == 2 for pair in value
+    )
 
 
 def forces(columns):
@@ -64,18 +96,31 @@ def rows_to_show(columns):
     n = len(columns["time_s"])
     if n <= 4 * SPANS:
         return np.arange(n)
-    size, step, depth = np.linalg.norm(forces(columns), axis=1), force_steps(columns), columns["depth_max_m"]
+    size, step, depth = (
+        np.linalg.norm(forces(columns), axis=1),
+        force_steps(columns),
+        columns["depth_max_m"],
+    )
     kept = [0, n - 1]
     for rows in np.array_split(np.arange(n), SPANS):
         jump = rows[step[rows].argmax()]
-        kept += [rows[size[rows].argmin()], rows[size[rows].argmax()], rows[depth[rows].argmax()], jump, max(0, jump - 1)]
+        kept += [
+            rows[size[rows].argmin()],
+            rows[size[rows].argmax()],
+            rows[depth[rows].argmax()],
+            jump,
+            max(0, jump - 1),
+        ]
     return np.unique(kept)
 
 
 def settled_rows(columns, scenario):
     """Which rows are in contact and no landing, by the settings of the run's metrics: not within settling_s after a first touch, which is a
-    contact at the start or after at least that time without one; from_s, if there is one, replaces that rule."""
-    settling_s, from_s = (number_or_none(at(scenario, f"/metrics/{key}")) for key in ("settling_s", "from_s"))
+    contact at the start or after at least that time without one; from_s, if there is one, replaces that rule.
+    """
+    settling_s, from_s = (
+        number_or_none(at(scenario, f"/metrics/{key}")) for key in ("settling_s", "from_s")
+    )
     settling_s = SETTLING_S if settling_s is None else settling_s
     time, touching = columns["time_s"], np.flatnonzero(columns["colliding"] > 0)
     found = np.zeros(len(time), bool)
@@ -96,8 +141,15 @@ def worst_moments(columns, scenario):
     is_settled = len(times) > 1 and len(rows) * (times[1] - times[0]) >= LEAST_SETTLED_S
     rows = rows if is_settled else np.arange(len(times))
     jump, deepest = rows[step[rows].argmax()], depth.argmax()
-    return [{"title": "settled force step" if is_settled else "force step", "time": times[jump], "value": step[jump], "unit": "N"},
-            {"title": "depth", "time": times[deepest], "value": depth[deepest] * 1e3, "unit": "mm"}]
+    return [
+        {
+            "title": "settled force step" if is_settled else "force step",
+            "time": times[jump],
+            "value": step[jump],
+            "unit": "N",
+        },
+        {"title": "depth", "time": times[deepest], "value": depth[deepest] * 1e3, "unit": "mm"},
+    ]
 
 
 class Recording:
@@ -106,26 +158,44 @@ class Recording:
     def __init__(self, run):
         self.run, self.tool = run, tool_profile(run.scenario, run.summary)
         # All rows, for the sound and the worst moments.
-        self.columns = read_columns(run.folder / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding"))
+        self.columns = read_columns(
+            run.folder / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding")
+        )
         self.shown = rows_to_show(self.columns)
         tensors = self.rows_of("stiffness_tensor", TENSOR_COLUMNS)
-        self.tensors = [of_row[0] for of_row in tensors] if all(tensors) else None  # None if they were not recorded
-        self.contacts = self.rows_of("contacts", (*CONTACT_COLUMNS, *NORMAL_COLUMNS))  # of every shown row, with their normals
+        self.tensors = (
+            [of_row[0] for of_row in tensors] if all(tensors) else None
+        )  # None if they were not recorded
+        self.contacts = self.rows_of(
+            "contacts", (*CONTACT_COLUMNS, *NORMAL_COLUMNS)
+        )  # of every shown row, with their normals
 
     def rows_of(self, table, columns):
         """The rows of a table for every shown row, in the order of the file; none if it was not recorded."""
         steps = self.columns["step"][self.shown]
         rows = {step: [] for step in steps.tolist()}
         if table in self.run.tables:
-            found = np.column_stack(list(read_columns(self.run.folder / f"{table}.csv", ("step", *columns), may_be_empty=True).values()))
+            found = np.column_stack(
+                list(
+                    read_columns(
+                        self.run.folder / f"{table}.csv", ("step", *columns), may_be_empty=True
+                    ).values()
+                )
+            )
             for step, *numbers in found[np.isin(found[:, 0], steps)].tolist():
                 rows[step].append(numbers)
         return list(rows.values())
 
     def rows(self):
         """The shown rows as they are packed."""
-        measured = np.column_stack([self.columns[name][self.shown] for name in MEASURED_COLUMNS]).tolist()
-        return [row + tensor for row, tensor in zip(measured, self.tensors)] if self.tensors else measured
+        measured = np.column_stack(
+            [self.columns[name][self.shown] for name in MEASURED_COLUMNS]
+        ).tolist()
+        return (
+            [row + tensor for row, tensor in zip(measured, self.tensors)]
+            if self.tensors
+            else measured
+        )
 
     def tips(self, touching):
         """Places of the tip in the shown rows; with `touching`, of those in contact."""
@@ -158,9 +228,13 @@ def sound(columns):
     if peak == 0:
         return None
     touching = heard[columns["colliding"][:LONGEST] > 0]
-    return {"rate": rate, "scale": peak / 32767, "start": times[0],
-            "rms": math.sqrt(np.mean(touching**2)) if touching.size else 0.0,
-            "samples": base64_of("h", map(round, (heard / peak * 32767).tolist()))}
+    return {
+        "rate": rate,
+        "scale": peak / 32767,
+        "start": times[0],
+        "rms": math.sqrt(np.mean(touching**2)) if touching.size else 0.0,
+        "samples": base64_of("h", map(round, (heard / peak * 32767).tolist())),
+    }
 
 
 def high_passed(samples, rate):

@@ -16,8 +16,17 @@ from hapbench.results import at
 from hapbench_looks import look
 
 from .markup import ASSETS, embedded_json, fill
-from .recording import (CONTACT_COLUMNS, LONGEST, MEASURED_COLUMNS, NORMAL_COLUMNS, TENSOR_COLUMNS, Recording, base64_of, sound,
-                        worst_moments)
+from .recording import (
+    CONTACT_COLUMNS,
+    LONGEST,
+    MEASURED_COLUMNS,
+    NORMAL_COLUMNS,
+    TENSOR_COLUMNS,
+    Recording,
+    base64_of,
+    sound,
+    worst_moments,
+)
 
 # The shell is shown this far around the contacts and the tool's way along them, in units of the tool's radius.
 MARGIN = 1.8
@@ -33,7 +42,9 @@ def replays(runs, labels):
     """A packed scene for each environment and tool among the runs."""
     scenes = {}
     for run, label in zip(runs, labels):
-        key = json.dumps([run.scenario.get(part) for part in ("environment", "tool")], sort_keys=True)
+        key = json.dumps(
+            [run.scenario.get(part) for part in ("environment", "tool")], sort_keys=True
+        )
         scenes.setdefault(key, []).append((run, label))
     return [scene(i, *zip(*members)) for i, members in enumerate(scenes.values())]
 
@@ -44,13 +55,24 @@ def scene(i, runs, labels):
     longest = max(recording.columns["time_s"][-1] for recording in recordings)
     if any(len(recording.columns["time_s"]) > LONGEST for recording in recordings):
         said = f"{said} Sound: the first {LONGEST} recorded rows of each run.".strip()
-    thinned_out = [recording for recording in recordings if len(recording.shown) < len(recording.columns["time_s"])]
+    thinned_out = [
+        recording
+        for recording in recordings
+        if len(recording.shown) < len(recording.columns["time_s"])
+    ]
     if thinned_out:
-        drawn, every = (sum(map(len, of)) for of in zip(*((r.shown, r.columns["time_s"]) for r in thinned_out)))
+        drawn, every = (
+            sum(map(len, of)) for of in zip(*((r.shown, r.columns["time_s"]) for r in thinned_out))
+        )
         said = f"{said} {drawn} of {every} recorded rows are drawn, every peak among them.".strip()
     names = list(dict.fromkeys(run.name for run in runs))
-    about = {"id": names[0] if i == 0 else f"{names[0]}-{i + 1}", "title": ", ".join(names), "scenario": names[0], "note": said,
-             "speed": min(SPEEDS, key=lambda speed: abs(np.log(speed / max(longest / WATCHED_S, 1e-9))))}
+    about = {
+        "id": names[0] if i == 0 else f"{names[0]}-{i + 1}",
+        "title": ", ".join(names),
+        "scenario": names[0],
+        "note": said,
+        "speed": min(SPEEDS, key=lambda speed: abs(np.log(speed / max(longest / WATCHED_S, 1e-9)))),
+    }
     try:
         return about | packed_scene(recordings, shell, labels)
     except (ValueError, OverflowError) as error:
@@ -65,12 +87,22 @@ def packed_scene(recordings, shell, labels):
     orientation = at(scenario, "/motion/orientation") or {}
     springs = at(scenario, "/environment/type") == "springs"
     return {
-        "planar": not shell[:, 2].any() and not any(tip[2] for r in recordings for tip in r.tips(touching=False)),
-        "up": orientation.get("up", [0, 0, 1]), "lean": orientation.get("lean", [1, 0, 0]),
-        "tool": None if springs else recordings[0].tool, "silhouette": at(scenario, "/tool/type") == "mesh", "focus": touched_box(recordings),
-        "springs": [[*group["direction"], group["count"]] for group in at(scenario, "/environment/groups") or ()] if springs else [],
+        "planar": not shell[:, 2].any()
+        and not any(tip[2] for r in recordings for tip in r.tips(touching=False)),
+        "up": orientation.get("up", [0, 0, 1]),
+        "lean": orientation.get("lean", [1, 0, 0]),
+        "tool": None if springs else recordings[0].tool,
+        "silhouette": at(scenario, "/tool/type") == "mesh",
+        "focus": touched_box(recordings),
+        "springs": [
+            [*group["direction"], group["count"]]
+            for group in at(scenario, "/environment/groups") or ()
+        ]
+        if springs
+        else [],
         "contactColumns": CONTACT_COLUMNS,
-        "shellScale": scale, "shell": base64_of("h", np.rint(shell[:, :3] / scale).astype(int).ravel().tolist()),
+        "shellScale": scale,
+        "shell": base64_of("h", np.rint(shell[:, :3] / scale).astype(int).ravel().tolist()),
         "normals": base64_of("b", np.rint(127 * shell[:, 3:]).astype(int).ravel().tolist()),
         "recordings": [packed_recording(r, label) for r, label in zip(recordings, labels)],
     }
@@ -83,15 +115,27 @@ def packed_recording(recording, label):
     own = look(recording.run.algorithm)
     colliding = recording.columns["colliding"]
     return {
-        "algorithm": recording.run.algorithm, "label": label, "colour": own.colour, "dark": own.dark, "dash": own.dash,
+        "algorithm": recording.run.algorithm,
+        "label": label,
+        "colour": own.colour,
+        "dark": own.dark,
+        "dash": own.dash,
         "outcome": recording.run.outcome,
         "end_s": at(recording.run.summary, "/duration_s"),
         "rowColumns": MEASURED_COLUMNS + (TENSOR_COLUMNS if recording.tensors else ()),
         "rows": base64_of("f", (value for row in recording.rows() for value in row)),
-        "counts": base64_of("H", (min(int(n), 65535) for row, of_row in zip(recording.shown, recording.contacts)
-                                  for n in (len(of_row), colliding[row]))),
+        "counts": base64_of(
+            "H",
+            (
+                min(int(n), 65535)
+                for row, of_row in zip(recording.shown, recording.contacts)
+                for n in (len(of_row), colliding[row])
+            ),
+        ),
         "contactScales": scales,
-        "contacts": base64_of("h", (round(value / scale) for c in flat for value, scale in zip(c, scales))),
+        "contacts": base64_of(
+            "h", (round(value / scale) for c in flat for value, scale in zip(c, scales))
+        ),
         "worst": worst_moments(recording.columns, recording.run.scenario),
         "sound": sound(recording.columns),
     }
@@ -101,15 +145,22 @@ def points_of(run, recordings):
     """The surface: from the program, or else the points that were in contact; and what to say about it."""
     every, failure = shell(run)
     if every is None:
-        touched = {tuple(contact[:3]): contact[8:] for r in recordings for of_row in r.contacts for contact in of_row}
+        touched = {
+            tuple(contact[:3]): contact[8:]
+            for r in recordings
+            for of_row in r.contacts
+            for contact in of_row
+        }
         every = np.array([[*place, *normal] for place, normal in touched.items()]).reshape(-1, 6)
     radius = max((r for _, r in recordings[0].tool or ()), default=0.0)
     drawn = thinned(every, touched_box(recordings), MARGIN * radius)
     count = f"{len(drawn)} of {len(every)} points of the surface are drawn, all around the contacts first."
     said = [failure] if failure else []
     if at(run.scenario, "/tool/type") == "mesh":
-        said.append("Of the tool, a mesh, the silhouette is drawn, turned about its axis; points in the tool are marked "
-                    "where contacts were recorded.")
+        said.append(
+            "Of the tool, a mesh, the silhouette is drawn, turned about its axis; points in the tool are marked "
+            "where contacts were recorded."
+        )
     return drawn, " ".join(said + ([count] if len(drawn) < len(every) else []))
 
 
@@ -155,14 +206,19 @@ def shell(run):
 def shell_of(scenario):
     program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
     if not program:
-        return None, "Without the program hapbench in the path only points that were in contact are drawn."
+        return (
+            None,
+            "Without the program hapbench in the path only points that were in contact are drawn.",
+        )
     with tempfile.TemporaryDirectory(prefix="hapbench-report-") as scratch:
         file = Path(scratch) / "shell.csv"
         # Whatever the algorithm: it may have come from a module that is not at hand.
         plain = ["--set", "rendering.algorithm=mean", "--set", "rendering.parameters={}"]
         line = [program, "validate", str(scenario), "--points", str(file), "--quiet", *plain]
         try:
-            done = subprocess.run(line, capture_output=True, text=True, timeout=PATIENCE_S, stdin=subprocess.DEVNULL)
+            done = subprocess.run(
+                line, capture_output=True, text=True, timeout=PATIENCE_S, stdin=subprocess.DEVNULL
+            )
         except (OSError, subprocess.TimeoutExpired) as error:
             return None, f"The surface is not drawn: {error}."
         if done.returncode:
@@ -175,5 +231,7 @@ def shell_of(scenario):
 def player(scenes):
     """The replay's markup and data. A page holds one."""
     sides = "".join(fill(ASSETS / "replay_side.html", {"which": which}) for which in "ABCD")
-    return (fill(ASSETS / "replay.html", {"sides": sides})
-            + f'<script type="application/json" id="replay-data">{embedded_json(scenes)}</script>')
+    return (
+        fill(ASSETS / "replay.html", {"sides": sides})
+        + f'<script type="application/json" id="replay-data">{embedded_json(scenes)}</script>'
+    )

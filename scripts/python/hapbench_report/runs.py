@@ -24,27 +24,45 @@ class Run(results.Run):
     @property
     def expected(self):
         """True unless the scenario said that the run must end otherwise; what it says is not about other algorithms that it is compared by."""
-        return self.summary.get("expected") is not False or (self.folder.resolve().parent / "comparison.csv").exists()
+        return (
+            self.summary.get("expected") is not False
+            or (self.folder.resolve().parent / "comparison.csv").exists()
+        )
 
     def metric(self, key):
         return number_or_none(self.metrics.get(key))
 
     def tolerance(self, section, key):
         """By how much a metric may be wrong; empty where that is not known."""
-        return number_or_none(self.summary.get("tolerances", {}).get(key if section == "metrics" else f"{section}.{key}"))
+        return number_or_none(
+            self.summary.get("tolerances", {}).get(
+                key if section == "metrics" else f"{section}.{key}"
+            )
+        )
 
     @cached_property
     def sections(self):
         """The groups of metrics in summary.json, by their names: what columns.json documents."""
         file = self.folder / "columns.json"
-        documented = {entry["name"] for entry in results.read_json(file).get("summary.json", ())} if file.is_file() else set()
-        return {name: value for name, value in self.summary.items()
-                if isinstance(value, dict) and (name == "metrics" or any(f"{name}.{key}" in documented for key in value))}
+        documented = (
+            {entry["name"] for entry in results.read_json(file).get("summary.json", ())}
+            if file.is_file()
+            else set()
+        )
+        return {
+            name: value
+            for name, value in self.summary.items()
+            if isinstance(value, dict)
+            and (name == "metrics" or any(f"{name}.{key}" in documented for key in value))
+        }
 
 
 def load_runs(directory: Path, but=None):
     """Those below a directory, without its folder `but`."""
-    paths = [file.parent.relative_to(directory).as_posix() for file in sorted(directory.rglob(results.SUMMARY))]
+    paths = [
+        file.parent.relative_to(directory).as_posix()
+        for file in sorted(directory.rglob(results.SUMMARY))
+    ]
     return [load_run(directory / path, path) for path in paths if path.split("/")[0] != but]
 
 
@@ -67,7 +85,11 @@ def provenance_of(runs):
     found = {}
     for run in runs:
         # The scenario and a plugin's law do not make another build.
-        build = {k: v for k, v in (run.summary.get("provenance") or {}).items() if k not in ("scenario_hash", "plugin")}
+        build = {
+            k: v
+            for k, v in (run.summary.get("provenance") or {}).items()
+            if k not in ("scenario_hash", "plugin")
+        }
         key = json.dumps(build, sort_keys=True)
         found[key] = found.get(key, 0) + 1
     return [(json.loads(key), count) for key, count in sorted(found.items())]
@@ -75,11 +97,23 @@ def provenance_of(runs):
 
 def provenance_section(provenance):
     keys = sorted({key for build, _ in provenance for key in build})
-    rows = [[*(cell(text(build.get(key, "–"))) for key in keys), cell(str(count), classes="number")]
-            for build, count in provenance]
-    headings = [*(heading_cell(text(key.replace("_", " "))) for key in keys), heading_cell("Runs", True)]
-    mixed = ("<p><b class=bad>✗ These results come from more than one build or machine.</b></p>"
-             if len(provenance) > 1 else "")
+    rows = [
+        [*(cell(text(build.get(key, "–"))) for key in keys), cell(str(count), classes="number")]
+        for build, count in provenance
+    ]
+    headings = [
+        *(heading_cell(text(key.replace("_", " "))) for key in keys),
+        heading_cell("Runs", True),
+    ]
+    mixed = (
+        "<p><b class=bad>✗ These results come from more than one build or machine.</b></p>"
+        if len(provenance) > 1
+        else ""
+    )
     dirty = any(str(build.get("commit", "")).endswith("-dirty") for build, _ in provenance)
-    note = ("<p class=note>A commit that ends in -dirty had changes that were not committed.</p>" if dirty else "")
+    note = (
+        "<p class=note>A commit that ends in -dirty had changes that were not committed.</p>"
+        if dirty
+        else ""
+    )
     return mixed + table(headings, rows, "<b>What produced the results</b>") + note

@@ -25,8 +25,10 @@ def our_mesh(program, block, spacing, density):
     numbers = subprocess.run(arguments, check=True, capture_output=True, text=True).stdout.split()
     count, faces = int(numbers[0]), int(numbers[1])
     end = 2 + 3 * count
-    return (np.array(numbers[2:end], float).reshape(-1, 3) / spacing,
-            np.array(numbers[end:end + 3 * faces], int).reshape(-1, 3))
+    return (
+        np.array(numbers[2:end], float).reshape(-1, 3) / spacing,
+        np.array(numbers[end : end + 3 * faces], int).reshape(-1, 3),
+    )
 
 
 def their_mesh(block, spacing, density):
@@ -48,13 +50,27 @@ def compare(program, block, spacing, density):
     theirs, their_faces, nodes = their_mesh(block, spacing, density)
     # They compute in single precision: half a unit in the last place of an index up to `nodes`, and a few of the field,
     # which is of the order of one next to the surface.
-    tolerance = (nodes + 8) * 2.0 ** -24
+    tolerance = (nodes + 8) * 2.0**-24
     gap, partner = cKDTree(theirs).query(ours)
-    print(f"{density}, spacing {spacing}: {len(ours)} and {len(theirs)} vertices, at most {gap.max():.2e} of a cell apart "
-          f"(allowed {tolerance:.2e}), {len(our_faces)} and {len(their_faces)} faces")
-    return len(ours) == len(theirs) == len(set(partner)) and gap.max() <= tolerance and len(our_faces) == len(their_faces)
+    print(
+        f"{density}, spacing {spacing}: {len(ours)} and {len(theirs)} vertices, at most {gap.max():.2e} of a cell apart "
+        f"(allowed {tolerance:.2e}), {len(our_faces)} and {len(their_faces)} faces"
+    )
+    return (
+        len(ours) == len(theirs) == len(set(partner))
+        and gap.max() <= tolerance
+        and len(our_faces) == len(their_faces)
+    )
 
 
 if __name__ == "__main__":
     small = (0.004, 0.005, 0.004, 0.002, 0.002)
-    sys.exit(not all([compare(sys.argv[1], small, spacing, density) for density in ("signed_distance", "binary") for spacing in (0.0001, 0.00025)]))
+    sys.exit(
+        not all(
+            [
+                compare(sys.argv[1], small, spacing, density)
+                for density in ("signed_distance", "binary")
+                for spacing in (0.0001, 0.00025)
+            ]
+        )
+    )
