@@ -490,7 +490,8 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
 /// True if the table under way, or else the finished one, has this definition.
 bool TableFile::is_of_this_definition() const {
   std::error_code ignored;
-  return definition_in(fs::exists(part_, ignored) ? about_part_ : beside(title_.file)) == title_.about.at("definition");
+  const std::string found = definition_in(fs::exists(part_, ignored) ? about_part_ : beside(title_.file));
+  return title_.about.at("definition") == found;
 }
 
 /// Finds the rows that are there, and leaves the part without its last line if that is torn.

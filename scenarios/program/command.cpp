@@ -123,7 +123,8 @@ std::vector<BundledStudy> bundled_studies() {
   for (const auto& entry : fs::directory_iterator(studies_folder())) {
     if (entry.path().extension() != ".json") continue;
     const Json study = study_json(entry.path(), read_text_file(entry.path(), kLargestJsonFile));
-    found.push_back({entry.path().stem().string(), study.at(kAsk).get<std::string>(), study.value("summary", ""), entry.path()});
+    found.push_back(
+        {entry.path().stem().string(), study.at(kAsk).get<std::string>(), study.value("summary", ""), entry.path()});
   }
   std::ranges::sort(found, {}, &BundledStudy::name);
   return found;

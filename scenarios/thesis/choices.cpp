@@ -25,7 +25,8 @@ OpenChoice choice_of(const Json& json) {
                     .text = json_text(json)};
   if (json.contains("range")) choice.range = json.at("range").get<std::pair<double, double>>();
   for (const Json& field : json.value("fields", Json::array()))
-    choice.fields.push_back({field.at("scenarios").get<std::vector<std::string>>(), field.at("path").get<std::string>(), field.value("times", false)});
+    choice.fields.push_back({field.at("scenarios").get<std::vector<std::string>>(), field.at("path").get<std::string>(),
+                             field.value("times", false)});
   return choice;
 }
 

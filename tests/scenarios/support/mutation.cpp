@@ -60,7 +60,8 @@ const std::vector<Json>& odd_values() {
       "", "5", "null", "mean", "free", "diverges", "leaves_hole", "linear", "round",
       [], {}, [0, 0, 1], [1, 2], ["leaves_hole"], ["diverges", "completes"], [[0, 1]],
       {"type": "sine", "mean": 0, "amplitude": 1, "period_s": 1}, {"type": "ramp", "start": 0, "rate_per_s": 1},
-      {"type": "plane"}, {"min": 0}, {"threshold": 0.9}])").get<std::vector<Json>>();
+      {"type": "plane"}, {"min": 0}, {"threshold": 0.9}])")
+                                 .get<std::vector<Json>>();
     for (const std::size_t length : {199u, 201u, 10'001u}) some.emplace_back(std::string(length, 'x'));
     some.emplace_back(std::string(199, 'x') + "\xc3\xa4");
     return some;

@@ -322,7 +322,8 @@ TEST_F(Robustness, CountsAndNamesWhatDecides) {
   EXPECT_EQ(claims[0].at("decided_by"), Json({{"choice", "seed"}, {"index", 1.0}}));
   const auto counts = [&claims](std::size_t c) {
     std::vector<int> found;
-    for (const char* key : {"judged", "holds", "reproduced", "not_measured"}) found.push_back(claims[c].at(key).get<int>());
+    for (const char* key : {"judged", "holds", "reproduced", "not_measured"})
+      found.push_back(claims[c].at(key).get<int>());
     return found;
   };
   EXPECT_EQ(counts(0), (std::vector<int>{64, 32, 32, 0}));
