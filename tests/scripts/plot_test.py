@@ -2,6 +2,7 @@
 import functools
 import html
 import json
+import math
 import re
 import shlex
 import shutil
@@ -487,7 +488,7 @@ class Regression(Given):
 
     def test_what_differs_is_named_and_measured_as_numpy_does(self):
         a, b = self.repeated("once"), self.repeated(
-            "nudged", "--set", f"rendering.stiffness_N_per_m={np.nextafter(20000, 30000)!r}"
+            "nudged", "--set", f"rendering.stiffness_N_per_m={math.nextafter(20000, 30000)!r}"
         )
         self.assertIn("the results are equal\n", self.told(a, self.repeated("again")))
         found = differences(a, b)

@@ -216,9 +216,10 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
         if touching.size:
             ax.plot(*way[touching[0]], marker="v", ms=5, color=one.colour)
     low, high = 1e3 * (middle - half), 1e3 * (middle + half)
+    # The equal aspect widens one of the two intervals. Limits that are not automatic make matplotlib 3.10 warn of that.
+    ax.set_xlim(low[0], high[0], auto=True)
+    ax.set_ylim(low[1], high[1], auto=True)
     ax.set(
-        xlim=(low[0], high[0]),
-        ylim=(low[1], high[1]),
         xlabel=f"tip {'xyz'[plane[0]]} [mm]",
         ylabel=f"tip {'xyz'[plane[1]]} [mm]",
     )

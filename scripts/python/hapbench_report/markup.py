@@ -62,7 +62,7 @@ def cell(value, sort_key=None, classes=""):
 
 def number_cell(value, digits=4):
     value = number_or_none(value)
-    return cell(number(value, digits), "" if value is None else repr(value), "number")
+    return cell(number(value, digits), "" if value is None else json.dumps(value), "number")
 
 
 def heading_cell(title, numeric=False, unit=""):
