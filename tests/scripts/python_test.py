@@ -233,7 +233,7 @@ class Errors(Scratch):
         self.assertEqual(done.stdout.splitlines()[0], "300", done.stderr)
         self.assertIn("compiled module", done.stdout)
         self.assertIn(
-            "-DHAPBENCH_BUILD_PYTHON=ON && cmake --build --preset release --target bin/hapbench _hapbench",
+            "scripts/build --python && export PYTHONPATH=",
             done.stdout,
         )
 

@@ -18,9 +18,9 @@ try:
     from . import _hapbench
 except ImportError as error:
     raise ImportError(
-        "hapbench computes with its compiled module, which is not beside this package; hapbench.load works without. To build it, in the "
-        "source tree: scripts/setup --python && cmake --preset release -DHAPBENCH_BUILD_PYTHON=ON && cmake --build --preset release "
-        "--target bin/hapbench _hapbench && export PYTHONPATH=$PWD/build/release/lib/python3/dist-packages"
+        "hapbench computes with its compiled module, which is not beside this package; "
+        "hapbench.load works without it. To compile it, in the source tree: "
+        "scripts/build --python && export PYTHONPATH=$PWD/build/release/lib/python3/dist-packages"
     ) from error
 
 _hapbench.set_program(str(Path(_hapbench.__file__).resolve().parents[4] / "bin" / "hapbench"))
