@@ -15,7 +15,7 @@ host=$(hostname -s)
 export SLURM_CONF=$folder/slurm.conf
 end() {
   scancel --full --signal=KILL --user=root 2>/dev/null || true
-  kill $(jobs -p) 2>/dev/null || true
+  jobs -p | xargs -r kill 2>/dev/null || true
   wait
   rm -rf "$folder"
 }
@@ -71,7 +71,7 @@ sweep() { printf '%s\n' single_spring --set record.trajectory=false --set time.s
 submit() { mapfile -t words < <(sweep out) && sbatch --parsable --array=0-2 --output="$folder/task_%a.log" "$here/scripts/sweep.sbatch" "${words[@]}"; }
 wait_for_the_queue() { while [[ -n $(squeue --noheader) ]]; do sleep 0.2; done; }
 shard=$folder/out/sweep.
-is_begun() { [[ -e $shard$1_of_3.csv ]] || (($(cat "$shard$1_of_3.csv.part" 2>/dev/null | wc -l) > 2)); }
+is_begun() { [[ -e $shard$1_of_3.csv ]] || (($(sed -n '$=' "$shard$1_of_3.csv.part" 2>/dev/null || true) > 2)); }
 
 # Task 1 is killed, and task 0 stopped and requeued, as preemption does, once both have begun. With more runs, a busy machine leaves time
 # for that.
