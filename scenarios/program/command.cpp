@@ -7,9 +7,9 @@
 #include <iterator>
 
 #include "results/io/columns.hpp"
-#include "scenarios/cases/comparison.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/run_scenario.hpp"
 

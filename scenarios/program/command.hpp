@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/cases/cases.hpp"
-#include "scenarios/format/json_file.hpp"
-#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;

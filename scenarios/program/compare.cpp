@@ -6,11 +6,11 @@
 
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/metric_sections.hpp"
-#include "scenarios/format/text_lines.hpp"
-#include "scenarios/limits/convergence/convergence.hpp"
+#include "scenarios/analysis/convergence/convergence.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
+#include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {
 namespace {

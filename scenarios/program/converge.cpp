@@ -4,11 +4,11 @@
 #include <cmath>
 #include <ctime>
 
-#include "scenarios/cases/run_sweep.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
-#include "scenarios/limits/convergence/convergence.hpp"
-#include "scenarios/limits/stability/field_limit.hpp"
+#include "scenarios/analysis/convergence/convergence.hpp"
+#include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/core/math.hpp"

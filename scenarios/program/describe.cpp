@@ -5,8 +5,8 @@
 #include <iterator>
 #include <regex>
 
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 

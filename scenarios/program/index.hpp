@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/format/writer.hpp"
+#include "scenarios/input/writer.hpp"
 
 /// The index of names that users meet. `describe` lists those of some kinds and explains each, and refusals take the
 /// nearest name from it. Every part is made of the table of its kind, so that a new entry there is known here.

@@ -9,12 +9,12 @@
 #include <set>
 
 #include "device_model/theory/linear_loops.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/metric_sections.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {
 namespace {

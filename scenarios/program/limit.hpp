@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scenarios/limits/stability/field_limit.hpp"
+#include "scenarios/analysis/stability/field_limit.hpp"
 
 /// What `limit` and other searches share: their options, and how an edge is told.
 namespace hapbench {

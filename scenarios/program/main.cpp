@@ -12,7 +12,7 @@
 #include <exception>
 #include <string>
 
-#include "scenarios/format/input_error.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/stop_signal.hpp"
 

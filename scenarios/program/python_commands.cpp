@@ -11,8 +11,8 @@
 
 #include "device_model/handle_motion.hpp"
 #include "results/io/atomic_file.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"

@@ -5,8 +5,8 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"

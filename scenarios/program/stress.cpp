@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "scenarios/limits/stress/law_stress.hpp"
+#include "scenarios/analysis/stress/law_stress.hpp"
 #include "scenarios/program/report.hpp"
 
 namespace hapbench {

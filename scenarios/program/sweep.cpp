@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "scenarios/cases/run_sweep.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/metric_sections.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/load_module.hpp"
+#include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <atomic>
 
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/limits/tuning/tune.hpp"
+#include "scenarios/analysis/tuning/tune.hpp"
+#include "scenarios/input/bundled_files.hpp"
 #include "scenarios/program/limit.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -4,17 +4,17 @@
 #include <cstdio>
 
 #include "results/io/atomic_file.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/mesh_file.hpp"
-#include "scenarios/format/parts.hpp"
-#include "scenarios/format/text_lines.hpp"
-#include "scenarios/limits/stability/field_limit.hpp"
+#include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/parts.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "scenarios/format/load_scenario.hpp"
-#include "scenarios/format/parts.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/parts.hpp"
 #include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {

@@ -8,7 +8,7 @@
 
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/tool_shape.hpp"
 

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "algorithms/module/module.hpp"
-#include "scenarios/format/load_scenario.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

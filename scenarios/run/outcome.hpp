@@ -6,7 +6,7 @@
 #include "results/observe/inside_observer.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/format/parts.hpp"
+#include "scenarios/scene/parts.hpp"
 
 /// Outcomes of runs, and warnings about them.
 namespace hapbench {

@@ -6,9 +6,9 @@
 #include <variant>
 
 #include "results/record/recorder.hpp"
-#include "scenarios/format/load_scenario.hpp"
-#include "scenarios/format/metric_sections.hpp"
-#include "scenarios/format/parts.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/metric_sections.hpp"
+#include "scenarios/scene/parts.hpp"
 
 /// A run: what it records, row by row, the directory of its results, and the running itself.
 namespace hapbench {

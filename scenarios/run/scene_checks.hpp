@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {

@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "scenarios/format/parts.hpp"
-#include "scenarios/format/writer.hpp"
+#include "scenarios/input/writer.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/parts.hpp"
 
 namespace hapbench {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "device_model/theory/linear_loops.hpp"
-#include "scenarios/format/scenario.hpp"
+#include "scenarios/scene/scenario.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 /// The linear loop of a scenario: tool, device, hand and the springs of its wall, while nothing saturates and contact

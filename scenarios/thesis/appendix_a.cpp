@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "scenarios/limits/stability/field_limit.hpp"
+#include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/thesis/claims.hpp"
 
 /// Claims of appendix A: the planar peg (A.1), a mass on many springs (A.2), the integrator's stability limits (A.3).

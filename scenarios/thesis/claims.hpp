@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/cases/comparison.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "sim/tool/cylinder.hpp"
 
 /// The claims of the thesis, how each is judged, and the ledger of the verdicts. results/reference/rules.json has their

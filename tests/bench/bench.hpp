@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 
 /// The groups of benchmarks, and the scenes in which searches and steps are timed, assembled as the program assembles
 /// them. Names of groups are part of the interface, because scripts and people compare them from commit to commit.

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench::bench {

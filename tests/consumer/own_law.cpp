@@ -7,9 +7,9 @@
 #include <exception>
 #include <memory>
 #include <results/observe/metrics.hpp>
-#include <scenarios/format/bundled_scenarios.hpp>
-#include <scenarios/format/load_scenario.hpp>
+#include <scenarios/input/bundled_files.hpp>
 #include <scenarios/run/assemble.hpp>
+#include <scenarios/scene/load_scenario.hpp>
 #include <sim/loop/simulation.hpp>
 
 namespace {

@@ -16,15 +16,15 @@
 #include <vector>
 
 #include "algorithms/module/module.hpp"
-#include "scenarios/cases/run_sweep.hpp"
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/json_file.hpp"
-#include "scenarios/format/load_scenario.hpp"
-#include "scenarios/format/mesh_file.hpp"
-#include "scenarios/format/named_files.hpp"
-#include "scenarios/format/parts.hpp"
-#include "scenarios/limits/stability/field_limit.hpp"
+#include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/mesh_file.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/parts.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
 /// libFuzzer's targets: each reader of files from outside, fed with bytes of libFuzzer's choice (scripts/fuzz). It

@@ -840,7 +840,7 @@ def stressed(bench):
         reached,
         ("of mcneely's in K d", [1.0, 1.0, 10.0]),
     )
-    tests = "tests/scenarios/limits/stress/law_stress_test.cpp"
+    tests = "tests/scenarios/analysis/stress/law_stress_test.cpp"
     for name in ("sets", "in_contact", "non_finite", "out_of_bound", "points_dropped"):
         bench.proven(
             f"stress.csv:{name}",

@@ -442,7 +442,7 @@ class Adding(unittest.TestCase):
             ),
         )
         silent = (
-            (self.scratch / "tree/scenarios/format/environments.cpp")
+            (self.scratch / "tree/scenarios/scene/environments.cpp")
             .read_text()
             .replace(INSIDE, "")
         )

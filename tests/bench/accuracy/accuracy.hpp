@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/format/scenario.hpp"
+#include "scenarios/scene/scenario.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/loop/simulation.hpp"
 

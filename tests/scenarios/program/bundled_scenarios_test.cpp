@@ -11,8 +11,8 @@
 #include <set>
 #include <sstream>
 
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/hash.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"

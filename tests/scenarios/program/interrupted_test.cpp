@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-#include "scenarios/cases/run_sweep.hpp"
+#include "scenarios/batch/run_sweep.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <regex>
 
-#include "scenarios/format/mesh_file.hpp"
+#include "scenarios/input/mesh_file.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"

@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/json_file.hpp"
-#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/bundled.hpp"

@@ -7,13 +7,13 @@
 
 #include "algorithms/registry.hpp"
 #include "results/observe/metrics.hpp"
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/metric_sections.hpp"
+#include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
+#include "scenarios/scene/metric_sections.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 
 namespace hapbench::outcome_test {

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "tests/results/files.hpp"

@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/random.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/bundled.hpp"

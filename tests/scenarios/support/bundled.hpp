@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench::test {
 

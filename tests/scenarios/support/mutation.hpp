@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/format/json_file.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench::test {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/format/json_file.hpp"
+#include "scenarios/input/json_file.hpp"
 
 /// Runs the built programs as a user's shell would, but without a shell: arguments arrive as they are given.
 namespace hapbench::test {

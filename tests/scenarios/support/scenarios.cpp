@@ -1,7 +1,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench::test {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/json_file.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
 
 /// Scenarios to test with, and what is said of wrong ones.
 namespace hapbench::test {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "scenarios/format/json_file.hpp"
+#include "scenarios/input/json_file.hpp"
 
 namespace hapbench::test {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/thesis/choices.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/core/random.hpp"

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "scenarios/format/json_file.hpp"
-#include "scenarios/format/text_lines.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/thesis/choices.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "tests/results/files.hpp"

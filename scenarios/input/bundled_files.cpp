@@ -1,0 +1,127 @@
+#include "scenarios/input/bundled_files.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/mesh_file.hpp"
+
+// A static library does not know where it was installed. Users of find_package link .cmake/share_folder.cpp instead.
+extern "C" [[gnu::weak]] const char hapbench_share_folder[];
+
+namespace hapbench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// An address in this shared object or program, for dladdr.
+constexpr char kHere = 0;
+
+/// The share folder that the build defines; may be empty.
+fs::path share_of_build() {
+#ifdef HAPBENCH_SHARE
+  return HAPBENCH_SHARE;
+#else
+  return hapbench_share_folder != nullptr ? hapbench_share_folder : "";
+#endif
+}
+
+/// The paths at which the folder is looked for, in this order.
+std::vector<fs::path> places_of(const std::string& name) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error), wanted = fs::path("share") / "hapbench" / name;
+  Dl_info object;
+  const fs::path library = dladdr(&kHere, &object) != 0 ? fs::canonical(object.dli_fname, error) : program;
+  std::vector<fs::path> places;
+  // A library knows its own: the interpreter that loads it may lie beside another version's.
+  if (library != program)
+    for (fs::path above = library.parent_path(); above != above.root_path(); above = above.parent_path())
+      places.push_back(above / wanted);
+  places.push_back(program.parent_path().parent_path() / wanted);
+  if (const fs::path share = share_of_build(); !share.empty()) places.push_back(share / name);
+  return places;
+}
+
+}  // namespace
+
+fs::path installed_folder(const std::string& name) {
+  const std::vector<fs::path> places = places_of(name);
+  for (const fs::path& place : places) {
+    std::error_code error;
+    // Canonical, so that messages name a folder of the source tree instead of the build tree's link to it.
+    const fs::path found = fs::canonical(place, error);
+    if (!error && fs::is_directory(found, error)) return found;
+  }
+  throw InputError(
+      fmt::format("{}: is missing; allowed: the program where it was built or installed, with its folders next to it",
+                  places.back().string()));
+}
+
+std::vector<BundledScenario> bundled_scenarios() {
+  std::vector<BundledScenario> found;
+  const fs::path folder = installed_folder("scenarios/library");
+  for (const char* group : kScenarioGroups) {
+    std::error_code error;
+    const fs::directory_iterator entries(folder / group, error);
+    if (error) throw InputError(fmt::format("{}: {}", (folder / group).string(), error.message()));
+    const auto first = static_cast<std::ptrdiff_t>(found.size());
+    for (const auto& entry : entries) {
+      if (entry.path().extension() == ".json") found.push_back({entry.path().stem().string(), group, entry.path()});
+    }
+    std::ranges::sort(found.begin() + first, found.end(), {}, &BundledScenario::name);
+  }
+  return found;
+}
+
+fs::path find_scenario(const std::string& argument, const fs::path& directory) {
+  std::error_code error;
+  const fs::path file = directory / argument;
+  if (fs::exists(file, error)) {
+    if (is_mesh_name(file) && !fs::is_directory(file, error))
+      throw InputError(
+          fmt::format("{0}: is a mesh; allowed: a scenario, as \"hapbench new mesh --from {0}\" writes one", argument));
+    return file;
+  }
+  std::vector<std::string> names;
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    if (bundled.name == argument) return bundled.file;
+    names.push_back(bundled.name);
+  }
+  const std::string missing = argument + ": no such file and no bundled scenario";
+  if (fs::exists(file.string() + ".json", error)) throw InputError(missing + "; there is " + argument + ".json");
+  if (argument.find('=') != std::string::npos)
+    throw InputError(missing + "; a field is overridden by --set " + argument);
+  throw InputError(missing + nearest_name_hint(fs::path(argument).stem().string(), names) +
+                   "; \"hapbench describe scenarios\" shows them");
+}
+
+std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {
+  std::vector<fs::path> files;
+  for (const std::string& argument : arguments) {
+    std::error_code error;
+    if (std::ranges::find(kScenarioGroups, argument) == std::end(kScenarioGroups) || fs::exists(argument, error)) {
+      files.push_back(find_scenario(argument));
+      continue;
+    }
+    for (const BundledScenario& scenario : bundled_scenarios()) {
+      if (scenario.group == argument) files.push_back(scenario.file);
+    }
+  }
+  return files;
+}
+
+std::vector<std::string> names_of_scenarios(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) {
+    const std::string name = file.stem().string();
+    if (std::ranges::find(names, name) != names.end())
+      throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: each name once", file.string(), name));
+    names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,232 @@
+#include "scenarios/input/mesh_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFarthest = 1000.0;  // [m]
+
+struct MeshFormat {
+  std::string_view extension;
+  TriangleSoup (*read)(std::string_view text, const fs::path& file);
+};
+constexpr MeshFormat kMeshFormats[] = {{".obj", read_obj}, {".ply", read_ply}, {".stl", read_stl}, {".off", read_off}};
+
+void check_indices(const TriangleSoup& soup, const fs::path& file) {
+  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+    for (const std::uint32_t vertex : soup.triangles[t]) {
+      if (vertex < soup.vertices.size()) continue;
+      fail_in_file(file,
+                   fmt::format("triangle {}: got vertex {}; allowed: 0 ... {}, the vertices of the file", t,
+                               static_cast<std::int32_t>(vertex), static_cast<std::int64_t>(soup.vertices.size()) - 1));
+    }
+  }
+}
+
+void scale_and_check(TriangleSoup& soup, double scale, const fs::path& file) {
+  for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
+    Vec3& vertex = soup.vertices[i];
+    vertex *= scale;
+    if (!vertex.allFinite())
+      fail_in_file(file, fmt::format("vertex {}: is not finite; allowed: finite coordinates", i));
+    const double largest = vertex.cwiseAbs().maxCoeff();
+    if (largest > kFarthest) {
+      fail_in_file(
+          file, fmt::format("vertex {}: got coordinate {} after scaling; allowed: at most {} m (is \"scale\" right?)",
+                            i, largest, kFarthest));
+    }
+  }
+}
+
+CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
+  try {
+    return mesh_from_triangles(soup);
+  } catch (const MeshError& error) {
+    fail_in_file(file, error.what());
+  }
+}
+
+/// A triangle mesh has half as many vertices as faces, more only in so far as it is open.
+constexpr double kMostFaces = 2.0 * kMostPoints;
+
+/// Reads the surface in a file and does all checks.
+CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
+  const auto* format = std::ranges::find(kMeshFormats, mesh_extension(file), &MeshFormat::extension);
+  if (bytes.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
+  TriangleSoup soup = format->read(bytes, file);
+  check_indices(soup, file);
+  scale_and_check(soup, sampling.scale, file);
+  if (sampling.flip) {
+    for (auto& corners : soup.triangles) std::swap(corners[1], corners[2]);
+  }
+  CheckedMesh surface = connect(soup, file);
+  if (sampling.flip && surface.findings.open_edges.empty())
+    fail_in_file(file, "is closed, so that its outside is known; allowed: flip_normals of an open surface only");
+  const std::size_t vertices = surface.mesh.n_vertices();
+  if (static_cast<double>(vertices) > kMostPoints)
+    fail_in_file(file, fmt::format("has {} vertices; allowed: at most {:.0g}", vertices, kMostPoints));
+  if (vertices_with_normals(surface.mesh).empty())
+    fail_in_file(file, "has no faces with an area; allowed: at least one");
+  if (sampling.spacing && refined_face_count(surface.mesh, *sampling.spacing, kMostFaces) > kMostFaces) {
+    fail_in_file(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing",
+                                   *sampling.spacing, kMostPoints));
+  }
+  return surface;
+}
+
+constexpr const char* kCsvHeader = "x_m,y_m,z_m,nx,ny,nz";
+
+std::vector<SurfacePoint> csv_points_in(std::string_view text, const fs::path& file) {
+  const NumberTable table = number_table_in(text, file, {kCsvHeader}, static_cast<std::size_t>(kMostPoints));
+  std::vector<SurfacePoint> points;
+  points.reserve(table.rows());
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto row = table.row(i);
+    points.push_back({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}});
+  }
+  return points;
+}
+
+void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file) {
+  if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");
+  if (static_cast<double>(points.size()) > kMostPoints)
+    fail_in_file(file, fmt::format("has {} points; allowed: at most {:.0g}", points.size(), kMostPoints));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    SurfacePoint& point = points[i];
+    const double largest = point.position.cwiseAbs().maxCoeff();
+    if (!point.position.allFinite() || largest > kFarthest)
+      fail_in_file(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
+    const double length = point.normal.norm();
+    if (!(std::abs(length - 1.0) <= 1e-3))
+      fail_in_file(file, fmt::format("point {}: got a normal of length {}; allowed: unit normals", i, length));
+    // Unit to rounding is left alone, so that an exported shell reads back bit for bit.
+    if (std::abs(length - 1.0) > 1e-12) point.normal /= length;
+  }
+}
+
+std::string csv_text(const std::vector<SurfacePoint>& points) {
+  std::string text = fmt::format("{}\n", kCsvHeader);
+  for (const SurfacePoint& p : points) {
+    fmt::format_to(std::back_inserter(text), "{},{}\n", fmt::join(p.position, ","), fmt::join(p.normal, ","));
+  }
+  return text;
+}
+
+std::string ply_text(const std::vector<SurfacePoint>& points) {
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nelement face 0\n"
+      "property list uchar int vertex_indices\nend_header\n",
+      points.size());
+  for (const SurfacePoint& p : points) {
+    const Eigen::Vector3f position = p.position.cast<float>(), normal = p.normal.cast<float>();
+    // Nine digits are all that single precision holds.
+    fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g}\n", fmt::join(position, " "), fmt::join(normal, " "));
+  }
+  return text;
+}
+
+}  // namespace
+
+bool is_mesh_name(const fs::path& file) {
+  const std::string extension = lower_case(file.extension().string());
+  return std::ranges::find(kMeshFormats, extension, &MeshFormat::extension) != std::end(kMeshFormats);
+}
+
+std::string mesh_extension(const fs::path& file) {
+  if (!is_mesh_name(file)) fail_in_file(file, "has another extension; allowed: .obj, .ply, .stl or .off");
+  return lower_case(file.extension().string());
+}
+
+MeshFile::MeshFile(std::string_view bytes, const fs::path& file, const MeshSampling& sampling)
+    : sampling_(sampling), surface_(std::make_shared<const CheckedMesh>(surface_in(bytes, file, sampling))) {}
+
+std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
+  const MeshFindings& found = surface_->findings;
+  std::vector<std::string> warnings;
+  const auto warn = [&](const std::string& text) {
+    warnings.push_back(one_line(file.filename().string() + ": " + text));
+  };
+  if (!found.open_edges.empty()) {
+    Box box{found.open_edges[0], found.open_edges[0]};
+    for (const Vec3& p : found.open_edges) box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
+    const Vec3 a = 1e3 * box.min, b = 1e3 * box.max;
+    warn(fmt::format(
+        "the mesh is open: {} boundary edges, within x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} mm; "
+        "beyond them there is nothing to touch",
+        found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z()));
+  }
+  if (!found.crowded_edges.empty()) {
+    const Vec3 p = 1e3 * found.crowded_edges[0];
+    warn(fmt::format(
+        "the surface is cut along edges with more than two faces: {}, the first at ({:.3g}, {:.3g}, {:.3g}) mm",
+        found.crowded_edges.size(), p.x(), p.y(), p.z()));
+  }
+  for (const auto& [count, text] :
+       {std::pair{found.degenerate_triangles, "faces left out, two of their corners being the same"},
+        {found.rewound_triangles, "faces turned, which were wound against their neighbours"},
+        {found.inside_out_parts, "closed parts turned, which were inside out"}})
+    if (count > 0) warn(fmt::format("{}: {}", text, count));
+  return warnings;
+}
+
+const std::vector<Vec3>& MeshFile::open_edges() const {
+  return surface_->findings.open_edges;
+}
+
+bool MeshFile::is_closed() const {
+  return surface_->findings.open_edges.empty() && surface_->findings.crowded_edges.empty();
+}
+
+TriangleSoup MeshFile::triangles() const {
+  const HalfEdgeMesh& mesh = surface_->mesh;
+  TriangleSoup soup;
+  soup.vertices.reserve(mesh.n_vertices());
+  soup.triangles.reserve(mesh.n_faces());
+  for (const auto vertex : mesh.vertices()) {
+    const auto& p = mesh.point(vertex);
+    soup.vertices.emplace_back(p[0], p[1], p[2]);
+  }
+  for (const auto face : mesh.faces()) {
+    auto& corners = soup.triangles.emplace_back();
+    auto corner = corners.begin();
+    for (const auto vertex : face.vertices()) *corner++ = static_cast<std::uint32_t>(vertex.idx());
+  }
+  return soup;
+}
+
+std::vector<SurfacePoint> MeshFile::points() const {
+  if (!sampling_.spacing) return vertices_with_normals(surface_->mesh);
+  HalfEdgeMesh mesh = surface_->mesh;
+  refine(mesh, *sampling_.spacing);
+  return thinned(vertices_with_normals(mesh), *sampling_.spacing);
+}
+
+std::string shell_extension(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension != ".csv" && extension != ".ply") fail_in_file(file, "has another extension; allowed: .csv or .ply");
+  return extension;
+}
+
+std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file) {
+  auto points = shell_extension(file) == ".csv" ? csv_points_in(text, file) : ply_points_in(text, file);
+  check_and_normalise(points, file);
+  return points;
+}
+
+std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file) {
+  return shell_extension(file) == ".csv" ? csv_text(points) : ply_text(points);
+}
+
+}  // namespace hapbench

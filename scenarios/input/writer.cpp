@@ -1,0 +1,324 @@
+#include "scenarios/input/writer.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <deque>
+#include <mutex>
+#include <stdexcept>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/parts.hpp"
+
+namespace hapbench {
+
+Json FieldGuide::schema() const {
+  Json entry = value.schema;
+  // Draft 7 ignores what stands beside a reference.
+  if (entry.contains("$ref")) entry = {{"allOf", Json::array({std::move(entry)})}};
+  entry["description"] = meaning;
+  if (presence == Presence::has_default) entry["default"] = initial;
+  return entry;
+}
+
+namespace {
+
+/// Selects the fields to write: all that have a value, or only those whose default holds for every scenario.
+enum class Which { all, with_default };
+
+/// Writes a value as JSON, and tells the files that it names where they are asked for.
+class Writer final : public Fields {
+ public:
+  Writer(Which which, Body value, const OnFile& on_file = nullptr, std::string at = "")
+      : which_(which), on_file_(on_file), at_(std::move(at)) {
+    value(*this);
+  }
+
+  Json json() && { return std::move(json_); }
+
+  void number(double& value, NumberRange) override { json_ = value; }
+  void integer(std::int64_t& value, IntegerRange) override { json_ = value; }
+  void boolean(bool& value) override { json_ = value; }
+  void text(std::string& value, std::size_t) override { json_ = value; }
+  void file(std::string& path, const FileContent& content) override {
+    json_ = path;
+    if (on_file_) on_file_(at_, path, content);
+  }
+  void any_object(std::string& json) override { json_ = Json::parse(json); }
+  void vector3(Vec3& value, NumberRange) override { json_ = {value.x(), value.y(), value.z()}; }
+  void name(std::size_t& index, const std::vector<std::string>& names, const char* what) override {
+    if (index >= names.size()) throw std::logic_error(std::string("a value without a name: ") + what);
+    json_ = names[index];
+  }
+  void pair(const char*, double& first, NumberRange, double& second, NumberRange) override { json_ = {first, second}; }
+  void entries(std::size_t length, ListSize, FunctionRef<std::size_t>,
+               FunctionRef<Fields&, std::size_t> entry) override {
+    json_ = Json::array();
+    for (std::size_t i = 0; i < length; ++i)
+      json_.push_back(written(std::to_string(i), [&entry, i](Fields& f) { entry(f, i); }));
+  }
+  void or_null(bool is_null, FunctionRef<>, Body value) override {
+    if (!is_null) value(*this);
+  }
+  void plain_or_object(bool is_object, Body plain, Body object) override { (is_object ? object : plain)(*this); }
+  void one_or_list(bool is_list, Body one, Body list) override { (is_list ? list : one)(*this); }
+  void alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t held,
+                    FunctionRef<Fields&, std::size_t> fields) override {
+    if (held >= types.size()) throw std::logic_error("a variant without a value");
+    json_ = Json::object();
+    if (untyped == Untyped::refused || held > 0) json_[kTypeField] = types[held].name;
+    fields(*this, held);
+  }
+  void fields(Body body) override {
+    json_ = Json::object();
+    body(*this);
+  }
+  void field(std::string_view name, const char*, Presence presence, Body value) override {
+    if (presence == Presence::left_out) return;
+    if (presence == Presence::no_default && which_ == Which::with_default) return;
+    json_[std::string(name)] = written(name, value);
+  }
+
+ private:
+  Json written(std::string_view name, Body value) const {
+    return Writer(which_, value, on_file_, on_file_ ? fmt::format("{}/{}", at_, name) : "").json();
+  }
+
+  Which which_;
+  const OnFile& on_file_;
+  std::string at_;  ///< JSON pointer of the value, where files are asked for
+  Json json_;
+};
+
+/// Describes which values are allowed (guide_to).
+class SchemaWriter final : public Fields {
+ public:
+  explicit SchemaWriter(Json* definitions) : definitions_(definitions) {}
+
+  ValueGuide guide(Body value) && {
+    value(*this);
+    return std::move(guide_);
+  }
+
+  void number(double&, NumberRange range) override {
+    guide_.schema = {
+        {"type", "number"}, {range.above_min ? "exclusiveMinimum" : "minimum", range.min}, {"maximum", range.max}};
+    const std::string unit = *range.unit == '\0' ? "" : fmt::format(" [{}]", range.unit);
+    guide_.allowed =
+        fmt::format("a number {} {} and <= {}{}", range.above_min ? ">" : ">=", range.min, range.max, unit);
+  }
+  void integer(std::int64_t&, IntegerRange range) override {
+    guide_.schema = {{"type", "integer"}, {"minimum", range.min}, {"maximum", range.max}};
+    guide_.allowed = fmt::format("an integer {} ... {}", range.min, range.max);
+  }
+  void boolean(bool&) override {
+    guide_.schema = {{"type", "boolean"}};
+    guide_.allowed = "true or false";
+  }
+  void text(std::string&, std::size_t max_length) override {
+    guide_.schema = {{"type", "string"}, {"maxLength", max_length}};
+    guide_.allowed = fmt::format("a text of at most {} characters", max_length);
+  }
+  void any_object(std::string&) override {
+    guide_.schema = {{"type", "object"}};
+    guide_.allowed = "an object";
+  }
+  void name(std::size_t&, const std::vector<std::string>& names, const char* what) override {
+    guide_.schema = {{"type", "string"}, {"enum", names}};
+    guide_.allowed = fmt::format("{}: one of {}", what, quoted_list(names));
+  }
+  void vector3(Vec3& value, NumberRange component) override {
+    const ValueGuide item = guide_to_number(value.x(), component);
+    guide_.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", 3}, {"maxItems", 3}};
+    guide_.allowed = "three numbers [x, y, z], each " + item.allowed;
+  }
+  void pair(const char* allowed, double& first, NumberRange of_first, double& second, NumberRange of_second) override {
+    const Json items = {guide_to_number(first, of_first).schema, guide_to_number(second, of_second).schema};
+    guide_.schema = {{"type", "array"}, {"items", items}, {"minItems", 2}, {"maxItems", 2}};
+    guide_.allowed = allowed;
+  }
+  void entries(std::size_t length, ListSize size, FunctionRef<std::size_t>,
+               FunctionRef<Fields&, std::size_t> entry) override {
+    const ValueGuide item = guide_of([&](Fields& f) { entry(f, length); });
+    guide_.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", size.min}, {"maxItems", size.max}};
+    guide_.allowed = fmt::format("a list of {} ... {} entries, each {}", size.min, size.max, item.allowed);
+  }
+  void or_null(bool, FunctionRef<>, Body value) override {
+    guide_ = guide_of(value);
+    guide_.schema = {{"anyOf", {{{"type", "null"}}, guide_.schema}}};
+    guide_.allowed = "null or " + guide_.allowed;
+  }
+  void plain_or_object(bool, Body plain, Body object) override { any_of(guide_of(plain), guide_of(object)); }
+  void one_or_list(bool, Body one, Body list) override { any_of(guide_of(one), guide_of(list)); }
+  void alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t,
+                    FunctionRef<Fields&, std::size_t> fields) override {
+    guide_.allowed =
+        fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types, &TypeName::name)));
+    Json schemas = Json::array();
+    for (std::size_t i = 0; i < types.size(); ++i) {
+      SchemaWriter choice(definitions_);
+      choice.guide_.type = types[i].name;
+      choice.guide_.summary = types[i].summary;
+      choice.guide_.may_be_untyped = untyped == Untyped::first && i == 0;
+      choice.fields([&](Fields& f) { fields(f, i); });
+      schemas.push_back(choice.guide_.schema);
+      guide_.choices.push_back(std::move(choice.guide_));
+    }
+    guide_.schema = {{"oneOf", std::move(schemas)}};
+  }
+  void fields(Body body) override {
+    guide_.schema = {{"type", "object"},
+                     {"properties", Json::object()},
+                     {"additionalProperties", false},
+                     {"required", Json::array()}};
+    if (!guide_.type.empty()) {
+      guide_.schema["properties"][kTypeField] = {{"const", guide_.type}};
+      if (!guide_.may_be_untyped) guide_.schema["required"].push_back(kTypeField);
+    }
+    body(*this);
+    if (guide_.schema["required"].empty()) guide_.schema.erase("required");
+    guide_.allowed = "an object with the fields " + quoted_list(names_of(guide_.fields, &FieldGuide::name));
+  }
+  void shared(const char* name, Body value) override {
+    guide_ = guide_of(value);
+    if (definitions_ == nullptr) return;
+    (*definitions_)[name] = std::move(guide_.schema);
+    guide_.schema = {{"$ref", std::string("#/definitions/") + name}};
+  }
+  void field(std::string_view name, const char* doc, Presence presence, Body value) override {
+    FieldGuide field{
+        .name = std::string(name), .meaning = doc, .presence = presence, .initial = {}, .value = guide_of(value)};
+    if (presence == Presence::has_default) field.initial = Writer(Which::with_default, value).json();
+    guide_.schema["properties"][field.name] = field.schema();
+    if (presence == Presence::required) guide_.schema["required"].push_back(field.name);
+    guide_.fields.push_back(std::move(field));
+  }
+  void ignored(std::string_view name, const char* doc) override {
+    guide_.schema["properties"][std::string(name)] = {{"description", doc}};
+    guide_.fields.push_back(
+        {.name = std::string(name), .meaning = doc, .presence = Presence::left_out, .initial = {}, .value = {}});
+  }
+  void exactly_one_of(const char* a, const char* b) override {
+    Json& schema = guide_.schema;
+    if (schema.contains("oneOf")) throw std::logic_error("exactly_one_of twice in one object");
+    schema["oneOf"] = Json::array({Json{{"required", {a}}}, Json{{"required", {b}}}});
+  }
+
+ private:
+  ValueGuide guide_of(Body value) const { return SchemaWriter(definitions_).guide(value); }
+  ValueGuide guide_to_number(double& value, NumberRange range) const {
+    return guide_of([&](Fields& f) { f.number(value, range); });
+  }
+  /// One of two values, of which the second may be an object.
+  void any_of(ValueGuide first, ValueGuide second) {
+    guide_ = std::move(second);
+    guide_.schema = {{"anyOf", {first.schema, guide_.schema}}};
+    guide_.allowed = first.allowed + ", or " + guide_.allowed;
+  }
+
+  Json* definitions_;
+  ValueGuide guide_;
+};
+
+}  // namespace
+
+Json json_of(Fields::Body value, const OnFile& file) {
+  return Writer(Which::all, value, file).json();
+}
+
+ValueGuide guide_to(Fields::Body value, Json* definitions) {
+  return SchemaWriter(definitions).guide(value);
+}
+
+namespace {
+
+ValueGuide full_scenario(Json* definitions) {
+  Scenario defaults;
+  ValueGuide guide = guide_to([&defaults](Fields& f) { f.object(defaults); }, definitions);
+  Json schema = {{"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
+  schema.update(guide.schema);
+  guide.schema = std::move(schema);
+  return guide;
+}
+
+/// Returns true if a part of what the schema allows is also allowed.
+bool allows_parts(const Json& schema) {
+  if (!schema.is_structured()) return true;
+  if (schema.is_object() && (schema.contains("required") || schema.contains("oneOf"))) return false;
+  return std::all_of(schema.begin(), schema.end(), allows_parts);
+}
+
+/// For a file that extends another and so may leave out anything: only fields that mean something without the other
+/// file are checked. The schema of a file in full is found at `at`.
+Json partial_schema(const ValueGuide& full, const std::string& at) {
+  Json schema = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
+  for (const FieldGuide& field : full.fields) {
+    Json& part = schema["properties"][field.name];
+    const Json& whole = field.value.schema;
+    if (allows_parts(whole)) {
+      part = {{"$ref", at + "/properties/" + field.name}};
+    } else if (whole.contains("properties") && !whole.contains("required") && !whole.contains("oneOf")) {
+      part = partial_schema(field.value, at + "/properties/" + field.name);
+      part["description"] = field.meaning;
+    } else {
+      part = {{"description", field.meaning}};
+    }
+  }
+  return schema;
+}
+
+/// Adds the fields of an object and of those in it. `at` is the path of the object with a dot behind it.
+void add_fields(std::vector<PlacedField>& all, const ValueGuide& object, const std::string& at,
+                const std::string& types) {
+  for (const ValueGuide& choice : object.choices) add_fields(all, choice, at, types);
+  const std::string type = object.type.empty() ? "" : fmt::format("{}type \"{}\"", at, object.type);
+  const std::string of = types + (types.empty() || type.empty() ? "" : " and ") + type;
+  for (const FieldGuide& field : object.fields) {
+    all.push_back({at + field.name, of, &field});
+    add_fields(all, field.value, at + field.name + ".", of);
+  }
+}
+
+}  // namespace
+
+const ValueGuide& scenario_guide() {
+  static std::mutex mutex;
+  static std::deque<ValueGuide> built;
+  static std::size_t known = 0;  // additions() when the last one was built
+  const std::lock_guard lock(mutex);
+  if (built.empty() || known != additions()) built.push_back(full_scenario(nullptr));
+  known = additions();
+  return built.back();
+}
+
+std::vector<PlacedField> placed_fields() {
+  std::vector<PlacedField> all;
+  add_fields(all, scenario_guide(), "", "");
+  return all;
+}
+
+std::vector<std::string> scenario_field_paths() {
+  std::vector<std::string> paths;
+  const auto add = [&paths](const std::string& path) {
+    if (std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
+  };
+  for (const PlacedField& placed : placed_fields()) {
+    add(placed.path);
+    if (!placed.field->value.choices.empty()) add(placed.path + "." + kTypeField);
+  }
+  return paths;
+}
+
+Json scenario_schema() {
+  Json definitions = Json::object();
+  Json full = full_scenario(&definitions).schema;
+  return {{"$schema", "http://json-schema.org/draft-07/schema#"},
+          {"title", "hapbench scenario"},
+          {"definitions", std::move(definitions)},
+          {"if", {{"required", {kExtends}}}},
+          {"then", partial_schema(scenario_guide(), "#/else")},
+          {"else", std::move(full)}};
+}
+
+}  // namespace hapbench

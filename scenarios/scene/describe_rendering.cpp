@@ -1,0 +1,214 @@
+#include <algorithm>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/parts.hpp"
+
+namespace hapbench {
+namespace {
+
+/// The field's name without the objects it lies in.
+std::string_view key(const Parameter& parameter) {
+  const std::string_view path = parameter.field;
+  return path.substr(path.rfind('.') + 1);
+}
+
+IntegerRange integers(const Parameter& parameter) {
+  return {static_cast<std::int64_t>(parameter.range.min), static_cast<std::int64_t>(parameter.range.max)};
+}
+
+/// A number, a number or null, or an integer.
+template <class Number>
+void number(Fields& f, const Parameter& parameter, Number& value, const char* doc,
+            Presence presence = Presence::has_default) {
+  if constexpr (std::is_integral_v<Number>)
+    f.integer(key(parameter), value, integers(parameter), doc, presence);
+  else
+    f.number(key(parameter), value, parameter.range, doc, presence);
+}
+
+/// null, or what `each(Fields&, T&)` describes; left out of written scenarios that have none.
+template <class T, class Each>
+void if_not_null(Fields& f, std::string_view name, std::optional<T>& value, const char* doc, Each each) {
+  f.nullable(name, value, doc, each, value ? Presence::no_default : Presence::left_out);
+}
+
+void own_parameters(Fields& f, RenderingConfig& rendering, const AlgorithmEntry& entry) {
+  const std::vector<double> values = own_values(rendering, entry);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const OwnParameter& parameter = entry.own_parameters[i];
+    double value = values[i];
+    f.number(parameter.name, value, parameter.range, parameter.meaning);
+    if (f.reads() && f.given(parameter.name)) rendering.parameters[entry.info->name][parameter.name] = value;
+  }
+}
+
+/// The parameters that algorithms have for themselves. Written are those of the algorithm, and those given, so that a
+/// scenario without them is the same whatever algorithms there are.
+void own_parameters(Fields& f, RenderingConfig& rendering) {
+  const auto presence = [&rendering](const AlgorithmEntry& entry) {
+    const bool written = !entry.own_parameters.empty() &&
+                         (entry.info->name == rendering.algorithm || rendering.parameters.contains(entry.info->name));
+    return written ? Presence::no_default : Presence::left_out;
+  };
+  const bool any =
+      std::ranges::any_of(algorithms(), [&](auto& entry) { return presence(entry) != Presence::left_out; });
+  f.group("parameters", "parameters that algorithms have for themselves: an object for each algorithm",
+          any ? Presence::no_default : Presence::left_out, [&](Fields& all) {
+            for (const AlgorithmEntry& entry : algorithms()) {
+              if (entry.own_parameters.empty()) continue;
+              all.group(entry.info->name, "parameters of this algorithm", presence(entry),
+                        [&](Fields& own) { own_parameters(own, rendering, entry); });
+            }
+          });
+}
+
+}  // namespace
+
+static void describe(Fields& f, ReductionConfig& reduction) {
+  number(f, parameter::kThreshold, reduction.threshold, "alpha_TH: gradients with a larger inner product are similar");
+  number(f, parameter::kMaxPoints, reduction.max_points, "n_ext: most points kept");
+  f.nullable(key(parameter::kShuffleSeed), reduction.shuffle_seed,
+             "visit the points in a fixed random order; null: ascending index",
+             [](Fields& s, std::uint64_t& seed) { s.integer(seed, integers(parameter::kShuffleSeed)); });
+}
+
+static void describe(Fields& f, DryFrictionConfig& dry) {
+  number(f, parameter::kDryMu, dry.mu, "coefficient of friction");
+  number(f, parameter::kDryStiffness, dry.stiffness, "K_t of the bristle by which the tool sticks; null: K");
+  number(f, parameter::kDryDampingRatio, dry.damping_ratio, "zeta_t of the bristle with the virtual mass");
+}
+
+/// The thesis's viscous friction, whose defaults depend on the scene, or dry friction in its place.
+static void describe_friction(Fields& f, RenderingConfig& rendering) {
+  constexpr TypeName kTypes[] = {{"viscous", "the thesis's, proportional to the velocity; the default"},
+                                 {"dry", "sticks up to mu times the load and slides above (ours)"}};
+  f.alternatives("friction", kTypes, Untyped::first, rendering.dry_friction ? 1 : 0,
+                 [&rendering](Fields& fields, std::size_t type) {
+                   if (type == 1) {
+                     DryFrictionConfig dry = rendering.dry_friction.value_or(DryFrictionConfig{});
+                     describe(fields, dry);
+                     if (!fields.reads()) return;
+                     rendering.dry_friction = dry;
+                     rendering.mu_s = rendering.mu_f = 0.0;
+                     return;
+                   }
+                   number(fields, parameter::kMuS, rendering.mu_s, "viscous friction; default 0 for springs, else 5",
+                          Presence::no_default);
+                   number(fields, parameter::kMuF, rendering.mu_f,
+                          "viscous friction per newton of spring force; default 0 for springs, else 10",
+                          Presence::no_default);
+                 });
+}
+
+static void describe_hunt_crossley(Fields& f, double& chi) {
+  constexpr TypeName kTypes[] = {{"hunt_crossley", "-chi K sum c_i d_i <v, u_i> u_i: no step at contact on and off"}};
+  f.alternatives("damping", kTypes, Untyped::refused, 0, [&chi](Fields& fields, std::size_t) {
+    number(fields, parameter::kChi, chi, "chi", Presence::required);
+  });
+}
+
+static void describe(Fields& f, Lateness& late) {
+  number(f, parameter::kEvery, late.every, "contacts are found in every n-th row, from row 0 on");
+  number(f, parameter::kDelay, late.delay, "rows from when contacts are found until they serve");
+  f.choice("between", late.linear, {"hold", "linear"}, "kind of contacts between queries",
+           "hold: depths as found; linear: depths follow the tool's motion along the gradients");
+  number(f, parameter::kDropout, late.dropout, "probability that a query after the first is lost, by the seed");
+}
+
+/// A name, or an object that names a file. The visitors hold on to the file's name.
+static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
+  constexpr TypeName kTypes[] = {{kTrace, "contacts recorded at times, of a prescribed motion"},
+                                 {kContactPlugin, "a shared library by hapbench_module.h, whose code is run"}};
+  std::string& source = rendering.contact_source;
+  const bool is_plugin = source == kContactPlugin;
+  f.plain_or_object(
+      is_plugin || source == kTrace, [&](Fields& plain) { plain.choice(source, {kOwnContacts}, "source of contacts"); },
+      [&](Fields& object) {
+        object.alternatives(
+            "source of contacts", kTypes, Untyped::refused, is_plugin ? 1 : 0, [&](Fields& fields, std::size_t type) {
+              if (fields.reads()) source = kTypes[type].name;
+              using Kind = FileContent::Kind;
+              fields.file(rendering.contact_file, {type == 0 ? Kind::trace : Kind::library},
+                          type == 0 ? "CSV with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m" : "the library");
+              if (type == 0) return;
+              fields.field("config", "handed to the library as JSON text", Presence::has_default,
+                           [&](Fields& config) { config.any_object(rendering.contact_config); });
+            });
+      });
+}
+
+static void describe(Fields& f, EnergyTankConfig& tank) {
+  number(f, parameter::kTankCapacity, tank.capacity, "C, most energy that is kept for later");
+  number(f, parameter::kTankInitial, tank.initial, "energy at the start, besides that of the springs");
+}
+
+static void describe(Fields& f, ActuatorLimitedPassivityConfig& limited) {
+  f.nullable(key(parameter::kActuatorForce), limited.max_force,
+             "most force of the actuator along each axis of the world; null: no limit",
+             [](Fields& v, Vec3& most) { v.vector3(most, parameter::kActuatorForce.range); });
+  number(f, parameter::kActuatorDamping, limited.max_damping,
+         "most damping; null: M / dt, which stops the virtual tool in one step");
+}
+
+static void describe(Fields& f, ForceStageConfig& stage) {
+  f.variant(stage, "force stage",
+            {{"energy_tank", "gives away no more energy than it holds"},
+             {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"}});
+}
+
+Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {
+  scenario.rendering.algorithm = algorithm;
+  scenario.rendering = with_fixed_stages(scenario.rendering);
+  return scenario;
+}
+
+void describe(Fields& f, RenderingConfig& rendering) {
+  static const std::vector<std::string> kDepthModels =
+      names_of(depth_models(), [](const DepthModelEntry& entry) { return entry.info->name; });
+  f.choice("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
+  // The stages that the algorithm fixes are the defaults of the fields below.
+  if (f.reads()) rendering = with_fixed_stages(rendering);
+  number(f, parameter::kIterations, rendering.iterations, "m of the shaping iteration");
+  f.choice("depth_model", rendering.depth_model, kDepthModels, "depth model",
+           "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
+  f.field(
+      "contact_source",
+      "own: our search, with the depth model; else whose contacts, depths and directions are taken instead: of a file",
+      Presence::has_default, [&rendering](Fields& source) { describe_contact_source(source, rendering); });
+  if_not_null(f, "contacts", rendering.late,
+              "contacts that a slower loop finds (multi-rate rendering); null: every row has its own",
+              [](Fields& late, Lateness& value) { late.object(value); });
+  f.boolean(key(parameter::kLocalAverage), rendering.local_average,
+            "merge colliding points that share a grid cell of the shell");
+  f.object("reduction", rendering.reduction, "gradient-based reduction, whose kept points change in jumps; null: off");
+  number(f, parameter::kStiffness, rendering.stiffness, "K");
+  number(f, parameter::kDampingRatio, rendering.damping_ratio, "zeta; B = 2 zeta sqrt(K M)");
+  number(f, parameter::kDamping, rendering.damping, "B instead of the one from zeta; null: from zeta");
+  f.boolean(key(parameter::kAngularDamping), rendering.angular_damping,
+            "damping and friction see the velocity of the tool's material at each contact, not only the tip centre's");
+  number(f, parameter::kAngularVelocityCutoff, rendering.angular_velocity_cutoff,
+         "first-order low-pass of the angular velocity that angular_damping sees; null: none");
+  number(f, parameter::kMass, rendering.mass, "M of the virtual tool; default 0.2 in planar scenes, else 0.1",
+         Presence::no_default);
+  if_not_null(f, "damping", rendering.hunt_crossley,
+              "damping that grows with depth, in place of damping_ratio; null: off", describe_hunt_crossley);
+  f.field("friction", "friction along the surface", Presence::has_default,
+          [&rendering](Fields& friction) { describe_friction(friction, rendering); });
+  f.group("limits", "optional limits", Presence::has_default, [&rendering](Fields& limits) {
+    number(limits, parameter::kMaxDamping, rendering.max_damping, "B_max; null: off");
+    number(limits, parameter::kMaxForce, rendering.max_force, "F_max; null: off");
+  });
+  number(f, parameter::kVirtualCoupling, rendering.virtual_coupling, "K_vc of algorithm virtual_coupling; null: K");
+  number(f, parameter::kRegularisation, rendering.regularisation, "eps of algorithm least_squares");
+  if_not_null(
+      f, "force_stage", rendering.force_stage,
+      "a controller behind the algorithm: sees its force with damping, friction and limits, and answers the one to "
+      "render; null: off",
+      [](Fields& held, ForceStageConfig& value) { describe(held, value); });
+  f.boolean(key(parameter::kPassivityController), rendering.passivity_controller,
+            "adaptive damping that lets the algorithm create no energy");
+  own_parameters(f, rendering);
+}
+
+}  // namespace hapbench

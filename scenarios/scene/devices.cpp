@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/parts.hpp"
+
+namespace hapbench {
+
+constexpr double kMostDeviceDelay = 10'000.0;  ///< of an impedance device
+
+static void describe_force_limit(Fields& f, std::optional<double>& limit) {
+  f.number("force_limit_N", limit, {0.0, 1e9, "N", true}, "input force limit f_th; null: off");
+}
+
+static void describe(Fields& f, IdealDeviceFields& device) {
+  describe_force_limit(f, device.force_limit);
+}
+
+static void describe(Fields& f, ForceSensorConfig& sensor) {
+  f.number("weight_offset_N", sensor.weight, {-1000.0, 1000.0, "N"}, "weight of the dummy drill, read downwards");
+  f.boolean("weight_compensated", sensor.compensated,
+            "the weight is taken off again before the limiter, so that it does not move the virtual tool");
+  f.number("noise_N", sensor.noise, {0.0, 1000.0, "N"}, "standard deviation of every component of a sample (ours)");
+}
+
+static void describe(Fields& f, PositionServoConfig& servo) {
+  f.number("stiffness_N_per_m", servo.stiffness, {0.0, 1e9, "N/m"},
+           "force per position error (ours); for a bandwidth of f Hz at the damping ratio 0.7: m (2 pi f / 2.05)^2, "
+           "m = carriage_mass_kg + handle_mass_kg");
+  f.number("damping_N_s_per_m", servo.damping, {0.0, 1e9, "N s/m"},
+           "force per velocity error (ours); for a bandwidth of f Hz at the damping ratio 0.7: 1.4 m 2 pi f / 2.05");
+  f.number("max_force_N", servo.max_force, {0.0, 1e9, "N", true}, "the actuators saturate here");
+  f.integer("delay_samples", servo.delay, {0, 10'000}, "from the command to the force (ours)");
+}
+
+static void describe(Fields& f, HandleMechanicsConfig& mechanics) {
+  f.number("carriage_mass_kg", mechanics.carriage_mass, {1e-6, 1e6, "kg"}, "what the actuators move (ours)");
+  f.number("handle_mass_kg", mechanics.handle_mass, {1e-6, 1e6, "kg"}, "what the hand holds (ours)");
+  f.number("friction_N_s_per_m", mechanics.friction, {0.0, 1e9, "N s/m"}, "viscous, on the carriage (ours)");
+  f.number("structure_stiffness_N_per_m", mechanics.structure_stiffness, {0.0, 1e12, "N/m"},
+           "between carriage and handle; its inverse is the compliance (ours)");
+  f.number("structure_damping_N_s_per_m", mechanics.structure_damping, {0.0, 1e9, "N s/m"},
+           "between carriage and handle (ours)");
+}
+
+static void describe(Fields& f, AdmittanceDeviceConfig& device) {
+  describe_force_limit(f, device.force_limit);
+  f.object("sensor", device.sensor, "what the force sensor adds to the hand's force");
+  f.object("servo", device.servo, "the loop that makes the carriage follow the virtual tool");
+  f.object("mechanics", device.mechanics, "the moving parts");
+}
+
+static void describe(Fields& f, LowPassFilter& filter) {
+  f.number("cutoff_Hz", filter.cutoff, {0.0, 1e9, "Hz", true},
+           "half power of the continuous Butterworth low-pass, whose input is held over the time step: the first order "
+           "takes 1 - exp(-2 pi cutoff_Hz step_s) of what is new (ours)");
+  f.integer("order", filter.order, {1, LowPassFilter::kHighest}, "of the low-pass (ours)");
+}
+
+static void describe(Fields& f, AdaptiveWindowFilter& filter) {
+  f.number("noise_m", filter.noise, {0.0, 1.0, "m"},
+           "largest distance of a sample from the line through the window's ends; half of encoder_step_m fits (ours)");
+}
+
+static void describe(Fields& f, VelocityFilterConfig& filter) {
+  f.variant(
+      filter, "velocity filter",
+      {{"difference", "the last two positions over the time between them"},
+       {"low_pass", "the difference through a Butterworth low-pass"},
+       {"adaptive_window", "slope over the longest window that fits a straight line (Janabi-Sharifi et al. 2000)"}});
+}
+
+/// Puts the numbers of a published device in place of the defaults. An effective scenario has these numbers and not the
+/// name, because the numbers are what is simulated.
+static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
+  std::optional<std::string> preset;
+  const std::vector<std::string> names = names_of(device_presets(), &DevicePreset::name);
+  f.if_any("preset", preset,
+           "a published device, whose numbers hold where the file gives none; \"hapbench describe presets\" shows them",
+           [&names](Fields& n, std::string& name) { n.choice(name, names, "preset"); });
+  if (!f.reads()) return;
+  if (preset) {
+    device = config_of(*find_device_preset(*preset));
+  } else if (!f.given("preset") && !f.given("handle_mass_kg")) {
+    fail_at(f.at(), "missing field; allowed: handle_mass_kg, or a preset, which has one");
+  }
+}
+
+static void describe(Fields& f, Transmission& transmission) {
+  f.number("motor_share", transmission.motor_share, {0.01, 0.99, "1"},
+           "part of handle_mass_kg on the motors' side, where encoder and friction are (ours)");
+  f.number("stiffness_N_per_m", transmission.stiffness, {1.0, 1e9, "N/m"}, "between motors and handle (ours)");
+  f.number("damping_N_s_per_m", transmission.damping, {0.0, 1e6, "N s/m"}, "parallel to that spring (ours)");
+}
+
+static void describe(Fields& f, ImpedanceDeviceConfig& device) {
+  describe_preset(f, device);
+  f.number("handle_mass_kg", device.handle_mass, {1e-6, 1e6, "kg"},
+           "of all that moves, as felt at the handle; required without a preset", Presence::no_default);
+  f.number("viscous_N_s_per_m", device.viscous, {0.0, 1e9, "N s/m"}, "viscous friction of each axis");
+  f.number("coulomb_N", device.coulomb, {0.0, 1e9, "N"}, "dry friction of each axis, moving and at rest");
+  f.number("encoder_step_m", device.encoder_step, {0.0, 1.0, "m"},
+           "the measured position is the nearest multiple of it, halves away from zero; 0: exact");
+  // A device by itself, whose delay is in seconds, has no samples yet (resolve_delay).
+  f.number("delay_samples", device.delay_samples, {0.0, kMostDeviceDelay, "time steps"},
+           "from a sample to its force; a fraction changes the force within a time step",
+           std::isnan(device.delay_samples) ? Presence::left_out : Presence::has_default);
+  f.if_any(
+      "delay_s", device.delay,
+      "instead of delay_samples: delay_s / time.step_s of them, fractions too. An effective scenario has both, which "
+      "then say the same; --set of one of them replaces the other",
+      [](Fields& d, double& value) {
+        d.number(value, {0.0, 1e4, "s"});
+      });
+  if (f.reads() && device.delay && !f.given("delay_samples"))
+    device.delay_samples = std::numeric_limits<double>::quiet_NaN();  // resolve_delay knows the time step
+  f.value("velocity_filter", device.velocity_filter, "makes the tool's velocity of measured positions");
+  f.number("force_max_N", device.force_max, {0.0, 1e9, "N", true}, "the motors saturate at this norm; null: never");
+  f.number("force_step_N", device.force_step, {0.0, 1e9, "N"},
+           "the motors' force is the nearest multiple of it in each axis; 0: exact");
+  f.number("force_slew_N_per_s", device.force_slew, {0.0, 1e12, "N/s", true},
+           "fastest change of the motors' force from step to step; null: any");
+  f.object("position_filter", device.position_filter,
+           "low-pass of the measured position before the scene sees it, not of that of the velocity; null: none");
+  f.number("position_noise_m", device.position_noise, {0.0, 1.0, "m"},
+           "standard deviation of the noise of each axis of the sensor, sample by sample and before encoder_step_m");
+  f.object_if_any(
+      "transmission", device.transmission,
+      "elastic, between the motors with the encoder and the handle in the hand; without it they are one body");
+}
+
+void describe(Fields& f, DeviceFields& device) {
+  f.variant(
+      device, "device",
+      {{"ideal", "measures and pushes without error"},
+       {"admittance", "the thesis's device: force sensor, limiter and servo"},
+       {"impedance", "measures positions and renders forces: a light handle with motors, as most desktop devices"}});
+}
+
+std::optional<double> input_force_limit(const DeviceFields& device) {
+  if (const auto* ideal = std::get_if<IdealDeviceFields>(&device)) return ideal->force_limit;
+  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&device);
+  return admittance != nullptr ? admittance->force_limit : std::nullopt;
+}
+
+void resolve_delay(Scenario& scenario) {
+  auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  if (device == nullptr || !device->delay) return;
+  const double delay = *device->delay, samples = delay / scenario.time.step, given = device->delay_samples;
+  if (samples > kMostDeviceDelay) {
+    fail_at("/device/delay_s",
+            fmt::format("got {} s, {:.3g} time steps; allowed: at most {} of them", delay, samples, kMostDeviceDelay));
+  }
+  // 1e-9 forgives the rounding of whoever wrote both.
+  if (std::abs(given - samples) > 1e-9 * std::max(1.0, samples)) {
+    fail_at("/device/delay_s",
+            fmt::format(
+                "got {} s together with delay_samples {}; allowed: one of the two, or both where they say the same: "
+                "{} s are {:.6g} time steps of {} s",
+                delay, given, delay, samples, scenario.time.step));
+  }
+  device->delay_samples = samples;
+}
+
+std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
+  if (const auto* ideal = std::get_if<IdealDeviceFields>(&scenario.device))
+    return std::make_unique<IdealDevice>(ideal->force_limit);
+  if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
+    ImpedanceDeviceConfig config = *impedance;
+    config.seed = derived_seed(scenario, trial, RandomUse::position_noise);
+    AttachedHand attached;  // moves with the handle between samples
+    if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&scenario.hand))
+      attached = {hand->mass, hand->spring.stiffness, hand->spring.damping};
+    return std::make_unique<ImpedanceDevice>(config, scenario.time.step, attached);
+  }
+  AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
+  if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up.normalized();
+  config.sensor.seed = derived_seed(scenario, trial, RandomUse::sensor_noise);
+  return std::make_unique<AdmittanceDevice>(config);
+}
+
+}  // namespace hapbench

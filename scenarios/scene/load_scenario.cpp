@@ -1,0 +1,272 @@
+#include "scenarios/scene/load_scenario.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "results/io/columns.hpp"
+#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/input/writer.hpp"
+#include "scenarios/scene/parts.hpp"
+#include "sim/core/hash.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Fields of which an object has one or the other.
+constexpr std::pair<std::string_view, const char*> kEitherOr[] = {
+    {"steps", "duration_s"}, {"duration_s", "steps"},      {"path_m", "direction"},
+    {"direction", "path_m"}, {"delay_s", "delay_samples"}, {"delay_samples", "delay_s"}};
+
+/// Takes out of `object` the field that excludes the one of this name.
+void drop_alternative(Json& object, std::string_view field) {
+  for (const auto& [given, other] : kEitherOr)
+    if (given == field) object.erase(other);
+}
+
+void merge(Json& base, const Json& more) {
+  const bool other_type =
+      more.contains(kTypeField) && (!base.contains(kTypeField) || base[kTypeField] != more[kTypeField]);
+  if (!base.is_object() || !more.is_object() || other_type) {
+    base = more;
+    return;
+  }
+  for (const auto& entry : more.items()) drop_alternative(base, entry.key());
+  for (const auto& entry : more.items()) merge(base[entry.key()], entry.value());
+}
+
+/// Makes relative paths of files start from `directory`.
+void keep_files(Json& json, const fs::path& directory) {
+  if (!json.is_structured()) return;
+  for (auto& entry : json.items()) {
+    Json& value = entry.value();
+    if (entry.key() == kFileField && value.is_string()) {
+      value = (directory / value.get<std::string>()).string();
+    } else {
+      keep_files(value, directory);
+    }
+  }
+}
+
+/// Refuses to extend a file that is in the chain already.
+void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next) {
+  std::error_code ignored;
+  const auto is_next = [&](const ScenarioLayer& layer) { return fs::equivalent(layer.file, next, ignored); };
+  if (std::ranges::none_of(layers, is_next)) return;
+  std::string chain;
+  for (const ScenarioLayer& layer : layers) chain += layer.file.string() + " -> ";
+  throw InputError(fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
+}
+
+/// The file that `json`, read from `file`, extends.
+fs::path base_file(const Json& json, const fs::path& file, const std::vector<ScenarioLayer>& layers) {
+  const Json& name = json[kExtends];
+  const std::string at = fmt::format("/{}", kExtends);
+  if (!name.is_string()) {
+    throw InputError(InputError::Kind::shape, at,
+                     fmt::format("got {}; allowed: a scenario file or the name of a bundled scenario", shown(name)));
+  }
+  try {
+    fs::path base = find_scenario(name.get<std::string>(), file.parent_path());
+    check_chain(layers, base);
+    return base;
+  } catch (const InputError& error) {
+    fail_at(at, error.problem());
+  }
+}
+
+/// Appends the file and those it extends to `layers`; returns the fields of all.
+Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
+  Json json;
+  fs::path base;
+  with_file(file, [&] {
+    json = read_json(file);
+    layers.push_back({file, json});
+    if (json.contains(kExtends)) base = base_file(json, file, layers);
+    if (layers.size() > 1 && !json.is_object())
+      throw InputError(fmt::format("got {}; allowed: a scenario, which is an object", shown(json)));
+  });
+  if (base.empty()) return json;
+  Json merged = read_extended(base, layers);
+  if (base.parent_path() != file.parent_path()) keep_files(merged, fs::current_path() / base.parent_path());
+  for (const char* own : {"name", "expect"}) merged.erase(own);
+  json.erase(kExtends);
+  merge(merged, json);
+  return merged;
+}
+
+/// Sets the field at a dotted path; a number in the path indexes a list. Of two fields that exclude each other the
+/// other one is removed, as where a scenario extends another.
+void apply_override(Json& json, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos)
+    throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+  const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
+  const Words keys = parts_of(path, '.');
+  constexpr std::size_t kDeepestPath = 64;  // what walks through JSON goes down by a call for each
+  if (keys.size() > kDeepestPath)
+    throw InputError(fmt::format("--set: got a path of more than {0} keys; allowed: at most {0}", kDeepestPath));
+  Json* node = &json;
+  for (const std::string_view& key : keys) {
+    if (node->is_array()) {
+      const auto index = whole_number(key);
+      if (!index || *index >= node->size()) {
+        throw InputError(
+            fmt::format("{}: got list index \"{}\"; allowed: {}", path, key,
+                        node->empty() ? "none, the list is empty" : fmt::format("0 ... {}", node->size() - 1)));
+      }
+      node = &(*node)[*index];
+    } else {
+      if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
+      if (&key == &keys.back()) drop_alternative(*node, key);
+      node = &(*node)[std::string(key)];
+    }
+  }
+  *node = Json::accept(value) ? parse_json(value) : Json(value);
+  // An effective scenario has the device's delay in seconds and in samples of the step that is no longer its own.
+  if (path == "time.step_s" && json.contains(Json::json_pointer("/device/delay_s")))
+    json["device"].erase("delay_samples");
+}
+
+/// True when a run with this field overridden is still the run that the scenario's expectations were written for.
+bool leaves_run_alone(std::string_view override) {
+  constexpr std::string_view kSections[] = {"expect", "record", "name", "description", "source"};
+  // Metrics come and go with these, and those of the ideal trajectory are over the recorded rows.
+  constexpr std::string_view kMeasured[] = {"record.energy", "record.ideal_trajectory", "record.torque",
+                                            "record.every"};
+  const std::string_view path = overridden_path(override), section = path.substr(0, path.find('.'));
+  return std::ranges::count(kSections, section) > 0 && std::ranges::count(kMeasured, path) == 0;
+}
+
+/// Removes the expectations that hold only for the run that the scenario describes: bounds on metrics and the exact
+/// outcome. A run that misses its object or diverges stays unexpected unless the scenario expects it.
+void expect_less(Json& expect) {
+  if (!expect.is_object()) return;  // the reader will say so
+  expect.erase("metrics");
+  Json outcomes = Json::array();
+  for (const Outcome outcome : ExpectFields().outcomes) outcomes.push_back(outcome_name(outcome));
+  const Json given = expect.value("outcome", Json());
+  for (const Json& outcome : given.is_array() ? given : given.is_null() ? Json::array() : Json::array({given})) {
+    if (std::find(outcomes.begin(), outcomes.end(), outcome) == outcomes.end()) outcomes.push_back(outcome);
+  }
+  expect["outcome"] = std::move(outcomes);
+}
+
+/// The hint for a field whose name resembles no field of its object: fields elsewhere with the nearest name.
+std::string hint_elsewhere(const std::string& place) {
+  const std::vector<std::string> paths = scenario_field_paths();
+  const auto own_name = [](const std::string& path) { return parts_of(path, '.').back(); };
+  const std::string nearest = nearest_name(parts_of(place, '/').back(), names_of(paths, own_name));
+  std::vector<std::string> found;
+  std::ranges::copy_if(paths, std::back_inserter(found), [&](const auto& path) { return own_name(path) == nearest; });
+  std::string typed = place.substr(1);
+  std::replace(typed.begin(), typed.end(), '/', '.');
+  if (std::find(found.begin(), found.end(), typed) != found.end()) return "; only an object of another type has it";
+  return found.empty() ? "" : "; nearest valid names: " + quoted_list(found);
+}
+
+/// The fault with its file in front, and with hints.
+InputError in_file(const InputError& fault, const fs::path& file) {
+  constexpr std::string_view kUnknown = "unknown field";
+  std::string problem = fault.problem();
+  const bool has_hint = problem.find("nearest valid name") != std::string::npos;
+  if (problem.starts_with(kUnknown) && !has_hint)
+    problem.insert(kUnknown.size(), fault.place().starts_with("/rendering/parameters/")
+                                        ? "; a law from outside brings its own with --module"
+                                        : hint_elsewhere(fault.place()));
+  if (fault.place() == "/rendering/algorithm" && !has_hint) problem += "; a law from outside comes with --module";
+  const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
+  return {fault.kind(), place, problem};
+}
+
+}  // namespace
+
+void rethrow_with_file(const InputError& error, const fs::path& file) {
+  LoadedScenario place;
+  place.file = file;
+  rethrow_with_file(error, place);
+}
+
+void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
+  std::vector<InputError> faults;
+  for (const InputError& fault : error.faults()) faults.push_back(in_file(fault, file_of(loaded, fault.place())));
+  throw InputError::all(faults);
+}
+
+LoadedScenario read_scenario(const Json& json, const fs::path& directory) {
+  LoadedScenario loaded;
+  loaded.scenario.directory = directory;
+  read_value(json, "", [&](Fields& f) { f.object(loaded.scenario); });
+  loaded.warnings = relation_warnings(loaded.scenario, json);
+  loaded.files = NamedFiles(loaded.scenario);
+  return loaded;
+}
+
+ScenarioText read_scenario_text(const fs::path& file) {
+  std::vector<ScenarioLayer> layers;
+  Json json = read_extended(file, layers);
+  if (layers.size() == 1) layers.clear();
+  return {file, std::move(json), std::move(layers)};
+}
+
+fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
+  if (!pointer.starts_with('/')) return loaded.file;
+  try {
+    // A field that no file has is at its default; the object around it is the nearest place to name.
+    for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
+      for (const ScenarioLayer& layer : loaded.layers)
+        if (layer.json.contains(at)) return layer.file;
+    }
+  } catch (const Json::exception&) {
+    // A place that is not a pointer, such as the path of a mesh.
+  }
+  return loaded.file;
+}
+
+std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings) {
+  std::vector<std::string> texts;
+  for (const Warning& warning : warnings)
+    texts.push_back(file_of(loaded, warning.pointer).string() + ": " + warning.told());
+  return texts;
+}
+
+LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides) {
+  LoadedScenario loaded;
+  loaded.file = text.file;
+  loaded.layers = text.layers;
+  return with_file(loaded, [&] {
+    Json json = text.json;
+    const bool same_run = std::all_of(overrides.begin(), overrides.end(), leaves_run_alone);
+    if (!same_run && json.is_object() && json.contains("expect")) expect_less(json["expect"]);
+    for (const std::string& override : overrides) apply_override(json, override);
+    if (!loaded.layers.empty()) {
+      for (const std::string& override : overrides) apply_override(loaded.layers.front().json, override);
+    }
+    LoadedScenario read = read_scenario(json, text.file.parent_path());
+    read.file = loaded.file;
+    read.layers = std::move(loaded.layers);
+    if (read.scenario.name.empty()) read.scenario.name = text.file.stem().string();
+    return read;
+  });
+}
+
+Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
+  Json json = written_object(scenario);
+  const NamedFiles files(scenario);
+  for (const auto& file : files.all()) {
+    const fs::path path = fs::current_path() / file->path();
+    std::error_code error;
+    const fs::path near = fs::proximate(path, fs::current_path() / directory, error);
+    json.at(Json::json_pointer(file->pointer())) = (error ? path : near).generic_string();
+  }
+  return json;
+}
+
+std::string scenario_hash(Json effective, const NamedFiles& files) {
+  for (const auto& file : files.all()) effective.at(Json::json_pointer(file->pointer())) = file->hash();
+  return hash_text(hash_of(json_text(effective)));
+}
+
+}  // namespace hapbench

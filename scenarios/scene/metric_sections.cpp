@@ -1,0 +1,125 @@
+#include "scenarios/scene/metric_sections.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "results/observe/contact_metrics.hpp"
+#include "results/observe/energy.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/target_metrics.hpp"
+
+namespace hapbench {
+namespace {
+
+/// A section of the summary.
+struct SectionKind {
+  const char* name;
+  /// Number of target places, 1 for sections without places; 0 when the scenario does not ask for the section.
+  std::size_t (*parts)(const Scenario& scenario, bool has_reference_force);
+  /// The observer of a run of the scenario; without one, an observer that sees nothing and so documents the metrics.
+  std::unique_ptr<MetricObserver> (*observe)(const Scenario* scenario, std::size_t parts);
+  bool merges = false;  ///< several trials also have it
+};
+
+template <class Type>
+std::unique_ptr<MetricObserver> make(const Scenario*, std::size_t) {
+  return std::make_unique<Type>();
+}
+
+std::unique_ptr<MetricObserver> observe_ideal_trajectory(const Scenario* scenario, std::size_t) {
+  if (scenario == nullptr) return std::make_unique<IdealTrajectoryObserver>();
+  return std::make_unique<IdealTrajectoryObserver>(std::get<BlockEnvironment>(scenario->environment).block, Cylinder(),
+                                                   static_cast<std::uint64_t>(scenario->record.every));
+}
+
+std::unique_ptr<MetricObserver> observe_targets(const Scenario*, std::size_t places) {
+  return std::make_unique<TargetMetricsObserver>(places);
+}
+
+std::size_t target_places(const Scenario& scenario, bool) {
+  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
+  return hand == nullptr ? 0 : hand->task.places.size();
+}
+
+/// In the order of the summary. A section is a row here and the file of its observer.
+const SectionKind kSections[] = {
+    {"passivity", [](const Scenario&, bool) { return std::size_t{1}; }, make<PassivityObserver>, true},
+    {"energy", [](const Scenario& s, bool) { return std::size_t{s.record.energy}; }, make<EnergyLedger>},
+    {"ideal_trajectory", [](const Scenario& s, bool) { return std::size_t{s.record.ideal_trajectory}; },
+     observe_ideal_trajectory},
+    {"fidelity", [](const Scenario&, bool has_reference) { return std::size_t{has_reference}; },
+     make<ForceFidelityObserver>},
+    {"torque", [](const Scenario& s, bool) { return std::size_t{s.record.torque}; }, make<LostTorqueObserver>},
+    {"friction", [](const Scenario& s, bool) { return std::size_t{s.rendering.dry_friction.has_value()}; },
+     make<FrictionObserver>},
+    {"force_stage", [](const Scenario& s, bool) { return std::size_t{s.rendering.force_stage.has_value()}; },
+     make<ForceStageObserver>},
+    {"contacts", [](const Scenario& s, bool) { return std::size_t{s.rendering.late && s.rendering.late->any()}; },
+     make<ContactAgeObserver>},
+    {"targets", target_places, observe_targets, true}};
+
+void tell_common(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
+  Section section(list, "");
+  metrics.tell(section);
+  (inside != nullptr ? *inside : InsideDepths()).tell(section, metrics.has_settled());
+  metrics.tell_end(section);
+}
+
+/// The metrics of every run and of each section of which `parts` says that there are some.
+template <class Parts>
+MetricList list_without_values(const Parts& parts) {
+  MetricList metrics;
+  tell_common(MetricsObserver(1.0), nullptr, metrics);
+  for (const SectionKind& kind : kSections) {
+    const std::size_t count = parts(kind);
+    if (count == 0) continue;
+    Section section(metrics, kind.name);
+    kind.observe(nullptr, count)->tell(section);
+  }
+  for (Metric& metric : metrics) metric.value = {};
+  return metrics;
+}
+
+}  // namespace
+
+MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force) {
+  const bool is_one_trial = trial_count(scenario.hand) == 1.0;
+  return list_without_values([&](const SectionKind& kind) {
+    return is_one_trial || kind.merges ? kind.parts(scenario, has_reference_force) : 0;
+  });
+}
+
+MetricList metrics_without_values(std::size_t places) {
+  return list_without_values([places](const SectionKind&) { return places; });
+}
+
+const MetricList& all_metrics() {
+  static const MetricList all = metrics_without_values(2);
+  return all;
+}
+
+SectionObservers::SectionObservers(const Scenario& scenario, bool has_reference_force) {
+  for (std::size_t i = 0; i < std::size(kSections); ++i) {
+    const std::size_t parts = kSections[i].parts(scenario, has_reference_force);
+    if (parts == 0) continue;
+    observers_.push_back(kSections[i].observe(&scenario, parts));
+    kinds_.push_back(i);
+  }
+}
+
+void SectionObservers::begin(const TrialParts& trial) {
+  ++trials_;
+  for (const auto& observer : observers_) observer->begin(trial);
+}
+
+void SectionObservers::tell(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const {
+  tell_common(metrics, inside, result.metrics);
+  for (std::size_t i = 0; i < observers_.size(); ++i) {
+    const SectionKind& kind = kSections[kinds_[i]];
+    if (trials_ > 1 && !kind.merges) continue;
+    Section section(result.metrics, kind.name);
+    observers_[i]->tell(section);
+    observers_[i]->add_members(result.sections[kind.name] = nlohmann::ordered_json::object());
+  }
+}
+
+}  // namespace hapbench

@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/parts.hpp"
+#include "sim/tool/mesh_tool.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr std::size_t kMostCorners = 1000;  // of a profile; the cost of a step grows with them
+
+/// In the order of the variant.
+constexpr TypeName kToolTypes[] = {
+    {"cylinder", "a drill's stylus with a flat or a round tip"},
+    {"revolved", "a solid of revolution, given by its profile"},
+    {"bur", "a dental or bone bur by the name of its shape, with its shank"},
+    {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},
+};
+
+/// Turns the objection of a shape to its fields into an InputError at `at`.
+template <class Make>
+void check_shape(const std::string& at, const char* allowed, const Make& make) {
+  try {
+    make();
+  } catch (const std::invalid_argument& error) {
+    fail_at(at, fmt::format("{}; allowed: {}", error.what(), allowed));
+  }
+}
+
+/// Throws std::invalid_argument when there is none.
+Revolved revolved_of(const BurFields& bur) {
+  const BurProfile of_bur = bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
+                                        bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));
+  return Revolved(of_bur.profile, of_bur.tip);
+}
+
+}  // namespace
+
+static void describe(Fields& f, CylinderFields& tool) {
+  f.number("diameter_m", tool.diameter, kLength, "diameter of the cylinder; default 0.001", Presence::no_default);
+  f.number("length_m", tool.length, kLength, "from the tip plane to the bottom; default 0.005 in hole_2d, else 0.01",
+           Presence::no_default);
+  f.choice("tip", tool.tip, {"flat", "round"}, "tip", "round adds a half ball; default round in hole_2d, else flat",
+           Presence::no_default);
+}
+
+static void describe(Fields& f, RevolvedFields& tool) {
+  f.list(
+      "profile_m", tool.profile, {2, kMostCorners},
+      "corners [s, rho] of the outline beside the axis, from the far end to the tip: s <= 0 along the axis from the tip "
+      "centre, rho from the axis",
+      [](Fields& p, ProfilePoint& point) {
+        p.pair("two numbers [s, rho]: along the axis from the tip centre, and from the axis [m]", point.s,
+               {-1000.0, 1000.0, "m"}, point.rho, {0.0, 1000.0, "m"});
+      },
+      Presence::required);
+  f.choice("tip", tool.tip, {"flat", "round"}, "tip", "round adds a half ball beyond the last corner");
+  if (f.reads()) {
+    check_shape(f.at() + "/profile_m", "an outline from the far end to the tip that does not meet itself",
+                [&tool] { Revolved(tool.profile, tool.tip); });
+  }
+}
+
+static void describe(Fields& f, BurFields& tool) {
+  f.choice("family", tool.family, {"ball", "cylinder", "round_cylinder", "tapered", "inverted_cone", "pear", "flame"},
+           "family", "shape of the head", Presence::required);
+  f.number("diameter_m", tool.diameter, kLength, "of the head, where it is widest", Presence::required);
+  f.number("length_m", tool.length, kLength, "of the head, its round end included; null: its diameter");
+  f.number("shank_diameter_m", tool.shank_diameter, kLength,
+           "of the shank, or neck, behind the head, which is ten times as long; null: 0.6 of the head's");
+  if (f.reads()) check_shape(f.at(), "lengths that suit the family", [&tool] { revolved_of(tool); });
+}
+
+static void describe(Fields& f, MeshToolFields& tool) {
+  f.file(tool.file, {FileContent::Kind::mesh, {tool.scale, {}}},
+         "closed surface as OBJ, PLY, STL or OFF, its tip where tip_m and tip_axis say; relative to the scenario file");
+  f.number("scale", tool.scale, {0.0, 1e6, "m", true}, "length of the file's unit: 0.001 for millimetres",
+           Presence::required);
+  f.vector3("tip_m", tool.tip, {-1000.0, 1000.0, "m"}, "place in the file, scaled, that is the tip centre");
+  f.vector3("tip_axis", tool.tip_axis, {-1e9, 1e9, "1"},
+            "where the tip points in the file; the least turn takes it to -z, where the tool's axis points unturned");
+  f.number("grid_m", tool.grid, kLength,
+           "spacing of the grid that holds the signed distances; null: such that it has about 128^3 nodes");
+  if (f.reads()) require_direction(tool.tip_axis, f.at() + "/tip_axis");
+}
+
+void describe(Fields& f, ToolFields& tool) {
+  f.variant(tool, "tool", kToolTypes, Untyped::first);
+}
+
+std::vector<std::string> tool_names() {
+  return names_of(kToolTypes, &TypeName::name);
+}
+
+namespace {
+
+/// The signed distances from the surface in the tool's own frame: tip centre at the origin, axis along -z. Throws
+/// InputError that names the file when there is no grid of them.
+std::shared_ptr<const SignedDistanceGrid> make_grid(const MeshToolFields& fields, const NamedFiles& files) {
+  TriangleSoup surface = files.at(kToolFile).mesh().triangles();
+  const Mat3 to_file = ToolPose{.position = fields.tip, .axis = fields.tip_axis.normalized()}.rotation();
+  for (Vec3& vertex : surface.vertices) vertex = to_file.transpose() * (vertex - fields.tip);
+  try {
+    const double spacing = fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices));
+    return std::make_shared<const SignedDistanceGrid>(ClosedSurface(surface.vertices, surface.triangles), spacing);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", files.at(kToolFile).path().string(), error.what()));
+  }
+}
+
+struct Make {
+  const NamedFiles& files;
+
+  std::shared_ptr<const ToolShape> operator()(const CylinderFields& f) const {
+    return std::make_shared<Cylinder>(f.diameter / 2.0, f.length, f.tip);
+  }
+  std::shared_ptr<const ToolShape> operator()(const RevolvedFields& f) const {
+    return std::make_shared<Revolved>(f.profile, f.tip);
+  }
+  std::shared_ptr<const ToolShape> operator()(const BurFields& f) const {
+    return std::make_shared<Revolved>(revolved_of(f));
+  }
+  std::shared_ptr<const ToolShape> operator()(const MeshToolFields& f) const {
+    const std::string content = fmt::format("grid {} {} {} {} {}", files.at(kToolFile).hash(), f.scale,
+                                            f.grid.value_or(0.0), fmt::join(f.tip, " "), fmt::join(f.tip_axis, " "));
+    const auto bytes = [](const SignedDistanceGrid& grid) { return sizeof(double) * grid.nodes().size(); };
+    return std::make_shared<MeshTool>(shared_cache().get<SignedDistanceGrid>(
+        content, [&] { return make_grid(f, files); }, bytes));
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const NamedFiles& files) {
+  return std::visit(Make{files}, scenario.tool);
+}
+
+Cylinder make_cylinder(const ToolFields& fields) {
+  if (const auto* f = std::get_if<CylinderFields>(&fields)) return {f->diameter / 2.0, f->length, f->tip};
+  const std::vector<std::string> names = tool_names();
+  fail_at("/tool/type", fmt::format("got \"{}\"; allowed here: \"{}\"", names[fields.index()], names.front()));
+}
+
+}  // namespace hapbench

@@ -1,0 +1,454 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <ctime>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "results/io/atomic_file.hpp"
+#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/metric_sections.hpp"
+#include "sim/core/random.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/mutation.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+namespace hapbench::sweep_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::minimal_scenario;
+using test::read_file;
+
+// Tables that grow, are interrupted and joined.
+
+using Rows = std::vector<std::string>;
+
+class TableFiles : public testing::Test {
+ protected:
+  TableTitle title(const std::string& definition = "mine") const {
+    return {file_, "index,a", {{"definition", definition}}, 9};
+  }
+  /// The rows that a table keeps when it goes on.
+  Rows resumed(const std::string& definition = "mine") const {
+    Rows rows;
+    const TableFile table(title(definition), [&](std::size_t, std::string_view row) {
+      rows.emplace_back(row);
+      return true;
+    });
+    return rows;
+  }
+  /// A table under way, as a killed process leaves it; returns its bytes.
+  std::string left(const Rows& rows) const {
+    TableFile table(title());
+    for (const std::string& row : rows) table.add(static_cast<std::size_t>(row[0] - '0'), row);
+    return read_file(part_);
+  }
+  static void expect_refusal(const std::function<void()>& work, const std::string& says) {
+    const auto error = test::input_error_of(work);
+    ASSERT_TRUE(error) << says;
+    EXPECT_NE(std::string(error->what()).find(says), std::string::npos) << error->what();
+  }
+  test::TemporaryDirectory directory_;
+  const fs::path file_ = directory_ / "sweep.csv", part_ = directory_ / "sweep.csv.part";
+};
+
+TEST_F(TableFiles, HaveTheirRowsInOrderAndOfTwoTheLater) {
+  TableFile table(title());
+  for (const char* row : {"7,x", "0,b", "3,old", "3,new"}) table.add(static_cast<std::size_t>(row[0] - '0'), row);
+  EXPECT_FALSE(fs::exists(file_));
+  table.finish();
+  EXPECT_EQ(read_file(file_), "index,a\n0,b\n3,new\n7,x\n");
+  EXPECT_EQ(directory_.entries(), (Rows{"sweep.csv", "sweep.json"}));
+  EXPECT_EQ(resumed(), (Rows{"0,b", "3,new", "7,x"})) << "of a finished one";
+}
+
+TEST_F(TableFiles, CutShortAnywhereKeepTheWholeLinesAndGoOn) {
+  const Rows rows = {"0,a", "1,bcd", "2," + std::string(10'000, 'e')};
+  const std::string whole = left(rows);
+  for (std::size_t size = 0; size <= whole.size(); size += size < 30 ? 1 : 997) {
+    test::write_plainly(part_, whole.substr(0, size));
+    const auto lines = std::count(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size), '\n');
+    const Rows expected(rows.begin(), rows.begin() + std::max<std::ptrdiff_t>(lines - 1, 0));
+    ASSERT_EQ(resumed(), expected) << size;
+    ASSERT_EQ(TableFile::rows_under_way(file_), expected.size());
+  }
+}
+
+TEST_F(TableFiles, OfAnotherDefinitionAreRefusedAndLeftAlone) {
+  const std::string whole = left({"0,a"});
+  expect_refusal([&] { resumed("theirs"); }, "sweep.csv.part: is not the table of this sweep");
+  EXPECT_EQ(read_file(part_), whole);
+  fs::remove(directory_ / "sweep.json.part");
+  expect_refusal([&] { resumed(); }, "is not the table of this sweep");
+}
+
+TEST_F(TableFiles, DamagedAtRandomAreReadOrRefused) {
+  Random random(20261120);
+  const std::string whole = left({"0,a", "1,bcd", "2,e"});
+  for (int i = 0; i < 300; ++i) {
+    test::write_plainly(part_, test::mutated_text(whole, random));
+    try {
+      for (const std::string& row : resumed()) EXPECT_LT(row[0], '9') << row;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find(part_.string()), 0u) << error.what();
+    }
+  }
+}
+
+TEST_F(TableFiles, ThatAnotherProcessBeginsAnewEndWithAnError) {
+  TableFile table(title());
+  left({"1,a"});
+  EXPECT_THROW(table.finish(), IoError);
+  EXPECT_FALSE(fs::exists(file_));
+}
+
+TEST_F(TableFiles, OnAFullDiskAreAnErrorThatNamesThem) {
+  TableFile table(title());
+  const test::FileSizeLimit limit(200);
+  const std::string row = "0," + std::string(60, 'a');
+  std::size_t added = 0;
+  try {
+    for (; added < 10; ++added) table.add(0, row);
+    ADD_FAILURE() << "no error";
+  } catch (const IoError& error) {
+    EXPECT_NE(std::string(error.what()).find(part_.string()), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(added, 3u);  // 8 bytes of header and 63 of each row
+}
+
+TEST_F(TableFiles, OfShardsAreJoinedWhenAllAreThere) {
+  const auto write_shard = [&](std::size_t i, std::size_t n, const Rows& rows, const std::string& definition = "mine") {
+    TableTitle shard = title(definition);
+    shard.file = directory_ / table_name(Shard{i, n});
+    shard.about["runs"] = 4;
+    shard.about["shard"] = shard_text({i, n});
+    TableFile table(shard);
+    for (const std::string& row : rows) table.add(static_cast<std::size_t>(row[0] - '0'), row);
+    table.finish();
+  };
+  const auto join = [&] { return join_shards(directory_.path()); };
+  EXPECT_FALSE(join());
+  write_shard(1, 3, {"3,d"});
+  expect_refusal([&] { join(); }, "2 of 3 shards missing: 0/3, 2/3");
+  write_shard(0, 3, {"0,a", "2,\"b,\""});
+  write_shard(2, 3, {"1,c"}, "theirs");
+  expect_refusal([&] { join(); }, "sweep.2_of_3.csv: is of another sweep than ");
+  write_shard(2, 3, {});
+  expect_refusal([&] { join(); }, "the shards have 3 of 4 rows");
+  write_shard(2, 3, {"1,c"});
+  EXPECT_TRUE(join());
+  EXPECT_EQ(read_file(file_), "index,a\n0,a\n1,c\n2,\"b,\"\n3,d\n");
+  EXPECT_EQ(Json::parse(read_file(directory_ / "sweep.json"))["shard"], "0/1");
+  EXPECT_EQ(directory_.entries().size(), 8u) << "nothing else is left";
+  write_shard(1, 3, {"3,new"});
+  EXPECT_TRUE(join());
+  EXPECT_EQ(read_file(file_), "index,a\n0,a\n1,c\n2,\"b,\"\n3,new\n");
+  write_shard(0, 2, {"0,a"});
+  expect_refusal([&] { join(); }, "allowed: shards of one division");
+}
+
+TEST(CsvCells, AreWhatTheyWereWithCommasAndQuotes) {
+  for (const Rows& cells : {Rows{""}, Rows{"a", "", "b"}, Rows{R"({"a":[1,2]})", "\"", ",", "\",\"", "x"}}) {
+    std::string line;
+    for (const std::string& cell : cells) line += (line.empty() && &cell == &cells[0] ? "" : ",") + csv_cell(cell);
+    EXPECT_EQ(csv_cells(line), cells) << line;
+  }
+}
+
+using Numbers = std::vector<std::size_t>;
+
+Cases grid(const std::vector<std::string>& vary, const ScenarioText& scene = {}, std::vector<std::string> sets = {}) {
+  std::vector<Axis> axes;
+  for (const std::string& text : vary) axes.push_back(parse_axis(text));
+  return {{scene}, std::move(sets), std::move(axes)};
+}
+
+SweepPlan plan_of(const Json& scenario, const std::vector<std::string>& vary,
+                  const fs::path& file = test::data_directory() / "sweep.json") {
+  return plan_sweep(grid(vary, {file, scenario}), {2, ""});
+}
+
+TEST(RunsToCheck, AreAllOfAFewAndTheEdgesOfMany) {
+  EXPECT_EQ(runs_to_check(grid({"a=1,2,3", "b=1,2"})), (Numbers{0, 1, 2, 3, 4, 5}));
+  const Cases many = grid({"a=1:100:100", "b=1:100:100", "c=x,y,z"});
+  const Numbers checked = runs_to_check(many);
+  EXPECT_TRUE(std::is_sorted(checked.begin(), checked.end()));
+  EXPECT_LE(checked.size(), 2u * (100 + 100 + 3));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::set<std::size_t> seen;
+    for (const std::size_t run : checked) seen.insert(many.place(run, axis));
+    EXPECT_EQ(seen.size(), many.axes()[axis].size());
+  }
+  EXPECT_EQ(runs_to_check(grid({"a=1:1e6:1000000"})).size(), kMostChecked);
+}
+
+TEST(SweepPlan, GivesEachWarningOnceInTheOrderOfRuns) {
+  // An algorithm that fixes its depth model overrides the one given.
+  Json scenario = minimal_scenario("plane");
+  scenario["rendering"] = {{"algorithm", "normal_projection"}, {"depth_model", "shortest_distance"}};
+  const LoadedScenario loaded = load_scenario(ScenarioText{"sweep.json", scenario}, {});
+  const std::vector<std::string> alone = with_files(loaded, loaded.warnings);
+  ASSERT_FALSE(alone.empty());
+  const SweepPlan plan = plan_of(scenario, {"time.steps=1:50:50"}, "sweep.json");
+  EXPECT_EQ(plan.warnings, alone);
+}
+
+TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
+  std::vector<test::NamedScenario> scenarios = test::rich_scenarios();
+  for (test::NamedScenario& minimal : test::minimal_scenarios()) scenarios.push_back(std::move(minimal));
+  Json prescribed = minimal_scenario("plane");
+  prescribed["motion"]["position"] = {{"type", "prescribed"}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0}};
+  prescribed["reference_force"] = {{"z_N", 1.0}};
+  scenarios.push_back({"with_reference_force", prescribed});
+  Json block = minimal_scenario("block_with_hole");
+  block["record"] = {{"ideal_trajectory", true}};
+  scenarios.push_back({"with_ideal_trajectory", block});
+  std::set<std::string> all;
+  for (const auto& [name, json] : scenarios) {
+    const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";  // which take their time
+    const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
+    std::vector<std::string> names;
+    for (const Metric& metric : run_scenario(plan.cases.load(0), std::nullopt, false).metrics)
+      names.push_back(metric.name);
+    EXPECT_EQ(plan.metrics, names) << name;
+    for (const std::string& bounded : plan.bounded)
+      EXPECT_NE(std::find(names.begin(), names.end(), bounded), names.end()) << bounded;
+    all.insert(names.begin(), names.end());
+  }
+  for (const Metric& metric : all_metrics()) EXPECT_TRUE(all.contains(metric.name)) << metric.name;
+}
+
+TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {
+  const Json plane = minimal_scenario("plane");
+  Json other = plane;
+  other["seed"] = 5;
+  std::set<std::string> definitions;
+  for (const auto& vary : {std::vector<std::string>{"time.steps=1,2"},
+                           {"time.steps=2,1"},
+                           {"time.steps=1,2,3"},
+                           {"time.steps=1,2", "seed=1"},
+                           {"seed=1", "time.steps=1,2"}}) {
+    definitions.insert(plan_of(plane, vary).definition);
+  }
+  definitions.insert(plan_of(other, {"time.steps=1,2"}).definition);
+  const std::vector<std::string> steps = {"time.steps=1,2"};
+  definitions.insert(plan_sweep(grid(steps, {"sweep.json", plane}, {"seed=5"}), {}).definition);
+  const std::vector<Axis> box = {parse_axis("seed=1,2,3", true)};
+  for (const Sampling& sampling : {Sampling{kLatinHypercube, 3, 1}, Sampling{kLatinHypercube, 3, 2},
+                                   Sampling{kLatinHypercube, 4, 1}, Sampling{kRandomPoints, 3, 1}}) {
+    definitions.insert(plan_sweep(Cases({{"sweep.json", plane}}, {}, box, sampling), {}).definition);
+  }
+  EXPECT_EQ(definitions.size(), 11u);
+  // Threads, the file's place and spelling do not count.
+  EXPECT_EQ(plan_sweep(grid(steps, {"elsewhere.json", plane}), {7, ""}).definition,
+            plan_of(plane, {"time.steps=1.0,2e0"}).definition);
+}
+
+TEST(SweepPlan, DefinesNamedFilesByTheirContents) {
+  const test::TemporaryDirectory directory;
+  const std::string points = test::read_file(test::data_directory() / "shell.csv");
+  const auto definition = [&](const std::string& contents) {
+    test::write_plainly(directory / "shell.csv", contents);
+    return plan_of(minimal_scenario("point_shell"), {"time.steps=1,2"}, directory / "sweep.json").definition;
+  };
+  const std::string first = definition(points);
+  EXPECT_EQ(definition(points), first);
+  EXPECT_NE(definition(points.substr(0, points.rfind('\n', points.size() - 2) + 1)), first);
+}
+
+TEST(SweepPlan, RefusesBadMeshesOfToolsBeforeTheFirstRun) {
+  const test::TemporaryDirectory directory;
+  const std::string cube = test::read_file(test::data_directory() / "cube.obj");
+  test::write_plainly(directory / "tool.obj", cube);
+  test::write_plainly(directory / "open.obj", cube.substr(0, cube.rfind('f')));
+  Json scene = minimal_scenario("plane");
+  scene["tool"] = {{"type", "mesh"}, {"file", "tool.obj"}, {"scale", 0.001}, {"grid_m", 0.0002}};
+  const auto error =
+      test::input_error_of([&] { plan_of(scene, {"tool.file=tool.obj,open.obj"}, directory / "sweep.json"); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("sweep.json: /tool/file: "), std::string::npos) << error->what();
+  EXPECT_NE(std::string(error->what()).find("open.obj"), std::string::npos) << error->what();
+}
+
+TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
+  const test::TemporaryDirectory directory;
+  // So many values are not all checked before the first run; 4567 is one that is not.
+  std::string seeds = "seed=0";
+  for (int i = 1; i < 6000; ++i) seeds += "," + std::to_string(i == 4567 ? -1 : i);
+  const SweepPlan plan = plan_of(minimal_scenario("springs"), {seeds});
+  const SweepOptions options{.directory = directory.path(), .jobs = {3, ""}};
+  const SweepReport report = run_sweep(plan, options);
+  ASSERT_TRUE(report.failed);
+  EXPECT_EQ(*report.failed, 4567u);
+  EXPECT_NE(report.problem.find("/seed: got -1"), std::string::npos) << report.problem;
+  const SweepTable table = read_sweep(options.table());
+  EXPECT_EQ(table.columns, plan.columns());
+  EXPECT_EQ(table.counts.failed, 1u);
+  SweepRow row = {"4567", "-1", "error", "false"};
+  row.resize(plan.columns().size());
+  EXPECT_EQ(table.rows[4567], row);
+  EXPECT_EQ(table.outcome(table.rows[4568]), "completes");
+}
+
+TEST(ForEachJob, BeginsEachOnceInOrderAndNoMoreThanItsThreads) {
+  for (const unsigned threads : {1u, 2u, 7u}) {
+    std::atomic<std::size_t> ended = 0;
+    for_each_job(400, {threads, ""}, [&](std::size_t i) {
+      // All before this one have begun, and all of them but threads - 1 have ended.
+      EXPECT_LT(i, ended + threads);
+      std::this_thread::yield();
+      ++ended;
+    });
+    EXPECT_EQ(ended, 400u);
+  }
+}
+
+TEST(ForEachJob, ThrowsWhatTheLowestFailingJobThrew) {
+  // All fail: the first one is begun before any other and is the lowest.
+  for (const unsigned threads : {1u, 4u})
+    EXPECT_THROW(for_each_job(50, {threads, ""},
+                              [](std::size_t i) {
+                                if (i == 0) throw std::domain_error("first");
+                                throw std::runtime_error("later");
+                              }),
+                 std::domain_error);
+}
+
+// What a sweep promises whatever happens to it: the bytes of its table, its memory, and its cost.
+
+/// Ends a sweep as its process would end: whatever is written stays.
+struct Killed {};
+
+class SweepPromises : public testing::Test {
+ protected:
+  /// Runs a sweep that is interrupted after some rows: killed, stopped by a signal, or killed amid a line.
+  void interrupt(const SweepPlan& plan, SweepOptions options) {
+    const std::uint64_t way = random_.below(3);
+    std::uint64_t rows = random_.below(plan.cases.size());
+    options.added = [&rows, way] {
+      if (rows-- != 0) return;
+      if (way == 0) throw Killed();
+      stop_work(SIGTERM);
+    };
+    try {
+      run_sweep(plan, options);
+    } catch (const Killed&) {
+    } catch (const Stopped&) {
+    }
+    stop_work(0);
+    const fs::path file = options.table().string() + ".part";
+    if (way != 2 || !fs::exists(file)) return;
+    std::string text = read_file(file);
+    test::write_plainly(file, text.substr(0, text.size() - std::min<std::size_t>(random_.below(9), text.size())));
+  }
+  void run_part(const SweepPlan& plan, const fs::path& directory, const std::optional<Shard>& shard) {
+    SweepOptions options{.directory = directory, .shard = shard, .resume = true};
+    for (std::uint64_t times = random_.below(4); times-- > 0;) {
+      options.jobs.threads = 1 + static_cast<unsigned>(random_.below(4));
+      interrupt(plan, options);
+    }
+    run_sweep(plan, options);
+  }
+
+  test::TemporaryDirectory directory_;
+  Random random_{20261124};
+};
+
+TEST_F(SweepPromises, TheSameBytesWhateverTheJobsTheShardsAndTheKills) {
+  // The environment varies in between, so the runs are not done in the order of the table.
+  const SweepPlan plan =
+      plan_of(test::minimal_scenario("plane"),
+              {"time.steps=1:6:6", "environment.spacing_m=5e-4,4e-4", "rendering.algorithm=mean,summation,proxy"},
+              directory_ / "scene.json");
+  const fs::path whole = directory_ / "whole";
+  fs::create_directory(whole);
+  ASSERT_FALSE(run_sweep(plan, {.directory = whole}).failed);
+  ASSERT_EQ(test::lines_of(read_file(whole / "sweep.csv")).size(), 37u);
+  for (int attempt = 0; attempt < 40; ++attempt) {
+    const fs::path out = directory_ / "out";
+    fs::create_directory(out);
+    const std::size_t shards = random_.below(5);
+    for (std::size_t i = 0; i < shards; ++i) run_part(plan, out, Shard{i, shards});
+    if (shards == 0) run_part(plan, out, std::nullopt);
+    EXPECT_EQ(join_shards(out), shards > 0);
+    for (const char* file : {"sweep.csv", "sweep.json"})
+      ASSERT_EQ(read_file(out / file), read_file(whole / file)) << "attempt " << attempt << ", " << shards << " shards";
+    fs::remove_all(out);
+  }
+}
+
+TEST_F(SweepPromises, AFailedRunIsTriedAgain) {
+  const fs::path shell = directory_ / "shell.csv", out = directory_ / "out", whole = directory_ / "whole";
+  const auto restore = [&] { test::write_plainly(shell, read_file(test::data_directory() / "shell.csv")); };
+  restore();
+  const SweepPlan plan = plan_of(test::minimal_scenario("point_shell"),
+                                 {"environment.file=shell.csv", "time.steps=1,2,3"}, directory_ / "scene.json");
+  for (const fs::path& folder : {out, whole}) fs::create_directory(folder);
+  run_sweep(plan, {.directory = whole});
+  fs::remove(shell);
+  SweepOptions options{.directory = out};
+  run_sweep(plan, options);
+  EXPECT_EQ(read_sweep(options.table()).counts.failed, 3u);
+  restore();
+  options.resume = true;
+  EXPECT_FALSE(run_sweep(plan, options).failed);
+  EXPECT_EQ(read_file(out / "sweep.csv"), read_file(whole / "sweep.csv"));
+}
+
+/// What takes seconds.
+class SlowSweepPromises : public SweepPromises {};
+
+double most_resident_bytes() {
+  ::rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+TEST_F(SlowSweepPromises, TheMemoryOfAThousandRunsForAHundredTimesAsMany) {
+  const auto run = [&](const char* seeds) {
+    const SweepPlan plan = plan_of(test::minimal_scenario("springs"), {seeds}, "springs.json");
+    run_sweep(plan, {.directory = directory_.path(), .jobs = {2, ""}});
+    return most_resident_bytes();
+  };
+  const double few = run("seed=1:1000:1000");
+  // The places of the rows in their file take 8 bytes a run; what the allocator keeps for itself varies.
+  EXPECT_LT(run("seed=1:100000:100000") - few, 4e6);
+}
+
+double processor_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+TEST_F(SlowSweepPromises, LittleMoreTimeThanTheSimulationsInWhicheverOrderTheAxesAreGiven) {
+  const Json scene = test::minimal_scenario("block_with_hole");
+  const std::vector<std::string> vary[] = {{"environment.grid_m=2e-4,1.5e-4,1e-4", "time.steps=20000:20019:20"},
+                                           {"time.steps=20000:20019:20", "environment.grid_m=2e-4,1.5e-4,1e-4"}};
+  for (const auto& axes : vary) {
+    const SweepPlan plan = plan_of(scene, axes, directory_ / "scene.json");
+    const double begun = processor_seconds();
+    run_sweep(plan, {.directory = directory_.path()});
+    const double sweep = processor_seconds() - begun;
+    double simulations = 0.0;
+    for (std::size_t run = 0; run < plan.cases.size(); ++run) {
+      const LoadedScenario loaded = plan.cases.load(run);
+      const auto shell = make_shell(loaded.scenario, loaded.files);
+      const double before = processor_seconds();
+      run_with_shell(loaded, shell);
+      simulations += processor_seconds() - before;
+    }
+    EXPECT_LT(sweep, 1.3 * simulations) << axes.front();
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::sweep_test
