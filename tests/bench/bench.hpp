@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/run/assemble.hpp"
@@ -50,7 +51,7 @@ struct TaskScene {
 };
 
 /// The scene of one of kTasks, computed once. The poses of T2 and T3 are one period of the script.
-const TaskScene& task_scene(const std::string& task);
+const TaskScene& task_scene(std::string_view task);
 
 /// The scenario a step is timed in: one of kTasks, `T2_proxy` (T2 with a proxy), `unreduced_1000` (a drill that nearly
 /// fills the hole touches about 1000 points, none of them reduced away), `free_air` (an upright drill at rest 5 cm

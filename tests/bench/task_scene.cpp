@@ -1,5 +1,6 @@
 #include "tests/bench/bench.hpp"
 
+#include <functional>
 #include <map>
 
 #include "scenarios/input/bundled_files.hpp"
@@ -92,10 +93,12 @@ const LoadedScenario& step_scenario(const std::string& name) {
   return found != loaded.end() ? found->second : loaded.emplace(name, load_step_scenario(name)).first->second;
 }
 
-const TaskScene& task_scene(const std::string& task) {
-  static std::map<std::string, TaskScene> scenes;
+const TaskScene& task_scene(std::string_view task) {
+  static std::map<std::string, TaskScene, std::less<>> scenes;
   const auto found = scenes.find(task);
-  return found != scenes.end() ? found->second : scenes.emplace(task, make_task_scene(task)).first->second;
+  if (found != scenes.end()) return found->second;
+  const std::string name(task);
+  return scenes.emplace(name, make_task_scene(name)).first->second;
 }
 
 std::shared_ptr<const PointShell> block_shell() {

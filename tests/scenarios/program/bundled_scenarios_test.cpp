@@ -151,7 +151,7 @@ RecordedNumbers numbers_below(const fs::path& directory) {
     } else if (file == "summary.json") {
       const Json summary = Json::parse(contents);
       for (const auto& [group, metrics] : summary.at("metrics").items()) add_numbers(hashes[file][group], metrics);
-      if (name == file) numbers[file]["state_hash"] = summary.at("state_hash");
+      if (name == file) numbers[file]["state_hash"] = summary.at("state_hash").get<std::string>();
     }
   }
   // Half of each hash: a change that it does not see has a chance of 2^-32.

@@ -193,7 +193,7 @@ std::map<std::string, Json> repeatable_claims(const Json& ledger) {
   std::map<std::string, Json> claims;
   for (Json claim : ledger["claims"]) {
     claim.erase("seconds");
-    if (!claim["timing"].get<bool>()) claims[claim["id"]] = claim;
+    if (!claim["timing"].get<bool>()) claims[claim["id"].get<std::string>()] = claim;
   }
   return claims;
 }
@@ -273,7 +273,8 @@ using Verdicts = std::map<std::string, std::string>;
 Verdicts verdicts_on_record() {
   Verdicts verdicts;
   const Json ledger = Json::parse(test::read_file(kReference / "claims.json"));
-  for (const Json& entry : ledger.at("claims")) verdicts[entry.at("id")] = entry.at("verdict");
+  for (const Json& entry : ledger.at("claims"))
+    verdicts[entry.at("id").get<std::string>()] = entry.at("verdict").get<std::string>();
   for (const Claim& claim : all_claims())
     if (claim.timing || claim.costly) verdicts.erase(claim.id);
   return verdicts;
@@ -300,7 +301,7 @@ TEST(RobustnessOnRecord, HasTheVerdictsThatTheProgramMakesOfAReading) {
   const Json ledger = Json::parse(test::read_file(kReference / "claims.json"));
   std::size_t sampled = 0;
   for (const Json& entry : ledger.at("claims")) {
-    const std::string id = entry.at("id");
+    const std::string id = entry.at("id").get<std::string>();
     if (entry.at("robustness").is_null() || !made.contains(id)) continue;
     ++sampled;
     EXPECT_TRUE(entry.at("robustness").at("verdicts").contains(made.at(id))) << id << ": " << made.at(id);

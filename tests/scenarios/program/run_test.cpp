@@ -83,7 +83,7 @@ TEST_F(RunCommand, ThatDivergesKeepsWhatWasRecorded) {
   EXPECT_EQ(s["outcome"], "diverges");
   EXPECT_GT(divergence["magnitude"], divergence["bound"]);
   // All rows before the one that diverged are there.
-  const std::size_t step = divergence["step"];
+  const auto step = divergence["step"].get<std::size_t>();
   const auto rows = lines_of(test::read_file(directory_ / "out/trajectory.csv"));
   EXPECT_EQ(rows.size(), 1 + step);
   EXPECT_EQ(s["steps"], step);

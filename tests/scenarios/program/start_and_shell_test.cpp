@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <regex>
 
@@ -32,7 +33,7 @@ TEST_F(NewCommand, WritesScenariosOfEveryKindThatRunAtOnceAndTouch) {
   const Json kinds = hapbench({"new", "--json"}).json();
   ASSERT_FALSE(kinds.empty());
   for (const Json& entry : kinds) {
-    const std::string kind = entry["kind"], file = path(kind + ".json");
+    const std::string kind = entry["kind"].get<std::string>(), file = path(kind + ".json");
     std::vector<std::string> arguments = {"new", kind, "--out", file};
     const std::string source = kind == "mesh" || kind == "tool" ? "cube.obj"
                                : kind == "shell"                ? "shell.csv"
@@ -116,8 +117,8 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
   EXPECT_NE(behind.find("1.5 mm behind the surface"), std::string::npos) << behind;
   EXPECT_EQ(hapbench({"validate", path("made.json")}).err.find("behind"), std::string::npos);
   // So does one whose shank goes through the surface, its tip 0.2 mm behind it.
-  Vec3 touching(turned["initial"]["position_m"][0], turned["initial"]["position_m"][1],
-                turned["initial"]["position_m"][2]);
+  const auto at = turned["initial"]["position_m"].get<std::array<double, 3>>();
+  Vec3 touching(at[0], at[1], at[2]);
   touching.z() -= 0.0013;
   const std::string place = "initial.position_m=" + Json({touching.x(), touching.y(), touching.z()}).dump();
   for (const bool flip : {false, true}) {
@@ -144,7 +145,7 @@ TEST_F(NewOnASheet, StartsWhereItIsTold) {
   const Json below =
       made({"mesh", "--from", path("down.obj"), "--extent", "8mm", "--side=-z", "--at", "0.002,-0.001,0.0006"});
   EXPECT_FALSE(below["environment"].contains("flip_normals"));
-  const Json start = below["initial"]["position_m"];
+  const auto start = below["initial"]["position_m"].get<std::array<double, 3>>();
   // One point is kept in each cube of 0.1 mm: its diagonal.
   EXPECT_NEAR(start[0], 0.002, 1.8e-4);
   EXPECT_NEAR(start[1], -0.001, 1.8e-4);
@@ -154,7 +155,7 @@ TEST_F(NewOnASheet, StartsWhereItIsTold) {
       made({"drag", "--from", path("up.obj"), "--extent", "8mm", "--path", "-0.002,0,0", "--path", "0.002,0.001,0"});
   EXPECT_EQ(path_given["hand"]["path_m"], (Json{{-0.002, 0, 0}, {0.002, 0.001, 0}}));
   EXPECT_FALSE(path_given["hand"].contains("direction"));
-  EXPECT_NEAR(path_given["initial"]["position_m"][0], -0.002, 2e-4);
+  EXPECT_NEAR(path_given["initial"]["position_m"][0].get<double>(), -0.002, 2e-4);
 }
 
 TEST_F(NewOnASheet, ComesFromEverySideOfAClosedBody) {

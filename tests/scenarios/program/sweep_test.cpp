@@ -84,7 +84,7 @@ TEST_F(SweepCommand, HasTheRunsThatThePrintedCommandRepeats) {
   EXPECT_EQ(lines_of(printed.out).size(), 1u);
   // As a shell takes it apart: the quotes around the list of outcomes are its own.
   EXPECT_NE(printed.out.find(" --set 'expect.outcome=[\"completes\","), std::string::npos) << printed.out;
-  Words words = sweep("a", {"--row", "14", "--print", "--json"}).json()["command"];
+  Words words = sweep("a", {"--row", "14", "--print", "--json"}).json()["command"].get<Words>();
   EXPECT_EQ(words[0], fs::canonical(test::hapbench_program()));
   words.erase(words.begin());
   words.insert(words.end(), {"--out", (directory_ / "run").string()});
@@ -96,9 +96,9 @@ TEST_F(SweepCommand, HasTheRunsThatThePrintedCommandRepeats) {
   EXPECT_EQ(summary, Json::parse(read_file(directory_ / "a/runs/000014/summary.json")));
   EXPECT_EQ(summary["work"]["allocations"], 0);
   EXPECT_TRUE(fs::exists(directory_ / "a/runs/000023/trajectory.csv"));
-  EXPECT_EQ(cells[4], summary["outcome"]);
+  EXPECT_EQ(summary["outcome"], cells[4]);
   EXPECT_EQ(cells[6], std::to_string(summary["steps"].get<int>()));
-  EXPECT_EQ(cells.back(), summary["state_hash"]);
+  EXPECT_EQ(summary["state_hash"], cells.back());
 }
 
 TEST_F(SweepCommand, IsPrintedAgainFromItsFolder) {

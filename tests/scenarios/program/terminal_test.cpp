@@ -16,6 +16,7 @@
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/scene/metric_sections.hpp"
+#include "scenarios/scene/scenario_schema.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
@@ -155,7 +156,7 @@ TEST(DescribeCommand, ExplainsEveryNameThereIs) {
   std::set<std::string> listed;
   for (const Json& entry : hapbench_here({"describe", "--json"}).json()) {
     EXPECT_NE(entry["summary"], "") << entry;  // a field whose type has no summary would be listed without a word
-    listed.insert(entry["name"]);
+    listed.insert(entry["name"].get<std::string>());
   }
   std::vector<std::string> models;
   for (const AlgorithmEntry& entry : algorithms()) models.emplace_back(entry.info->name);
