@@ -16,9 +16,9 @@
 #include <utility>
 
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/input/writer.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/scenario_schema.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 

@@ -2,14 +2,9 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <deque>
-#include <mutex>
 #include <stdexcept>
 
-#include "algorithms/registry.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/scene/load_scenario.hpp"
-#include "scenarios/scene/parts.hpp"
 
 namespace hapbench {
 
@@ -229,96 +224,6 @@ Json json_of(Fields::Body value, const OnFile& file) {
 
 ValueGuide guide_to(Fields::Body value, Json* definitions) {
   return SchemaWriter(definitions).guide(value);
-}
-
-namespace {
-
-ValueGuide full_scenario(Json* definitions) {
-  Scenario defaults;
-  ValueGuide guide = guide_to([&defaults](Fields& f) { f.object(defaults); }, definitions);
-  Json schema = {{"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
-  schema.update(guide.schema);
-  guide.schema = std::move(schema);
-  return guide;
-}
-
-/// Returns true if a part of what the schema allows is also allowed.
-bool allows_parts(const Json& schema) {
-  if (!schema.is_structured()) return true;
-  if (schema.is_object() && (schema.contains("required") || schema.contains("oneOf"))) return false;
-  return std::all_of(schema.begin(), schema.end(), allows_parts);
-}
-
-/// For a file that extends another and so may leave out anything: only fields that mean something without the other
-/// file are checked. The schema of a file in full is found at `at`.
-Json partial_schema(const ValueGuide& full, const std::string& at) {
-  Json schema = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
-  for (const FieldGuide& field : full.fields) {
-    Json& part = schema["properties"][field.name];
-    const Json& whole = field.value.schema;
-    if (allows_parts(whole)) {
-      part = {{"$ref", at + "/properties/" + field.name}};
-    } else if (whole.contains("properties") && !whole.contains("required") && !whole.contains("oneOf")) {
-      part = partial_schema(field.value, at + "/properties/" + field.name);
-      part["description"] = field.meaning;
-    } else {
-      part = {{"description", field.meaning}};
-    }
-  }
-  return schema;
-}
-
-/// Adds the fields of an object and of those in it. `at` is the path of the object with a dot behind it.
-void add_fields(std::vector<PlacedField>& all, const ValueGuide& object, const std::string& at,
-                const std::string& types) {
-  for (const ValueGuide& choice : object.choices) add_fields(all, choice, at, types);
-  const std::string type = object.type.empty() ? "" : fmt::format("{}type \"{}\"", at, object.type);
-  const std::string of = types + (types.empty() || type.empty() ? "" : " and ") + type;
-  for (const FieldGuide& field : object.fields) {
-    all.push_back({at + field.name, of, &field});
-    add_fields(all, field.value, at + field.name + ".", of);
-  }
-}
-
-}  // namespace
-
-const ValueGuide& scenario_guide() {
-  static std::mutex mutex;
-  static std::deque<ValueGuide> built;
-  static std::size_t known = 0;  // additions() when the last one was built
-  const std::lock_guard lock(mutex);
-  if (built.empty() || known != additions()) built.push_back(full_scenario(nullptr));
-  known = additions();
-  return built.back();
-}
-
-std::vector<PlacedField> placed_fields() {
-  std::vector<PlacedField> all;
-  add_fields(all, scenario_guide(), "", "");
-  return all;
-}
-
-std::vector<std::string> scenario_field_paths() {
-  std::vector<std::string> paths;
-  const auto add = [&paths](const std::string& path) {
-    if (std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
-  };
-  for (const PlacedField& placed : placed_fields()) {
-    add(placed.path);
-    if (!placed.field->value.choices.empty()) add(placed.path + "." + kTypeField);
-  }
-  return paths;
-}
-
-Json scenario_schema() {
-  Json definitions = Json::object();
-  Json full = full_scenario(&definitions).schema;
-  return {{"$schema", "http://json-schema.org/draft-07/schema#"},
-          {"title", "hapbench scenario"},
-          {"definitions", std::move(definitions)},
-          {"if", {{"required", {kExtends}}}},
-          {"then", partial_schema(scenario_guide(), "#/else")},
-          {"else", std::move(full)}};
 }
 
 }  // namespace hapbench

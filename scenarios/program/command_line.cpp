@@ -18,6 +18,7 @@
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/scenario_schema.hpp"
 
 namespace hapbench {
 

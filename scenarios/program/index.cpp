@@ -17,6 +17,7 @@
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
+#include "scenarios/scene/scenario_schema.hpp"
 #include "scenarios/thesis/choices.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/loop/integrators/table.hpp"

@@ -18,6 +18,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/scenario_schema.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/geometry/triangle_tree.hpp"

@@ -8,6 +8,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/scenario_schema.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

@@ -13,6 +13,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/scenario_schema.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/mutation.hpp"
 #include "tests/scenarios/support/scenarios.hpp"

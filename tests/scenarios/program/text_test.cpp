@@ -5,6 +5,7 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
+#include "scenarios/scene/scenario_schema.hpp"
 
 /// Tables, digits and the words for fields. What they look like is in tests/data/golden.
 namespace hapbench::text_test {
