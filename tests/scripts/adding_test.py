@@ -442,9 +442,7 @@ class Adding(unittest.TestCase):
             ),
         )
         silent = (
-            (self.scratch / "tree/scenarios/scene/environments.cpp")
-            .read_text()
-            .replace(INSIDE, "")
+            (self.scratch / "tree/scenarios/scene/environments.cpp").read_text().replace(INSIDE, "")
         )
         done = subprocess.run(
             [

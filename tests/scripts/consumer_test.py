@@ -24,7 +24,11 @@ C_FUNCTIONS = re.compile(
     re.M,
 )
 # OpenMesh has a cosine among the virtual functions of its mesh, for feature edges, which we do not ask for.
-OPENMESH = {("libhapbench_sim_mesh", "cos"), ("libhapbench_scenarios_input", "cos"), ("libhapbench_scenarios_scene", "cos")}
+OPENMESH = {
+    ("libhapbench_sim_mesh", "cos"),
+    ("libhapbench_scenarios_input", "cos"),
+    ("libhapbench_scenarios_scene", "cos"),
+}
 
 
 class Consumer(unittest.TestCase):
