@@ -247,7 +247,7 @@ TEST(WholeLedger, InTheTreeIsTheOneTheProgramMakes) {
   Json claims = ledger["claims"];
   for (std::size_t i = 0; i < claims.size(); ++i)
     if (claims[i]["timing"]) claims[i] = on_record["claims"][i];
-  EXPECT_EQ(headline_of(claims), on_record["headline"]);
+  EXPECT_EQ(on_record["headline"], headline_of(claims));
   expect_on_record(ledger, all_claims());
 }
 
