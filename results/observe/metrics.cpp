@@ -1,5 +1,6 @@
 #include "results/observe/metrics.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <span>
 #include <utility>
@@ -14,14 +15,39 @@ std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator,
   return mu_f > 0.0 ? std::optional((largest - mu_s) / mu_f) : std::nullopt;
 }
 
+namespace {
+
+/// Replaces `sorted` by the numbers in ascending order. Allocates nothing within its capacity.
+void sort_into(std::vector<std::uint32_t>& sorted, std::span<const std::uint32_t> numbers) noexcept {
+  assert(numbers.size() <= sorted.capacity());
+  sorted.assign(numbers.begin(), numbers.end());
+  if (!std::ranges::is_sorted(sorted)) std::ranges::sort(sorted);  // without a shuffle the order ascends as a rule
+}
+
+}  // namespace
+
+ReductionJumps::ReductionJumps(std::size_t capacity) {
+  for (std::vector<std::uint32_t>* numbers : {&last_, &sorted_last_, &sorted_now_}) numbers->reserve(capacity);
+}
+
 void ReductionJumps::add(const ContactBuffer& kept, double step_squared, bool settled) noexcept {
-  const std::span now(kept.index.data(), kept.size());
-  const bool same = std::is_permutation(now.begin(), now.end(), last_.begin(), last_.end());
+  const std::span<const std::uint32_t> now(kept.index.data(), kept.size());
+  // Most rows keep the same points in the same order.
+  if (std::ranges::equal(now, last_)) return;
+
+  // Compare the points without their order.
+  bool same = false;
+  if (now.size() == last_.size()) {
+    sort_into(sorted_now_, now);
+    sort_into(sorted_last_, last_);
+    same = sorted_now_ == sorted_last_;
+  }
+
   const bool changed = !same && !now.empty() && !last_.empty();
   if (changed) ++changes_;
   if (settled && changed) step_max_squared_ = std::max(step_max_squared_.value_or(0.0), step_squared);
   assert(now.size() <= last_.capacity());
-  if (!same) last_.assign(now.begin(), now.end());
+  last_.assign(now.begin(), now.end());
 }
 
 MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config)

@@ -24,11 +24,12 @@ std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator,
                                               double mu_f);
 
 /// Force steps that the contact reduction causes: as the tool slides, other points are kept, and the force jumps.
-/// Allocates in the constructor only; about 1 ns a point.
+/// Allocates in the constructor only. About 1 ns a point where the points stay in their order; a row whose points or
+/// their order change costs O(n log n), some 2 ns a point where both orders ascend.
 class ReductionJumps {
  public:
-  /// `capacity`: the most contacts a row can have.
-  explicit ReductionJumps(std::size_t capacity) { last_.reserve(capacity); }
+  /// `capacity`: largest number of contacts of a row.
+  explicit ReductionJumps(std::size_t capacity);
 
   /// Begins another trial, in which nothing has been touched yet.
   void begin() noexcept { last_.clear(); }
@@ -43,7 +44,8 @@ class ReductionJumps {
   }
 
  private:
-  std::vector<std::uint32_t> last_;  ///< numbers of the points of the row before
+  std::vector<std::uint32_t> last_;                      ///< numbers of the points of the row before, in its order
+  std::vector<std::uint32_t> sorted_last_, sorted_now_;  ///< scratch of `add`
   std::uint64_t changes_ = 0;
   std::optional<double> step_max_squared_;  ///< [N^2]
 };

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <numeric>
 #include <tuple>
 #include <vector>
 
@@ -164,6 +167,52 @@ TEST(ReductionJumps, AreChangesOfThePointsAndTheLargestStepOfSettledOnes) {
   for (const auto& [points, step, settled] : rows) jumps.add(kept(points), step * step, settled);
   EXPECT_EQ(jumps.changes(), 2u) << "the same points in another order are no change";
   EXPECT_EQ(jumps.step_max(), 5.0) << "of settled rows";
+}
+
+TEST(ReductionJumps, CompareTheNumbersOfTheSamePointAsWell) {
+  ReductionJumps jumps(3);
+  jumps.add(kept({1, 1, 2}), 0.0, true);
+  jumps.add(kept({2, 1, 1}), 0.0, true);
+  EXPECT_EQ(jumps.changes(), 0u);
+  jumps.add(kept({1, 2, 2}), 0.0, true);
+  EXPECT_EQ(jumps.changes(), 1u);
+  jumps.add(kept({2, 1}), 0.0, true);
+  EXPECT_EQ(jumps.changes(), 2u) << "fewer points";
+}
+
+/// Shortest time of a row in several trials [s], each with a row of `first` and then a row of `second`.
+double shortest_row(const ContactBuffer& first, const ContactBuffer& second) {
+  using Clock = std::chrono::steady_clock;
+  ReductionJumps jumps(first.capacity());
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int trial = 0; trial < 5; ++trial) {
+    jumps.begin();
+    jumps.add(first, 0.0, true);
+    const auto start = Clock::now();
+    jumps.add(second, 0.0, true);
+    shortest = std::min(shortest, std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  return shortest;
+}
+
+// From n to 8 n points the time grows by a factor of 8 (linear), about 10 (n log n) or 64 (quadratic).
+TEST(ReductionJumps, TakeTimeThatGrowsLessThanQuadratically) {
+  constexpr std::uint32_t kFew = 2000, kGrowth = 8;
+  constexpr double kMostGrowth = 28.0;
+  const auto points = [](std::uint32_t n, std::uint32_t first = 0) {
+    std::vector<std::uint32_t> numbers(n);
+    std::iota(numbers.begin(), numbers.end(), first);
+    return numbers;
+  };
+  // The first point leaves, and another one comes behind the last.
+  const auto one_change = [&](std::uint32_t n) { return shortest_row(kept(points(n)), kept(points(n, 1))); };
+  const auto reversed = [&](std::uint32_t n) {
+    std::vector<std::uint32_t> turned = points(n);
+    std::ranges::reverse(turned);
+    return shortest_row(kept(points(n)), kept(turned));
+  };
+  EXPECT_LT(one_change(kGrowth * kFew), kMostGrowth * one_change(kFew));
+  EXPECT_LT(reversed(kGrowth * kFew), kMostGrowth * reversed(kFew));
 }
 
 TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {
