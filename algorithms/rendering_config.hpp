@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_schedule.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {

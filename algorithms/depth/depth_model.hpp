@@ -4,6 +4,7 @@
 #include <span>
 #include <string_view>
 
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"

@@ -4,7 +4,8 @@
 #include <memory>
 
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
+#include "sim/contact/spring_source.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
 

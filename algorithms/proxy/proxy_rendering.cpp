@@ -65,8 +65,8 @@ constexpr double kRecoverySpeed = 40.0;
 /// the tool out, so the depths are scaled until the deepest point leaves at kRecoverySpeed. A proxy without points
 /// inside keeps the guarantee, however fast the tool turns. Planes of springs have no inside.
 ///
-/// With late contacts (LateContacts) the proxy follows the tool and looks for points in the rows of answers only, as of
-/// the tool's pose in the query. Held, its spring stays as it was then. Linear, the constraints of its last pass are
+/// With late contacts (ContactSchedule) the proxy follows the tool and looks for points in the rows of answers only, as
+/// of the tool's pose in the query. Held, its spring stays as it was then. Linear, the constraints of its last pass are
 /// planes in space that turn with the tool's material, and it goes to the allowed place nearest to the tool in every
 /// row, without passes: points beyond the margin are not seen before the next query.
 ///
@@ -95,8 +95,8 @@ class ProxyRendering final : public ForceAlgorithm {
       recovery_ = kRecoverySpeed * scene.tool->half_width() * scene.dt;
     }
     near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
-    late_ = scene.late;
-    if (late_ != nullptr && late_->lateness().linear) base_depth_ = near_contacts_->depth;
+    schedule_ = scene.schedule;
+    if (schedule_ != nullptr && schedule_->lateness.linear) base_depth_ = near_contacts_->depth;
     damping_and_limits_.prepare(scene);
   }
 
@@ -113,7 +113,7 @@ class ProxyRendering final : public ForceAlgorithm {
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override {
     out = {};
     out.depth_max = contacts.largest_depth();
-    if (late_ == nullptr)
+    if (schedule_ == nullptr)
       find(tool.pose, contacts.empty());
     else
       find_late(tool.pose, contacts.empty());
@@ -174,13 +174,13 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   void find_late(const ToolPose& tool, bool free) noexcept {
-    const LateContacts::Query* query = late_->used();
+    const ContactSchedule::Query* query = schedule_->used();
     if (query == nullptr) {
       place(tool.position);
       spring_.setZero();
       return;
     }
-    const bool linear = late_->lateness().linear;
+    const bool linear = schedule_->lateness.linear;
     if (found_ != query->row) {
       found_ = query->row;
       find(query->pose, free);
@@ -337,10 +337,10 @@ class ProxyRendering final : public ForceAlgorithm {
   std::unique_ptr<ProxyConstraints> constraints_;
   std::unique_ptr<ContactBuffer> near_contacts_;  ///< constraints of the last pass, with weights [m]
 
-  const LateContacts* late_ = nullptr;  ///< null: the proxy looks for points in every row
-  std::optional<std::uint64_t> found_;  ///< row of the query that the proxy has looked for points of
-  Vec3 base_ = Vec3::Zero();            ///< place of the proxy that the constraints of the last pass are of
-  AlignedDoubles base_depth_;           ///< their depths, where planes move
+  const ContactSchedule* schedule_ = nullptr;  ///< null: the proxy looks for points in every row
+  std::optional<std::uint64_t> found_;         ///< row of the query that the proxy has looked for points of
+  Vec3 base_ = Vec3::Zero();                   ///< place of the proxy that the constraints of the last pass are of
+  AlignedDoubles base_depth_;                  ///< their depths, where planes move
 
   bool placed_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();

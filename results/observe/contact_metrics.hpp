@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "results/observe/metric_observer.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_schedule.hpp"
 
 /// Metrics of contacts and of what is between them and the force on the tool.
 namespace hapbench {
@@ -16,18 +16,18 @@ namespace hapbench {
 /// rows of each age, for which `begin` allocates a number for each row of the trial, for a million at most.
 class ContactAgeObserver final : public MetricObserver {
  public:
-  /// Precondition: the trial's contacts are late.
+  /// Precondition: the source of the trial's contacts has a schedule.
   void begin(const TrialParts& trial) override {
     constexpr std::uint64_t kMostAges = 1'000'000;
     *this = {};
-    contacts_ = &dynamic_cast<const LateContacts&>(*trial.simulation.source);
+    schedule_ = trial.simulation.source->schedule();
     dt_ = trial.config.dt;
     rows_of_age_.resize(std::min(trial.config.steps, kMostAges) + 1);
   }
   void on_step(const StepRecord& record) noexcept override {
-    asked_ = contacts_->asked();
-    lost_ = contacts_->lost();
-    const LateContacts::Query* query = contacts_->used();
+    asked_ = schedule_->asked;
+    lost_ = schedule_->lost;
+    const ContactSchedule::Query* query = schedule_->used();
     if (query == nullptr) return;
     const std::uint64_t age = record.step - query->row;
     ++rows_;
@@ -53,7 +53,7 @@ class ContactAgeObserver final : public MetricObserver {
     return dt_ * static_cast<double>(age);
   }
 
-  const LateContacts* contacts_ = nullptr;
+  const ContactSchedule* schedule_ = nullptr;
   double dt_ = 0.0;
   std::uint64_t rows_ = 0, oldest_ = 0;
   std::uint64_t asked_ = 0, lost_ = 0;

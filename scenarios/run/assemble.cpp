@@ -5,7 +5,11 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/run/load_module.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/contact_source.hpp"
+#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/spring_source.hpp"
+#include "sim/contact/trace_source.hpp"
 
 namespace hapbench {
 namespace {

@@ -15,7 +15,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/input/fields.hpp"
 #include "scenarios/scene/scenario.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/trace_source.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/motion.hpp"
 

@@ -1,8 +1,10 @@
+#include "sim/contact/neighbour_list_query.hpp"
+
 #include <algorithm>
 #include <bit>
-#include <numeric>
+#include <cstdint>
+#include <vector>
 
-#include "sim/contact/contact_source.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/core/simd.hpp"
 
@@ -22,31 +24,6 @@ double largest_scale(const PointShell& shell, const ToolShape& tool) {
   const Box& box = shell.bounds();
   return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) + 4.0 * tool.reach();
 }
-
-/// Compares every point of the shell with the tool, eight at a time: the reference for NeighbourListQuery. O(shell
-/// size), about 0.3 ns a point with 512-bit registers.
-class ShellQuery final : public ContactQuery {
- public:
-  ShellQuery(const PointShell& shell, const ToolShape& tool)
-      : shell_(shell), tool_(tool), numbers_(shell.padded_size()) {
-    std::iota(numbers_.begin(), numbers_.end(), 0u);
-  }
-
-  void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override {
-    contacts.clear();
-    tool_.push_inside(pose,
-                      {numbers_.data(), shell_.x(), shell_.y(), shell_.z(), shell_.nx(), shell_.ny(), shell_.nz()},
-                      shell_.padded_size() / simd::lanes, contacts);
-    ++work_.queries;
-    work_.points_tested += shell_.size();
-  }
-  std::size_t capacity() const noexcept override { return shell_.size(); }
-
- private:
-  const PointShell& shell_;
-  const ToolShape& tool_;
-  std::vector<std::uint32_t> numbers_;  ///< 0, 1, … of the points
-};
 
 /// The contact search of a run: a list of the points within a skin around the tool, taken from a uniform grid and used
 /// until the tool has moved or turned further than the skin. The answers are those of ShellQuery, bit by bit.
@@ -75,9 +52,12 @@ class NeighbourListQuery final : public ContactQuery {
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override {
     ++work_.queries;
     contacts.clear();
-    // The comparison fails for a pose that is not finite, which then makes a new list.
+
+    // Make a new list if the tool may have moved out of the skin. The comparison fails for a pose that is not finite.
     const bool list_holds = has_list_ && tool_->moved_at_most(list_pose_, pose) * (1.0 + kSlack) <= skin_;
     if (!list_holds) rebuild(pose);
+
+    // Test the listed points. An empty list that holds proves that there are no contacts.
     if (list_size_ > 0) {
       const PointColumns points{list_.index.data(), list_.x.data(),  list_.y.data(), list_.z.data(),
                                 list_.nx.data(),    list_.ny.data(), list_.nz.data()};
@@ -98,9 +78,13 @@ class NeighbourListQuery final : public ContactQuery {
     ++work_.lists_rebuilt;
     has_list_ = true;
     list_pose_ = pose;
+
+    // List the points within the usual skin.
     skin_ = skin_wanted_;
     mark_near(pose, skin_);
     take_marked();
+
+    // In free air, double the skin as long as it stays empty.
     bool is_empty = list_size_ == 0;
     for (int i = 0; i < kMostDoublings && is_empty; ++i) {
       mark_near(pose, 2.0 * skin_);
@@ -189,8 +173,7 @@ class NeighbourListQuery final : public ContactQuery {
 
 }  // namespace
 
-std::unique_ptr<ContactQuery> make_contact_query(const PointShell& shell, const ToolShape& tool, Skips skips) {
-  if (skips == Skips::off) return std::make_unique<ShellQuery>(shell, tool);
+std::unique_ptr<ContactQuery> make_neighbour_list_query(const PointShell& shell, const ToolShape& tool) {
   return std::make_unique<NeighbourListQuery>(shell, tool);
 }
 

@@ -4,7 +4,9 @@
 #include <optional>
 
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_schedule.hpp"
+#include "sim/contact/spring_source.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
 
@@ -17,8 +19,8 @@ struct Scene {
   const PointShell* shell = nullptr;   ///< the environment, unless it is springs
   const SpringSet* springs = nullptr;  ///< the environment, unless it is a shell
   double dt = 0.0005;                  ///< time step [s]
-  /// Tells algorithms that look for contacts themselves when to look; null: in every row.
-  const LateContacts* late = nullptr;
+  /// When algorithms that look for contacts themselves have to look; null: in every row.
+  const ContactSchedule* schedule = nullptr;
   /// The present row and its f_in [N], which drives the tool together with f_render over the coming step. They change
   /// before the first `compute` of each row. Null if the algorithm is not stepped by a Simulation.
   const std::uint64_t* row = nullptr;

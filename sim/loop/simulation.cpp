@@ -68,7 +68,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
                              .shell = parts_.shell.get(),
                              .springs = parts_.springs.get(),
                              .dt = config_.dt,
-                             .late = dynamic_cast<const LateContacts*>(parts_.source.get()),
+                             .schedule = parts_.source->schedule(),
                              .row = &record_.step,
                              .input = &record_.hand.input,
                              .position_is_free = position_is_free_,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/contact/contact_source.hpp"
+#include "sim/contact/spring_source.hpp"
 #include "sim/core/types.hpp"
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"

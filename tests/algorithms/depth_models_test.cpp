@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/motion.hpp"

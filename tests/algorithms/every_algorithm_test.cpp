@@ -11,7 +11,7 @@
 #include "algorithms/registry.hpp"
 #include "results/summary/allocations.hpp"
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/mesh_tool.hpp"

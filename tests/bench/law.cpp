@@ -7,7 +7,7 @@
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "tests/bench/bench.hpp"
 
 /// The force laws and the reduction on contacts of the tasks.

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/support/searches.hpp"
 

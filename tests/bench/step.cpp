@@ -11,7 +11,7 @@
 #include "results/observe/energy.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/observe/step_times.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/mesh_tool.hpp"

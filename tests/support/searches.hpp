@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/core/random.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/scale.hpp"

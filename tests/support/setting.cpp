@@ -7,7 +7,10 @@
 #include "algorithms/laws/force_law.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/scripted_hands.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/contact_source.hpp"
+#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/spring_source.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
 namespace hapbench::test {

@@ -9,6 +9,7 @@
 
 #include "algorithms/registry.hpp"
 #include "sim/contact/contact_source.hpp"
+#include "sim/contact/spring_source.hpp"
 #include "sim/core/random.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"

@@ -11,7 +11,7 @@
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 

@@ -6,7 +6,8 @@
 #include <string>
 
 #include "device_model/hands/scripted_hands.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
+#include "sim/contact/spring_source.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "algorithms/penalty_rendering.hpp"
-#include "sim/contact/contact_source.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/fakes.hpp"
 

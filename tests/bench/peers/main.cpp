@@ -6,7 +6,7 @@
 
 #include "algorithms/module/module.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/benchmark_program.hpp"
 #include "tests/bench/peers/contact_library.hpp"

@@ -9,7 +9,7 @@
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 #include "tests/support/scale.hpp"
 

@@ -7,7 +7,12 @@
 #include <set>
 
 #include "sim/contact/contact_buffer.hpp"
+#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_schedule.hpp"
 #include "sim/contact/contact_source.hpp"
+#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/spring_source.hpp"
+#include "sim/contact/trace_source.hpp"
 #include "sim/loop/simulation.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/scale.hpp"
@@ -222,13 +227,13 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
   for (int again = 0; again < 2; ++again, source.reset()) {
     for (row = 0; row < kRows; ++row) {
       source.contacts_at(way[row], contacts);
-      ASSERT_EQ(source.used() == nullptr, serve[row] < 0);
+      ASSERT_EQ(source.schedule()->used() == nullptr, serve[row] < 0);
       if (serve[row] < 0) {
         EXPECT_TRUE(contacts.empty());
         continue;
       }
       const ToolPose &then = way[static_cast<std::size_t>(serve[row])], &now = way[row];
-      ASSERT_EQ(source.used()->row, static_cast<std::uint64_t>(serve[row]));
+      ASSERT_EQ(source.schedule()->used()->row, static_cast<std::uint64_t>(serve[row]));
       fresh.contacts_at(then, asked);
       std::size_t next = 0;
       for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -255,8 +260,8 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
       source.contacts_at(now, contacts);
       EXPECT_EQ(before.size(), contacts.size());
     }
-    EXPECT_EQ(source.asked(), 1 + (kRows - 1) / static_cast<std::uint64_t>(late.every));
-    EXPECT_EQ(source.lost(), lost.size());
+    EXPECT_EQ(source.schedule()->asked, 1 + (kRows - 1) / static_cast<std::uint64_t>(late.every));
+    EXPECT_EQ(source.schedule()->lost, lost.size());
   }
   EXPECT_EQ(moved > 0, late.linear);
   EXPECT_EQ(dropped > 0, late.linear);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/core/random.hpp"
 #include "sim/tool/signed_distance_grid.hpp"
 #include "tests/support/meshes.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "algorithms/registry.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "tests/support/scale.hpp"
 
 namespace hapbench::law_stress_test {

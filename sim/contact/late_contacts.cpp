@@ -1,0 +1,79 @@
+#include "sim/contact/late_contacts.hpp"
+
+#include <utility>
+
+namespace hapbench {
+
+LateContacts::LateContacts(std::unique_ptr<ContactSource> source, const Lateness& lateness, bool may_pull,
+                           std::uint64_t seed)
+    : source_(std::move(source)),
+      may_pull_(may_pull),
+      seed_(seed),
+      random_(seed),
+      waiting_(static_cast<std::size_t>(lateness.delay / lateness.every) + 1),
+      found_(source_->capacity()) {
+  schedule_.lateness = lateness;
+  source_->follow(&schedule_.latest.row);
+}
+
+void LateContacts::reset() noexcept {
+  source_->reset();
+  fault_ = nullptr;
+  random_ = Random(seed_);
+  calls_ = schedule_.asked = schedule_.lost = 0;
+  last_row_.reset();
+  first_ = count_ = 0;
+  schedule_.serves = false;
+  found_.clear();
+}
+
+void LateContacts::begin_row(std::uint64_t row, const ToolPose& pose) noexcept {
+  const Lateness& late = schedule_.lateness;
+
+  // Send the query of the row, if it has one.
+  if (row % static_cast<std::uint64_t>(late.every) == 0) {
+    const bool is_lost = schedule_.asked++ > 0 && late.dropout > 0.0 && random_.uniform() < late.dropout;
+    if (is_lost)
+      ++schedule_.lost;
+    else
+      waiting_[(first_ + count_++) % waiting_.size()] = {pose, row};
+  }
+
+  // Take the answer that comes due. At most one does, because each query takes as long.
+  if (count_ == 0 || waiting_[first_].row + static_cast<std::uint64_t>(late.delay) > row) return;
+  schedule_.latest = waiting_[first_];
+  first_ = (first_ + 1) % waiting_.size();
+  --count_;
+  schedule_.serves = true;
+  source_->contacts_at(schedule_.latest.pose, found_);
+  fault_ = source_->fault();
+}
+
+void LateContacts::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+  // Integrators that query within a step get the contacts of the row.
+  const std::uint64_t row = row_ != nullptr ? *row_ : calls_++;
+  if (row != last_row_) begin_row(row, pose);
+  last_row_ = row;
+
+  if (schedule_.lateness.linear && !found_.empty())
+    move_found_to(pose, contacts);
+  else
+    contacts.assign(found_);
+}
+
+void LateContacts::move_found_to(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
+  contacts.clear();
+  const ToolPose& from = schedule_.latest.pose;
+  const Vec3 moved = pose.position - from.position;
+  const Mat3 turned = turn_matrix(from, pose) - Mat3::Identity();
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    const Vec3 way = moved + turned * (found_.point(i) - from.position);
+    const double depth = found_.depth[i] + found_.gradient(i).dot(way);
+    if (!(depth > 0.0) && !may_pull_) continue;
+    contacts.push_copy_of(found_, i);
+    contacts.depth[contacts.size() - 1] = depth;
+  }
+  contacts.pad();
+}
+
+}  // namespace hapbench
