@@ -58,8 +58,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
   handle_is_apart_ = parts_.device->energy().has_value();
   handle_moves_tool_ = position_is_free_ && parts_.device->moves_tool();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
-  // A turn about the axis moves no point of a solid of revolution.
-  tool_rolls_ = parts_.tool && parts_.tool->moved_at_most(ToolPose{}, ToolPose{.roll = 1.0}) != 0.0;
+  tool_rolls_ = parts_.tool && !parts_.tool->is_axisymmetric();
   turn_rolls_ = tool_rolls_ || parts_.motion->scripts_roll();
   roll_wanted_ |= tool_rolls_ || (turn_rolls_ && angular_velocity_cutoff_);
   parts_.source->follow(&record_.step);

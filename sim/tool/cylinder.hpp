@@ -26,6 +26,7 @@ class Cylinder final : public ToolShape {
   double longest_exit() const noexcept { return length_ + 3.0 * radius_; }
 
   bool convex() const noexcept override { return true; }
+  bool is_axisymmetric() const noexcept override { return true; }
   std::vector<ProfilePoint> outline() const override;
   void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                    ContactBuffer& contacts) const noexcept override;

@@ -24,6 +24,7 @@ class MeshTool final : public ToolShape {
 
   const SignedDistanceGrid& grid() const noexcept { return *grid_; }
   bool convex() const noexcept override { return grid_->convex(); }
+  bool is_axisymmetric() const noexcept override { return false; }
   double surface_error() const noexcept override { return grid_->error_bound(); }
   /// From the nodes in the body and their depths: at most a spacing too narrow.
   std::vector<ProfilePoint> outline() const override;

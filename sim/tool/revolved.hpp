@@ -90,6 +90,7 @@ class Revolved final : public ToolShape {
   const std::vector<ProfilePoint>& profile() const noexcept { return meridian_.profile; }
   Tip tip() const noexcept { return meridian_.tip; }
   bool convex() const noexcept override { return meridian_.convex; }
+  bool is_axisymmetric() const noexcept override { return true; }
   std::vector<ProfilePoint> outline() const override;
 
   void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,

@@ -62,6 +62,9 @@ class ToolShape {
   virtual double surface_error() const noexcept { return 0.0; }
   /// A proxy keeps every point out of a convex body only.
   virtual bool convex() const noexcept = 0;
+  /// True for a solid of revolution about the axis: a turn about the axis maps the body to itself, so that no answer of
+  /// the shape depends on the roll of a pose.
+  virtual bool is_axisymmetric() const noexcept = 0;
   /// The outline for drawings, in the axial half plane: from the far end on the axis to the foremost point on the axis,
   /// curves as polylines. For a body that is not a solid of revolution it is the largest rho at each s. Allocates.
   virtual std::vector<ProfilePoint> outline() const = 0;

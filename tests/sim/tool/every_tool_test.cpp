@@ -169,6 +169,14 @@ TEST_P(EveryTool, MovesNoPointOfItsBodyFurtherThanItSays) {
   });
 }
 
+TEST_P(EveryTool, IsAxisymmetricWhereATurnAboutItsAxisMovesNoPoint) {
+  for_tools(20, [&](const DefinedTool& tool, const ToolPose& pose, Random&) {
+    ToolPose rolled = pose;
+    rolled.roll += 1.0;
+    EXPECT_EQ(tool.shape->is_axisymmetric(), tool.shape->moved_at_most(pose, rolled) == 0.0);
+  });
+}
+
 TEST_P(EveryTool, HasItsForemostPlaceOnTheSurfaceAndNoneBeyondIt) {
   for_tools(2000, [&](const DefinedTool& tool, const ToolPose& pose, Random& random) {
     const ContactBuffer contacts = contacts_around(tool, pose, random, 8);

@@ -332,6 +332,7 @@ TEST_P(MeshToolOf, MovesNoPointOfItsBodyFurtherThanItSays) {
     ASSERT_LE((to_world(to, x) - to_world(from, x)).norm(), tool_.moved_at_most(from, to) + 1e-14);
   }
   EXPECT_EQ(tool_.moved_at_most(kHome, kHome), 0.0);
+  EXPECT_FALSE(tool_.is_axisymmetric());
 }
 
 TEST_P(MeshToolOf, HasTheGradientOfItsField) {
