@@ -1,7 +1,6 @@
 #include "results/summary/summary.hpp"
 
 #include <cmath>
-#include <iterator>
 
 #include "sim/core/hash.hpp"
 #include "sim/tool/tool_shape.hpp"
@@ -11,36 +10,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr OutcomeInfo kOutcomes[] = {
-    {"completes", "all steps are done, or the hand has finished its task"},
-    {"leaves_hole", "the tip centre rose above height 0"},
-    {"tool_horizontal", "the tool's axis reached the horizontal plane"},
-    {"not_dragged",
-     "all steps are done, but a tool that a hand of type drag was to lead further than two of its widths came less than "
-     "one along the path",
-     true},
-    {"stuck",
-     "all steps are done, but the tool stood still in the end while the target of its hand (drag, impedance, "
-     "mass_spring_damper, or of tracking the intended position) went on by more than the tool's width: it came less than "
-     "a tenth of that, and not because it pressed on the surface; or a tool that a hand of type drag was to lead ended "
-     "further behind than a tenth of its way and than its half width, and not because it was half as far behind at half way, "
-     "as friction holds it",
-     true},
-    {"no_contact", "all steps are done, and the tool never touched the environment", true},
-    {"lost_contact",
-     "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide and the "
-     "tool reaches together; or a hand of type drag pressed its tool on where there was no surface, past an edge or a hole: "
-     "no contact in the last 0.05 s or longer",
-     true},
-    {"went_through",
-     "all steps are done, but the tool passed the surface, by itself or led by a script: its tip centre came deeper than "
-     "its half width, or its core (its axis, from half a width behind its tip to the far end) crossed the environment from "
-     "face to face or left it on another side than it had entered, also where it is thinner than the tool, or the foremost "
-     "place of its core ended inside, or another part of it, as its shank, came deeper than its half width",
-     true},
-    {"diverges", "a value stopped being finite or left its bound (describe bounds)", true}};
-static_assert(static_cast<std::size_t>(Outcome::diverges) == std::size(kOutcomes) - 1);
-
 ordered_json number_or_null(std::optional<double> value) {
   return value && std::isfinite(*value) ? ordered_json(*value) : ordered_json(nullptr);
 }
@@ -49,7 +18,7 @@ double seconds(std::uint64_t nanoseconds) {
   return static_cast<double>(nanoseconds) / 1e9;  // the double nearest to the decimal, unlike multiplication by 1e-9
 }
 
-ordered_json divergence_json(const SimulationResult& result) {
+ordered_json divergence_json(const RunEnd& result) {
   if (result.outcome != Outcome::diverges) return nullptr;
   const Divergence& d = result.divergence;
   ordered_json json = {{"step", d.step},
@@ -120,20 +89,6 @@ ordered_json provenance_json(const Provenance& p, const std::string& scenario_ha
 }
 
 }  // namespace
-
-std::span<const OutcomeInfo> outcome_infos() noexcept {
-  return kOutcomes;
-}
-
-std::string_view outcome_name(Outcome outcome) noexcept {
-  return kOutcomes[static_cast<std::size_t>(outcome)].name;
-}
-
-std::optional<Outcome> outcome_named(std::string_view name) noexcept {
-  const auto* found = std::ranges::find(kOutcomes, name, &OutcomeInfo::name);
-  if (found == std::end(kOutcomes)) return std::nullopt;
-  return static_cast<Outcome>(found - std::begin(kOutcomes));
-}
 
 ordered_json tool_json(const ToolShape& tool) {
   ordered_json outline = ordered_json::array();

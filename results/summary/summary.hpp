@@ -4,7 +4,6 @@
 #include <istream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,22 +11,10 @@
 #include "results/io/columns.hpp"
 #include "results/observe/step_times.hpp"
 #include "results/observe/target_metrics.hpp"
+#include "results/summary/outcome.hpp"
 #include "sim/loop/simulation.hpp"
 
 namespace hapbench {
-
-/// An outcome in words.
-struct OutcomeInfo {
-  std::string_view name;    ///< in files, as "completes"
-  const char* meaning;      ///< in a sentence without its full stop
-  bool is_failure = false;  ///< the numbers of such a run say nothing about the algorithm
-};
-
-/// All outcomes, in the order of the enumeration.
-std::span<const OutcomeInfo> outcome_infos() noexcept;
-std::string_view outcome_name(Outcome outcome) noexcept;
-/// Returns nothing if no outcome has that name.
-std::optional<Outcome> outcome_named(std::string_view name) noexcept;
 
 /// Identifies the program and the machine that computed a result: part of summary.json, but for the instruction set,
 /// of which only times depend. So summary.json is byte-identical between the scalar and the SIMD build of one tree, and
@@ -100,11 +87,18 @@ struct RunTiming {
   std::uint64_t preemptions = 0;  ///< involuntary context switches during the step loop
 };
 
+/// The end of a run, judged.
+struct RunEnd {
+  Outcome outcome = Outcome::completes;
+  std::uint64_t rows = 0;  ///< rows observed
+  Divergence divergence;   ///< if the outcome is `diverges`
+};
+
 /// The result of a run, or of all trials of a tracking hand.
 struct Result {
   std::string name;                ///< of the scenario
   std::string algorithm;           ///< as registered
-  SimulationResult end;            ///< of several trials the worst, with the rows of all
+  RunEnd end;                      ///< of several trials the worst, with the rows of all
   bool expected = false;           ///< the run met all that the scenario expects
   std::vector<std::string> unmet;  ///< expectations that it did not meet
   double duration = 0.0;           ///< simulated time: rows x dt [s]

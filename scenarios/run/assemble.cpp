@@ -48,8 +48,8 @@ std::vector<StopRule> stop_rules(const Scenario& scenario) {
   const auto wants = [&](StopCondition rule) { return std::ranges::count(scenario.time.stop_when, rule) > 0; };
   const Vec3 up = scenario.motion.orientation ? scenario.motion.orientation->up.normalized() : Vec3(0.0, 0.0, 1.0);
   std::vector<StopRule> rules;
-  if (wants(StopCondition::leaves_hole)) rules.push_back({Outcome::leaves_hole, up});
-  if (wants(StopCondition::tool_horizontal)) rules.push_back({Outcome::tool_horizontal, up});
+  if (wants(StopCondition::leaves_hole)) rules.push_back({Ending::left_hole, up});
+  if (wants(StopCondition::tool_horizontal)) rules.push_back({Ending::tool_horizontal, up});
   return rules;
 }
 

@@ -234,11 +234,11 @@ class OutcomeWatch final : public OutcomeObserver {
     if (standstill_) standstill_->add(record);
   }
 
-  Outcome outcome(Outcome outcome) override {
-    if (!approach_ || outcome != Outcome::completes) return outcome;
+  Outcome outcome(Ending ending) override {
+    if (!approach_ || ending != Ending::completed) return outcome_of(ending);
     for (const Condition& condition : kConditions)
       if ((this->*condition.holds)()) return condition.outcome;
-    return outcome;
+    return Outcome::completes;
   }
 
   std::vector<Warning> warnings(Outcome outcome) override {

@@ -14,9 +14,9 @@ namespace hapbench {
 /// Watches a trial for all that decides its outcome; some 40 ns a row, no allocation.
 class OutcomeObserver : public Observer {
  public:
-  /// The outcome of a run with a point shell that ended with `outcome`, which stays unless it is `completes`: then it
-  /// is the first whose condition holds (kConditions in outcome.cpp; outcome_infos() says the same in words).
-  virtual Outcome outcome(Outcome outcome) = 0;
+  /// The outcome of a run whose stepping ended with `ending`. A run with a point shell that has completed gets the
+  /// first outcome whose condition holds (kConditions in outcome.cpp; outcome_infos() says the same in words).
+  virtual Outcome outcome(Ending ending) = 0;
   /// After the run: warnings about its outcome and the path of a drag. Precondition: there are metrics.
   virtual std::vector<Warning> warnings(Outcome outcome) = 0;
   /// The longest way of the tip in one step that began no further from the environment's box than it was long, so that

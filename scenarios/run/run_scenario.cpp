@@ -158,9 +158,9 @@ class Run {
     return result;
   }
 
-  void end_trial(OutcomeObserver& seen, SimulationResult result) {
-    result.outcome = seen.outcome(result.outcome);
-    std::vector<Warning> warnings = seen.warnings(result.outcome);
+  void end_trial(OutcomeObserver& seen, const SimulationResult& result) {
+    const Outcome outcome = seen.outcome(result.ending);
+    std::vector<Warning> warnings = seen.warnings(outcome);
     ++trials_;
     if (!warnings.empty() && with_warnings_++ == 0) {
       first_with_warnings_ = trials_;
@@ -174,11 +174,11 @@ class Run {
     }
     if (diagnosis_) diagnosis_->add_longest_step(seen.longest_step());
     // A subject who loses the drill fails the rest of the targets.
-    if (result.outcome == Outcome::diverges) {
+    if (outcome == Outcome::diverges) {
       if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
     }
     const std::uint64_t rows = result.rows + result_.end.rows;
-    if (trials_ == 1 || result.outcome > result_.end.outcome) result_.end = std::move(result);
+    if (trials_ == 1 || outcome > result_.end.outcome) result_.end = {outcome, rows, result.divergence};
     result_.end.rows = rows;
   }
 
@@ -210,7 +210,7 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
   return trials;
 }
 
-std::string divergence_text(const SimulationResult& result) {
+std::string divergence_text(const RunEnd& result) {
   if (result.outcome != Outcome::diverges) return "";
   const Divergence& d = result.divergence;
   if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);

@@ -18,6 +18,7 @@
 #include "device_model/impedance_device.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/record/recorder.hpp"
+#include "results/summary/outcome.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/loop/simulation.hpp"

@@ -135,10 +135,10 @@ class Session final : public Observer {
     nlohmann::json tensor = nlohmann::json::array();
     for (Eigen::Index i = 0; i < 3; ++i) tensor.push_back(list(last_.row(i).transpose()));
     const SimulationResult& result = simulation_->result();
-    const bool diverged = result.outcome == Outcome::diverges;
+    const bool diverged = result.ending == Ending::diverged;
     return text({{"rows", result.rows},
                  {"state_hash", hash_text(metrics_.state_hash())},
-                 {"outcome", outcome_name(result.outcome)},
+                 {"outcome", outcome_name(outcome_of(result.ending))},
                  {"fault", diverged ? result.divergence.quantity : ""},
                  {"energy_created_J", passivity_.net_created()},
                  {"tensor", tensor},

@@ -147,7 +147,7 @@ bool Simulation::step() noexcept {
   parts_.source->contacts_at(tool_.pose, contacts_);
   if (parts_.source->fault() != nullptr) {
     result_.divergence = {row_, r.time, "contacts", std::nan(""), 0.0, parts_.source->fault()};
-    end(Outcome::diverges);
+    end(Ending::diverged);
     return true;
   }
   if (found_) found_->assign(contacts_);
@@ -175,7 +175,7 @@ bool Simulation::step() noexcept {
   }
   ++row_;
   if (row_ == config_.steps) {
-    end(Outcome::completes);
+    end(Ending::completed);
     return true;
   }
   move_tool_by_script();
@@ -217,25 +217,25 @@ bool Simulation::check_bounds() noexcept {
     return false;
   };
   if (all(inside, true)) return true;
-  end(Outcome::diverges);
+  end(Ending::diverged);
   return false;
 }
 
 bool Simulation::check_stop_rules() noexcept {
   for (const StopRule& rule : config_.stop_when) {
-    const bool holds = rule.outcome == Outcome::leaves_hole ? tool_.pose.position.dot(rule.up) > 0.0
-                                                            : tool_.pose.axis.dot(rule.up) >= 0.0;
+    const bool holds =
+        rule.ending == Ending::left_hole ? tool_.pose.position.dot(rule.up) > 0.0 : tool_.pose.axis.dot(rule.up) >= 0.0;
     if (!holds) continue;
-    end(rule.outcome);
+    end(rule.ending);
     return true;
   }
-  if (parts_.hand->finished()) end(Outcome::completes);
+  if (parts_.hand->finished()) end(Ending::completed);
   return ended_;
 }
 
-void Simulation::end(Outcome outcome) noexcept {
+void Simulation::end(Ending ending) noexcept {
   ended_ = true;
-  result_.outcome = outcome;
+  result_.ending = ending;
 }
 
 }  // namespace hapbench

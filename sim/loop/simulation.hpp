@@ -16,24 +16,20 @@
 
 namespace hapbench {
 
-/// The end of a run, from the best to the worst; the outcome of several trials is that of the worst.
-enum class Outcome {
-  completes,        ///< all steps done, or the hand has finished its task
-  leaves_hole,      ///< by a StopRule
+/// How the stepping of a run ended. What the run means for the tool is judged from its rows
+/// (results/summary/outcome.hpp).
+enum class Ending {
+  completed,        ///< all steps are done, or the hand has finished its task
+  left_hole,        ///< by a StopRule
   tool_horizontal,  ///< by a StopRule
-  not_dragged,      ///< all steps done, but a dragging hand did not move the tool (judged by scenarios/run)
-  stuck,            ///< all steps done, but a dragged tool came to stand (judged by scenarios/run)
-  no_contact,       ///< all steps done, but the tool never touched the environment (judged by scenarios/run)
-  lost_contact,     ///< all steps done, but the tool left the environment (judged by scenarios/run)
-  went_through,     ///< all steps done, but the tool passed the surface (judged by scenarios/run)
-  diverges          ///< a value was not finite or left its bound
+  diverged          ///< a value was not finite or left its bound
 };
 
-/// Ends a run early, with `outcome`, after the first row for which that holds (the ends of the thesis's peg-in-hole
-/// runs, A.1.2): leaves_hole, the tip centre has risen above height 0, where the hole's mouth is; tool_horizontal, the
+/// Ends a run early, with `ending`, after the first row for which that holds (the ends of the thesis's peg-in-hole
+/// runs, A.1.2): left_hole, the tip centre has risen above height 0, where the hole's mouth is; tool_horizontal, the
 /// tool's axis, which points down at first, has reached the plane perpendicular to `up`.
 struct StopRule {
-  Outcome outcome;
+  Ending ending;
   Vec3 up;  ///< unit vector against gravity
 };
 
@@ -81,9 +77,9 @@ struct Divergence {
 };
 
 struct SimulationResult {
-  Outcome outcome = Outcome::completes;
+  Ending ending = Ending::completed;
   std::uint64_t rows = 0;  ///< rows observed
-  Divergence divergence;   ///< if the outcome is `diverges`
+  Divergence divergence;   ///< if the run diverged
 };
 
 /// Row k of a run: everything evaluated from (p_k, v_k, axis(t_k)), before the integrator moves the tool.
@@ -161,7 +157,7 @@ class Simulation {
   Vec3 angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept;
   bool check_bounds() noexcept;
   bool check_stop_rules() noexcept;
-  void end(Outcome outcome) noexcept;
+  void end(Ending ending) noexcept;
 
   SimulationConfig config_;
   SimulationParts parts_;

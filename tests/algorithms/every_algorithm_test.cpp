@@ -339,7 +339,7 @@ HAPBENCH_FOR_EVERY_ALGORITHM(Run, always);
 TEST_P(Run, StaysFinite) {
   test::Recorder recorder(true);
   Simulation simulation(test::free_run_config(setting, config, kSteps), test::free_run(setting, config), {&recorder});
-  EXPECT_EQ(simulation.run().outcome, Outcome::completes);
+  EXPECT_EQ(simulation.run().ending, Ending::completed);
   for (const StepRecord& row : recorder.rows) {
     ASSERT_TRUE(row.force.rendered.allFinite());
     ASSERT_TRUE(row.force.S.allFinite());

@@ -25,7 +25,7 @@ MotionClass classify(Simulation& simulation, const MotionClassifier& classifier)
     for (std::uint64_t i = 0; i < kAskEvery && more; ++i) more = !classifier.at_rest() && simulation.step();
     return more;
   });
-  return classifier.motion_class(result.outcome);
+  return classifier.motion_class(result.ending);
 }
 
 /// Tells a tool that goes on bouncing, more slowly than what counts as vibration. A bounce is a way off the surface and
@@ -171,7 +171,7 @@ RunStability judged_once(const LoadedScenario& loaded, const std::shared_ptr<con
   Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, seen.get()});
   const MotionClass motion = classify(simulation, classifier);
   const SettledState settled = last.state(classifier.at_rest());
-  const Outcome outcome = seen->outcome(simulation.result().outcome);
+  const Outcome outcome = seen->outcome(simulation.result().ending);
   const auto verdict = [&] {
     if (motion == MotionClass::diverged) return RunVerdict::diverged;
     if (outcome == Outcome::went_through) return RunVerdict::went_through;

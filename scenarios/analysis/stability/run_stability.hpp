@@ -93,8 +93,8 @@ class MotionClassifier final : public Observer {
            q[3].amplitude > 0.0;
   }
   /// Class of a complete run, or of one that was cut short because it came to rest.
-  MotionClass motion_class(Outcome outcome) const noexcept {
-    if (outcome == Outcome::diverges) return MotionClass::diverged;
+  MotionClass motion_class(Ending ending) const noexcept {
+    if (ending == Ending::diverged) return MotionClass::diverged;
     if (at_rest()) return MotionClass::stable;
     // A hand that comes to rest may swing a little more for a while: below 30 Hz that is not called growth.
     return std::max(all_.motion_class(is_moved_ ? kFelt : 0.0),

@@ -306,7 +306,7 @@ class PythonSimulation {
   std::uint64_t rows() const { return simulation_->result().rows; }
   double step_size() const { return loaded_.scenario.time.step; }
   std::uint64_t steps() const { return static_cast<std::uint64_t>(loaded_.scenario.time.steps); }
-  std::string outcome() const { return std::string(outcome_name(simulation_->result().outcome)); }
+  std::string outcome() const { return std::string(outcome_name(outcome_of(simulation_->result().ending))); }
 
  private:
   LoadedScenario loaded_;

@@ -106,14 +106,14 @@ TEST(ModuleContacts, EndTheRunWhenTheModuleThrows) {
       parts.source = source_of({.answer = {{0, {}, {0, 0, -1}, 1e-5}, {1, {}, {1, 0, 0}, 1e-5}}, .throws_at = 3});
       Simulation simulation(test::free_run_config(setting, config, 10), std::move(parts), {});
       const SimulationResult result = simulation.run();
-      EXPECT_EQ(result.outcome, Outcome::diverges) << algorithm.info->name << controlled;
+      EXPECT_EQ(result.ending, Ending::diverged) << algorithm.info->name << controlled;
       EXPECT_EQ(result.divergence.step, 3u);
       EXPECT_EQ(result.divergence.fault, "fake (file.so) throws in step: no?way");
       EXPECT_EQ(script.asked, 4);
       EXPECT_EQ(take_module_faults().count, 1u);
       simulation.reset();
       script.throws_at = -1;
-      EXPECT_EQ(simulation.run().outcome, Outcome::completes);
+      EXPECT_EQ(simulation.run().ending, Ending::completed);
     }
   }
 }

@@ -87,8 +87,8 @@ Errors errors_of(const Scenario& run, int division, const Exact& exact) {
   Scenario undamped = run;
   undamped.rendering.damping = undamped.rendering.mu_s = 0.0;
   SpringEnergy energy(run.rendering, exact.S);
-  const bool kept = sampled_run(undamped, nullptr, 1, {&energy}).result.outcome == Outcome::completes;
-  return {std::string(outcome_name(sampled.result.outcome)),
+  const bool kept = sampled_run(undamped, nullptr, 1, {&energy}).result.ending == Ending::completed;
+  return {std::string(outcome_name(outcome_of(sampled.result.ending))),
           {{"step_s", run.time.step},
            {"error_final_m", if_any(whole, d.final)},
            {"error_rms_m", if_any(whole, d.rms)},
@@ -139,7 +139,7 @@ Errors off_the_ideal(const Scenario& scenario, std::shared_ptr<const PointShell>
   const MetricList metrics = told(ideal);
   const std::string hand = number_of(metrics, "gentle.rows") > 0.0 ? "gentle." : "firm.";
   const auto error = [&](const char* name) { return number_of(metrics, hand + name).value_or(0.0); };
-  return {std::string(outcome_name(run.result.outcome)),
+  return {std::string(outcome_name(outcome_of(run.result.ending))),
           {{"ideal_height_error_rms_m", error("height_error_rms_m")},
            {"ideal_height_error_max_m", std::max(-error("height_error_min_m"), error("height_error_max_m"))},
            {"ideal_lateral_error_rms_m", error("lateral_error_rms_m")},
@@ -227,7 +227,7 @@ Errors off_the_fresh(const Scenario& run, const std::shared_ptr<const PointShell
   MetricsObserver metrics(run.time.step, {});
   const SampledRun late = sampled_run(run, shell, 1, {&metrics});
   const double every = run.rendering.late ? static_cast<double>(run.rendering.late->every) : 1.0;
-  return {std::string(outcome_name(late.result.outcome)),
+  return {std::string(outcome_name(outcome_of(late.result.ending))),
           {{"rate_Hz", 1.0 / (run.time.step * every)},
            {"error_rms_m", distance(late.positions, fresh).rms},
            {"force_rms_above_30Hz_N", told(metrics, "force_rms_above_30Hz_N")}}};
@@ -317,7 +317,7 @@ Panel events(const Scenario& thrown) {
   const auto shell = once([scenario] { return make_shell(scenario); });
   const auto measured = [shell](const Scenario& run) {
     MechanicalEnergy energy(run.rendering.mass);
-    const Outcome outcome = sampled_run(run, shell(), 1, {&energy}).result.outcome;
+    const Outcome outcome = outcome_of(sampled_run(run, shell(), 1, {&energy}).result.ending);
     return std::pair(outcome, energy);
   };
   // The law's own part: that of the integrator which finds the events inside a step.

@@ -39,7 +39,7 @@ TEST(Simulation, OfNoStepsCompletesWithoutARow) {
   Calls calls;
   Simulation simulation(config_of(0), fake_parts(spring, &calls), {&recorder});
   EXPECT_FALSE(simulation.step());
-  EXPECT_EQ(simulation.run().outcome, Outcome::completes);
+  EXPECT_EQ(simulation.run().ending, Ending::completed);
   EXPECT_EQ(simulation.result().rows, 0u);
   EXPECT_TRUE(recorder.rows.empty());
   EXPECT_EQ(calls.compute, 0);
@@ -121,7 +121,7 @@ TEST(Simulation, EndsWithTheRowInWhichTheHandHasFinishedItsTask) {
   Recorder recorder;
   Simulation simulation(config_of(10), std::move(parts), {&recorder});  // owns the task that the rows name
   const SimulationResult result = simulation.run();
-  EXPECT_EQ(result.outcome, Outcome::completes);
+  EXPECT_EQ(result.ending, Ending::completed);
   EXPECT_EQ(result.rows, 4u) << "two targets, two samples each";
   EXPECT_EQ(recorder.rows.back().task->results().size(), 2u);
 }
@@ -329,13 +329,13 @@ SimulationResult run(const SimulationConfig& config, SimulationParts parts, Reco
 TEST(StopConditions, LeavesTheHoleAtTheFirstRowAboveHeightZeroWhichIsRecorded) {
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
     SimulationConfig config = rising(up);
-    config.stop_when = {{Outcome::leaves_hole, up}};
+    config.stop_when = {{Ending::left_hole, up}};
     // Row 11 is half a step above; a stop on the last row is still a stop.
     for (const std::uint64_t steps : {100u, 12u}) {
       config.steps = steps;
       Recorder recorder;
       const SimulationResult result = run(config, fake_parts(test::weightless), recorder);
-      EXPECT_EQ(result.outcome, Outcome::leaves_hole);
+      EXPECT_EQ(result.ending, Ending::left_hole);
       EXPECT_EQ(result.rows, 12u);
       ASSERT_EQ(recorder.rows.size(), 12u);
       EXPECT_GT(recorder.rows[11].tool.pose.position.dot(up), 0.0);
@@ -355,10 +355,10 @@ TEST(StopConditions, ToolIsHorizontalAtTheFirstRowWhereItsAxisReachesThePlaneWhi
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
     SimulationConfig config;
     config.steps = 10000;
-    config.stop_when = {{Outcome::tool_horizontal, up}};
+    config.stop_when = {{Ending::tool_horizontal, up}};
     Recorder recorder;
     const SimulationResult result = Simulation(config, tilting(up, 0.1, 1.2), {&recorder}).run();
-    EXPECT_EQ(result.outcome, Outcome::tool_horizontal);
+    EXPECT_EQ(result.ending, Ending::tool_horizontal);
     // 0.1 + 1.2 k dt = pi / 2.
     const double k = std::ceil((std::numbers::pi / 2 - 0.1) / 1.2 / config.dt);
     EXPECT_EQ(static_cast<double>(result.rows), k + 1);
@@ -387,7 +387,7 @@ TEST(Divergence, StopsAtTheRowWhoseForceIsNotFiniteAndKeepsTheRowsBefore) {
     Recorder recorder;
     Simulation simulation(at_rest(100), fake_parts(after(5, {0, bad, 0})), {&recorder});
     const SimulationResult result = simulation.run();
-    EXPECT_EQ(result.outcome, Outcome::diverges);
+    EXPECT_EQ(result.ending, Ending::diverged);
     EXPECT_EQ(result.rows, 5u);
     ASSERT_EQ(recorder.rows.size(), 5u);
     for (const StepRecord& row : recorder.rows) EXPECT_TRUE(row.force.rendered.allFinite());

@@ -27,7 +27,7 @@ MotionClass class_by(MotionClassifier classifier, const std::function<Vec3(doubl
     record.tool.velocity = velocity(static_cast<double>(record.step));
     classifier.on_step(record);
   }
-  return classifier.motion_class(Outcome::completes);
+  return classifier.motion_class(Ending::completed);
 }
 
 /// The class of a motion along x.
@@ -53,7 +53,7 @@ TEST(MotionClassifier, OfAHandleThatMovesTheToolTakesItsOwnVelocity) {
     record.handle.velocity = Vec3(0.001, 0.0, 0.0);
     classifier.on_step(record);
   }
-  EXPECT_EQ(classifier.motion_class(Outcome::completes), MotionClass::stable);
+  EXPECT_EQ(classifier.motion_class(Ending::completed), MotionClass::stable);
 }
 
 /// An oscillation that changes by the factor `per_step` in every step. The amplitude of the fourth quarter is that of
