@@ -132,18 +132,20 @@ void Simulation::put_tool_on_handle() noexcept {
 
 bool Simulation::step() noexcept {
   if (ended_) return false;
-
   StepRecord& r = record_;
   r.step = row_;
   r.time = static_cast<double>(row_) * config_.dt;
   r.tool = tool_;
   r.roll = roll_;
+
+  // Read hand and device.
   const HandleState& handle = parts_.device->handle();
   r.hand_force = parts_.hand->force(r.time, {handle, tool_.pose, r.force.rendered, r.force.spring});
   r.handle = handle;
   r.task = parts_.hand->task();
   r.hand = parts_.device->measure(r.hand_force);
 
+  // Find contacts.
   parts_.source->contacts_at(tool_.pose, contacts_);
   if (parts_.source->fault() != nullptr) {
     result_.divergence = {row_, r.time, "contacts", std::nan(""), 0.0, parts_.source->fault()};
@@ -152,9 +154,12 @@ bool Simulation::step() noexcept {
   }
   if (found_) found_->assign(contacts_);
   r.colliding = contacts_.size();
+
+  // Render the force.
   parts_.algorithm->compute(tool_, contacts_, r.force);
   if (!check_bounds()) return true;
 
+  // Notify the observers, which get what they want of the row.
   r.rendered = &contacts_;
   if (ratio_wanted_) r.ratio = ratio_range(contacts_, r.force.S);
   if (springs_wanted_) r.springs = {};
@@ -165,6 +170,7 @@ bool Simulation::step() noexcept {
   ++result_.rows;
   if (check_stop_rules()) return true;
 
+  // Integrate: the forces of the row move the handle that the tool follows, or the virtual tool.
   if (handle_moves_tool_) {
     parts_.device->drive(r.force.rendered, r.hand_force);
     put_tool_on_handle();
@@ -173,6 +179,8 @@ bool Simulation::step() noexcept {
     config_.integrator->step(tool_, r.hand.input + r.force.rendered, config_.mass, config_.dt, field,
                              config_.event_tolerance);
   }
+
+  // Begin the next row.
   ++row_;
   if (row_ == config_.steps) {
     end(Ending::completed);

@@ -155,7 +155,9 @@ class Simulation {
   void put_tool_on_handle() noexcept;
   double roll_at(double t) const noexcept;
   Vec3 angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept;
+  /// Ends the run and returns false if a value is not finite or beyond its bound.
   bool check_bounds() noexcept;
+  /// Ends the run and returns true if a stop rule holds or the hand has finished.
   bool check_stop_rules() noexcept;
   void end(Ending ending) noexcept;
 
