@@ -267,8 +267,9 @@ AlgorithmEntry virtual_coupling_entry() {
       .name = "virtual_coupling",
       .summary = "all springs in series with one quasi-static coupling spring",
       .formula =
-          "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T; along "
-          "the sum g of the depths alone: f = -q K g, S = q S_sum, q = K_vc / (K_vc + K <u, S_sum u>), u = g / |g|",
+          "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T; "
+          "along the sum g of the depths alone: f = -q K g, S = q S_sum, q = K_vc / (K_vc + K <u, S_sum u>), u = g "
+          "/ |g|",
       .source = "thesis Fig. 2d",
       .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
       .parameters = kParameters,
@@ -292,8 +293,8 @@ AlgorithmEntry least_squares_entry() {
           "S = (eps I + S_sum)^-1 S_sum, S_sum = sum u u^T; always without reduction",
       .source = "ours (Tikhonov's regularised least squares); virtual_coupling with stiffness K / eps is the same law",
       .known_failure =
-          "a small eps makes S jump as the first contact along a direction comes or the last one goes, and contacts that "
-          "nearly oppose push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
+          "a small eps makes S jump as the first contact along a direction comes or the last one goes, and contacts "
+          "that nearly oppose push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
       .parameters = kParameters,
   };
   return {.info = &kInfo, .make_law = law_of<LeastSquares>, .force_bound = least_squares_bound, .may_reduce = false};
@@ -308,11 +309,13 @@ AlgorithmEntry static_coupling_entry() {
       .name = "static_coupling",
       .summary = "a massless copy of the tool in balance between its contacts and a coupling spring that saturates",
       .formula =
-          "f = g(|s|) s / |s|, g(x) = K_vc x / sqrt(1 + (K_vc x / F_s)^2), where the copy's displacement s from the tool "
-          "balances -K sum p_i u_i = f; p_i = d_i + <u_i, s> where it has the sign of d_i, else 0; S = -df/dp / K",
+          "f = g(|s|) s / |s|, g(x) = K_vc x / sqrt(1 + (K_vc x / F_s)^2), where the copy's displacement s from the "
+          "tool balances -K sum p_i u_i = f; p_i = d_i + <u_i, s> where it has the sign of d_i, else 0; S = -df/dp "
+          "/ K",
       .source =
-          "static virtual coupling of Barbic and James, Six-DoF haptic rendering of contact between geometrically complex "
-          "reduced deformable models (IEEE Trans. Haptics 1, 2008); the shape of g and solving it to the end are ours",
+          "static virtual coupling of Barbic and James, Six-DoF haptic rendering of contact between geometrically "
+          "complex reduced deformable models (IEEE Trans. Haptics 1, 2008); the shape of g and solving it to the "
+          "end are ours",
       .known_failure =
           "the copy follows the direction with most points, and what lies beyond the saturation feels soft",
       .parameters = kParameters,

@@ -375,8 +375,8 @@ AlgorithmEntry exact_shaping_entry() {
           "the cone of contact tensors u u^T",
       .source = "ours; the iteration is the multiplicative update of Sha, Lin, Saul, Lee, Neural Computation 2007",
       .known_failure =
-          "as shaped_stiffness: jumps as contacts come and go, larger ones; ratios above 1 where the weight is zero; soft along the way out of a wedge, "
-          "2 sin^2 w / (1 + cos^2 2w) K for half angle w, about w^2 K",
+          "as shaped_stiffness: jumps as contacts come and go, larger ones; ratios above 1 where the weight is "
+          "zero; soft along the way out of a wedge, 2 sin^2 w / (1 + cos^2 2w) K for half angle w, about w^2 K",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo, .make_law = law_of<ExactShaping>, .force_bound = kBound};

@@ -69,10 +69,10 @@ AlgorithmEntry shaped_stiffness_entry() {
       .formula = "c = 1; m times: rho_i = sum_j c_j <u_i, u_j>^2 = u_i^T S u_i, c_i <- c_i / rho_i",
       .source = "thesis 2.4, C.4.2; rho through the 3x3 tensor, Eq. 3 and 4",
       .known_failure =
-          "the force jumps as contacts come and go, so its bounds hold while they stay; rho_i stays above 1 where the "
-          "weight dies out (it is a projection onto a cone); soft along the way out of a "
-          "wedge, because only ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 2w) K, about w^2 K, for half "
-          "angle w (10 degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) K, about 2 w^2 K",
+          "the force jumps as contacts come and go, so its bounds hold while they stay; rho_i stays above 1 where "
+          "the weight dies out (it is a projection onto a cone); soft along the way out of a wedge, because only "
+          "ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 2w) K, about w^2 K, for half angle w (10 "
+          "degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) K, about 2 w^2 K",
       .parameters = kShapingParameters,
   };
   return shaping_entry(kInfo);

@@ -369,9 +369,10 @@ AlgorithmEntry proxy_entry() {
       .name = "proxy",
       .summary = "a proxy of the tool that never enters the environment; a spring pulls the tool to it",
       .formula =
-          "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed distance of "
-          "the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above the surface's "
-          "flat patch about each point; f_spring = K (x - p), S = projector onto the span of the active gradients",
+          "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed "
+          "distance of the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above "
+          "the surface's flat patch about each point; f_spring = K (x - p), S = projector onto the span of the "
+          "active gradients",
       .source = "ours; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 rejects",
       .known_failure =
           "a start in deep penetration and a hole that the turned tool does not fit into keep points inside the proxy, "

@@ -27,8 +27,8 @@ const ModelInfo kEnergyTankInfo = {
     .source = "Franken, Stramigioli, Misra, Secchi and Macchelli 2011; Ferraguti et al. 2015; along the velocity: ours",
     .known_failure =
         "a capacity below the energy of the springs that are pressed takes their push back; it takes push away and "
-        "never damps, so that a vibration that creates no energy goes on; what an explicit step of a virtual mass creates "
-        "within the step it does not foresee",
+        "never damps, so that a vibration that creates no energy goes on; what an explicit step of a virtual mass "
+        "creates within the step it does not foresee",
     .parameters = kTankParameters,
 };
 
@@ -36,16 +36,17 @@ const ModelInfo kActuatorLimitedPassivityInfo = {
     .name = "actuator_limited_passivity",
     .summary = "a force stage: time-domain passivity whose damping no actuator is too weak for",
     .formula =
-        "W = <f, v> - E / dt > 0 is dissipated by f1 = f - a1 <v, n> n, n = f / |f|, then f2 = f1 - a2 (v - <v, n> n); "
-        "a1 = W / <v, n>^2 and a2 = (W - a1 <v, n>^2) / |v - <v, n> n|^2, each at most b and such that |f_j| <= F_j; the "
-        "rest stays owed",
+        "W = <f, v> - E / dt > 0 is dissipated by f1 = f - a1 <v, n> n, n = f / |f|, then f2 = f1 - a2 (v - <v, n> "
+        "n); a1 = W / <v, n>^2 and a2 = (W - a1 <v, n>^2) / |v - <v, n> n|^2, each at most b and such that |f_j| <= "
+        "F_j; the rest stays owed",
     .source =
         "Hannaford and Ryu 2002; priority of the force's direction and limits of each actuator after the abstract of "
         "Porcini and Frisoli 2026 (arXiv 2603.26347), formulas ours",
     .known_failure =
-        "foresees the coming step by the velocity alone: a force that throws the tool within a step is owed first and "
-        "paid afterwards, too late where the explicit step of a virtual mass is unstable; what damping has taken is credit, behind which a vibration may hide; a turn of the tool that "
-        "lifts it counts as energy created",
+        "foresees the coming step by the velocity alone: a force that throws the tool within a step is owed first "
+        "and paid afterwards, too late where the explicit step of a virtual mass is unstable; what damping has "
+        "taken is credit, behind which a vibration may hide; a turn of the tool that lifts it counts as energy "
+        "created",
     .parameters = kActuatorParameters,
 };
 

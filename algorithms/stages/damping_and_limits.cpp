@@ -79,8 +79,8 @@ const ModelInfo kDampingAndLimitsInfo = {
         "sum N_i, e <- (dt g + B_t e) / (K_t dt + B_t), f_dt = -P g",
     .source =
         "thesis 2.5, 2.6, A.2.1, B.2, C.4.3; mu_s and mu_f, called Coulomb friction there, are viscous; "
-        "angular_damping is ours, after the future work of 4.3 and 4.4; dry friction after Kikuuwe et al. 2006, damping "
-        "that grows with depth after Hunt and Crossley 1975",
+        "angular_damping is ours, after the future work of 4.3 and 4.4; dry friction after Kikuuwe et al. 2006, "
+        "damping that grows with depth after Hunt and Crossley 1975",
     .known_failure =
         "without angular_damping, a tool that only turns has no velocity to damp (thesis 4.4); with it, a turn pushes "
         "the tip sideways, since no torque is rendered; limits leave stiff scenes under-damped (A.2); "

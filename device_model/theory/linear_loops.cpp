@@ -313,14 +313,13 @@ constexpr StiffnessLimit kLimits[] = {
      .formula = "K < (b + B) / (T/2 + t_d), b with the hand's",
      .source = "J. J. Gil, E. Sanchez, T. Hulin, C. Preusche, G. Hirzinger, J. Comput. Inf. Sci. Eng. 9(1), 2009",
      .applies =
-         "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15 (ours: at most 14 % above the exact "
-         "edge there); velocity by the difference",
+         "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15 (ours: at most 14 % above "
+         "the exact edge there); velocity by the difference",
      .largest = gil_hulin},
     {.name = "passive_abbott_okamura",
      .formula = "K <= min(2 b / T, 2 c / q)",
-     .source =
-         "J. J. Abbott, A. M. Okamura, Effects of position quantization and sampling rate on virtual-wall passivity, IEEE "
-         "T-RO 21(5), 2005",
+     .source = "J. J. Abbott, A. M. Okamura, Effects of position quantization and sampling rate on virtual-wall "
+               "passivity, IEEE T-RO 21(5), 2005",
      .applies = "no delay, B = 0, an encoder step q > 0",
      .largest = abbott_okamura},
     {.name = "exact_undamped_handle",

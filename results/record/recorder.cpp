@@ -218,8 +218,8 @@ const ResultTable kEnergyTable = {
      {"hand_J", "J", "work of the hand on the handle since the first row"},
      {"actuator_J", "J", "work of the device's actuators since the first row"},
      {"device_dissipated_J", "J",
-      "work of the friction in the device's mechanics since the first row: what they dissipated, negative; empty when the "
-      "handle is the tool"},
+      "work of the friction in the device's mechanics since the first row: what they dissipated, negative; empty "
+      "when the handle is the tool"},
      {"device_stored_J", "J", "what the device's mechanics store, now; empty when the handle is the tool"}}};
 const ResultTable kIdealTrajectoryTable = {
     "ideal_trajectory.csv",
