@@ -1,3 +1,5 @@
+#include "algorithms/laws/exact_shaping.hpp"
+
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>

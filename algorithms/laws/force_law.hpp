@@ -80,23 +80,4 @@ Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept;
 /// f_spring and S of the weights in the buffer. O(n).
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept;
 
-/// Applies `iterations` updates c_i <- c_i / rho_i to weights of 1 (thesis C.4.2), leaves them in the buffer and
-/// returns their stiffness tensor. Precondition: padded contacts. O(n) per iteration; a zero gradient gets weight zero.
-/// From the first update on lambda_max(S) <= (1 + sqrt 3)/2, planar (1 + sqrt 2)/2 (proof:
-/// results/reference/BEYOND.md).
-Mat3 shape_weights(ContactBuffer& contacts, int iterations) noexcept;
-
-/// One update c_i <- c_i / (u_i^T S u_i); S must be the tensor of the weights in the buffer. Returns the new tensor.
-Mat3 update_shaped_weights(ContactBuffer& contacts, const Mat3& S) noexcept;
-
-/// epsilon of the definition: small enough that rho_i = 1 - epsilon c_i is 1 to six digits, large enough that the
-/// weights are unique and the six equations are solved to rounding.
-inline constexpr double kExactShapingEpsilon = 1e-6;
-
-/// Computes the weights that minimise ½|S - I|²_F + (epsilon/2)|c|², c >= 0, into the buffer and returns the number of
-/// Newton steps. At the optimum rho_i = 1 - epsilon c_i where c_i > 0 and rho_i >= 1 where c_i = 0; tr S >= |S|²_F,
-/// hence lambda_max(S) <= (1 + sqrt 3)/2 (planar: (1 + sqrt 2)/2). Precondition: padded contacts. O(n) per step, about
-/// two Newton steps. The result depends on the order of the contacts by rounding only.
-int solve_exact_shaping(ContactBuffer& contacts) noexcept;
-
 }  // namespace hapbench

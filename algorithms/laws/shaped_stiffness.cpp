@@ -1,3 +1,5 @@
+#include "algorithms/laws/shaped_stiffness.hpp"
+
 #include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "algorithms/laws/force_law.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "results/io/columns.hpp"
 #include "results/observe/energy.hpp"
 #include "results/observe/ideal_trajectory.hpp"

@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/core/math.hpp"

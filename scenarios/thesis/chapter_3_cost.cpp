@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/penalty_rendering.hpp"
 #include "scenarios/thesis/claims.hpp"
 

@@ -1,4 +1,5 @@
 #include "algorithms/registry.hpp"
+#include "algorithms/laws/exact_shaping.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algorithms/depth/depth_model.hpp"
+#include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/force_law.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/scripted_hands.hpp"

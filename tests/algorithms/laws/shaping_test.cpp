@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/registry.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "tests/support/bits.hpp"

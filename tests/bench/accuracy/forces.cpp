@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
 #include "scenarios/thesis/claims.hpp"
