@@ -58,11 +58,12 @@ double way_to_core(const ToolShape& tool);
 enum class SolidSide { unknown, outside, inside };
 
 /// Finds a tool that goes through a wall, also one thinner than the tool: by its core, the part of its axis that is in
-/// its body, from the tip centre to the far end. The core has gone through when it crosses the solid from face to face
-/// at one time, the faces looking away from each other, or when a part of it comes out by a face that looks away from
-/// the one by which it had entered. A row costs a look, some 20 distances along the axis, only while a contact is deep
-/// (looks_from_) or the way of a row long, once the core has moved by its distance from the surface, and before the
-/// first passage. Allocates when constructed.
+/// its body, from the tip centre to the far end. While no contact is deep, the core of a flat tip begins 0.9 half
+/// widths behind the tip centre, because its tip centre is in the surface at any depth. The core has gone through when
+/// it crosses the solid from face to face at one time, the faces looking away from each other, or when a part of it
+/// comes out by a face that looks away from the one by which it had entered. A row costs a look, some 20 distances
+/// along the axis, only while a contact is deep (looks_from_) or the way of a row long, once the core has moved by its
+/// distance from the surface, and before the first passage. Allocates when constructed.
 class CorePassage {
  public:
   struct Event {

@@ -30,10 +30,10 @@ constexpr OutcomeInfo kOutcomes[] = {
      true},
     {"went_through",
      "all steps are done, but the tool passed the surface, by itself or led by a script: its tip centre came deeper "
-     "than its half width, or its core (its axis, from half a width behind its tip to the far end) crossed the "
-     "environment from face to face or left it on another side than it had entered, also where it is thinner than "
-     "the tool, or the foremost place of its core ended inside, or another part of it, as its shank, came deeper "
-     "than its half width",
+     "than its half width, or its core (its axis from the tip centre to the far end; of a flat tip only from 0.9 "
+     "half widths behind the tip centre while no contact is as deep as that) crossed the environment from face to "
+     "face or left it on another side than it had entered, also where it is thinner than the tool, or the place "
+     "half a width behind its tip ended inside, or another part of it, as its shank, came deeper than its half width",
      true},
     {"diverges", "a value stopped being finite or left its bound (describe bounds)", true}};
 static_assert(static_cast<std::size_t>(Outcome::diverges) == std::size(kOutcomes) - 1);
