@@ -12,6 +12,8 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/expectations.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "sim/core/random.hpp"
 

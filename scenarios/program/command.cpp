@@ -11,6 +11,7 @@
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
+#include "scenarios/run/new_directories.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {

@@ -10,6 +10,7 @@
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {

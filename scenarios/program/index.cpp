@@ -15,6 +15,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/diagnosis.hpp"
+#include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/scenario_schema.hpp"

@@ -14,6 +14,8 @@
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/scripted_motion.hpp"
+#include "scenarios/run/vibration_limit.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {

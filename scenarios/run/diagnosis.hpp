@@ -1,15 +1,10 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <optional>
 #include <vector>
 
-#include "results/observe/contact_forces.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/run/diagnosis_observer.hpp"
 #include "scenarios/scene/load_scenario.hpp"
-#include "sim/loop/simulation.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 /// What is wrong with a run and what to try, by rules: a metric, or a number of an observer, above a threshold.
@@ -22,52 +17,12 @@ std::vector<Diagnosed> diagnosis_rules(bool quiet = false);
 /// What the rules of a quiet run find in this result, also below their thresholds; empty where they have no number.
 std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result);
 
+/// What is wrong with the run that gave this result and these rows, in the order of the rules. Some ms where a loop is
+/// solved.
+std::vector<Diagnosed> diagnosis_findings(const LoadedScenario& loaded, const Result& result, const SeenRows& rows,
+                                          const ToolShape& tool);
+
 /// What is told of a run that nobody diagnoses, as one of many: that it is not the law which made its numbers.
 std::vector<Warning> rule_warnings(const LoadedScenario& loaded, const Result& result);
-
-/// What rules need of the rows of a run, of all its trials; the last quarter is the one in which the last trial ended.
-struct SeenRows {
-  std::uint64_t touching = 0;        ///< rows in contact; of these
-  std::uint64_t at_force_limit = 0;  ///< with the largest force of device or rendering
-  std::uint64_t at_limiter = 0;      ///< with as much hand force as the device's limiter lets in
-  double way_in_contact = 0.0;       ///< of the tip [m]
-  double longest_step = 0.0;         ///< OutcomeObserver::longest_step [m]
-  Vec3 last_force = Vec3::Zero();    ///< rendered [N]
-  struct Quarter {
-    std::uint64_t rows = 0;
-    bool touches = true;                        ///< in all of them
-    Vec3 start = Vec3::Zero();                  ///< of the tip [m]
-    Vec3 high_squares = Vec3::Zero();           ///< sum of the squares of the force above 30 Hz [N^2]
-    std::array<std::uint64_t, 3> high_turns{};  ///< its changes of sign
-  } last_quarter;
-  Vec3 tip = Vec3::Zero();  ///< in the last row [m]
-};
-
-/// Watches a run for the rules; some 20 ns a row, in constant memory.
-class DiagnosisObserver final : public Observer {
- public:
-  /// The scenario must outlive the observer.
-  explicit DiagnosisObserver(const Scenario& scenario);
-
-  void on_step(const StepRecord& record) noexcept override;
-
-  /// After a trial: its OutcomeObserver::longest_step [m].
-  void add_longest_step(double way) noexcept { seen_.longest_step = std::max(seen_.longest_step, way); }
-
-  /// What is wrong with the run that gave this result, in the order of the rules. Some ms where a loop is solved.
-  std::vector<Diagnosed> findings(const LoadedScenario& loaded, const Result& result, const ToolShape& tool) const;
-
- private:
-  void add_contact(const StepRecord& record) noexcept;
-  void add_to_quarter(const StepRecord& record) noexcept;
-
-  const Scenario& scenario_;
-  std::optional<double> force_limit_, input_limit_;  ///< [N]
-  std::optional<HighPass> high_pass_;
-  std::uint64_t quarter_ = 0;
-  bool touched_ = false;      ///< in the row before
-  Vec3 high_ = Vec3::Zero();  ///< force above 30 Hz in the row before [N]
-  SeenRows seen_;
-};
 
 }  // namespace hapbench

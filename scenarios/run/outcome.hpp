@@ -15,7 +15,7 @@ namespace hapbench {
 class OutcomeObserver : public Observer {
  public:
   /// The outcome of a run whose stepping ended with `ending`. A run with a point shell that has completed gets the
-  /// first outcome whose condition holds (kConditions in outcome.cpp; outcome_infos() says the same in words).
+  /// first outcome whose condition holds (kConditions in outcome.cpp; outcome_infos() has the same in words).
   virtual Outcome outcome(Ending ending) = 0;
   /// After the run: warnings about its outcome and the path of a drag. Precondition: there are metrics.
   virtual std::vector<Warning> warnings(Outcome outcome) = 0;

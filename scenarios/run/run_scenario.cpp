@@ -8,12 +8,15 @@
 #include "algorithms/registry.hpp"
 #include "results/observe/step_times.hpp"
 #include "results/summary/allocations.hpp"
-#include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
+#include "scenarios/run/diagnosis_observer.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/scene_checks.hpp"
+#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
+#include "scenarios/run/scene_warnings.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
@@ -128,7 +131,7 @@ class Run {
     // The fields of a cylinder say all.
     if (!std::holds_alternative<CylinderFields>(scenario_.tool)) result.tool = tool_json(*tool_);
     if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
-    if (diagnosis_) result.diagnosis = diagnosis_->findings(loaded_, result, *tool_);
+    if (diagnosis_) result.diagnosis = diagnosis_findings(loaded_, result, diagnosis_->rows(), *tool_);
     const StepLatency alone = step_latency(step_nanoseconds_, 0);
     result.timing.step_p50 = if_any(alone.steps > 0, 1e-9 * static_cast<double>(alone.p50));
     result.timing.step_p99 = if_any(alone.steps >= 100, 1e-9 * static_cast<double>(alone.p99));
@@ -210,13 +213,6 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
   return trials;
 }
 
-std::string divergence_text(const RunEnd& result) {
-  if (result.outcome != Outcome::diverges) return "";
-  const Divergence& d = result.divergence;
-  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
-  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
-}
-
 }  // namespace
 
 Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
@@ -256,26 +252,6 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
   if (folder) result.replaces_other = folder->write(scenario.record, effective, result, run.recorders());
   if (tables != nullptr) tables->write(effective, result, run.recorders());
   return result;
-}
-
-std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {
-  std::vector<std::string> unmet;
-  if (!outcome_is_expected(expect, run.end.outcome)) {
-    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.end.outcome),
-                                divergence_text(run.end), quoted_list(names_of(expect.outcomes, outcome_name))));
-  }
-  for (const auto& [name, bound] : expect.metrics) {
-    const auto number = number_of(run.metrics, name);
-    if (!number) {
-      unmet.push_back(fmt::format("{} has no value; expected one", name));
-      continue;
-    }
-    if (bound.min && *number < *bound.min)
-      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, *number, *bound.min));
-    if (bound.max && *number > *bound.max)
-      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, *number, *bound.max));
-  }
-  return unmet;
 }
 
 }  // namespace hapbench

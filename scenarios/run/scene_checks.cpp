@@ -3,15 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <span>
+#include <utility>
+#include <variant>
 
 #include "results/observe/inside_observer.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/scene_warnings.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/geometry/triangle_tree.hpp"
-#include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
 namespace {
@@ -26,14 +27,6 @@ ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
 constexpr double kUsualStep = 0.001;  ///< of haptic loops [s]
 /// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
 constexpr double kUnitsApart = 100.0;
-
-/// The question about the field that makes an environment as large as it is.
-const char* size_question(const Environment& environment) {
-  if (std::holds_alternative<MeshEnvironment>(environment)) return "is environment.scale right?";
-  if (std::holds_alternative<PointShellEnvironment>(environment))
-    return "are the points of environment.file in metres?";
-  return "are the sizes of environment in metres?";
-}
 
 /// An environment that no hand works on, whatever the size of the tool.
 std::optional<Warning> size_warning(const Environment& environment, const Box& box) {
@@ -102,8 +95,10 @@ std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolSha
   std::size_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < shell.size(); ++i) {
-    const double d = (shell.point(i).position - core).norm();
-    if (d < distance) nearest = i, distance = d;
+    const double to_point = (shell.point(i).position - core).norm();
+    if (to_point >= distance) continue;
+    nearest = i;
+    distance = to_point;
   }
   constexpr double kBehind = 0.7;  // cosine of 45 degrees: not beside an edge
   const SurfacePoint point = shell.point(nearest);
@@ -116,56 +111,6 @@ std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolSha
                   length_text(behind))};
 }
 
-constexpr double kAlways = std::numeric_limits<double>::infinity();
-
-/// The time until which a script moves [s]: 0 if it never does.
-double moves_until(const Profile& profile) {
-  if (profile.is_constant()) return 0.0;
-  const auto* way = std::get_if<Profile::Waypoints>(&profile.shape());
-  return way != nullptr ? way->points.back().first : kAlways;
-}
-
-double period_of(const Profile& profile) {
-  const auto* sine = std::get_if<Profile::Sine>(&profile.shape());
-  return sine != nullptr && !profile.is_constant() ? sine->period_s : 0.0;
-}
-
-/// The scripts of the hand; none of one that is moved otherwise, and of none.
-std::span<const Profile> scripts_of(const HandFields& hand) {
-  if (const auto* force = std::get_if<ForceHandFields>(&hand)) return force->force;
-  if (const auto* push = std::get_if<PushHandFields>(&hand)) return {&push->force, 1};
-  if (const ImpedanceHandFields* spring = spring_of(hand)) return spring->target;
-  return {};
-}
-
-double largest(const Scenario& scenario, double (*of)(const Profile&)) {
-  double most = 0.0;
-  for (const Profile& script : scripts_of(scenario.hand)) most = std::max(most, of(script));
-  const auto& orientation = scenario.motion.orientation;
-  return orientation ? std::max({most, of(orientation->tilt), of(orientation->azimuth)}) : most;
-}
-
-/// The mean distance of a mesh's vertices [m].
-double vertex_distance(const TriangleSoup& soup) {
-  double area = 0.0;
-  for (const auto& [a, b, c] : soup.triangles) {
-    const Vec3& corner = soup.vertices[a];
-    area += 0.5 * (soup.vertices[b] - corner).cross(soup.vertices[c] - corner).norm();
-  }
-  return std::sqrt(area / static_cast<double>(soup.vertices.size()));
-}
-
-struct Unit {
-  double per_metre;
-  const char* name;
-};
-
-Unit unit_for(double metres) {
-  const double size = std::abs(metres);
-  if (size >= 1.0 || size == 0.0) return {1.0, "m"};
-  return size >= 1e-4 ? Unit{1e3, "mm"} : Unit{1e6, "um"};
-}
-
 std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
   const std::string question = scale_question(scenario, tool, environment);
   if (question.empty()) return std::nullopt;
@@ -176,173 +121,80 @@ std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& 
                              is_mesh ? "" : "are the tool's lengths in metres, or ", question)};
 }
 
+std::optional<Warning> step_warning(double step) {
+  if (step <= kUnitsApart * kUsualStep && kUnitsApart * step >= kUsualStep) return std::nullopt;
+  return Warning{"step", "/time/step_s", fmt::format("{:.3g} s; haptic loops step each 1 ms: is it in seconds?", step)};
+}
+
+/// Warnings of a scene, of which each may be missing.
+class WarningList {
+ public:
+  void add(std::optional<Warning> warning) {
+    if (warning) warnings_.push_back(std::move(*warning));
+  }
+  void add(std::vector<Warning> warnings) {
+    for (Warning& warning : warnings) warnings_.push_back(std::move(warning));
+  }
+  std::vector<Warning> taken() { return std::move(warnings_); }
+
+ private:
+  std::vector<Warning> warnings_;
+};
+
+/// Warnings about sizes, in an environment whose points have a size.
+void add_size_warnings(WarningList& warnings, const LoadedScenario& loaded, const ToolShape& tool,
+                       const SceneFacts::Surface& surface) {
+  const Scenario& scenario = loaded.scenario;
+  if (auto scale = scale_warning(scenario, tool, surface.box)) {
+    warnings.add(std::move(scale));
+  } else {
+    warnings.add(size_warning(scenario.environment, surface.box));
+    warnings.add(spacing_warning(loaded, tool));
+  }
+  warnings.add(start_warning(tool, surface));
+  if (std::holds_alternative<RecordedPosition>(scenario.motion.position))
+    warnings.add(stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box));
+}
+
 }  // namespace
-
-std::optional<Warning> short_path_warning(const DragHandFields& fields, const DragHand& hand, double duration,
-                                          const ToolShape& tool) {
-  const double path = hand.path().length(), to_cover = way_to_cover(fields, duration);
-  // By less than the tool is wide it is the edge that ends the way.
-  if (to_cover <= path + 2.0 * tool.half_width()) return std::nullopt;
-  const std::string ends =
-      fmt::format("the path of the drag ends after {} of {}: ", length_text(path), length_text(to_cover));
-  return Warning{"short_path", "",
-                 ends + (fields.path ? "hand.path_m leads no further over the surface; let its points lie on it"
-                                     : "beyond, the surface ends or turns against hand.direction; another "
-                                       "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
-}
-
-std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
-  // Scenes are made of tools and places to work on. An environment this much smaller than the tool is thick, or larger
-  // than it is long, is suspect, and millimetres taken for metres change either a thousandfold.
-  constexpr double kTooSmall = 0.1, kTooLarge = 100.0;
-  const double size = diagonal(environment);
-  if (size >= kTooSmall * 2.0 * tool.half_width() && size <= kTooLarge * tool.reach()) return "";
-  if (std::holds_alternative<MeshToolFields>(scenario.tool)) return "are tool.scale and the environment's size right?";
-  return size_question(scenario.environment);
-}
-
-std::string odd_frame(const Box& tool) {
-  constexpr double kOdd = 2.0;  // as far this way as the other, or further, is not an accident
-  const Vec3 size = tool.size();
-  const double gap = distance_to(tool, Vec3::Zero());
-  if (gap > 0.0) return fmt::format("lies {} away from its tip centre", length_text(gap));
-  const auto [short_side, long_side] = std::minmax(size.x(), size.y());
-  if (long_side > kOdd * std::max(short_side, size.z())) return "lies across its axis";
-  if (-tool.min.z() > kOdd * tool.max.z()) return "lies before its tip centre, not behind";
-  return "";
-}
-
-std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool) {
-  std::vector<Warning> warnings;
-  if (rendering.algorithm == "proxy" && !tool.convex()) {
-    warnings.push_back(
-        {"not_convex", "",
-         "the tool is not convex: the proxy's guarantee that no point enters it is lost, points may enter "
-         "where it is concave, as at the neck of a bur; a convex tool, or another algorithm, has no such "
-         "gap"});
-  }
-  if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) {
-    const Box& box = mesh->grid().box();
-    if (const std::string odd = odd_frame(box); !odd.empty()) {
-      warnings.push_back(
-          {"tool_frame", "",
-           fmt::format("the tool {} (from there {}): are tool.tip_m and tool.tip_axis right?", odd, place_text(box))});
-    }
-  }
-  return warnings;
-}
 
 SceneFacts scene_facts(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
-  SceneFacts facts;
-  const auto warn = [&facts](std::optional<Warning> warning) {
-    if (warning) facts.warnings.push_back(std::move(*warning));
-  };
   const double step = scenario.time.step;
-  if (step > kUnitsApart * kUsualStep || kUnitsApart * step < kUsualStep)
-    warn(
-        Warning{"step", "/time/step_s", fmt::format("{:.3g} s; haptic loops step each 1 ms: is it in seconds?", step)});
-  const ToolShape& tool = *(facts.tool = make_tool(scenario, loaded.files));
-  for (Warning& warning : tool_warnings(scenario.rendering, tool)) warn(std::move(warning));
+  SceneFacts facts;
+  WarningList warnings;
+
+  // The step and the tool.
+  warnings.add(step_warning(step));
+  facts.tool = make_tool(scenario, loaded.files);
+  const ToolShape& tool = *facts.tool;
+  warnings.add(tool_warnings(scenario.rendering, tool));
+
+  // The environment; springs have no points.
   const auto shell = make_shell(scenario, loaded.files);
   throw_if_stopped();  // that may have taken seconds
-  if (!shell || shell->size() == 0) return facts;
+  if (!shell || shell->size() == 0) {
+    facts.warnings = warnings.taken();
+    return facts;
+  }
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
     facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().open_edges().empty();
+
+  // The path of a drag.
   const SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
     const double duration = step * static_cast<double>(scenario.time.steps);
-    warn(short_path_warning(std::get<DragHandFields>(scenario.hand), *hand, duration, tool));
+    warnings.add(short_path_warning(std::get<DragHandFields>(scenario.hand), *hand, duration, tool));
   }
+
+  // Sizes, and where the tool starts.
   const ToolPose pose = first_pose(scenario, parts);
-  const Gap gap = gap_between(tool, pose, *shell);
-  const auto& surface = facts.surface.emplace(SceneFacts::Surface{shell->bounds(), shell->size(), gap});
-  if (surface.box.min != surface.box.max) {  // a single point has no size
-    if (const auto scale = scale_warning(scenario, tool, surface.box)) {
-      warn(scale);
-    } else {
-      warn(size_warning(scenario.environment, surface.box));
-      warn(spacing_warning(loaded, tool));
-    }
-    warn(start_warning(tool, surface));
-    if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-      for (Warning& warning : stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box))
-        warn(std::move(warning));
-    }
-  }
-  warn(wrong_side_warning(*shell, tool, pose));
+  facts.surface = SceneFacts::Surface{shell->bounds(), shell->size(), gap_between(tool, pose, *shell)};
+  const bool has_size = facts.surface->box.min != facts.surface->box.max;  // unlike a single point
+  if (has_size) add_size_warnings(warnings, loaded, tool, *facts.surface);
+  warnings.add(wrong_side_warning(*shell, tool, pose));
+  facts.warnings = warnings.taken();
   return facts;
-}
-
-double script_moves_until(const Scenario& scenario) {
-  const HandFields& hand = scenario.hand;
-  const bool is_led = scripts_of(hand).empty() && !std::holds_alternative<NoHandFields>(hand);
-  return is_led || !scenario.motion.orientation ? kAlways : largest(scenario, moves_until);
-}
-
-double script_period(const Scenario& scenario) {
-  return largest(scenario, period_of);
-}
-
-bool is_moved(const Scenario& scenario) {
-  const ImpedanceHandFields* hand = spring_of(scenario.hand);
-  return script_moves_until(scenario) > 0.0 || (hand != nullptr && hand->tremor);
-}
-
-std::optional<PointDistance> point_distance(const LoadedScenario& loaded) {
-  const Environment& environment = loaded.scenario.environment;
-  constexpr const char* kSpacing = "environment.spacing_m";
-  if (const auto* block = std::get_if<BlockEnvironment>(&environment))
-    return PointDistance{"environment.grid_m", block->grid};
-  const auto* mesh = std::get_if<MeshEnvironment>(&environment);
-  if (mesh != nullptr && !mesh->spacing) {
-    const double distance = vertex_distance(loaded.files.at(kEnvironmentFile).mesh().triangles());
-    return PointDistance{kSpacing, distance, false};
-  }
-  return std::visit(
-      [](const auto& shape) -> std::optional<PointDistance> {
-        if constexpr (requires { shape.spacing; })
-          return PointDistance{kSpacing, std::optional<double>(shape.spacing).value()};
-        return std::nullopt;
-      },
-      environment);
-}
-
-Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell) {
-  constexpr std::size_t kAtOnce = 4096;  // keeps the buffer small, however large the shell
-  ContactBuffer points(std::min(kAtOnce, shell.size()));
-  Gap gap{std::numeric_limits<double>::infinity()};
-  for (std::size_t first = 0; first < shell.size(); first += kAtOnce) {
-    points.clear();
-    for (std::size_t i = first; i < std::min(first + kAtOnce, shell.size()); ++i) {
-      const SurfacePoint point = shell.point(i);
-      points.push(static_cast<std::uint32_t>(i), point.position, point.normal);
-    }
-    tool.surface_constraints(pose, Vec3::Zero(), 0.0, points);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      gap.distance = std::min(gap.distance, -points.depth[i]);
-      if (points.depth[i] >= 0.0) ++gap.touching;
-    }
-  }
-  return gap;
-}
-
-std::string length_text(double metres) {
-  const Unit unit = unit_for(metres);
-  return fmt::format("{:.3g} {}", metres * unit.per_metre, unit.name);
-}
-
-std::string size_text(const Box& box) {
-  const Unit unit = unit_for(box.size().maxCoeff());
-  const Vec3 n = box.size() * unit.per_metre;
-  return fmt::format("{:.3g} x {:.3g} x {:.3g} {}", n.x(), n.y(), n.z(), unit.name);
-}
-
-std::string place_text(const Box& box) {
-  const Unit unit = unit_for(std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
-  const Vec3 a = box.min * unit.per_metre, b = box.max * unit.per_metre;
-  return fmt::format("x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} {}", a.x(), b.x(), a.y(), b.y(),
-                     a.z(), b.z(), unit.name);
 }
 
 }  // namespace hapbench

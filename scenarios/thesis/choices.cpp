@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "results/io/columns.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/core/random.hpp"
 

@@ -13,6 +13,7 @@
 #include "results/io/columns.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/scene_distances.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/core/math.hpp"
 #include "sim/loop/integrators/table.hpp"

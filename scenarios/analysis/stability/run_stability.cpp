@@ -4,8 +4,10 @@
 
 #include "results/observe/metrics.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scripted_motion.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/core/hash.hpp"

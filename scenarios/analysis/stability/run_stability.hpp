@@ -6,7 +6,8 @@
 #include <map>
 
 #include "results/observe/contact_forces.hpp"
-#include "scenarios/run/scene_checks.hpp"
+#include "scenarios/run/scripted_motion.hpp"
+#include "scenarios/run/vibration_limit.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/simulation.hpp"

@@ -8,6 +8,8 @@
 
 #include "scenarios/analysis/convergence/convergence.hpp"
 #include "scenarios/analysis/tuning/trials.hpp"
+#include "scenarios/run/scene_distances.hpp"
+#include "scenarios/run/scripted_motion.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {

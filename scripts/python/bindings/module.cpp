@@ -28,6 +28,7 @@
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/run_tables.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 /// The engine and the commands of the program for Python. Users call the package around it (hapbench/).

@@ -10,6 +10,8 @@
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
+#include "scenarios/run/diagnosis_observer.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
@@ -296,7 +298,7 @@ TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
     result.algorithm = law;
     result.metrics = {
         {"ratio_min", "1", "", 0.1}, {"ratio_max", "1", "", 10.0}, {"force_reversals_per_s", "1/s", "", 100.0}};
-    const auto findings = DiagnosisObserver(loaded.scenario).findings(loaded, result, *tool);
+    const auto findings = diagnosis_findings(loaded, result, DiagnosisObserver(loaded.scenario).rows(), *tool);
     EXPECT_EQ(findings.size(), 4u) << law;  // soft, hard, damping, chatter
     for (const Diagnosed& found : findings)
       EXPECT_FALSE(std::regex_search(found.attempt, std::regex("\\b" + law + "\\b"))) << law << ": " << found.attempt;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/run/stop_signal.hpp"

@@ -15,6 +15,7 @@
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/run_tables.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/parts.hpp"
 #include "tests/results/files.hpp"

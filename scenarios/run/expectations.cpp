@@ -1,0 +1,40 @@
+#include "scenarios/run/expectations.hpp"
+
+#include <fmt/format.h>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+
+namespace hapbench {
+namespace {
+
+std::string divergence_text(const RunEnd& result) {
+  if (result.outcome != Outcome::diverges) return "";
+  const Divergence& d = result.divergence;
+  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
+  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
+}
+
+}  // namespace
+
+std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {
+  std::vector<std::string> unmet;
+  if (!outcome_is_expected(expect, run.end.outcome)) {
+    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.end.outcome),
+                                divergence_text(run.end), quoted_list(names_of(expect.outcomes, outcome_name))));
+  }
+  for (const auto& [name, bound] : expect.metrics) {
+    const auto number = number_of(run.metrics, name);
+    if (!number) {
+      unmet.push_back(fmt::format("{} has no value; expected one", name));
+      continue;
+    }
+    if (bound.min && *number < *bound.min)
+      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, *number, *bound.min));
+    if (bound.max && *number > *bound.max)
+      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, *number, *bound.max));
+  }
+  return unmet;
+}
+
+}  // namespace hapbench

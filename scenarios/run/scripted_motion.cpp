@@ -1,0 +1,59 @@
+#include "scenarios/run/scripted_motion.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <variant>
+
+#include "scenarios/scene/parts.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kAlways = std::numeric_limits<double>::infinity();
+
+/// The time until which a script moves [s]: 0 if it never does.
+double moves_until(const Profile& profile) {
+  if (profile.is_constant()) return 0.0;
+  const auto* way = std::get_if<Profile::Waypoints>(&profile.shape());
+  return way != nullptr ? way->points.back().first : kAlways;
+}
+
+double period_of(const Profile& profile) {
+  const auto* sine = std::get_if<Profile::Sine>(&profile.shape());
+  return sine != nullptr && !profile.is_constant() ? sine->period_s : 0.0;
+}
+
+/// The scripts of the hand; none of one that is moved otherwise, and of none.
+std::span<const Profile> scripts_of(const HandFields& hand) {
+  if (const auto* force = std::get_if<ForceHandFields>(&hand)) return force->force;
+  if (const auto* push = std::get_if<PushHandFields>(&hand)) return {&push->force, 1};
+  if (const ImpedanceHandFields* spring = spring_of(hand)) return spring->target;
+  return {};
+}
+
+double largest(const Scenario& scenario, double (*of)(const Profile&)) {
+  double most = 0.0;
+  for (const Profile& script : scripts_of(scenario.hand)) most = std::max(most, of(script));
+  const auto& orientation = scenario.motion.orientation;
+  return orientation ? std::max({most, of(orientation->tilt), of(orientation->azimuth)}) : most;
+}
+
+}  // namespace
+
+double script_moves_until(const Scenario& scenario) {
+  const HandFields& hand = scenario.hand;
+  const bool is_led = scripts_of(hand).empty() && !std::holds_alternative<NoHandFields>(hand);
+  return is_led || !scenario.motion.orientation ? kAlways : largest(scenario, moves_until);
+}
+
+double script_period(const Scenario& scenario) {
+  return largest(scenario, period_of);
+}
+
+bool is_moved(const Scenario& scenario) {
+  const ImpedanceHandFields* hand = spring_of(scenario.hand);
+  return script_moves_until(scenario) > 0.0 || (hand != nullptr && hand->tremor);
+}
+
+}  // namespace hapbench
