@@ -1,9 +1,10 @@
+#include "algorithms/stages/point_stage.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <numeric>
 #include <vector>
 
-#include "algorithms/penalty_rendering.hpp"
 #include "sim/core/random.hpp"
 #include "sim/core/simd.hpp"
 #include "sim/tool/refuse.hpp"

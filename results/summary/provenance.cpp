@@ -1,7 +1,8 @@
+#include "results/summary/provenance.hpp"
+
 #include <fstream>
 
 #include "hapbench_commit.hpp"
-#include "results/summary/summary.hpp"
 
 #ifndef HAPBENCH_MARCH
 #define HAPBENCH_MARCH ""

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "algorithms/rendering_config.hpp"
+#include "sim/contact/contact_buffer.hpp"
+#include "sim/loop/force_algorithm.hpp"
+
+namespace hapbench {
+
+/// An optional stage between depth model and force law that merges or drops contacts in place (thesis C.2, C.3).
+class PointStage {
+ public:
+  virtual ~PointStage() = default;
+  /// The only call that may allocate. Throws std::invalid_argument if the scene lacks what the stage needs.
+  virtual void prepare(const Scene& scene) = 0;
+  virtual void reset() noexcept { dropped_ = 0; }
+  /// Takes and leaves padded contacts, never more than before.
+  virtual void process(ContactBuffer& contacts) noexcept = 0;
+  /// Contacts lost because a buffer was full, since the last reset.
+  std::uint64_t dropped() const noexcept { return dropped_; }
+
+ protected:
+  std::uint64_t dropped_ = 0;
+};
+
+extern const ModelInfo kLocalAverageInfo;
+extern const ModelInfo kGradientReductionInfo;
+
+/// Its `prepare` needs a shell with grid cells (PointShell::cell_size > 0).
+std::unique_ptr<PointStage> make_local_average();
+std::unique_ptr<PointStage> make_gradient_reduction(const ReductionConfig& config);
+
+}  // namespace hapbench
