@@ -131,12 +131,12 @@ TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
       SCOPED_TRACE(testing::Message() << w << " " << factor);
       const std::string c = std::to_string(std::cos(w)), s = std::to_string(std::sin(w));
       const auto rows = rows_of(bundled(
-          "stick_slip_dry",
-          {R"(environment={"type":"springs","bilateral":false,"groups":[{"direction":[)" + c + ",0,-" + s +
-               R"(],"count":1},{"direction":[-)" + c + ",0,-" + s + R"(],"count":1}]})",
-           "initial.position_m=[0,0,0]", "rendering.algorithm=summation", "time.duration_s=1.5",
-           number("rendering.friction.mu", factor * locks),
-           R"(hand={"type":"force","z_N":{"type":"waypoints","points":[[0,0],[0.3,-5],[0.6,0]],"interpolation":"cosine"}})"}));
+          "stick_slip_dry", {R"(environment={"type":"springs","bilateral":false,"groups":[{"direction":[)" + c +
+                                 ",0,-" + s + R"(],"count":1},{"direction":[-)" + c + ",0,-" + s + R"(],"count":1}]})",
+                             "initial.position_m=[0,0,0]", "rendering.algorithm=summation", "time.duration_s=1.5",
+                             number("rendering.friction.mu", factor * locks),
+                             R"(hand={"type":"force","z_N":{"type":"waypoints","points":[[0,0],[0.3,-5],[0.6,0]],)"
+                             R"("interpolation":"cosine"}})"}));
       EXPECT_EQ(rows.back().tool.pose.position.z() < -1e-6, factor > 1.0) << rows.back().tool.pose.position.z();
     }
   }

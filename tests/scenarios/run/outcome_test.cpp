@@ -127,7 +127,8 @@ Json scene() {
     "initial": {"position_m": [-0.002, 0, 0.0002]},
     "hand": {"type": "drag", "force_N": 1, "direction": [1, 0, 0], "speed_m_per_s": 0.001,
              "stiffness_N_per_m": 300, "damping_N_s_per_m": 6, "normal_damping_N_s_per_m": 50},
-    "rendering": {"algorithm": "shaped_stiffness", "reduction": null, "depth_model": "normal_projection", "stiffness_N_per_m": 20000, "damping_ratio": 0.7,
+    "rendering": {"algorithm": "shaped_stiffness", "reduction": null, "depth_model": "normal_projection",
+     "stiffness_N_per_m": 20000, "damping_ratio": 0.7,
                   "mass_kg": 0.1, "friction": {"mu_s_N_s_per_m": 5, "mu_f_s_per_m": 10}}
   })");
 }

@@ -69,7 +69,8 @@ TEST(Trials, RecordsOfSeveralTrialsLieInDirectoriesOfTheirOwn) {
 
 LoadedScenario springs(const char* record) {
   Json json = Json::parse(
-      R"({"environment": {"type": "springs", "groups": [{"direction": [1, 2, 3], "count": 1}, {"direction": [1, 0, 0], "count": 2}]},
+      R"({"environment": {"type": "springs", "groups": [{"direction": [1, 2, 3], "count": 1},
+        {"direction": [1, 0, 0], "count": 2}]},
                               "initial": {"position_m": [0.001, 0.002, 0.0005]}})");
   json["time"] = {{"step_s", 0.0005}, {"steps", 2000}};
   json["record"] = Json::parse(record);

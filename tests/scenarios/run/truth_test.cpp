@@ -97,7 +97,8 @@ const std::string kPoints = R"(environment={"type":"point_shell","file":"points.
 const std::string kCone =
     R"(environment={"type":"conical_hole","half_angle_rad":0.5,"depth_m":0.003,"spacing_m":0.00005})";
 const std::string kBlock =
-    R"(environment={"type":"block_with_hole","size_m":[0.006,0.006,0.004],"hole_diameter_m":0.002,"hole_depth_m":0.002,"grid_m":0.0001})";
+    R"(environment={"type":"block_with_hole","size_m":[0.006,0.006,0.004],"hole_diameter_m":0.002,)"
+    R"("hole_depth_m":0.002,"grid_m":0.0001})";
 const std::string kFlat = R"(tool={"type":"cylinder","diameter_m":0.001,"length_m":0.01})";
 const std::string kDrag =
     R"(hand={"type":"drag","force_N":1,"direction":[1,0,0],"speed_m_per_s":0.01,"normal_damping_N_s_per_m":50})";
@@ -373,15 +374,18 @@ TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   const Case cases[] = {
       {"led sideways through a plate, its tip below",
        {kPlate, kFlat, "initial.position_m=[-0.006,0,-0.002]", "time.steps=500",
-        R"(hand={"type":"impedance","stiffness_N_per_m":4000,"damping_N_s_per_m":40,"target":{"y_m":0,"z_m":-0.002,"x_m":{"type":"waypoints","points":[[0,-0.006],[0.25,0.006]]}}})"},
+        R"(hand={"type":"impedance","stiffness_N_per_m":4000,"damping_N_s_per_m":40,"target":{"y_m":0,)"
+        R"("z_m":-0.002,"x_m":{"type":"waypoints","points":[[0,-0.006],[0.25,0.006]]}}})"},
        kThrough},
       {"turned through a plate",
        {kPlate, kFlat, kNoHand, R"(motion.position={"type":"prescribed","x_m":-0.0048,"y_m":0,"z_m":-0.001})",
-        R"(motion.orientation={"up":[0,0,1],"lean":[1,0,0],"tilt_rad":{"type":"waypoints","points":[[0,0],[0.3,1.4]]}})"},
+        R"(motion.orientation={"up":[0,0,1],"lean":[1,0,0],"tilt_rad":{"type":"waypoints","points":[[0,0],)"
+        R"([0.3,1.4]]}})"},
        kThrough},
       {"dragged into a gap",
        {R"(environment={"type":"mesh","file":"gap.off","scale":1,"spacing_m":0.0001})",
-        R"(hand={"type":"drag","force_N":1,"path_m":[[-0.003,0,0],[0.004,0,0]],"speed_m_per_s":0.02,"normal_damping_N_s_per_m":50,"stiffness_N_per_m":300,"damping_N_s_per_m":6})",
+        R"(hand={"type":"drag","force_N":1,"path_m":[[-0.003,0,0],[0.004,0,0]],"speed_m_per_s":0.02,)"
+        R"("normal_damping_N_s_per_m":50,"stiffness_N_per_m":300,"damping_N_s_per_m":6})",
         "initial.position_m=[-0.003,0,0.0006]", "time.steps=700"},
        {Outcome::stuck}},
   };
