@@ -3,10 +3,11 @@
 
     scripts/readings.py 256 --calibrate >readings.csv
 
-A Latin hypercube of the ranges and options of results/reference/choices.json: along each choice, every reading lies in another of
-equal strata. With --calibrate a hand that is calibrated gets, in each reading, the value at which its scenario has the raw points
-that it should, which takes some runs of the built program. The strata of results/reference/readings.csv
-came from the generator of the program of commit 661d2580, so no seed draws them again.
+A Latin hypercube of the ranges and options of results/reference/choices.json: along each choice,
+every reading lies in another of equal strata. With --calibrate a hand that is calibrated gets, in
+each reading, the value at which its scenario has the raw points that it should, which takes some
+runs of the built program. The strata of results/reference/readings.csv came from the generator of
+the program of commit 661d2580, so no seed draws them again.
 """
 import argparse
 import csv
@@ -80,7 +81,8 @@ def sets_of(reading, choices, scenario, base):
 
 
 def calibrated(choice, reading, choices):
-    """The value at which the scenario has its raw points, by secants in logarithms from the value on record; the points grow with it."""
+    """The value at which the scenario has its raw points, by secants in logarithms from the value
+    on record; the points grow with it."""
     scenario, raw = choice["calibrated"]["scenario"], choice["calibrated"]["raw"]
     low, high = map(math.log, choice["range"])
     with tempfile.TemporaryDirectory(prefix="hapbench-readings-") as folder:

@@ -1,5 +1,5 @@
-"""Shared by the commands written in Python: error messages, hints at names, writing of files, and a notice while work takes
-long."""
+"""Shared by the commands written in Python: error messages, hints at names, writing of files, and a
+notice while work takes long."""
 import argparse
 import difflib
 import errno
@@ -86,7 +86,8 @@ class CommandLine(Arguments):
             self.flag(name, SHARED)
 
     def parse(self, words):
-        """An option takes the word behind it as its value, also one that begins with "-"; arguments may stand anywhere."""
+        """An option takes the word behind it as its value, also one that begins with "-"; arguments
+        may stand anywhere."""
         if not {"-h", "--help"}.isdisjoint(words):
             self.print_help()
             self.exit()
@@ -107,7 +108,8 @@ class CommandLine(Arguments):
         if subject == "the following arguments are required":
             message = f"{rest} is required"
         elif subject == "unrecognized arguments" and word.startswith("-"):
-            message = f'unknown option "{word}"{nearest(word, [name for action in self._actions for name in action.option_strings])}'
+            names = [name for action in self._actions for name in action.option_strings]
+            message = f'unknown option "{word}"{nearest(word, names)}'
         elif subject == "unrecognized arguments":
             message = f'unexpected argument "{word}"'
         say_error(
@@ -165,8 +167,8 @@ def entry(word, meaning, width):
 
 
 def exit_status(name, doing, work):
-    """Does the work of a command, with a notice that says what it is `doing`, unless that is empty. Returns the exit status;
-    what is refused is printed, each fault in a line."""
+    """Does the work of a command, with a notice that says what it is `doing`, unless that is empty.
+    Returns the exit status; what is refused is printed, each fault in a line."""
     try:
         with notice(doing):
             status = work()
@@ -200,7 +202,8 @@ def shell_line(*words):
 
 
 def table_text(headings, rows, wide, numbers=False):
-    """Columns below their headings, the first of them texts; a last column that the terminal has no room for is wrapped."""
+    """Columns below their headings, the first of them texts; a last column that the terminal has no
+    room for is wrapped."""
     widths = [max(map(len, column)) for column in zip(headings, *rows)]
     if sys.stdout.isatty() and not wide:
         widths[-1] = min(
@@ -302,7 +305,8 @@ def write(file, data):
 
 
 def unwritable(error):
-    """Says why write() failed. Exit status: bad input where no file can be, a fault where the disk is full or broken."""
+    """Says why write() failed. Exit status: bad input where no file can be, a fault where the disk
+    is full or broken."""
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
         say_error(f"cannot write {error.filename}: {error.strerror}")
         return FAILED
@@ -312,8 +316,8 @@ def unwritable(error):
 
 @contextmanager
 def notice(text):
-    """A line with the seconds, for work that takes longer than two; lines after 2, 4, 8 s and so on where standard error is no
-    terminal; silent without a text."""
+    """A line with the seconds, for work that takes longer than two; lines after 2, 4, 8 s and so on
+    where standard error is no terminal; silent without a text."""
     ended = threading.Event()
     thread = threading.Thread(target=show_seconds, args=(text, ended), daemon=True)
     if text:

@@ -1,5 +1,5 @@
-"""The palette of figures and pages: one colour, line and marker for each algorithm everywhere, for each class of runs, and for
-what is neither.
+"""The palette of figures and pages: one colour, line and marker for each algorithm everywhere, for
+each class of runs, and for what is neither.
 
 Every colour has a contrast of at least 4.5 to the ground it is drawn on (WCAG 2.1, AA), so that names can be written in
 it: `colour` on white, `dark` on the dark page. The hues were spread for readers with and without deuteranopia and

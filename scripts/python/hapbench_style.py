@@ -1,5 +1,6 @@
-"""The base of every picture: one look (sizes, colours; the palette is hapbench_looks), fewer rows for curves that cannot show all of
-theirs, equal curves that show each other, and how a figure becomes the bytes of a file."""
+"""The base of every picture: one look (sizes, colours; the palette is hapbench_looks), fewer rows
+for curves that cannot show all of theirs, equal curves that show each other, and how a figure
+becomes the bytes of a file."""
 import io
 import re
 
@@ -22,8 +23,8 @@ WIDTH = 7.0  # of a page's text [inch]
 DPI = 150  # of a PNG
 
 # Lines and texts have a contrast of at least 4.5 to white. These colours are for readings, forces and contacts, not for
-# algorithms. Amber and petrol differ for every kind of colour vision; a third colour comes with a line style or marker of
-# its own. Red is for the thesis's numbers.
+# algorithms. Amber and petrol differ for every kind of colour vision; a third colour comes with a
+# line style or marker of its own. Red is for the thesis's numbers.
 BLACK, GREY, AMBER, PETROL, PLUM, RED = (
     "#000000",
     "#5F5F5F",
@@ -88,7 +89,8 @@ def panels(rows, columns, height, **keywords):
 
 
 def number_ticks(axis, subs=()):
-    """Further numbers along a logarithmic axis that shows too few powers of ten, or at these multiples of each power."""
+    """Further numbers along a logarithmic axis that shows too few powers of ten, or at these
+    multiples of each power."""
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and (subs or high / low < 60):
         axis.set_major_locator(LogLocator(subs=subs or ((1, 2, 5) if high / low < 20 else (1, 3))))
@@ -123,8 +125,9 @@ def note(ax, x, y, text, colour=BLACK, ha="left", va="top"):
 
 
 def fix_layout(figure):
-    """Finds the layout now and for good: matplotlib would find it again for every format. Its last digits differ from run
-    to run, with what lies where in memory, and would show in the identifiers of an SVG."""
+    """Finds the layout now and for good: matplotlib would find it again for every format. Its last
+    digits differ from run to run, with what lies where in memory, and would show in the identifiers
+    of an SVG."""
     engine = figure.get_layout_engine()
     if engine is None:
         return
@@ -137,8 +140,8 @@ def fix_layout(figure):
 
 
 def picture(figure, kind, salt="hapbench"):
-    """The bytes of the figure as "svg", "pdf" or "png". Same figure, same bytes: no dates, and identifiers in an SVG that
-    follow from `salt`."""
+    """The bytes of the figure as "svg", "pdf" or "png". Same figure, same bytes: no dates, and
+    identifiers in an SVG that follow from `salt`."""
     fix_layout(figure)
     drawn = io.BytesIO()
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[
@@ -176,7 +179,8 @@ def as_dots(svg):
         opacity = look.get("fill-opacity", look.get("opacity", "1"))
         places = "".join(f"M{x} {y}h0" for x, y in re.findall(r'x="([^"]*)" y="([^"]*)"', uses))
         return (
-            f'<path d="{places}"{clip} style="fill: none; stroke: {fill}; stroke-opacity: {opacity}; stroke-linecap: round; '
+            f'<path d="{places}"{clip} style="fill: none; stroke: {fill}; stroke-opacity: '
+            f"{opacity}; stroke-linecap: round; "
             f'stroke-width: {width:.2f}"/>'
         )
 
@@ -184,8 +188,8 @@ def as_dots(svg):
 
 
 def compact(svg):
-    """The same drawing in half the bytes: places to a tenth of a point, styles that repeat as classes, short identifiers, and
-    nothing that only a reader of the source would see."""
+    """The same drawing in half the bytes: places to a tenth of a point, styles that repeat as
+    classes, short identifiers, and nothing that only a reader of the source would see."""
     svg = as_dots(re.sub(r"<!--.*?-->|<metadata>.*?</metadata>|<g[^>]*/>", "", svg, flags=re.S))
     svg = PLACES.sub(
         lambda place: place[1]
@@ -251,5 +255,6 @@ def equal_curves(curves):
 
 
 def striped(ls, place, count):
-    """The line style of one of `count` equal curves: stripes in turn, so that each one shows; the given style for a single one."""
+    """The line style of one of `count` equal curves: stripes in turn, so that each one shows; the
+    given style for a single one."""
     return ls if count == 1 else (place * STRIPE, (STRIPE, STRIPE * (count - 1)))

@@ -9,7 +9,8 @@ PATTERNS = {"scenario": "*.json", "run": "*.json", "device": "*.json", "module":
 
 
 def without_prose(target, text):
-    """A scene, or its device, in the fewest bytes: what is changed in a blank or a description finds nothing. None for other files."""
+    """A scene, or its device, in the fewest bytes: what is changed in a blank or a description
+    finds nothing. None for other files."""
     scene = json.loads(text)
     if not isinstance(scene, dict) or not {"environment", "extends"} & scene.keys():
         return None

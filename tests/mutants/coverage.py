@@ -4,9 +4,10 @@
     cmake --preset coverage && cmake --build --preset coverage --target fast_tests program_test
     tests/mutants/coverage.py build/coverage >tests/mutants/coverage.txt
 
-It first forgets what was counted and runs the tests: the fast ones, those that run the program, and the known answers. A line counts, in
-headers too, if a library of these folders has code of it, and as run if any of its object files has run it. With --against FILE the exit
-status is 1 if the share of a folder is more than one per cent below that.
+It first forgets what was counted and runs the tests: the fast ones, those that run the program, and
+the known answers. A line counts, in headers too, if a library of these folders has code of it, and
+as run if any of its object files has run it. With --against FILE the exit status is 1 if the share
+of a folder is more than one per cent below that.
 """
 import argparse
 import json
@@ -18,8 +19,8 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
 FOLDERS = ("sim", "algorithms", "device_model", "results/observe")
-# Suites of GoogleTest have no dot in their names, tests that are scripts have; one of these looks into the libraries, which
-# the counters change.
+# Suites of GoogleTest have no dot in their names, tests that are scripts have; one of these looks
+# into the libraries, which the counters change.
 TESTS = (
     ["-L", "^fast$", "-E", "^Library[.]"],
     ["-L", "^slow$", "-E", "[.]"],

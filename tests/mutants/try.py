@@ -3,9 +3,10 @@
 
     tests/mutants/try.py [BUILD [NAME ...]]
 
-For each mutant, or those named: replaces its text, builds what these tests run, and runs them. Before that they have to pass without
-any mutant. The source is restored after each, also if interrupted, and the build at the end. Exit status 1 if a mutant survives, 2 if
-one could not be tried. Without a build it only checks that the text of each stands once in its file.
+For each mutant, or those named: replaces its text, builds what these tests run, and runs them.
+Before that they have to pass without any mutant. The source is restored after each, also if
+interrupted, and the build at the end. Exit status 1 if a mutant survives, 2 if one could not be
+tried. Without a build it only checks that the text of each stands once in its file.
 """
 import argparse
 import json

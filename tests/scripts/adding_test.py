@@ -2,9 +2,10 @@
 
     python3 tests/scripts/fixture.py tests/scripts/adding_test.py [--keep]
 
-Copies the tree to a scratch folder, adds a law, a tool, an environment, a named file, a device field, a section of metrics,
-a column of trajectory.csv and a command there, builds the program (minutes) and shows that reader, schema, describe, list,
-results, sweep, help and completion know each of them. `--keep` leaves the folder behind, /tmp/hapbench_adding_….
+Copies the tree to a scratch folder, adds a law, a tool, an environment, a named file, a device
+field, a section of metrics, a column of trajectory.csv and a command there, builds the program
+(minutes) and shows that reader, schema, describe, list, results, sweep, help and completion know
+each of them. `--keep` leaves the folder behind, /tmp/hapbench_adding_….
 """
 import csv
 import json
@@ -61,7 +62,9 @@ def before(anchor, new):
 
 # What an environment says of its inside; without it the tree does not compile.
 INSIDE = """
-static std::unique_ptr<const Solid> make_solid(const RidgeEnvironment& ridge) { return make_solid(surface_points(ridge)); }
+static std::unique_ptr<const Solid> make_solid(const RidgeEnvironment& ridge) {
+  return make_solid(surface_points(ridge));
+}
 
 """
 
@@ -212,7 +215,8 @@ static std::vector<SurfacePoint> surface_points(const RidgeEnvironment& ridge) {
             ),
             behind(
                 "constexpr TrajectoryGroup kGroups[] = {\n",
-                """    {&TrajectoryExtras::speed, "speed", "add the tip's speed to trajectory.csv, speed_m_per_s", kSpeedColumns,
+                """    {&TrajectoryExtras::speed, "speed", "add the tip's speed to trajectory.csv, speed_m_per_s",
+     kSpeedColumns,
      [](const StepRecord& r, const InsideObserver*, std::optional<double>* cells) { *cells = r.tool.velocity.norm(); }},
 """,
             ),
@@ -284,7 +288,8 @@ class StillnessObserver final : public MetricObserver {
             ),
             behind(
                 "make<PassivityObserver>, true},\n",
-                """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; }, make<StillnessObserver>},
+                """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; },
+     make<StillnessObserver>},
 """,
             ),
         ],

@@ -1,5 +1,5 @@
-"""hapbench as a library: a project of its own finds it installed, and takes it in as a folder; elementary functions are its own.
-Arguments: the program, cmake, nm, the build tree."""
+"""hapbench as a library: a project of its own finds it installed, and takes it in as a folder;
+elementary functions are its own. Arguments: the program, cmake, nm, the build tree."""
 import json
 import re
 import sys
@@ -20,7 +20,8 @@ BARE = {
 }
 must = partial(must, env=BARE)
 C_FUNCTIONS = re.compile(
-    r" U (a?(?:sin|cos|tan)h?|atan2|sincos|exp2?|expm1|log(?:1p|2|10)?|pow|hypot|cbrt|c(?:abs|arg|exp|log|pow|sqrt))[fl]?$",
+    r" U (a?(?:sin|cos|tan)h?|atan2|sincos|exp2?|expm1|log(?:1p|2|10)?|pow|hypot|cbrt|"
+    r"c(?:abs|arg|exp|log|pow|sqrt))[fl]?$",
     re.M,
 )
 # OpenMesh has a cosine among the virtual functions of its mesh, for feature edges, which we do not ask for.
@@ -101,7 +102,8 @@ class Consumer(unittest.TestCase):
             self.assertNotIn(word, own)
 
     def test_it_computes_elementary_functions_itself(self):
-        """Not by the C library, whose last digits differ; a call which Eigen or the standard library makes for us is found as well."""
+        """Not by the C library, whose last digits differ; a call which Eigen or the standard
+        library makes for us is found as well."""
         archives = sorted(
             p for p in Path(BUILD).rglob("libhapbench_*.a") if "test_support" not in p.name
         )

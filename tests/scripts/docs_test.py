@@ -1,5 +1,5 @@
-"""The manuals keep what they promise: documented commands and examples work, links lead somewhere, generated tables are those on
-record, and the first page keeps its size."""
+"""The manuals keep what they promise: documented commands and examples work, links lead somewhere,
+generated tables are those on record, and the first page keeps its size."""
 import json
 import math
 import os
@@ -93,7 +93,8 @@ def prepare(folder):
 
 
 def shortened(command, folder):
-    """A command's words, shorter, and with patterns replaced by the files that they match, in the tree or in the folder."""
+    """A command's words, shorter, and with patterns replaced by the files that they match, in the
+    tree or in the folder."""
     given = list(command.words[1:])
     if (
         given[0] == "plot" and "--from" in given

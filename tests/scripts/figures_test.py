@@ -96,7 +96,8 @@ def make_results(directory):
 
 
 def make_accuracy(directory):
-    """As of hapbench_accuracy, whose runs would take longer than all else here: each setting twice as exact in twice the time, but the last."""
+    """As of hapbench_accuracy, whose runs would take longer than all else here: each setting twice
+    as exact in twice the time, but the last."""
     directory.mkdir()
     columns = (
         "error_rms_m",
@@ -210,11 +211,13 @@ class Figures(unittest.TestCase):
                     ),
                     known,
                 )
-                # An empty pair of axes has about ten paths and no text besides the numbers. Dots of one colour are one path.
+                # An empty pair of axes has about ten paths and no text besides the numbers. Dots of
+                # one colour are one path.
                 self.assertGreater(sum(1 for _ in root.iter(f"{SVG}path")), 12)
                 self.assertRegex(
                     " ".join(root.itertext()),
-                    r"\[(1|%|mm|s|ms|µs|N|N/m|N s/m|Hz|rad|kg|mm/s|m|m/s)\]|/ K|iterations|real part|points in contact|contacts",
+                    r"\[(1|%|mm|s|ms|µs|N|N/m|N s/m|Hz|rad|kg|mm/s|m|m/s)\]|/ K|iterations|real "
+                    r"part|points in contact|contacts",
                 )
 
     def test_same_data_same_bytes(self):

@@ -1,4 +1,5 @@
-"""Shared by the tests of scripts: the tree, the built program, and commands to run. As a script it runs the tests of a file:
+"""Shared by the tests of scripts: the tree, the built program, and commands to run. As a script it
+runs the tests of a file:
 
     python3 tests/scripts/fixture.py FILE_test.py PROGRAM [WORD...]     the words are the file's own
 """
@@ -28,8 +29,8 @@ sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 
 
 def ran(*words, cwd=None, env=ENVIRONMENT, **environment):
-    """The finished process of a command, with its output, but for lines of progress, which come with time. `environment`: variables
-    set besides those of `env`."""
+    """The finished process of a command, with its output, but for lines of progress, which come
+    with time. `environment`: variables set besides those of `env`."""
     done = subprocess.run(
         [*map(str, words)],
         cwd=cwd,
@@ -64,7 +65,8 @@ def hapbench(*words, expected=0):
 
 
 def in_process(command, *words, **environment):
-    """Status, standard output and standard error of the main function of a command, where starting another process takes longer."""
+    """Status, standard output and standard error of the main function of a command, where starting
+    another process takes longer."""
     said, error = StringIO(), StringIO()
     with redirect_stdout(said), redirect_stderr(error), mock.patch.dict(os.environ, environment):
         try:

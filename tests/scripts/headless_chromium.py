@@ -1,5 +1,5 @@
-"""A headless Chromium for tests, and what every page has to keep. HAPBENCH_CHROMIUM names the browser, chromedriver stands in the
-path (scripts/setup --browser)."""
+"""A headless Chromium for tests, and what every page has to keep. HAPBENCH_CHROMIUM names the
+browser, chromedriver stands in the path (scripts/setup --browser)."""
 import json
 import os
 import time
@@ -27,9 +27,11 @@ PALE = """(() => {
     }
     return [255, 255, 255];
   };
-  return [...document.querySelectorAll('body *')].filter((e) => e.checkVisibility() && !e.closest('.visually-hidden, .skip, script, option') &&
+  return [...document.querySelectorAll('body *')].filter((e) => e.checkVisibility() &&
+      !e.closest('.visually-hidden, .skip, script, option') &&
       [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim())).filter((e) => {
-    const style = getComputedStyle(e), [a, b] = [light(rgb(e.closest('svg') ? style.fill : style.color)), light(behind(e))];
+    const style = getComputedStyle(e);
+    const [a, b] = [light(rgb(e.closest('svg') ? style.fill : style.color)), light(behind(e))];
     return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05) < 4.5;
   }).map((e) => e.outerHTML.slice(0, 100));
 })()"""
@@ -98,8 +100,8 @@ class Page(unittest.TestCase):
         return self.driver.execute_script(f"return ({expression})")
 
     def complaints(self):
-        """Since the last call: what console and browser say, but for console.log, uncaught exceptions, and requests for anything outside
-        the file."""
+        """Since the last call: what console and browser say, but for console.log, uncaught
+        exceptions, and requests for anything outside the file."""
         # Allowed are console.log (INFO, as console.info) and what the browser itself says at its lowest level.
         found = [
             entry

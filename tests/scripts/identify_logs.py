@@ -52,8 +52,8 @@ def synthetic(seed):
 
 
 def judged(seed):
-    """What the fit of a log is worth: by parameter True, False or None where it is not told, the residual over that of its model
-    at the truth, and seconds."""
+    """What the fit of a log is worth: by parameter True, False or None where it is not told, the
+    residual over that of its model at the truth, and seconds."""
     log, truth, what = synthetic(seed)
     begun = sum(os.times()[:3])
     try:
@@ -88,7 +88,8 @@ def judged(seed):
 def table(ones):
     """Rows of a table in Markdown: what holds of what is told, by the kind of signal and in all."""
     rows = [
-        "| logs | m | b | c | delay | offset | refused | not told | largest residual / at the truth | CPU, mean, largest |",
+        "| logs | m | b | c | delay | offset | refused | not told | largest residual / at the "
+        "truth | CPU, mean, largest |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for kind in (*KINDS, "all"):

@@ -163,7 +163,8 @@ class Identify(unittest.TestCase):
         self.assertIsNone(told["coulomb_N"]["value"])
         self.assertRegex(
             warned,
-            r"coulomb_N: the log cannot tell it: moved one way only \(at rest for \d+ % of the log, 1 strokes one way and 0",
+            r"coulomb_N: the log cannot tell it: moved one way only \(at rest for \d+ % of the "
+            r"log, 1 strokes one way and 0",
         )
         self.assertNotIn("coulomb_N", json.loads((self.root / "device.json").read_text()))
         self.assertAlmostEqual(told["handle_mass_kg"]["value"] / M, 1.0, delta=0.02)

@@ -46,7 +46,8 @@ class Given(unittest.TestCase):
         return str(self.root / name)
 
     def report(self, data, columns="time=1,position=2", **options):
-        """The stroke of a recording with these contents, and what was found in it, by the package that the command starts."""
+        """The stroke of a recording with these contents, and what was found in it, by the package
+        that the command starts."""
         words = [self.write(data)] + (["--columns", columns] if columns else [])
         for name, value in options.items():
             if name in ("floats", "force_by_tool", "max_gap", "max_speed", "shift", "tip_axis"):

@@ -39,7 +39,8 @@ class Live(Page):
     def move(self, way, rows):
         """Moves the hand by the given ways [m, rad] over so many rows."""
         self.js(
-            f"(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + {list(way)}[i])); await live.stepRows({rows}); }})()"
+            f"(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + "
+            f"{list(way)}[i])); await live.stepRows({rows}); }})()"
         )
 
     def assert_program_agrees(self, view=0, **files):
@@ -84,8 +85,10 @@ class Live(Page):
         cube = (SOURCE / "tests" / "data" / "cube.obj").read_text(encoding="utf-8")
         self.js("document.getElementById('scale').value = '1'")
         self.js(
-            f"(() => {{ live.begun = null; const given = new DataTransfer(); given.items.add(new File([{json.dumps(cube)}], 'own.obj'));"
-            "document.getElementById('live').dispatchEvent(new DragEvent('drop', {dataTransfer: given, bubbles: true, cancelable: true})); })()"
+            f"(() => {{ live.begun = null; const given = new DataTransfer(); given.items.add(new "
+            f"File([{json.dumps(cube)}], 'own.obj'));"
+            "document.getElementById('live').dispatchEvent(new DragEvent('drop', {dataTransfer: "
+            "given, bubbles: true, cancelable: true})); })()"
         )
         self.wait_for("live.begun && live.scene.id === 'own_obj' ? true : false")
         depth = self.js("2 * live.begun[0].half_width_m")
@@ -135,7 +138,8 @@ class Live(Page):
             self.choose(menu, "shaped_stiffness" if "select" in menu else "0")
 
     def test_every_bundled_scene_is_the_program_s(self):
-        """A thousand rows of each, as the scenario says: WebAssembly is one of the machines that have the same bytes."""
+        """A thousand rows of each, as the scenario says: WebAssembly is one of the machines that
+        have the same bytes."""
         short = "time.steps=1000"
         names = {}
         scenarios = SOURCE / "scenarios" / "library"
@@ -144,7 +148,8 @@ class Live(Page):
                 names[f"/scenarios/{file.relative_to(scenarios)}"] = file
         for data in [*scenarios.glob("*/data/*.csv"), *scenarios.glob("*/data/*.obj")]:
             self.js(
-                f"live.files.set('/scenarios/{data.relative_to(scenarios)}', new TextEncoder().encode({json.dumps(data.read_text(encoding='utf-8'))}))"
+                f"live.files.set('/scenarios/{data.relative_to(scenarios)}', new "
+                f"TextEncoder().encode({json.dumps(data.read_text(encoding='utf-8'))}))"
             )
         runs = json.loads(
             must(

@@ -1,5 +1,6 @@
-"""Both pages, that of own runs and that of the thesis, in a real headless Chromium: each fits, can be read in both themes and says
-nothing to the console; its replay, tables and figures answer the hand."""
+"""Both pages, that of own runs and that of the thesis, in a real headless Chromium: each fits, can
+be read in both themes and says nothing to the console; its replay, tables and figures answer the
+hand."""
 import unittest
 from io import BytesIO
 
@@ -101,9 +102,10 @@ class OfThesis(EveryPage, Page):
     PARTS = ("summary", "ledger", "replay", "figures")
 
     def test_the_points_in_the_tool_are_the_recorded_ones(self):
-        """Over rows of all recordings: how many points the page finds in the tool, at least and at most, against the number recorded.
-        Places are rounded to half a step of the packing, the pose to single precision: only points within three steps of the
-        surface may change sides. Of a scene with more points than are drawn there may be more in the tool.
+        """Over rows of all recordings: how many points the page finds in the tool, at least and at
+        most, against the number recorded. Places are rounded to half a step of the packing, the
+        pose to single precision: only points within three steps of the surface may change sides. Of
+        a scene with more points than are drawn there may be more in the tool.
         """
         for scene in range(2):
             self.choose("#replay-scene", scene)
@@ -112,9 +114,11 @@ class OfThesis(EveryPage, Page):
                     """(() => {
               const scene = player.scene, wrong = [], step = 3 * player.packed[%d].shellScale;
               for (const recording of scene.recordings) for (let row = 0; row < recording.length; row += 7) {
-                const depths = scene.points.map((point) => scene.depthIn(point.at, recording.tip(row), recording.axis(row)));
+                const depths = scene.points.map((point) =>
+                  scene.depthIn(point.at, recording.tip(row), recording.axis(row)));
                 const least = depths.filter((d) => d >= step).length, most = depths.filter((d) => d >= -step).length;
-                if (recording.colliding[row] < least || %s && recording.colliding[row] > most) wrong.push([recording.algorithm, row]);
+                if (recording.colliding[row] < least || %s && recording.colliding[row] > most)
+                  wrong.push([recording.algorithm, row]);
               }
               return wrong;
             })()"""
@@ -124,7 +128,10 @@ class OfThesis(EveryPage, Page):
             )
 
     def test_the_ledger_sorts_and_filters(self):
-        ids = "[...document.querySelectorAll('#ledger-table tbody tr:not([hidden])')].map((r) => r.cells[0].textContent)"
+        ids = (
+            "[...document.querySelectorAll('#ledger-table tbody tr:not([hidden])')].map((r) => "
+            "r.cells[0].textContent)"
+        )
         for turned in (False, True):
             self.click("#ledger-table thead th:nth-child(1) button")
             self.assertEqual(self.js(ids), sorted((f"C{i}" for i in range(5)), reverse=turned))

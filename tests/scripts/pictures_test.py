@@ -1,5 +1,5 @@
-"""The modules behind `hapbench plot`, `hapbench report` and the figures, and how algorithms look there: each its own way, readable on
-light and dark. Needs numpy."""
+"""The modules behind `hapbench plot`, `hapbench report` and the figures, and how algorithms look
+there: each its own way, readable on light and dark. Needs numpy."""
 import json
 import re
 import shutil
@@ -35,7 +35,8 @@ from hapbench_report.recording import (
 
 
 def drawn(command, *words, expected=0):
-    """What `hapbench plot` or `report` prints, from this process, which has matplotlib loaded; on standard error if input is refused."""
+    """What `hapbench plot` or `report` prints, from this process, which has matplotlib loaded; on
+    standard error if input is refused."""
     status, said, error = in_process(pictures, command, *words, HAPBENCH_PROGRAM=str(PROGRAM))
     assert status == expected, (words, status, error)
     return error if expected == 2 else said

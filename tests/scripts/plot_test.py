@@ -160,8 +160,9 @@ class Plot(Given):
         self.assertIn(" over 20 runs", " ".join(some.split()))
 
     def test_first_order_indices_of_a_function_that_is_known(self):
-        """Ishigami's, whose third variable acts together with the first alone; the last one's place is the logarithm's, and a
-        list of texts adds to it. Analytic variances: Sobol and Levitan 1999."""
+        """Ishigami's, whose third variable acts together with the first alone; the last one's place
+        is the logarithm's, and a list of texts adds to it. Analytic variances: Sobol and Levitan
+        1999."""
         random, n, pi = np.random.default_rng(7), 1000, np.pi
         x = random.uniform(-pi, pi, (3, n))
         texts = [["low", "middle", "high"][i] for i in random.integers(0, 3, n)]
@@ -181,7 +182,8 @@ class Plot(Given):
         ]
         for (column, place), variance in zip(columns, own):
             found = sensitivity(column, place, y)
-            # Six cosines leave 0.1 % of sin(x) out. Of independent points the jackknife's standard error is about the true one.
+            # Six cosines leave 0.1 % of sin(x) out. Of independent points the jackknife's standard
+            # error is about the true one.
             self.assertLess(abs(found.first_order - variance / total), 3 * found.error + 1e-3)
             self.assertLess(found.error, 0.035)
         self.assertIsNone(sensitivity(texts[:10], None, y[:10]))

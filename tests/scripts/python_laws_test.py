@@ -235,8 +235,8 @@ class TheEndOfTheInterpreter(Scratch):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_finds_threads_that_have_just_ended(self):
-        # The main thread holds the interpreter from the comparison to its end, so that many of 16 threads still wait for
-        # it when they may no longer: three scripts in four were aborted.
+        # The main thread holds the interpreter from the comparison to its end, so that many of 16
+        # threads still wait for it when they may no longer: three scripts in four were aborted.
         words = [
             "compare",
             WEDGE,

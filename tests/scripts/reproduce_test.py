@@ -1,4 +1,5 @@
-"""How scripts/reproduce runs its parts, with a program that does nothing in place of hapbench, and what scripts/readings.py draws."""
+"""How scripts/reproduce runs its parts, with a program that does nothing in place of hapbench, and
+what scripts/readings.py draws."""
 import csv
 import json
 import math
@@ -120,7 +121,10 @@ class Reproduce(unittest.TestCase):
 
     def test_a_claim_with_its_figures(self):
         self.put("scripts/figures", '#!/bin/sh\necho "drawn: $*"\n')
-        program = '#!/bin/sh\n[ "$1" != describe ] || printf \'{\\n  "place": "2.4, Fig. A.2, Fig. 2c, Table A.1",\\n  "why": "Fig. 9"\\n}\\n\'\n'
+        program = (
+            '#!/bin/sh\n[ "$1" != describe ] || printf \'{\\n  "place": "2.4, Fig. A.2, '
+            'Fig. 2c, Table A.1",\\n  "why": "Fig. 9"\\n}\\n\'\n'
+        )
         status, out, err = self.run_with(program, "--only", "A1")
         self.assertEqual(status, 0, err)
         self.assertIn(

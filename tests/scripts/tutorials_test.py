@@ -1,5 +1,6 @@
-"""Every tutorial runs from its first block of code to its last, in a folder that looks like a clone, and says no number that it does
-not show or print. Arguments: the program, the folder of the built Python package."""
+"""Every tutorial runs from its first block of code to its last, in a folder that looks like a
+clone, and says no number that it does not show or print. Arguments: the program, the folder of the
+built Python package."""
 import json
 import re
 import sys
@@ -17,7 +18,8 @@ CODE = re.compile(r"^```(bash|python)\n(.*?)^```\n", re.M | re.S)
 CHECKS = re.compile(r"^<!-- checked by .*?^-->\n", re.M | re.S)
 # A number in a sentence; not a part of a name, such as C5 or 2-D.
 NUMBER = re.compile(r"(?<![\w.^-])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w-]|\.\d)")
-# One interpreter has the blocks in Python of a tutorial; those for the shell are shells of their own, in the same order.
+# One interpreter has the blocks in Python of a tutorial; those for the shell are shells of their
+# own, in the same order.
 PLAYER = """
 import json, subprocess, sys
 names = {"__name__": "__main__"}

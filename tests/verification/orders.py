@@ -1,5 +1,6 @@
-"""Code verification: the observed order of convergence in the step against the formal one, for every integrator, device, hand and
-law, on motions that are known in closed form or by an independent computation. Without hapbench's code but for the runs.
+"""Code verification: the observed order of convergence in the step against the formal one, for
+every integrator, device, hand and law, on motions that are known in closed form or by an
+independent computation. Without hapbench's code but for the runs.
 
     python3 tests/verification/orders.py PROGRAM           # recomputes every seventh row and compares it with the table
     python3 tests/verification/orders.py PROGRAM --write   # makes the table anew"""
@@ -71,7 +72,8 @@ def driven(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
 
 
 def late(K, b, tau):
-    """M x'' = -b x' - K x(t - tau), the force 0 before tau: the motions during one tau after the other are one linear system."""
+    """M x'' = -b x' - K x(t - tau), the force 0 before tau: the motions during one tau after the
+    other are one linear system."""
     whole, part = divmod(END_S, tau)
     begins = np.array([X0, V0])
     for n in range(1, int(whole) + 2):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Contacts by Python: those of a ball of 0.5 mm, led over a sphere of 2 mm about the origin, as a trace, and the scene that
-plays them to every law:
+"""Contacts by Python: those of a ball of 0.5 mm, led over a sphere of 2 mm about the origin, as a
+trace, and the scene that plays them to every law:
 
     python3 algorithms/module/examples/sphere_trace.py FOLDER
     hapbench compare FOLDER/sphere.json --algorithms all

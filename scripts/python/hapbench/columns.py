@@ -20,8 +20,8 @@ def header(file):
 
 
 def read_columns(file, names=None, may_be_empty=False):
-    """Arrays by name, of all columns or of those named; NaN for an empty field, which is how a row without contact has no
-    ratio."""
+    """Arrays by name, of all columns or of those named; NaN for an empty field, which is how a row
+    without contact has no ratio."""
     every = header(file)
     names = every if names is None else list(names)
     absent = [name for name in names if name not in every]

@@ -42,10 +42,11 @@ def run(
     """Run a scenario and return its Run, all in memory: the same numbers as `hapbench run` writes.
 
     `scenario`: a file, the name of a bundled one, or a dict; relative paths in a dict start from the working directory.
-    `overrides`: fields as in --set, {"rendering.stiffness_N_per_m": 4e4}. `record`: what to keep beside the scenario's own
-    choice: "contacts", "energy", "stiffness_tensor", "ideal_trajectory", "force_reference", "timing".
-    `progress`: None for a bar where standard error is a terminal, False for none, or a function of (label, done, total).
-    Ctrl-C ends it with KeyboardInterrupt. Raises ScenarioError."""
+    `overrides`: fields as in --set, {"rendering.stiffness_N_per_m": 4e4}. `record`: what to keep
+    beside the scenario's own choice: "contacts", "energy", "stiffness_tensor", "ideal_trajectory",
+    "force_reference", "timing". `progress`: None for a bar where standard error is a terminal,
+    False for none, or a function of (label, done, total). Ctrl-C ends it with KeyboardInterrupt.
+    Raises ScenarioError."""
     overrides = {**(overrides or {}), **{f"record.{what}": True for what in record}}
     with _Scratch() as scratch:
         found = scratch.call(_hapbench.run, scratch.file_of(scenario), _words(overrides), progress)
@@ -82,9 +83,10 @@ def compare(
 ) -> "Report":
     """Run scenarios through several algorithms (default: all), as `hapbench compare` does.
 
-    Returns a Report: `runs` by their paths ("mean", of several scenarios and seeds "drag_molar/mean/seed_0"), the tables
-    `comparison` and, with several scenarios or seeds or `by`, `league`. `out` keeps the folder; without it, it goes with
-    the Report. `scenarios`, `overrides` and `progress` as in `run`."""
+    Returns a Report: `runs` by their paths ("mean", of several scenarios and seeds
+    "drag_molar/mean/seed_0"), the tables `comparison` and, with several scenarios or seeds or `by`,
+    `league`. `out` keeps the folder; without it, it goes with the Report. `scenarios`, `overrides`
+    and `progress` as in `run`."""
     return _report(
         ["compare"],
         scenarios,
@@ -114,8 +116,8 @@ def sweep(
 ) -> "Report":
     """Run a scenario over a grid, or a sample, of values of any fields, as `hapbench sweep` does.
 
-    `vary`: {"rendering.stiffness_N_per_m": [2e4, 4e4]}, of which a string is taken as --vary takes it ("1e4:1e5:10:log").
-    Returns a Report whose table `sweep` has a row for each run."""
+    `vary`: {"rendering.stiffness_N_per_m": [2e4, 4e4]}, of which a string is taken as --vary takes
+    it ("1e4:1e5:10:log"). Returns a Report whose table `sweep` has a row for each run."""
     words = ["sweep"]
     for field, values in vary.items():
         words += [
@@ -151,8 +153,8 @@ def limit(
     out: Place = None,
     progress: Progress = None,
 ) -> "Report":
-    """How far a field may go, as `hapbench limit` finds it, for each value of other fields (`over`, as --over takes them): a Report with
-    the tables `limit` and `limit_runs`."""
+    """How far a field may go, as `hapbench limit` finds it, for each value of other fields (`over`,
+    as --over takes them): a Report with the tables `limit` and `limit_runs`."""
     words = [
         "limit",
         *(word for path, values in (over or {}).items() for word in ("--over", f"{path}={values}")),
@@ -174,8 +176,9 @@ def limit(
 
 
 def command(*words: object, progress: Progress = None) -> Any:
-    """A command of the program by its words, as `hapbench.command("describe", "mean")`: what it prints with --json, read;
-    Empty where it prints nothing. Raises ScenarioError for what the program refuses."""
+    """A command of the program by its words, as `hapbench.command("describe", "mean")`: what it
+    prints with --json, read; Empty where it prints nothing. Raises ScenarioError for what the
+    program refuses."""
     status, text, said, errors = _hapbench.command([*map(str, words), "--json"], progress)
     _warn(said + errors, status)
     return json.loads(text) if text else None
@@ -204,8 +207,9 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 class Report(Folder):
-    """The folder that a command wrote: its tables and runs. `report` is what the command prints with --json, `status` its
-    exit status: 0, or 3 when a run did not end as its scenario expects."""
+    """The folder that a command wrote: its tables and runs. `report` is what the command prints
+    with --json, `status` its exit status: 0, or 3 when a run did not end as its scenario
+    expects."""
 
     def __init__(self, folder, status, report, scratch=None):
         super().__init__(folder)
@@ -220,13 +224,16 @@ class Simulation(_hapbench.Simulation):
         while simulation.step():
             print(simulation.state["force_N"], len(simulation.contacts["depths_m"]))
 
-    `step()` computes the next row: False, and nothing done, once the run has ended. `advance(steps)` computes up to so many rows, the
-    interpreter released, and returns how many. `reset()` goes back to the start, bit for bit. `rows` are those computed so far, `steps`
-    those of the whole run, `time_step_s` the time from row to row [s]; `outcome` is how the run ended, "completes" while it goes on.
+    `step()` computes the next row: False, and nothing done, once the run has ended.
+    `advance(steps)` computes up to so many rows, the interpreter released, and returns how many.
+    `reset()` goes back to the start, bit for bit. `rows` are those computed so far, `steps` those
+    of the whole run, `time_step_s` the time from row to row [s]; `outcome` is how the run ended,
+    "completes" while it goes on.
 
-    `state` is the last row as a dict, everything before the integrator moved the tool: step, time_s, position_m, velocity_m_per_s, axis,
-    force_N, spring_force_N, stiffness_tensor (in units of K), measured_force_N, input_force_N, handle_m, colliding, depth_max_m.
-    `contacts` are its rendered ones as a dict of arrays: index, points_m, normals, depths_m, gradients, weights.
+    `state` is the last row as a dict, everything before the integrator moved the tool: step,
+    time_s, position_m, velocity_m_per_s, axis, force_N, spring_force_N, stiffness_tensor (in units
+    of K), measured_force_N, input_force_N, handle_m, colliding, depth_max_m. `contacts` are its
+    rendered ones as a dict of arrays: index, points_m, normals, depths_m, gradients, weights.
     """
 
     def __init__(self, scenario: Scenario, overrides: Overrides = None):

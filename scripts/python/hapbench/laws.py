@@ -38,15 +38,16 @@ def force_law(
             return share * numpy.ones(len(depths))
 
     The function is called in every step with contact. It takes, by the names of its arguments and in any order:
-    `depths` (n) [m], `gradients` (n × 3, unit vectors along which a point leaves the tool), `points` (n × 3) [m], `normals`
-    (n × 3, out of the environment), `stiffness`, K of one spring [N/m], and its own `parameters`, floats. Arrays are
-    views that the next call fills anew: copy what is to be kept.
+    `depths` (n) [m], `gradients` (n × 3, unit vectors along which a point leaves the tool),
+    `points` (n × 3) [m], `normals` (n × 3, out of the environment), `stiffness`, K of one spring
+    [N/m], and its own `parameters`, floats. Arrays are views that the next call fills anew: copy
+    what is to be kept.
 
     It returns the weights c_i of the springs, one for each contact or one for all: f = -K Σ c_i d_i u_i and
     S = Σ c_i u_i u_iᵀ; or a tuple of the force [N] and the symmetric stiffness tensor S in units of K (3 × 3), with
-    which damping and friction are computed; its energy and moment are those of one spring of stiffness K in the middle of
-    the contacts. A class in place of a function: an object of it is called, a new one for
-    each run, so that a law can have a state.
+    which damping and friction are computed; its energy and moment are those of one spring of
+    stiffness K in the middle of the contacts. A class in place of a function: an object of it is
+    called, a new one for each run, so that a law can have a state.
 
     An exception in the law ends what is computed and is raised there. A law of the same name gives way to a new one.
     `parameters`: names with a Parameter, or with a number, its default, which may then be 0 … 1e12.

@@ -124,8 +124,9 @@ class Run(_WithTables):
     `summary`, `scenario` (with every default filled in) and `timing` are dicts as in summary.json,
     scenario.effective.json and timing.json. What the scenario records are tables: `trajectory`, and where it asks for
     them `contacts`, `stiffness_tensor`, `ratios`, `energy`, `ideal_trajectory`, `force_reference`, `targets`; `tables`
-    has them by name. Of a scenario of several trials, each of `trials` has its own tables. `folder` is None for a run in
-    memory, `unmet` says which expectations of its scenario a run in memory missed."""
+    has them by name. Of a scenario of several trials, each of `trials` has its own tables. `folder`
+    is None for a run in memory, `unmet` says which expectations of its scenario a run in memory
+    missed."""
 
     def __init__(self, summary, scenario, tables, timing=None, trials=(), folder=None, unmet=None):
         self.summary, self.scenario, self.timing = summary, scenario, timing or {}
@@ -291,7 +292,8 @@ class MissingResult(Exception):
 
 
 class Files:
-    """Tables and JSON files below a directory, by their paths. `sources` are those that were read since it was emptied."""
+    """Tables and JSON files below a directory, by their paths. `sources` are those that were read
+    since it was emptied."""
 
     def __init__(self, directory):
         self.directory, self.sources = Path(directory), set()

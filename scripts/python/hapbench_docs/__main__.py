@@ -14,9 +14,10 @@ GALLERY = ROOT / "results" / "reference" / "gallery"
 # Commands, the last of which plots, and below them the picture.
 ILLUSTRATED = re.compile(r"((?:^    hapbench .*\n)+)\n!\[[^]]*\]\([^)]*/gallery/(\w+\.svg)\)", re.M)
 
-DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output), the tables of the ledger
-and of its robustness, from results/reference, and, with --gallery, the pictures of commands. Needs the built program.
-Measured times are left as they are. Exit status 1 if --check finds something to renew."""
+DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output),
+the tables of the ledger and of its robustness, from results/reference, and, with --gallery, the
+pictures of commands. Needs the built program. Measured times are left as they are. Exit status 1 if
+--check finds something to renew."""
 
 
 def arguments(words):

@@ -1,6 +1,6 @@
 """The manuals: where they are, the commands they document, their links, and their generated parts, which stand between
-`<!-- generated: NAME -->` and `<!-- /generated -->`: sessions, and tables of the ledger (claims.json) and of its robustness as
-results/reference holds them."""
+`<!-- generated: NAME -->` and `<!-- /generated -->`: sessions, and tables of the ledger
+(claims.json) and of its robustness as results/reference holds them."""
 import datetime
 import json
 import os
@@ -67,7 +67,8 @@ class Manual:
                 yield number, line
 
     def commands(self):
-        """The commands that begin with hapbench, build/…/hapbench or scripts/…; a backslash at the end joins the next line."""
+        """The commands that begin with hapbench, build/…/hapbench or scripts/…; a backslash at the
+        end joins the next line."""
         lines = list(self.code())
         while lines:
             number, line = lines.pop(0)
@@ -118,7 +119,8 @@ def renewed(text, makers):
 
 
 def session(old, program, directory):
-    """A command in a manual with what it printed, on which commit and machine: the block with the output of its first command."""
+    """A command in a manual with what it printed, on which commit and machine: the block with the
+    output of its first command."""
     line = next(
         (line.strip() for line in old.splitlines() if line.strip().startswith("$ hapbench ")), None
     )
@@ -217,7 +219,8 @@ class Program:
         return done.stdout
 
     def stamped(self, text, old):
-        """The text and where it comes from; the old block where the text says the same, since a date or a time is no news."""
+        """The text and where it comes from; the old block where the text says the same, since a
+        date or a time is no news."""
         known = old.rpartition("\n\nPrinted by ")[0]
         return (
             old if same_but_for_times(text, known) else f"{text}\n\nPrinted by {self.provenance()}."

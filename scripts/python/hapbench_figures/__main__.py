@@ -151,7 +151,8 @@ def write_index(directory, entries):
 
 
 def measured(figure, claims):
-    """What the ledger has for each claim that a figure draws, but for times: where that changes, the figure is stale."""
+    """What the ledger has for each claim that a figure draws, but for times: where that changes,
+    the figure is stale."""
     numbers = set(NUMBER.findall(figure.thesis))
     drawn = {}
     for claim in claims:
@@ -167,8 +168,8 @@ def measured(figure, claims):
 
 
 def record(directory, page, drawn, claims):
-    """Copies figures into the directory `page` and writes figures.md about all that lie there, and rows.json with what the ledger
-    measured for the claims that they draw."""
+    """Copies figures into the directory `page` and writes figures.md about all that lie there, and
+    rows.json with what the ledger measured for the claims that they draw."""
     text, rows = PAGE, {}
     for figure in FIGURES:
         on_record = page / f"{figure.stem}.svg"

@@ -1,5 +1,5 @@
-"""Directions of the damping forces under one and under distributed contact (figures B.4 and B.5), and the limit of the input
-force (figure 6)."""
+"""Directions of the damping forces under one and under distributed contact (figures B.4 and B.5),
+and the limit of the input force (figure 6)."""
 import numpy as np
 
 import hapbench_style as style
@@ -20,8 +20,8 @@ def damping_coefficient(scenario):
 
 
 def draw_forces(ax, at, direction, spring, damping, named_at):
-    """Implicit plane, its name, velocity, and damping forces of the original algorithm (B.2: one direction for all contacts) at the tip (scene
-    in millimetres)."""
+    """Implicit plane, its name, velocity, and damping forces of the original algorithm (B.2: one
+    direction for all contacts) at the tip (scene in millimetres)."""
     along = np.array([-direction[1], direction[0]])
     ends = np.stack([at - 2 * along, at + 2 * along])
     ax.plot(*ends.T, color=style.PLUM, lw=1.6, zorder=4)

@@ -1,5 +1,5 @@
-"""Depth models: gradients across the median line of the tool, depths that are too small (figures 8, B.3 and C.1), and normal
-projection at a corner of the hole (figure F.4)."""
+"""Depth models: gradients across the median line of the tool, depths that are too small (figures 8,
+B.3 and C.1), and normal projection at a corner of the hole (figure F.4)."""
 import numpy as np
 from matplotlib.colors import ListedColormap
 

@@ -14,8 +14,8 @@ SETTLED = 0.5  # seconds: the drill starts above its place
 
 
 def samples(results, run):
-    """Rows of a hand, settled, within the compared tilts, and on the wall: not those in which the drill has slid towards the axis. Lengths in
-    millimetres."""
+    """Rows of a hand, settled, within the compared tilts, and on the wall: not those in which the
+    drill has slid towards the axis. Lengths in millimetres."""
     rows = results.table(f"{HANDS}/runs/{run:06d}/ideal_trajectory.csv")
     range_ = scene.PUBLISHED["J1.tilt"]
     own = (

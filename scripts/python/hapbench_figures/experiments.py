@@ -1,5 +1,5 @@
-"""The man-machine experiments with simulated subjects against the published means (figures D.7 and D.8), and how their success depends
-on what the task checks (ours)."""
+"""The man-machine experiments with simulated subjects against the published means (figures D.7 and
+D.8), and how their success depends on what the task checks (ours)."""
 import json
 import warnings
 
@@ -156,7 +156,8 @@ def checked(results, task, place):
 
 
 def threshold(results):
-    """Success of the original algorithm over grace and bandwidth of the force that is checked, beside stiffness shaping."""
+    """Success of the original algorithm over grace and bandwidth of the force that is checked,
+    beside stiffness shaping."""
     figure, axes = style.panels(1, 4, 2.7, sharey=True)
     said = []
     for ax, (task, place, claim, title) in zip(axes[0], CHECKED):

@@ -8,7 +8,8 @@ from hapbench.results import MissingResult
 from hapbench_pictures.over_axes import with_room
 
 ACCURACY = "accuracy/accuracy.json"  # of hapbench_accuracy
-# title, settings by the beginning of their names, error, its label and scale; time of a simulated second, or of a step or call
+# title, settings by the beginning of their names, error, its label and scale; time of a simulated
+# second, or of a step or call
 PANELS = (
     (
         "integrators and their step",
@@ -99,7 +100,8 @@ def settings_of(results, beginnings, column, scale, per):
 
 
 def knee(settings):
-    """The cheapest setting whose error is at most KNEE times the least: what takes longer gains no more than that factor."""
+    """The cheapest setting whose error is at most KNEE times the least: what takes longer gains no
+    more than that factor."""
     least = min(setting.error for setting in settings)
     return min(
         (setting for setting in settings if setting.error <= KNEE * least),
@@ -181,7 +183,8 @@ def run_time_against_error(results):
         if row["name"].startswith("skips/")
     }
     skipped = (
-        f" Testing every point in every step takes {time['off'] / time['taken']:.0f} times as long, for the same contacts."
+        f" Testing every point in every step takes {time['off'] / time['taken']:.0f} times as "
+        "long, for the same contacts."
         if len(time) == 2
         else ""
     )

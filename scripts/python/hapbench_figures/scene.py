@@ -1,4 +1,5 @@
-"""What several figures draw: the numbers that the thesis publishes, and the planar peg-in-hole scene with its contacts, in millimetres."""
+"""What several figures draw: the numbers that the thesis publishes, and the planar peg-in-hole
+scene with its contacts, in millimetres."""
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -204,8 +205,8 @@ def frame(ax, x, y):
 
 
 def draw_contacts(ax, sweep, step, x, y, flips=False):
-    """Hole, peg, and the contacts with their depths, which it returns, in this part of the scene; with `flips` the median line in place of
-    the hole's points, and flipped gradients in petrol."""
+    """Hole, peg, and the contacts with their depths, which it returns, in this part of the scene;
+    with `flips` the median line in place of the hole's points, and flipped gradients in petrol."""
     contacts = sweep.contacts(step)
     draw_hole(ax, sweep.scenario["environment"], points=not flips)
     draw_peg(ax, sweep.peg(step), median=flips)

@@ -1,5 +1,6 @@
-"""Stability: every algorithm on many springs (figures A.4 and A.5), the root locus of A.3, the largest stable stiffness over other fields
-(`limit --over`) and on each device (`limit --device`), and that of a real paddle."""
+"""Stability: every algorithm on many springs (figures A.4 and A.5), the root locus of A.3, the
+largest stable stiffness over other fields (`limit --over`) and on each device (`limit --device`),
+and that of a real paddle."""
 import json
 
 import numpy as np

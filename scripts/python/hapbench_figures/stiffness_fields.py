@@ -60,7 +60,8 @@ def draw_field(ax, name, tensor, contacts, reach, ticks):
 
 
 def of_four_laws(results, tilts, height):
-    """A row for each tilt: the contacts, and the fields of four laws, the sum on a scale of its own; with what is drawn of each law."""
+    """A row for each tilt: the contacts, and the fields of four laws, the sum on a scale of its
+    own; with what is drawn of each law."""
     sweep, drawn = scene.Sweep(results, SWEEP), []
     figure, axes = style.panels(
         len(tilts), 5, height, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]}

@@ -1,4 +1,5 @@
-"""The three evaluation tasks of 3.2 (figures 4, 5, C.2, C.4 and E.1 to E.4), and what the density of points does to task 2 (ours)."""
+"""The three evaluation tasks of 3.2 (figures 4, 5, C.2, C.4 and E.1 to E.4), and what the density
+of points does to task 2 (ours)."""
 import numpy as np
 
 import hapbench_style as style
@@ -61,7 +62,8 @@ PERIOD = 1 / 2048  # of the trainer's loop [s]
 
 
 def loop_load(ax, results, task, duration):
-    """Share of the loop's period that a step takes, over time, on an axis of its own; None where nobody has timed it."""
+    """Share of the loop's period that a step takes, over time, on an axis of its own; None where
+    nobody has timed it."""
     path = f"step_latency/{task}_signed_distance/timing.json"
     timing = results.json(path) if results.has(path) else {}
     medians = np.array((timing.get("step_latency") or {}).get("over_time_s", []))

@@ -1,5 +1,5 @@
-"""python -m hapbench_identify WORDS…; the program calls it for `hapbench import device`: fits a device to its log, or makes the signal to
-play."""
+"""python -m hapbench_identify WORDS…; the program calls it for `hapbench import device`: fits a
+device to its log, or makes the signal to play."""
 import json
 import math
 import sys
@@ -25,13 +25,18 @@ from .log import read_log
 from .model import FRICTION_TOLD, KINDS, NAMES, design, force_to_ask, travel_of
 
 FOOTER = """\
-Fits m x'' = u(t - delay) + offset - b x' - c sign(x') to the positions by least squares, integrated exactly. The delay is found in \
-fractions of a sample. Intervals are of 95 %, wider where the residual is correlated, as while the handle dwells in one step of \
-the encoder. What the log cannot tell is not written, and a warning says why. The noise is what the residual has beyond the \
+Fits m x'' = u(t - delay) + offset - b x' - c sign(x') to the positions by least squares, \
+integrated exactly. The delay is found in \
+fractions of a sample. Intervals are of 95 %, wider where the residual is correlated, as while \
+the handle dwells in one step of \
+the encoder. What the log cannot tell is not written, and a warning says why. The noise is what \
+the residual has beyond the \
 encoder's step. A constant force besides the commands is told and not part of a device.
---columns: time, force and position, by default time_s, force_N and position_m. Forces are as commanded at the time of the row, \
+--columns: time, force and position, by default time_s, force_N and position_m. Forces are as \
+commanded at the time of the row, \
 positive in the direction of the position.
---design: force, the largest [N], default 1; travel, the way that the handle has [m], default 0.05; mass, the least that it may have \
+--design: force, the largest [N], default 1; travel, the way that the handle has [m], default \
+0.05; mass, the least that it may have \
 [kg], default 0.05; rate of the samples [Hz], default 1000; duration [s], default 5.
   hapbench import device --design chirp,force=2,travel=0.08,mass=0.1 --out chirp.csv
   hapbench import device log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
@@ -76,7 +81,8 @@ def command_line():
     )
     line.text(
         "--out",
-        "the device, LOG_device.json by default, with a picture of the residual beside it; or the signal, signal_KIND.csv",
+        "the device, LOG_device.json by default, with a picture of the residual beside it; or the "
+        "signal, signal_KIND.csv",
     )
     line.add_output_options()
     return line
@@ -94,7 +100,8 @@ def run(options):
     table, data = play(kind, numbers, out) if kind else identify(options, out)
     headings = ["of the signal" if options.design else "of the device", "", "from", "to, 95 %"]
     next_line = (
-        f"command these forces, log time_s,force_N,position_m, then {shell_line('hapbench', 'import', 'device', 'LOG.csv')}"
+        "command these forces, log time_s,force_N,position_m, then "
+        f"{shell_line('hapbench', 'import', 'device', 'LOG.csv')}"
         if options.design
         else shell_line("hapbench", "limit", "tap_wall", "--device", out)
     )
@@ -136,7 +143,8 @@ def identify(options, out):
     require_likely_units(options, found.values[0], step)
     if told["handle_mass_kg"]["value"] is None:
         fail(
-            f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. Is a hand or a spring on the handle, or is a "
+            f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. "
+            "Is a hand or a spring on the handle, or is a "
             "sign or a unit wrong? hapbench import device --design makes a signal that tells",
             options.log,
         )
@@ -180,7 +188,8 @@ def require_likely_units(options, mass, encoder_step):
     if options.scale or (1e-3 <= mass <= 20.0 and encoder_step <= 1e-3):
         return
     fail(
-        f"a handle of {mass:.3g} kg, an encoder's step of {encoder_step:.3g} m: are the units s, N, m? For a log in ms and mm: --scale "
+        f"a handle of {mass:.3g} kg, an encoder's step of {encoder_step:.3g} m: are the units s, "
+        "N, m? For a log in ms and mm: --scale "
         "time=1e-3,position=1e-3. If they are, --scale time=1 says so",
         options.log,
     )
@@ -198,12 +207,15 @@ def warnings_of(told, found, log):
     ]
     if told["offset_N"]["value"] is not None:
         warnings.append(
-            f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands (weight, a cable): no device file has it"
+            f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands "
+            "(weight, a cable): no device file has it"
         )
     if found.misfit:
         warnings.append(
-            f"the residual, {found.rms:.3g} m, is not noise. The device has something that this model has not (a hand on it, elasticity, "
-            "friction that depends on the place): look at the picture. The parameters are those of pieces of 0.2 s, and the intervals "
+            f"the residual, {found.rms:.3g} m, is not noise. The device has something that this "
+            "model has not (a hand on it, elasticity, "
+            "friction that depends on the place): look at the picture. The parameters are those "
+            "of pieces of 0.2 s, and the intervals "
             "those of leaving out one twelfth of the log after another"
         )
     return warnings
@@ -286,16 +298,19 @@ def limited_by_travel(kind, numbers, peak):
     if peak > 0.99 * force:
         return []
     said = (
-        f"the travel of {numbers['travel']:g} m limits the force to {peak:.3g} N of {force:g} N: the log tells dry friction up to "
+        f"the travel of {numbers['travel']:g} m limits the force to {peak:.3g} N of {force:g} N: "
+        "the log tells dry friction up to "
         f"{FRICTION_TOLD * peak:.3g} N. "
     )
     asked = force_to_ask(kind, numbers)
     return [
         said
         + (
-            f"force={asked:.3g} begins at a higher frequency and reaches {force:g} N, which tells {FRICTION_TOLD * force:.3g} N"
+            f"force={asked:.3g} begins at a higher frequency and reaches {force:g} N, which tells "
+            f"{FRICTION_TOLD * force:.3g} N"
             if asked
-            else f"A device with more of it needs more travel, or a mass of more than {numbers['mass']:g} kg if it is known to have it"
+            else "A device with more of it needs more travel, or a mass of more than "
+            f"{numbers['mass']:g} kg if it is known to have it"
         )
     ]
 

@@ -37,8 +37,8 @@ class Fit:
 
 
 class Cost:
-    """What the first rows of a log have besides a simulation, less the mean of it over each piece: places before a piece do not
-    matter to it then."""
+    """What the first rows of a log have besides a simulation, less the mean of it over each piece:
+    places before a piece do not matter to it then."""
 
     def __init__(self, simulate, log, seconds=np.inf, piece=np.inf):
         self.rows = int(min(len(log.time), max(100.0, seconds / log.step)))
@@ -94,8 +94,9 @@ class Found:
 
 
 def least_squares(cost, start, scale, steps, tolerance, held=()):
-    """Levenberg and Marquardt's. Mass stays positive; friction and delay do not become negative. SciPy's, which decomposes the whole
-    Jacobian for bounds, finds the same and takes 1.3 times as long for a log of 60 s at 4 kHz."""
+    """Levenberg and Marquardt's. Mass stays positive; friction and delay do not become negative.
+    SciPy's, which decomposes the whole Jacobian for bounds, finds the same and takes 1.3 times as
+    long for a log of 60 s at 4 kHz."""
     low = np.array([1e-6, 0.0, 0.0, 0.0, -np.inf, -np.inf])
     high = np.array([1e6, np.inf, np.inf, LONGEST * scale[DELAY], np.inf, np.inf])
     x = np.clip(start, low, high)
@@ -144,7 +145,8 @@ def _fit(log, simulate):
     count = max(log.encoder_step, 1e-9 * way)
     if way < FEWEST_COUNTS * max(count, noise):
         fail(
-            f"the handle hardly moves: {way:.3g} m, {way / count:.3g} steps of the encoder, noise of {noise:.3g} m; nothing to identify. More "
+            f"the handle hardly moves: {way:.3g} m, {way / count:.3g} steps of the encoder, noise "
+            f"of {noise:.3g} m; nothing to identify. More "
             "force, or slower changes of it, move it further"
         )
     peak = float(np.abs(log.force).max())
@@ -220,7 +222,8 @@ def _search(first, whole, log, place, scale):
 
 
 def _intervals(cost, log, found, scale, residual, memory, noise, spread):
-    """Intervals, what is untold by its index, and what the handle was seen to do. `spread`: half the intervals, where they are known."""
+    """Intervals, what is untold by its index, and what the handle was seen to do. `spread`: half
+    the intervals, where they are known."""
     units = _units(scale, found.x)
     places = cost.simulated(found.x)
     J = np.vstack(
@@ -281,7 +284,10 @@ class Strokes:
             if encoder_step
             else f"{self.travel:.3g} m"
         )
-        return f"at rest for {100.0 * self.rest:.0f} % of the log, {self.up} strokes one way and {self.down} the other, travel {counts}"
+        return (
+            f"at rest for {100.0 * self.rest:.0f} % of the log, {self.up} strokes one way and "
+            f"{self.down} the other, travel {counts}"
+        )
 
 
 def _degenerate(J, strokes):
@@ -301,8 +307,9 @@ def _degenerate(J, strokes):
 
 
 def _spreads(J, places, encoder_step, rms):
-    """Standard errors in units of the rows of J but its last: of a residual whose samples are independent, and of an encoder, whose error
-    stands still while the handle dwells in one count, so that samples of one dwell count as one for its share of the residual.
+    """Standard errors in units of the rows of J but its last: of a residual whose samples are
+    independent, and of an encoder, whose error stands still while the handle dwells in one count,
+    so that samples of one dwell count as one for its share of the residual.
     """
     H = J @ J.T
     inverse = np.linalg.pinv(H, rcond=1e-14, hermitian=True)
@@ -332,8 +339,8 @@ def _spreads(J, places, encoder_step, rms):
 
 
 def _by_pieces(cost, found, scale):
-    """For a residual that is not noise: the fit on short pieces, and half of the intervals by leaving out one block of the log after
-    another, which assumes nothing about it."""
+    """For a residual that is not noise: the fit on short pieces, and half of the intervals by
+    leaving out one block of the log after another, which assumes nothing about it."""
     found = least_squares(cost, found.x, scale, 60, 1e-8)
     units = _units(scale, found.x)
     J, residual = cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), cost(
@@ -364,7 +371,8 @@ def memory_of(residual):
 
 
 def profile(cost, found, scale, i, spread, variance):
-    """Where the sum of squares, with the best other parameters for each value of the i-th, has grown by that of 95 %."""
+    """Where the sum of squares, with the best other parameters for each value of the i-th, has
+    grown by that of 95 %."""
     best, ends = found.x[i], []
     for side in (-1.0, 1.0):
         at = best + side * TWO_SIDED * min(spread, scale[i])
@@ -392,7 +400,8 @@ def profile(cost, found, scale, i, spread, variance):
 
 
 def noise_of(place):
-    """Standard deviation of what changes from sample to sample [m]: third differences of white noise have 20 times its variance."""
+    """Standard deviation of what changes from sample to sample [m]: third differences of white
+    noise have 20 times its variance."""
     return float(np.sqrt(np.mean(np.diff(place, 3) ** 2) / 20.0)) if len(place) > 3 else 0.0
 
 
@@ -404,8 +413,9 @@ def kernel(rows):
 
 
 def starts_of(log, place, force):
-    """Parameters (NAMES) by regression of the force on acceleration, speed and direction, all of them through the same kernel, and
-    from a grid. `place`: the positions of rows without a gap, `force`: theirs."""
+    """Parameters (NAMES) by regression of the force on acceleration, speed and direction, all of
+    them through the same kernel, and from a grid. `place`: the positions of rows without a gap,
+    `force`: theirs."""
     step, peak, noise = log.step, float(np.abs(force).max()), noise_of(place)
     speed = first_speed(place, step, log.encoder_step)
     found = []

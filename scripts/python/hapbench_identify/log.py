@@ -72,20 +72,22 @@ def read_log(options):
 
 
 def log_of(time, force, position):
-    """Puts the times of missing samples back, with forces on the line between their neighbours', which is right for signals
-    that change little from sample to sample; positions stay unknown."""
+    """Puts the times of missing samples back, with forces on the line between their neighbours',
+    which is right for signals that change little from sample to sample; positions stay unknown."""
     warnings, intervals = [], np.diff(time)
     missing = np.maximum(np.rint(intervals / np.median(intervals)).astype(int) - 1, 0)
     even = missing == 0
     step = float(intervals[even].mean())
     if missing.any():
         warnings.append(
-            f"{missing.sum()} samples are missing, at most {missing.max()} together: their forces were taken on the line "
+            f"{missing.sum()} samples are missing, at most {missing.max()} together: their forces "
+            "were taken on the line "
             "between their neighbours'"
         )
     if np.ptp(intervals[even]) > 0.05 * step:
         warnings.append(
-            f"the clock is not even: intervals of {1e3 * intervals[even].min():.3g} ... {1e3 * intervals[even].max():.3g} ms; "
+            f"the clock is not even: intervals of {1e3 * intervals[even].min():.3g} ... "
+            f"{1e3 * intervals[even].max():.3g} ms; "
             "times are taken as those of the samples"
         )
     all_times = np.concatenate(

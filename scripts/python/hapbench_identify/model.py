@@ -1,5 +1,6 @@
-"""The handle of an impedance device under held forces that come late: m x'' = u(t - delay) + offset - b x' - c sign(x'),
-integrated exactly by the program, stops included; and the signal of force to play to it for an identification."""
+"""The handle of an impedance device under held forces that come late: m x'' = u(t - delay) + offset
+- b x' - c sign(x'), integrated exactly by the program, stops included; and the signal of force to
+play to it for an identification."""
 import os
 import shutil
 import subprocess
@@ -53,7 +54,8 @@ def positions(time, force, parameters):
 
 
 def design(kind, force, travel, rate, duration, mass):
-    """(time, force): no larger than `force` [N]; a handle of `mass` [kg] or more without friction keeps within `travel` [m]."""
+    """(time, force): no larger than `force` [N]; a handle of `mass` [kg] or more without friction
+    keeps within `travel` [m]."""
     steps = int(round(duration * rate))
     if steps < 100:
         fail(
@@ -65,7 +67,8 @@ def design(kind, force, travel, rate, duration, mass):
     fastest = min(0.1 * rate, HIGHEST)
     if slowest > 0.5 * fastest:
         fail(
-            f"--design: travel: a handle of {mass:g} kg moves further than {travel:g} m at {force:g} N below {slowest:.3g} Hz; allowed: less "
+            f"--design: travel: a handle of {mass:g} kg moves further than {travel:g} m at "
+            f"{force:g} N below {slowest:.3g} Hz; allowed: less "
             "force, or more travel"
         )
     if kind == "chirp":
@@ -82,7 +85,8 @@ def design(kind, force, travel, rate, duration, mass):
 
 
 def _steps(steps, rate, slowest, fastest):
-    """+ for n samples, - for 2 n, + for n, which brings a handle without friction back to rest where it was; n grows."""
+    """+ for n samples, - for 2 n, + for n, which brings a handle without friction back to rest
+    where it was; n grows."""
     values = []
     lengths = np.geomspace(rate / (4.0 * fastest), rate / (4.0 * slowest), 8)
     while len(values) < steps:
@@ -92,7 +96,8 @@ def _steps(steps, rate, slowest, fastest):
 
 
 def travel_of(time, force, mass):
-    """The way between the ends of the motion [m] of a handle without friction, and with the friction that it moves in oil."""
+    """The way between the ends of the motion [m] of a handle without friction, and with the
+    friction that it moves in oil."""
     return max(
         np.ptp(positions(time, force, (mass, rate * mass, 0.0, 0.0, 0.0, 0.0)))
         for rate in (0.0, 1.0, 10.0)
@@ -100,8 +105,9 @@ def travel_of(time, force, mass):
 
 
 def force_to_ask(kind, numbers):
-    """The --force with which the signal reaches numbers["force"] [N], rounded up to two digits, though travel limits it: a larger one begins
-    at a higher frequency. Empty where there is none."""
+    """The --force with which the signal reaches numbers["force"] [N], rounded up to two digits,
+    though travel limits it: a larger one begins at a higher frequency. Empty where there is
+    none."""
     wanted = asked = numbers["force"]
     try:
         for _ in range(8):

@@ -16,14 +16,20 @@ from hapbench_command import (
 from .options import FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
 
 FOOTER = """\
---columns: time, and position, orientation and force by the first of their columns, or each by itself as px, py, pz, qw, qx, qy, \
-qz, mfx, mfy, mfz. --orientation is none, axis (the direction out of the tip), quat_wxyz, quat_xyzw, axis_angle (axis, angle) or \
+--columns: time, and position, orientation and force by the first of their columns, or each by \
+itself as px, py, pz, qw, qx, qy, \
+qz, mfx, mfy, mfz. --orientation is none, axis (the direction out of the tip), quat_wxyz, \
+quat_xyzw, axis_angle (axis, angle) or \
 matrix (r11, r12 ... r33, row by row); it turns the tool's frame into the world's.
---set: sample_rate_Hz of a file without times; tip_axis, the direction out of the tip in the tool's frame, default 0,0,-1; shift, \
-added to the places of the tip [m]; force_by_tool=true, forces are the tool's on the object and are turned round; max_speed, faster \
-jumps are refused [m/s], default 5; max_gap, longer gaps are refused, not bridged [s], default 0.5; floats=true, hapi-binary has \
+--set: sample_rate_Hz of a file without times; tip_axis, the direction out of the tip in the \
+tool's frame, default 0,0,-1; shift, \
+added to the places of the tip [m]; force_by_tool=true, forces are the tool's on the object and \
+are turned round; max_speed, faster \
+jumps are refused [m/s], default 5; max_gap, longer gaps are refused, not bridged [s], default \
+0.5; floats=true, hapi-binary has \
 numbers of four bytes.
-Rows with wrong numbers, times that do not increase, quaternions not of unit length and jumps are refused with their lines, and \
+Rows with wrong numbers, times that do not increase, quaternions not of unit length and jumps are \
+refused with their lines, and \
 nothing is written.
   hapbench import stroke
   hapbench import stroke log.txt --preset hapi --smooth window=11,order=3 --out stroke.csv
@@ -94,7 +100,10 @@ def run(options):
     stroke, found = import_stroke(open_recording(options.file, asked), asked)
     write(Path(out), stroke_text(stroke))
     scenario = f"{Path(out).stem}.json"
-    next_line = f"{shell_line('hapbench', 'new', 'stroke', '--from', out, '--out', scenario)} && {shell_line('hapbench', 'run', scenario)}"
+    next_line = (
+        f"{shell_line('hapbench', 'new', 'stroke', '--from', out, '--out', scenario)} && "
+        f"{shell_line('hapbench', 'run', scenario)}"
+    )
     table = table_text(["of the stroke", ""], table_of(found), options.wide)
     answer(
         options, f"{out}\n{table}\nnext: {next_line}", {"file": out} | found | {"next": next_line}

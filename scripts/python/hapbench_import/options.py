@@ -261,7 +261,8 @@ def _frame(_, words):
         < 0.5
     ):
         fail(
-            'frame: allowed: three of x, y, z, each once, with or without "-", as in "x,-z,y", that make a right-handed frame'
+            'frame: allowed: three of x, y, z, each once, with or without "-", as in "x,-z,y", '
+            "that make a right-handed frame"
         )
     return rows
 

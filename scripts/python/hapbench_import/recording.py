@@ -28,8 +28,9 @@ _BLANK = b" \t\r"
 
 
 class Recording:
-    """The rows of a file. `names` of the columns are empty where the file gives none; `rows` are lists of cells, or an array
-    with the names; `places` are those of the rows in the file, counted as `row_word` says."""
+    """The rows of a file. `names` of the columns are empty where the file gives none; `rows` are
+    lists of cells, or an array with the names; `places` are those of the rows in the file, counted
+    as `row_word` says."""
 
     def __init__(self, file, names, rows, places, row_word="line", remark=""):
         self.file, self.names, self.rows, self.places, self.row_word, self.remark = (
@@ -168,13 +169,14 @@ def _hapi_columns(fields, file):
 
 
 def _binary(data, file, floats):
-    """Names that end with NUL, one more NUL, then samples without separators: every number a double or a float, BUTTONS an
-    int32, little-endian."""
+    """Names that end with NUL, one more NUL, then samples without separators: every number a double
+    or a float, BUTTONS an int32, little-endian."""
     fields, at, longest, names = [], 0, 64, []
     while (end := data.find(b"\0", at)) != at:
         if end < 0 or end - at > longest:
             fail(
-                f"no NUL within {longest} bytes behind field name {len(names) + 1}; allowed: a binary HAPI log (a text log has "
+                f"no NUL within {longest} bytes behind field name {len(names) + 1}; allowed: a "
+                "binary HAPI log (a text log has "
                 "--format hapi)",
                 file,
             )
@@ -188,7 +190,8 @@ def _binary(data, file, floats):
     count, rest = divmod(len(data) - end - 1, kind.itemsize)
     remark = (
         (
-            f"behind sample {count} are {rest} bytes, less than the {kind.itemsize} of a sample: the log was cut off, or its numbers "
+            f"behind sample {count} are {rest} bytes, less than the {kind.itemsize} of a sample: "
+            "the log was cut off, or its numbers "
             f"are {'doubles (--set floats=false)' if floats else 'floats (--set floats=true)'}"
         )
         if rest

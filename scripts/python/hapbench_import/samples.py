@@ -174,7 +174,8 @@ class Rows:
             self._refuse(
                 np.isnan(numbers),
                 lambda row: (
-                    f"column {column + 1}{' ' if name else ''}{name}: got {self._recording.shown(column, row)}; allowed: a finite number"
+                    f"column {column + 1}{' ' if name else ''}{name}: got "
+                    f"{self._recording.shown(column, row)}; allowed: a finite number"
                 ),
             )
         return values
@@ -202,7 +203,8 @@ class Rows:
             self._refuse(
                 ~((deviation <= UNIT_TOLERANCE) & right_handed),
                 lambda row: (
-                    f"got a matrix that is not a rotation; allowed: rows of length 1, perpendicular within {UNIT_TOLERANCE:g}, determinant 1"
+                    "got a matrix that is not a rotation; allowed: rows of length 1, "
+                    f"perpendicular within {UNIT_TOLERANCE:g}, determinant 1"
                 ),
             )
         else:
@@ -226,8 +228,9 @@ def _from_down_to(axes):
 
 
 def read_samples(recording, options):
-    """Reads a recording. Bad rows (too few values, no finite number, time that does not increase, an orientation that is
-    none, a jump faster than max_speed) are refused all together, each with its place, or left out when the options say so.
+    """Reads a recording. Bad rows (too few values, no finite number, time that does not increase,
+    an orientation that is none, a jump faster than max_speed) are refused all together, each with
+    its place, or left out when the options say so.
     """
     columns = Columns(recording, options)
     with np.errstate(invalid="ignore", over="ignore"):

@@ -1,5 +1,6 @@
-"""From samples to a stroke: an even clock that starts at 0, smoothed if asked for, and the resolution of the recording. What was found
-on the way, as JSON and, from that, as a table for people."""
+"""From samples to a stroke: an even clock that starts at 0, smoothed if asked for, and the
+resolution of the recording. What was found on the way, as JSON and, from that, as a table for
+people."""
 import math
 
 import numpy as np
@@ -66,7 +67,8 @@ def import_stroke(recording, options):
 
 
 def clock_of(time):
-    """The times of a recording, and whether every sample is within a thousandth of an interval of its place on an even clock."""
+    """The times of a recording, and whether every sample is within a thousandth of an interval of
+    its place on an even clock."""
     first, duration, intervals = float(time[0]), float(time[-1] - time[0]), np.diff(time)
     even = duration / len(intervals)
     off = time - first - np.arange(len(time)) * even
@@ -89,8 +91,8 @@ def usual_rate(clock, is_regular, samples):
 
 
 def gaps_in(read, median, longest):
-    """The gaps to bridge: index of the sample before it, and duration [s]. Intervals longer than `longest` [s] are refused, however many
-    there are."""
+    """The gaps to bridge: index of the sample before it, and duration [s]. Intervals longer than
+    `longest` [s] are refused, however many there are."""
     if median > longest:
         factor = next((unit for unit in (1e-3, 1e-6, 1e-9) if median * unit <= longest), 1e-9)
         fail(
@@ -116,15 +118,15 @@ def gaps_in(read, median, longest):
 
 def resolution_of(values):
     """The step in which a coordinate was recorded: the greatest length of which all differences between its values are
-    multiples, as 1e-5 m of a log with five decimals. None when there is none above 2e-10 and 2e-9 of the largest value (the
-    coordinate was kept in full), or when all values are equal."""
+    multiples, as 1e-5 m of a log with five decimals. None when there is none above 2e-10 and 2e-9
+    of the largest value (the coordinate was kept in full), or when all values are equal."""
     values = np.sort(values).tolist()
     # Differences are multiples up to the rounding of doubles, which Euclid's algorithm magnifies.
     rounding = max(1e-10, 1e-9 * max(abs(values[0]), abs(values[-1])))
     step = 0.0
     for before, value in zip(values, values[1:]):
-        # Euclid's algorithm for the greatest common divisor. Rounding makes a remainder of zero slightly more, or slightly
-        # less than the divisor.
+        # Euclid's algorithm for the greatest common divisor. Rounding makes a remainder of zero
+        # slightly more, or slightly less than the divisor.
         rest = value - before
         if rest <= rounding:
             continue
@@ -139,8 +141,8 @@ def resolution_of(values):
 
 
 def resample(samples, rate):
-    """At an even rate [Hz] from the first sample on, time counted from there: positions and forces between samples linearly,
-    orientations along the arc between them."""
+    """At an even rate [Hz] from the first sample on, time counted from there: positions and forces
+    between samples linearly, orientations along the arc between them."""
     time, duration = samples.time, samples.time[-1] - samples.time[0]
     if not (rate > 0.0 and math.isfinite(rate) and duration * rate < MOST_SAMPLES):
         fail(
@@ -167,9 +169,10 @@ def resample(samples, rate):
 
 
 def smooth(stroke, window, order):
-    """Fits a polynomial to every window of neighbours by least squares and takes its value in the middle (Savitzky and Golay
-    1964); at both ends, the values of the first and the last window's polynomial. Positions and the components of
-    quaternions, which are normalised again, are smoothed; forces are a measurement and stay."""
+    """Fits a polynomial to every window of neighbours by least squares and takes its value in the
+    middle (Savitzky and Golay 1964); at both ends, the values of the first and the last window's
+    polynomial. Positions and the components of quaternions, which are normalised again, are
+    smoothed; forces are a measurement and stay."""
     n = len(stroke.time)
     if window < 3 or window % 2 == 0 or window > 10001 or window > n:
         fail(f"smooth: got a window of {window} samples; allowed: odd, 3 ... {min(n, 10001)}")
@@ -324,7 +327,8 @@ def _warnings(read, gaps, found):
         warnings.append(f"{len(read.left_out)} bad rows were left out")
     warnings += [f"{place}: {problem}" for place, problem in read.left_out[:20]]
     warnings += [
-        f"a gap of {duration:.4g} s behind {read.recording.row_word} {read.recording.places[read.kept[i]]} is bridged by a straight line"
+        f"a gap of {duration:.4g} s behind {read.recording.row_word} "
+        f"{read.recording.places[read.kept[i]]} is bridged by a straight line"
         for i, duration in gaps[:MOST_GAPS]
     ]
     if len(gaps) > MOST_GAPS:
@@ -337,11 +341,13 @@ def _warnings(read, gaps, found):
         )
     if not USUAL_RATES[0] <= found["rate_Hz"] <= USUAL_RATES[1]:
         warnings.append(
-            f"{found['rate_Hz']:.4g} samples a second is an unusual rate: is the scale of time right? (--scale time=1e-3 is for "
+            f"{found['rate_Hz']:.4g} samples a second is an unusual rate: is the scale of time "
+            "right? (--scale time=1e-3 is for "
             "milliseconds)"
         )
     if found["tip_direction"][2] > 0.5:
         warnings.append(
-            "the tip points upwards in the mean: are --orientation (the order of a quaternion), tip_axis and --frame right?"
+            "the tip points upwards in the mean: are --orientation (the order of a quaternion), "
+            "tip_axis and --frame right?"
         )
     return warnings

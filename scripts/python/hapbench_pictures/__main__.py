@@ -6,23 +6,33 @@ from pathlib import Path
 from hapbench_command import SHARED, CommandLine, exit_status
 
 PLOT_FOOTER = """\
---y takes force, spring, measured, input, reference, force_error, torque (needs record.torque), depth, ratio, contacts, rendered, \
-speed, x, y, z, path, energy, input_energy, or any column of the runs' tables; by default force, depth, ratio, contacts, path, and \
-energy where it was recorded. force, speed and the like are lengths of vectors, drawn as |rendered force|; --y fx_N,fy_N,fz_N \
+--y takes force, spring, measured, input, reference, force_error, torque (needs record.torque), \
+depth, ratio, contacts, rendered, \
+speed, x, y, z, path, energy, input_energy, or any column of the runs' tables; by default force, \
+depth, ratio, contacts, path, and \
+energy where it was recorded. force, speed and the like are lengths of vectors, drawn as \
+|rendered force|; --y fx_N,fy_N,fz_N \
 draws the components.
-A comparison's folder stands for all its runs. Runs have the colour of their algorithm; several runs of one algorithm have \
-colours of their own. Triangles mark the first touch. A peak of more than three times the range of settled contact is cut off, \
-and its value written there. Of long runs the least and the greatest value for each pixel are drawn, so that no spike is lost.
-Of a sampled sweep the metric is drawn over each field, with how much each matters: Spearman's rank correlation and the \
+A comparison's folder stands for all its runs. Runs have the colour of their algorithm; several \
+runs of one algorithm have \
+colours of their own. Triangles mark the first touch. A peak of more than three times the range \
+of settled contact is cut off, \
+and its value written there. Of long runs the least and the greatest value for each pixel are \
+drawn, so that no spike is lost.
+Of a sampled sweep the metric is drawn over each field, with how much each matters: Spearman's \
+rank correlation and the \
 first-order Sobol index.
   hapbench plot results/out/drag_molar
   hapbench plot results/out/compare_drag_molar --y force,depth --out drag.png
   hapbench plot results/out/sweep_tap_wall --metric force_max_N"""
 REPORT_FOOTER = """\
-One HTML file that needs no server and no network. The replay shows up to four runs side by side, with their depths if they were \
+One HTML file that needs no server and no network. The replay shows up to four runs side by side, \
+with their depths if they were \
 run with --set record.contacts=true. Of two runs, what differs comes first.
-For a regression test keep the results of a good version and compare every new one with them by --tolerance: outcome, metrics, \
-warnings, trajectory.csv and sweep.csv, and with 0 the state hash. What one of them alone has makes them differ; fields are shown \
+For a regression test keep the results of a good version and compare every new one with them by \
+--tolerance: outcome, metrics, \
+warnings, trajectory.csv and sweep.csv, and with 0 the state hash. What one of them alone has \
+makes them differ; fields are shown \
 but do not count; provenance, times and counted work are not looked at.
   hapbench report results/out/drag_molar
   hapbench report results/out/compare_drag_molar
@@ -61,7 +71,8 @@ def report_line():
     line.flag("--quiet", SHARED)
     line.text(
         "--tolerance",
-        "no page: compare the results of two folders, in status 3 if they differ by more than this, of a metric relative "
+        "no page: compare the results of two folders, in status 3 if they differ by more than "
+        "this, of a metric relative "
         "to the larger of the two, of a column to its largest magnitude; 0: the same digits",
     )
     return line

@@ -1,7 +1,8 @@
 """What differs between the results A and B of two runs, or of two folders with several: a regression test.
 
-Results are the outcome, the metrics and warnings of summary.json, trajectory.csv and sweep.csv. Fields of the scenario are shown
-but do not count; provenance, times and counted work are not looked at."""
+Results are the outcome, the metrics and warnings of summary.json, trajectory.csv and sweep.csv.
+Fields of the scenario are shown but do not count; provenance, times and counted work are not looked
+at."""
 import json
 import math
 import zlib
@@ -26,13 +27,15 @@ NO_NUMBER = math.inf  # the size of a difference of which not both are numbers
 
 
 def differences(a, b):
-    """For each run and sweep, by its path below the folders `a` and `b`: under "field", "result", "state hash" and the names of tables
-    what differs, as (name, in A, in B, size, relative size)."""
+    """For each run and sweep, by its path below the folders `a` and `b`: under "field", "result",
+    "state hash" and the names of tables what differs, as (name, in A, in B, size, relative
+    size)."""
     in_a, in_b = results_below(a), results_below(b)
     pairs = [path for path in in_a if path in in_b]
     if not pairs:
         raise InputError(
-            f"{a} has {in_a[0]} and {b} has {in_b[0]}, nothing by the same name; allowed: the folders of two runs, or of "
+            f"{a} has {in_a[0]} and {b} has {in_b[0]}, nothing by the same name; allowed: the "
+            "folders of two runs, or of "
             "several each"
         )
     found = {}
@@ -136,7 +139,8 @@ def sizes(a, b, largest=0.0):
 
 
 def of_tables(a, b):
-    """Of each column that differs the row with the largest difference, which is relative to the column's largest magnitude."""
+    """Of each column that differs the row with the largest difference, which is relative to the
+    column's largest magnitude."""
     (names_a, rows_a), (names_b, rows_b) = read_rows(a), read_rows(b)
     found = [
         (what, one, other, NO_NUMBER, NO_NUMBER)
@@ -174,8 +178,8 @@ def of_tables(a, b):
 
 
 def are_equal(found, tolerance):
-    """Whether nothing but numbers within a relative tolerance differs. What one of them alone has always counts; the state hash, which
-    changes with any bit, at a tolerance of 0."""
+    """Whether nothing but numbers within a relative tolerance differs. What one of them alone has
+    always counts; the state hash, which changes with any bit, at a tolerance of 0."""
     return all(
         relative <= tolerance and tolerance > 0 or (tolerance > 0 and name.startswith("state_hash"))
         for tables in found.values()

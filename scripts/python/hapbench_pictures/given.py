@@ -1,5 +1,6 @@
-"""The runs that RUN… on the command line mean (folders of `run`, folders of `compare`, or one folder of `sweep`), the fields in
-which they differ, and how a field is written in a legend or on an axis."""
+"""The runs that RUN… on the command line mean (folders of `run`, folders of `compare`, or one
+folder of `sweep`), the fields in which they differ, and how a field is written in a legend or on an
+axis."""
 import json
 import os
 import re
@@ -49,7 +50,8 @@ def given_runs(words):
         if not folder.is_dir():
             raise InputError(
                 f'{folder}: no such folder; allowed: a folder that "hapbench run", '
-                f"\"compare\" or \"sweep\" wrote{nearest(folder.name, [beside.name for beside in folder.parent.glob('*/')])}"
+                '"compare" or "sweep" '
+                f"wrote{nearest(folder.name, [beside.name for beside in folder.parent.glob('*/')])}"
             )
         runs = [load_run(folder, folder.name)] if (folder / SUMMARY).is_file() else compared(folder)
         if not runs:
@@ -140,7 +142,8 @@ def common_folder(words):
 
 
 def fields_of(run):
-    """The scenario's fields by their paths. Files, which it names from its own folder, are named from here, where they are one."""
+    """The scenario's fields by their paths. Files, which it names from its own folder, are named
+    from here, where they are one."""
     return {
         path: os.path.relpath(run.folder / value)
         if path.rpartition(".")[2] == "file" and isinstance(value, str)

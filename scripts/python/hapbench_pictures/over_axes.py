@@ -1,5 +1,5 @@
-"""One plot for what the program finds over fields: the limits of `limit`, alone, over another field and on devices, the trials of
-`tune` and the levels of `converge`; sweep_plot draws sweeps by it."""
+"""One plot for what the program finds over fields: the limits of `limit`, alone, over another field
+and on devices, the trials of `tune` and the levels of `converge`; sweep_plot draws sweeps by it."""
 from dataclasses import dataclass
 from itertools import cycle
 from textwrap import wrap
@@ -32,8 +32,8 @@ MOST_TICKS = 12
 LIMIT, LIMIT_RUNS = "limit.csv", "limit_runs.csv"
 ORDERS, LEVELS, TIMES = "converge.csv", "converge_levels.csv", "converge_levels_timing.csv"
 TRIALS, LAWS = "tune_trials.csv", "tune.csv"
-# Closed forms and what is known besides, as columns of limit.csv. Where the loop has no linear edge, as with dry friction,
-# those of stability say nothing of it.
+# Closed forms and what is known besides, as columns of limit.csv. Where the loop has no linear
+# edge, as with dry friction, those of stability say nothing of it.
 KNOWN = {
     "worst_hand": "limit, worst hand",
     "passive_colgate_schenkel": "passive (Colgate, Schenkel)",
@@ -75,8 +75,9 @@ def spread_logarithmically(values):
 
 
 def over_axes(ax, x, y, series=(), runs=()):
-    """`series`: label, values along x and y, and look of each curve, of which equal ones show in stripes; `runs`: a class with the
-    places of its runs each; `x`, `y`: the Axis of either direction."""
+    """`series`: label, values along x and y, and look of each curve, of which equal ones show in
+    stripes; `runs`: a class with the places of its runs each; `x`, `y`: the Axis of either
+    direction."""
     size = 26 if sum(len(xs) for _, xs, _ in runs) < 100 else 9
     for name, xs, ys in runs:
         title, colour, hatch = look_of_class(name)
@@ -216,7 +217,8 @@ def draw_limits(files, folder=""):
 
 
 def draw_strip(found):
-    """A line of marks for each algorithm: the class of every run over the field; bars: the limit, and that of theory."""
+    """A line of marks for each algorithm: the class of every run over the field; bars: the limit,
+    and that of theory."""
     names = found.algorithms
     runs = [
         (
@@ -259,7 +261,8 @@ def draw_strip(found):
 
 
 def draw_over(found):
-    """The limit of every algorithm and its ratio to theory; then the classes of the runs, algorithms with the same limits together."""
+    """The limit of every algorithm and its ratio to theory; then the classes of the runs,
+    algorithms with the same limits together."""
     groups, has_theory = found.groups(), np.isfinite(numbers(found.rows, "theory")).any()
     cells = 1 + has_theory + len(groups)
     columns = cells if cells < 4 else 2 if cells == 4 else min((3, 4), key=lambda n: -cells % n)
@@ -386,8 +389,9 @@ def with_room(low, high, above=1.0):
 
 
 def draw_converge(files):
-    """The relative error of each metric over the refined field, beside the line of the formal order, and over the time of a run:
-    filled marks where an order is stated, hollow ones of what the levels show without."""
+    """The relative error of each metric over the refined field, beside the line of the formal
+    order, and over the time of a run: filled marks where an order is stated, hollow ones of what
+    the levels show without."""
     orders, levels, times = (
         files.records(ORDERS),
         files.records(LEVELS),
@@ -448,8 +452,9 @@ STIFFNESS, DEPTH, VIBRATION = "stiffness_N_per_m", "inside_max_m", "force_rms_ab
 
 
 def draw_tune(files):
-    """Stiffness against depth and against vibration, and the two against each other with the Pareto front of what is feasible; the
-    choice of each law is ringed. Filled marks are feasible, hollow ones settled but without the margin or beyond a limit.
+    """Stiffness against depth and against vibration, and the two against each other with the Pareto
+    front of what is feasible; the choice of each law is ringed. Filled marks are feasible, hollow
+    ones settled but without the margin or beyond a limit.
     """
     trials, laws = files.records(TRIALS), files.records(LAWS)
     axes_of = (axis(STIFFNESS), "deepest inside [mm]", "force above 30 Hz [N rms]")

@@ -1,5 +1,6 @@
-"""How runs are drawn: as their algorithm is everywhere, with line styles where two runs share one; one quantity over time, and the
-scene in a section, with the tip's way and the tool, of several runs, into matplotlib's axes."""
+"""How runs are drawn: as their algorithm is everywhere, with line styles where two runs share one;
+one quantity over time, and the scene in a section, with the tip's way and the tool, of several
+runs, into matplotlib's axes."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,7 +112,8 @@ def share_an_axis(ax, heights):
 
 
 def cut_off_peaks(ax, quantity, drawn):
-    """The range of settled contact, where it is far below a peak; the largest one is written where it leaves the picture."""
+    """The range of settled contact, where it is far below a peak; the largest one is written where
+    it leaves the picture."""
     shown = settled_range([(s.settled[quantity.file], low, high) for s, _, (_, low, high) in drawn])
     if shown is None:
         return
@@ -170,7 +172,8 @@ def tip_of(samples, which=PATH_COLUMNS):
 
 
 def framed(samples):
-    """The rows that a picture of the scene is about, a tool that is thrown away aside: the start and those in contact, or all."""
+    """The rows that a picture of the scene is about, a tool that is thrown away aside: the start
+    and those in contact, or all."""
     touching = np.flatnonzero(samples.trajectory["colliding"] > 0)
     return (
         np.append(touching, 0) if touching.size else np.arange(len(samples.trajectory["colliding"]))
@@ -178,8 +181,8 @@ def framed(samples):
 
 
 def plane_of(samples):
-    """The axes to the right and up of the section: x and y of a planar scene, else z and the horizontal one that the ways are longer
-    along."""
+    """The axes to the right and up of the section: x and y of a planar scene, else z and the
+    horizontal one that the ways are longer along."""
     if all(np.all(s.trajectory["pz_m"] == 0) for s in samples):
         return (0, 1)
     ways = np.vstack([tip_of(s)[framed(s)] for s in samples])
@@ -187,8 +190,9 @@ def plane_of(samples):
 
 
 def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
-    """The scene with equal axes, in the plane through the middle of the tip's ways: the solid filled, the ways, and the first run's
-    tool at four times. `profile`: of the tool [m]; `surface`: points and normals [m]."""
+    """The scene with equal axes, in the plane through the middle of the tip's ways: the solid
+    filled, the ways, and the first run's tool at four times. `profile`: of the tool [m]; `surface`:
+    points and normals [m]."""
     plane, radius = plane_of(samples), max((radius for _, radius in profile or ()), default=0.0)
     ways = np.vstack([tip_of(s)[framed(s)][:, plane] for s in samples])
     low, high = ways.min(0) - 1.3 * radius, ways.max(0) + 0.7 * radius
@@ -257,8 +261,9 @@ def spacing_of(places):
 
 
 def outline(profile, tip, axis):
-    """Outline of the tool [m] at a tip with an axis, both projected into a plane; right where the axis lies in the plane, and near it
-    elsewhere. `profile`: hapbench_report.recording.tool_profile."""
+    """Outline of the tool [m] at a tip with an axis, both projected into a plane; right where the
+    axis lies in the plane, and near it elsewhere. `profile`:
+    hapbench_report.recording.tool_profile."""
     axis = axis / np.linalg.norm(axis)
     s, radius = np.array(profile).T[:, :, None]
     half, across = tip + s * axis, radius * np.array([-axis[1], axis[0]])

@@ -1,5 +1,5 @@
-"""`hapbench plot`: a file with the scene in a section and quantities over time below it; or the picture of a sweep, of limits, of a
-tuning or of a convergence."""
+"""`hapbench plot`: a file with the scene in a section and quantities over time below it; or the
+picture of a sweep, of limits, of a tuning or of a convergence."""
 import math
 from collections import Counter
 
@@ -120,8 +120,8 @@ def of_sweep(folder, options):
 
 
 def draw(runs, shown, quantities, with_path, samples, surface=None):
-    """The figure: a title with the runs' names, below it the scene and the first quantity in the same room, side by side where no solid
-    fills the width of the scene, and the others."""
+    """The figure: a title with the runs' names, below it the scene and the first quantity in the
+    same room, side by side where no solid fills the width of the scene, and the others."""
     with plt.rc_context(SETTINGS):
         entries = legend_of(shown)
         columns = legend_columns(entries, WIDTH)

@@ -1,5 +1,6 @@
-"""Quantities to draw over time: short names, and every column of a run's tables by its own name; with the range of an axis:
-that of settled contact, where the peak of a landing or a crash would squeeze it."""
+"""Quantities to draw over time: short names, and every column of a run's tables by its own name;
+with the range of an axis: that of settled contact, where the peak of a landing or a crash would
+squeeze it."""
 import json
 import re
 from dataclasses import dataclass

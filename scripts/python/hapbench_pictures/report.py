@@ -1,5 +1,5 @@
-"""`hapbench report`: one page of the runs given, and nothing else. Curves are drawn on light and on dark ground, one drawing for
-each quantity."""
+"""`hapbench report`: one page of the runs given, and nothing else. Curves are drawn on light and on
+dark ground, one drawing for each quantity."""
 import base64
 import json
 import math
@@ -184,7 +184,8 @@ def curves_section(runs, labels):
     )
     names = " ".join(f"<b>{in_colour(one, text(one.label))}</b>" for one in light)
     return (
-        f"<p>{names} Triangles and dotted lines: first touch. Outlines: the tool of the first run at four times.{hints}</p>"
+        f"<p>{names} Triangles and dotted lines: first touch. Outlines: the tool of the first run "
+        f"at four times.{hints}</p>"
         f"<div class=curves>{''.join(figures)}</div>"
     )
 
@@ -224,7 +225,8 @@ DEEPER, SHAKIER = "inside_max_m", "force_rms_above_30Hz_N"
 
 
 def pareto_section(runs):
-    """Of a comparison with many laws: how deep each lets the tool against how much it vibrates, over all scenes and seeds."""
+    """Of a comparison with many laws: how deep each lets the tool against how much it vibrates,
+    over all scenes and seeds."""
     found = {}
     for run in runs:
         values = (run.metric(DEEPER), run.metric(SHAKIER))
@@ -306,7 +308,8 @@ def outcome_cell(run):
     wanted = at(run.scenario, "/expect/outcome") or "other results"
     wanted = " or ".join(map(str, wanted)) if isinstance(wanted, list) else wanted
     return cell(
-        f"<b class=bad>{how}</b><br><span class=note>its field <code>expect</code> names {text(wanted)}; a scenario that was copied "
+        f"<b class=bad>{how}</b><br><span class=note>its field <code>expect</code> names "
+        f"{text(wanted)}; a scenario that was copied "
         "keeps that field, <code>--set expect={}</code> drops it</span>"
     )
 
@@ -365,7 +368,8 @@ def metrics_section(runs, labels):
 
 
 def seeds_section(runs):
-    """What lies between laws over the seeds of a comparison: of each metric the law with the least mean against every other."""
+    """What lies between laws over the seeds of a comparison: of each metric the law with the least
+    mean against every other."""
     scenes = {}
     for run in runs:
         if SEED_FOLDER.fullmatch(run.folder.name):
@@ -378,7 +382,8 @@ def seeds_section(runs):
     ]
     return (
         said
-        and f"<ul>{''.join(said)}</ul><p class=note>Seed by seed, as a seed gives all laws the same start; ±: 95 % interval of the mean.</p>"
+        and f"<ul>{''.join(said)}</ul><p class=note>Seed by seed, as a seed gives all laws the "
+        "same start; ±: 95 % interval of the mean.</p>"
     )
 
 
@@ -414,7 +419,8 @@ def metric_cell(value, tolerance):
 
 def scenario_section(runs, labels):
     return "".join(
-        f"<details><summary>Scenario of {text(label)}</summary><pre>{text(json.dumps(run.scenario, indent=2, ensure_ascii=False))}</pre>"
+        "<details><summary>Scenario of "
+        f"{text(label)}</summary><pre>{text(json.dumps(run.scenario, indent=2, ensure_ascii=False))}</pre>"
         f"{live_link(run.scenario)}"
         f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}{plugin_text(run)}.</p></details>"
         for run, label in zip(runs, labels)
@@ -433,7 +439,8 @@ def commands_section(runs, words):
     return (
         (f"<p>Each run again, the same bytes:</p>{command(chr(10).join(lines))}" if lines else "")
         + f"<p>Pictures and this page:</p>{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
-        + "<p class=note>The paths are those of the machine that wrote this page. Elsewhere, save a scenario from above as a file.</p>"
+        + "<p class=note>The paths are those of the machine that wrote this page. Elsewhere, save "
+        "a scenario from above as a file.</p>"
     )
 
 

@@ -1,5 +1,5 @@
-"""A sweep's table as a picture: a metric over one varied field; over two as curves or a heat map; of a sample, or over more
-fields, points over each of them, with how much each matters."""
+"""A sweep's table as a picture: a metric over one varied field; over two as curves or a heat map;
+of a sample, or over more fields, points over each of them, with how much each matters."""
 import operator
 import re
 import textwrap
@@ -317,7 +317,8 @@ def sensitivity_table(sweep):
     )
     if not any(found):
         return [
-            f"how much each field matters cannot be told from {runs} runs with this metric{without}; needed: {LEAST_ROWS}, of several values"
+            f"how much each field matters cannot be told from {runs} runs with this "
+            f"metric{without}; needed: {LEAST_ROWS}, of several values"
         ]
     rows = [
         [
@@ -344,9 +345,12 @@ def sensitivity_table(sweep):
             numbers=True,
         ),
         *textwrap.wrap(
-            f"rank correlation: Spearman's; first order: Sobol's index, the share of the variance of {sweep.metric} that the field explains "
-            f"alone; together {together}, the rest is fields that act together, and what depends on none. By regression on at most "
-            f"{MOST_COSINES} cosines of the field's place in its range, or on the values of a list, over {runs} runs{without}; +-: standard "
+            "rank correlation: Spearman's; first order: Sobol's index, the share of the variance "
+            f"of {sweep.metric} that the field explains "
+            f"alone; together {together}, the rest is fields that act together, and what depends "
+            "on none. By regression on at most "
+            f"{MOST_COSINES} cosines of the field's place in its range, or on the values of a "
+            f"list, over {runs} runs{without}; +-: standard "
             "error, by jackknife",
             WIDTH,
         ),
@@ -355,14 +359,17 @@ def sensitivity_table(sweep):
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How much each field of a sampled sweep matters for a metric, from the sweep's rows alone: Spearman's rank correlation, and the
-    first-order Sobol index S_i = Var(E[y | x_i]) / Var(y), the share of the metric's variance that the field explains by itself.
+    """How much each field of a sampled sweep matters for a metric, from the sweep's rows alone:
+    Spearman's rank correlation, and the first-order Sobol index S_i = Var(E[y | x_i]) / Var(y), the
+    share of the metric's variance that the field explains by itself.
 
-    E[y | x_i] is a least-squares fit: up to six cosines of the field's place in its range, cos(pi k u) (Plischke, "How to compute
-    variance-based sensitivity indicators with your spreadsheet software", Environmental Modelling & Software 35, 2012), or for listed
-    values the mean of each. S_i is the fit's R^2, adjusted for the number of functions (Ezekiel), so that a field without influence
-    has 0 in the mean. Its standard error is the jackknife's over the rows; a Latin hypercube or a Sobol sequence errs less. What
-    changes faster than the sixth cosine, as the edge of a jump, is not seen: of a step in the middle a fifteenth.
+    E[y | x_i] is a least-squares fit: up to six cosines of the field's place in its range, cos(pi k
+    u) (Plischke, "How to compute variance-based sensitivity indicators with your spreadsheet
+    software", Environmental Modelling & Software 35, 2012), or for listed values the mean of each.
+    S_i is the fit's R^2, adjusted for the number of functions (Ezekiel), so that a field without
+    influence has 0 in the mean. Its standard error is the jackknife's over the rows; a Latin
+    hypercube or a Sobol sequence errs less. What changes faster than the sixth cosine, as the edge
+    of a jump, is not seen: of a step in the middle a fifteenth.
     """
 
     rank: float | None  # none for texts, which have no order
@@ -371,8 +378,8 @@ class Sensitivity:
 
 
 def sensitivity(column, place, y):
-    """Of y to a field: `column` its values, `place` where they are in the range (0 ... 1), None for listed values. None with too
-    few rows, and where either is constant."""
+    """Of y to a field: `column` its values, `place` where they are in the range (0 ... 1), None for
+    listed values. None with too few rows, and where either is constant."""
     if len(y) < LEAST_ROWS or np.ptp(y) == 0 or len(set(column)) < 2:
         return None
     if place is None:
@@ -390,8 +397,9 @@ def sensitivity(column, place, y):
 
 
 def adjusted_share(functions, y):
-    """The adjusted R^2 of a fit by functions that span the constant, and the jackknife's standard error: without row i the squares
-    of the residuals e sum up to less by e_i^2 / (1 - h_i), h_i the row's leverage, those of y - mean by n / (n - 1) (y_i - mean)^2.
+    """The adjusted R^2 of a fit by functions that span the constant, and the jackknife's standard
+    error: without row i the squares of the residuals e sum up to less by e_i^2 / (1 - h_i), h_i the
+    row's leverage, those of y - mean by n / (n - 1) (y_i - mean)^2.
     """
     n, fitted = len(y), functions.shape[1]
     q, _ = np.linalg.qr(functions)

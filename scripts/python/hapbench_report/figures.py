@@ -1,4 +1,5 @@
-"""The drawn figures: figures.json tells what they show; each with its caption, and the claims and files it belongs to."""
+"""The drawn figures: figures.json tells what they show; each with its caption, and the claims and
+files it belongs to."""
 import base64
 import re
 from dataclasses import dataclass
@@ -83,8 +84,10 @@ def figures_section(figures, claims):
     if not figures:
         return '<p class="note">No figures were given (<code>--figures</code>).</p>'
     return (
-        "<p>Redrawn from the results above, published numbers as red hollow marks where the thesis gives them. A click enlarges a figure. "
-        "<span class=dark-only>On the dark page black and white have changed places; captions name the colours of the light one. </span>"
+        "<p>Redrawn from the results above, published numbers as red hollow marks where the "
+        "thesis gives them. A click enlarges a figure. "
+        "<span class=dark-only>On the dark page black and white have changed places; captions "
+        "name the colours of the light one. </span>"
         f"To draw them again:</p>{command('scripts/figures results/out/reproduce --out results/out/figures')}"
         f"<div class=figures>{''.join(figure_markup(figure, claims) for figure in figures)}</div>"
     )

@@ -1,4 +1,5 @@
-"""The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the summary of the page."""
+"""The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the
+summary of the page."""
 from collections import Counter
 
 from hapbench.errors import InputError
@@ -7,7 +8,8 @@ from hapbench.results import at, objects, read_object, shown
 from .figures import claim_link
 from .markup import cell, command, folded, heading_cell, listed, table, text, typeset
 
-# Verdict -> (mark, tone), what is contradicted first; the last two are of findings of ours. The mark tells verdicts apart without colour.
+# Verdict -> (mark, tone), what is contradicted first; the last two are of findings of ours. The
+# mark tells verdicts apart without colour.
 VERDICTS = {
     "refuted": ("⊘", "bad"),
     "not reproduced": ("✗", "bad"),
@@ -68,11 +70,14 @@ def summary_section(runs, claims, headline, figures):
     )
     return (
         "<h1>hapbench: haptic rendering of object-to-object contact</h1>"
-        '<p class="lead">Scripted tool trajectories go through pluggable force algorithms; trajectories, stiffness ratios, '
+        '<p class="lead">Scripted tool trajectories go through pluggable force algorithms; '
+        "trajectories, stiffness ratios, "
         "stability limits and the cost of a step come out. Everything here is compared with T. C. Lee, <cite>Rendering "
-        "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); numbers such as Fig. A.2 or "
+        "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); "
+        "numbers such as Fig. A.2 or "
         f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
-        f'<ul class="cards">{items}</ul>{main_results(claims)}<p>{typeset(headline)}</p>{warnings(runs)}{refusals(claims)}'
+        f'<ul class="cards">{items}</ul>{main_results(claims)}<p>{typeset(headline)}</p>'
+        f"{warnings(runs)}{refusals(claims)}"
     )
 
 

@@ -72,8 +72,9 @@ def heading_cell(title, numeric=False, unit=""):
 
 
 def table(headings, rows, caption="", classes="", element_id=""):
-    """Rows are lists of cells (ready HTML). The wrapper scrolls where the page is narrower than the table; with the class
-    "stack" each row becomes a card there instead, its cells named by their headings."""
+    """Rows are lists of cells (ready HTML). The wrapper scrolls where the page is narrower than the
+    table; with the class "stack" each row becomes a card there instead, its cells named by their
+    headings."""
     identity = f' id="{element_id}"' if element_id else ""
     shown_caption = f"<caption>{caption}</caption>" if caption else ""
     shown_headings, shown_rows, role = "".join(headings), ["".join(row) for row in rows], ""
@@ -152,7 +153,8 @@ def deserved_digits(value, tolerance, most):
 
 
 def columns(names, rows, tolerances):
-    """Heading cells of numbers, and for each row its cells; `rows`: lists of numbers or None, of these names, `tolerances`: of them."""
+    """Heading cells of numbers, and for each row its cells; `rows`: lists of numbers or None, of
+    these names, `tolerances`: of them."""
     heads = [
         column(name, [v for v in values if v is not None])
         for name, values in zip(names, zip(*rows))

@@ -1,5 +1,5 @@
-"""The page: its sections in order, with style and scripts inlined, and its links to the live page, where a scene is under the reader's
-own hand."""
+"""The page: its sections in order, with style and scripts inlined, and its links to the live page,
+where a scene is under the reader's own hand."""
 import json
 import os
 import shutil
@@ -84,13 +84,16 @@ def rerun_section():
         + "<p>One part:</p>"
         + command(
             "hapbench=build/release/bin/hapbench\n"
-            "$hapbench run scenarios/library/thesis/*.json --out results/out/reproduce/thesis       # the thesis's scenes\n"
-            "$hapbench limit stability_z_width --out results/out/reproduce/stability_z_width  # a study; all: $hapbench describe studies\n"
+            "$hapbench run scenarios/library/thesis/*.json --out results/out/reproduce/thesis"
+            "       # the thesis's scenes\n"
+            "$hapbench limit stability_z_width --out results/out/reproduce/stability_z_width"
+            "  # a study; all: $hapbench describe studies\n"
             "$hapbench describe scenario                                                    # what every field means"
         )
         + "<p>This report:</p>"
         + command(
-            "scripts/report results/out/reproduce --figures results/out/figures --claims results/reference/claims.json \\\n"
+            "scripts/report results/out/reproduce --figures results/out/figures --claims "
+            "results/reference/claims.json \\\n"
             "  --out results/out/reproduce/report.html"
         )
     )

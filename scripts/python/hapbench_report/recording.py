@@ -1,5 +1,5 @@
-"""A recorded run as the replay reads it: its tool, the rows that are shown, the moments to jump to, and the rendered force above 30 Hz
-as a sound, what a hand feels as vibration."""
+"""A recorded run as the replay reads it: its tool, the rows that are shown, the moments to jump to,
+and the rendered force above 30 Hz as a sound, what a hand feels as vibration."""
 import base64
 import math
 import sys
@@ -51,8 +51,8 @@ LEAST_SETTLED_S = (
 
 def tool_profile(scenario, summary):
     """The tool as a solid of revolution: pairs (s, r) in metres, at s along the axis, counted from the tip centre, the
-    radius r; from the far end to the tip. A cylinder's follows from the scenario, that of any other tool is in the run's
-    summary; of a mesh it is the silhouette. None if there is neither."""
+    radius r; from the far end to the tip. A cylinder's follows from the scenario, that of any other
+    tool is in the run's summary; of a mesh it is the silhouette. None if there is neither."""
     outline = at(summary, "/tool/outline_m")
     if outline is not None:
         pairs = (
@@ -115,8 +115,9 @@ def rows_to_show(columns):
 
 
 def settled_rows(columns, scenario):
-    """Which rows are in contact and no landing, by the settings of the run's metrics: not within settling_s after a first touch, which is a
-    contact at the start or after at least that time without one; from_s, if there is one, replaces that rule.
+    """Which rows are in contact and no landing, by the settings of the run's metrics: not within
+    settling_s after a first touch, which is a contact at the start or after at least that time
+    without one; from_s, if there is one, replaces that rule.
     """
     settling_s, from_s = (
         number_or_none(at(scenario, f"/metrics/{key}")) for key in ("settling_s", "from_s")
@@ -134,8 +135,8 @@ def settled_rows(columns, scenario):
 
 
 def worst_moments(columns, scenario):
-    """Where the settled force steps most (in a run that hardly settles: the force of all its rows), and where the tool is
-    deepest: title, time, value, unit."""
+    """Where the settled force steps most (in a run that hardly settles: the force of all its rows),
+    and where the tool is deepest: title, time, value, unit."""
     times, step, depth = columns["time_s"], force_steps(columns), columns["depth_max_m"]
     rows = np.flatnonzero(settled_rows(columns, scenario))
     is_settled = len(times) > 1 and len(rows) * (times[1] - times[0]) >= LEAST_SETTLED_S
@@ -204,7 +205,8 @@ class Recording:
 
 
 def base64_of(code, values):
-    """Numbers as text for a page: little endian, base64. Raises OverflowError for one that the type of array cannot hold."""
+    """Numbers as text for a page: little endian, base64. Raises OverflowError for one that the type
+    of array cannot hold."""
     packed = array(code, values)
     if sys.byteorder == "big":
         packed.byteswap()

@@ -1,5 +1,6 @@
-"""The interactive replay: recorded runs of whatever scene, packed for the page with as many rows and points as a browser draws in
-a frame (contacts quantised to 16 bits, rows in single precision, base64), and its markup."""
+"""The interactive replay: recorded runs of whatever scene, packed for the page with as many rows
+and points as a browser draws in a frame (contacts quantised to 16 bits, rows in single precision,
+base64), and its markup."""
 import json
 import os
 import shutil

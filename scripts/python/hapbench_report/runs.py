@@ -23,7 +23,8 @@ class Run(results.Run):
 
     @property
     def expected(self):
-        """True unless the scenario said that the run must end otherwise; what it says is not about other algorithms that it is compared by."""
+        """True unless the scenario said that the run must end otherwise; what it says is not about
+        other algorithms that it is compared by."""
         return (
             self.summary.get("expected") is not False
             or (self.folder.resolve().parent / "comparison.csv").exists()

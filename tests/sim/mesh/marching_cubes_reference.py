@@ -53,7 +53,8 @@ def compare(program, block, spacing, density):
     tolerance = (nodes + 8) * 2.0**-24
     gap, partner = cKDTree(theirs).query(ours)
     print(
-        f"{density}, spacing {spacing}: {len(ours)} and {len(theirs)} vertices, at most {gap.max():.2e} of a cell apart "
+        f"{density}, spacing {spacing}: {len(ours)} and {len(theirs)} vertices, at most "
+        f"{gap.max():.2e} of a cell apart "
         f"(allowed {tolerance:.2e}), {len(our_faces)} and {len(their_faces)} faces"
     )
     return (
