@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
-# scripts/sweep.sbatch on a real Slurm: slurm_test.sh PROGRAM. A cluster of one node with four processors, this machine, with daemons,
-# ports, key and folder of its own. Status 77: there is no Slurm to test with.
+# scripts/sweep.sbatch on a real Slurm: slurm_test.sh PROGRAM. A cluster of one node with four
+# processors, this machine, with daemons, ports, key and folder of its own. Status 77: there is no
+# Slurm to test with.
 set -euo pipefail
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 export HAPBENCH=$1
 
 for tool in munged slurmctld slurmd sbatch setpriv; do
-  command -v "$tool" >/dev/null || { echo "no Slurm to test with, for want of $tool (scripts/setup --tests installs it)"; exit 77; }
+  command -v "$tool" >/dev/null ||
+    { echo "no Slurm to test with, for want of $tool (scripts/setup --tests installs it)"; exit 77; }
 done
-((EUID == 0)) || { echo 'no Slurm to test with, for want of the rights of root, which its daemons need to start jobs'; exit 77; }
+((EUID == 0)) ||
+  { echo 'no Slurm to test with, for want of the rights of root, which its daemons need to start jobs'; exit 77; }
 
 folder=$(mktemp -d)
 host=$(hostname -s)
@@ -56,7 +59,8 @@ SlurmdParameters=config_overrides
 NodeName=$host NodeAddr=127.0.0.1 CPUs=4 RealMemory=100 State=UNKNOWN
 PartitionName=main Nodes=$host Default=YES MaxTime=INFINITE State=UP
 END
-start --reuid=munge --regid=munge --clear-groups munged --foreground --socket="$folder/munge/socket" --key-file="$folder/munge/key" \
+start --reuid=munge --regid=munge --clear-groups munged --foreground \
+  --socket="$folder/munge/socket" --key-file="$folder/munge/key" \
   --pid-file="$folder/munge/pid" --seed-file="$folder/munge/seed" --log-file="$folder/munge/log"
 start slurmctld -D -i -L "$folder/slurmctld.log"
 start slurmd -D -L "$folder/slurmd.log"
@@ -67,14 +71,20 @@ done
 [[ $(sinfo --noheader --format=%T) == idle ]] || fail 'the daemons of Slurm do not answer'
 
 # Runs of some 20 ms.
-sweep() { printf '%s\n' single_spring --set record.trajectory=false --set time.steps=100000 --vary "rendering.stiffness_N_per_m=1e3:1e4:$runs:log" --out "$folder/$1"; }
-submit() { mapfile -t words < <(sweep out) && sbatch --parsable --array=0-2 --output="$folder/task_%a.log" "$here/scripts/sweep.sbatch" "${words[@]}"; }
+sweep() {
+  printf '%s\n' single_spring --set record.trajectory=false --set time.steps=100000 \
+    --vary "rendering.stiffness_N_per_m=1e3:1e4:$runs:log" --out "$folder/$1"
+}
+submit() {
+  mapfile -t words < <(sweep out) &&
+    sbatch --parsable --array=0-2 --output="$folder/task_%a.log" "$here/scripts/sweep.sbatch" "${words[@]}"
+}
 wait_for_the_queue() { while [[ -n $(squeue --noheader) ]]; do sleep 0.2; done; }
 shard=$folder/out/sweep.
 is_begun() { [[ -e $shard$1_of_3.csv ]] || (($(sed -n '$=' "$shard$1_of_3.csv.part" 2>/dev/null || true) > 2)); }
 
-# Task 1 is killed, and task 0 stopped and requeued, as preemption does, once both have begun. With more runs, a busy machine leaves time
-# for that.
+# Task 1 is killed, and task 0 stopped and requeued, as preemption does, once both have begun. With
+# more runs, a busy machine leaves time for that.
 for ((runs = 120; ; runs *= 4)); do
   rm -rf "$folder/out"
   array=$(submit)
