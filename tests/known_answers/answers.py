@@ -1,5 +1,6 @@
-"""Known answers: rows that compare what hapbench prints with a closed form or with a computation that shares no code with it, and
-with what a naive reading of the field's meaning would print, which must be refused. Scenes yield their rows from few runs."""
+"""Known answers: rows that compare what hapbench prints with a closed form or with a computation
+that shares no code with it, and with what a naive reading of the field's meaning would print, which
+must be refused. Scenes yield their rows from few runs."""
 import csv
 import json
 import math
@@ -16,7 +17,8 @@ SCENES = {}
 
 @dataclass(frozen=True)
 class Within:
-    """A tolerance with its derivation; the relative part is of the largest known value of a series."""
+    """A tolerance with its derivation; the relative part is of the largest known value of a
+    series."""
 
     why: str
     relative: float = 0.0
@@ -43,9 +45,15 @@ class Answer:
 
     def faults(self):
         if not same(self.printed, self.known, self.within):
-            yield f"{self.field} in {self.scene}: printed {shown(self.printed)}, known {shown(self.known)} ({self.known_by})"
+            yield (
+                f"{self.field} in {self.scene}: printed {shown(self.printed)}, known "
+                f"{shown(self.known)} ({self.known_by})"
+            )
         if self.naive and same(self.naive[1], self.known, self.within):
-            yield f"{self.field} in {self.scene}: does not tell the naive answer ({self.naive[0]}) from {shown(self.known)}"
+            yield (
+                f"{self.field} in {self.scene}: does not tell the naive answer "
+                f"({self.naive[0]}) from {shown(self.known)}"
+            )
 
 
 def shown(value):
@@ -172,7 +180,8 @@ class Bench:
         )
 
     def metrics(self, run, table):
-        """Rows (metric, known value, how it is known, tolerance, naive answer, its value); the last two may be left out."""
+        """Rows (metric, known value, how it is known, tolerance, naive answer, its value); the last
+        two may be left out."""
         for name, known, known_by, within, *naive in table:
             self.add(
                 re.sub(r"^targets\.\d+", "targets.PLACE", name),

@@ -1,4 +1,5 @@
-"""Every printed field, of which the program has the list, has a known answer: tests/known_answers/README.md."""
+"""Every printed field, of which the program has the list, has a known answer:
+tests/known_answers/README.md."""
 import json
 import re
 import unittest
@@ -58,7 +59,8 @@ def keys_of(data):
 
 
 def printed_fields():
-    """Metrics, columns as FILE:COLUMN, words as "WORD (KIND)", and keys of JSON that are neither as "COMMAND --json: KEY"."""
+    """Metrics, columns as FILE:COLUMN, words as "WORD (KIND)", and keys of JSON that are neither as
+    "COMMAND --json: KEY"."""
     metrics = [metric["name"] for metric in described("metrics")[0]["metrics"]]
     parts = {part for name in metrics for part in name.split(".")}
     fields, columns = [re.sub(r"^targets\.\d+", "targets.PLACE", name) for name in metrics], set()

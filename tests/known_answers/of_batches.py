@@ -1,5 +1,5 @@
-"""Scenes behind the tables of compare and sweep, recomputed from the summaries of single runs, and of converge: recurrences of one
-spring against their limits."""
+"""Scenes behind the tables of compare and sweep, recomputed from the summaries of single runs, and
+of converge: recurrences of one spring against their limits."""
 import math
 from itertools import product
 
@@ -17,8 +17,8 @@ SEEDS = 14
 
 @scene
 def league(bench):
-    """A mass on two parallel springs, soft, and so stiff that leapfrog amplifies every step: some starts leave the bounds in time. The league
-    by the book: means over common seeds, and ranks."""
+    """A mass on two parallel springs, soft, and so stiff that leapfrog amplifies every step: some
+    starts leave the bounds in time. The league by the book: means over common seeds, and ranks."""
     start = {"position_m": [1e-4, -1e-3, 0]}
     bench.scenario(
         "held",
@@ -144,7 +144,8 @@ def league(bench):
             wrong,
         )
     order = [law["algorithm"] for law in printed["laws"]]
-    # The other laws are stiffer than 4 M / dt^2 = 4e5 N/m, of which virtual coupling has two thirds.
+    # The other laws are stiffer than 4 M / dt^2 = 4e5 N/m, of which virtual coupling has two
+    # thirds.
     for key, values, wrong in (
         ("mean_rank", [np.mean(ranks[law]) for law in order], ("place in the order", [1, 2, 3, 4])),
         (
@@ -260,7 +261,8 @@ def swept(bench):
 
 @scene
 def compared(bench):
-    """comparison.csv is the runs' summaries, one of each law; a shell is what the file of a point shell says."""
+    """comparison.csv is the runs' summaries, one of each law; a shell is what the file of a point
+    shell says."""
     base = bench.scenario(
         "compared",
         time={"step_s": 0.001, "steps": 400},
@@ -331,7 +333,8 @@ def compared(bench):
 
 @scene
 def sampled_finer(bench):
-    """Laws on a plane at half and a quarter of the step and of the distance of its points: single runs, measured at the same times."""
+    """Laws on a plane at half and a quarter of the step and of the distance of its points: single
+    runs, measured at the same times."""
     laws, by, scene_name = (
         ["summation", "proxy", "shaped_stiffness", "highest_depth"],
         ["force_step_p99_N", "force_max_N"],
@@ -380,7 +383,8 @@ def sampled_finer(bench):
     }
     for m, row in enumerate(said):
         for part in ("spacing", "step"):
-            # No less than the runs are apart; where an order is seen, 1.25 |f - f*| takes its place. Bins of p99 are 1.6 % wide.
+            # No less than the runs are apart; where an order is seen, 1.25 |f - f*| takes its
+            # place. Bins of p99 are 1.6 % wide.
             far = [max(abs(own[law][m] - runs[m]) for runs in finer[law][part]) for law in laws]
             least = [
                 n[f"error_of_{part}"] is None
@@ -437,7 +441,8 @@ def sampled_finer(bench):
 
 
 def verdict_on(f):
-    """Order, Richardson's value and its error of three results at steps that are halved, with Roache's factor."""
+    """Order, Richardson's value and its error of three results at steps that are halved, with
+    Roache's factor."""
     p = math.log2((f[-3] - f[-2]) / (f[-2] - f[-1]))
     limit = f[-1] + (f[-1] - f[-2]) / (2**p - 1)
     return p, limit, 1.25 * np.abs(f - limit)
@@ -445,7 +450,8 @@ def verdict_on(f):
 
 @scene
 def convergence(bench):
-    """Leapfrog on one damped spring at five steps, where it is after the same time: orders and limit by hand of a recurrence."""
+    """Leapfrog on one damped spring at five steps, where it is after the same time: orders and
+    limit by hand of a recurrence."""
     K, M, dt, n = 1500.0, 0.1, 0.002, 40
     B = 2 * 0.2 * math.sqrt(K * M)
     base = bench.scenario(

@@ -10,7 +10,8 @@ BALL = {"type": "bur", "family": "ball", "diameter_m": 0.004}
 
 @scene
 def ends(bench):
-    """Runs whose end is known by physics, with the word for it and the one that a glance would give."""
+    """Runs whose end is known by physics, with the word for it and the one that a glance would
+    give."""
     time = {"step_s": 0.0005, "steps": 1000}
     free = {"rendering": {**PLAIN, "algorithm": "summation"}}
     pressed = {
@@ -231,7 +232,8 @@ def classes(bench):
         EXACT,
         ("a tool at rest in free fall is stable", "stable"),
     )
-    # Two patches of points, the tool dragged off the first: it sinks by 1 N over 50 N s/m, and is within its reach of their box in the end.
+    # Two patches of points, the tool dragged off the first: it sinks by 1 N over 50 N s/m, and is
+    # within its reach of their box in the end.
     bench.write(
         "gap.csv",
         "x_m,y_m,z_m,nx,ny,nz",
@@ -358,7 +360,8 @@ def divergence(bench, run):
 
 @scene
 def limit_of_spring(bench):
-    """The stiffness of one damped spring: runs are judged as the recurrence says, theory is 4 - 2 B dt / M - K dt^2 / M = 0."""
+    """The stiffness of one damped spring: runs are judged as the recurrence says, theory is
+    4 - 2 B dt / M - K dt^2 / M = 0."""
     M, dt, n, zeta, resolution = 0.1, 0.0005, 400, 0.02, 1e-4
     base = bench.scenario(
         "limit_of_spring",
@@ -421,7 +424,8 @@ def limit_of_spring(bench):
             EXACT,
             ("by the eigenvalues", [coarse[i] if word != coarse[i] else "" for i in at]),
         )
-    # A motion dies out when it loses a tenth from quarter to quarter: the edge of that lies below theory.
+    # A motion dies out when it loses a tenth from quarter to quarter: the edge of that lies below
+    # theory.
     rests = lambda K: judged(K) in ("stable", "dying_out")
     stable = [K for K, name in zip(values, classes) if name in ("stable", "dying_out")]
     limit, beyond, edge = (
@@ -548,7 +552,8 @@ def limit_of_spring(bench):
 
 
 def digits(bench, base, field):
-    """The table prints a limit down to the leading digit of the width within which the edge lies."""
+    """The table prints a limit down to the leading digit of the width within which the edge
+    lies."""
     for resolution in (0.1, 1e-3, 1e-5):
         ask = (
             "limit",

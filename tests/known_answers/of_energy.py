@@ -1,4 +1,5 @@
-"""Scenes behind the energies and torques of a run: recurrences and trapezoidal rules along paths."""
+"""Scenes behind the energies and torques of a run: recurrences and trapezoidal rules along
+paths."""
 import math
 
 import numpy as np
@@ -10,7 +11,8 @@ from physics import FILTERED, SPRING, STEPPED, SUMMED, high_pass
 
 @scene
 def mean_of_two(bench):
-    """A tool led onto two springs, whose force `mean` halves, aside from one of them, and away from the other: energy is made."""
+    """A tool led onto two springs, whose force `mean` halves, aside from one of them, and away from
+    the other: energy is made."""
     K, dt, n = 1000.0, 0.001, 400
     U = np.array([[0, 0, -1.0], [0.8, 0, -0.6]])
     path = {
@@ -213,7 +215,8 @@ def mean_of_two(bench):
 
 @scene
 def limited_hand(bench):
-    """A free mass on a damped spring, pushed by a ramp of a hand whose force the device limits: a linear recurrence."""
+    """A free mass on a damped spring, pushed by a ramp of a hand whose force the device limits: a
+    linear recurrence."""
     K, M, dt, n, limit = 2000.0, 0.2, 0.001, 300, 0.6
     B = 2 * 0.1 * math.sqrt(K * M)
     run = bench.run(
@@ -353,7 +356,8 @@ def limited_hand(bench):
 
 @scene
 def handle_on_spring(bench):
-    """The handle of an impedance device on a spring, the force held and a sample late: exact by the matrix exponential."""
+    """The handle of an impedance device on a spring, the force held and a sample late: exact by the
+    matrix exponential."""
     m, b, K, dt, n, push = 0.3, 2.0, 800.0, 0.002, 400, 0.5
     run = bench.run(
         bench.scenario(
@@ -504,7 +508,8 @@ def handle_on_spring(bench):
 
 @scene
 def turned_into_point(bench):
-    """A cylinder that turns about its tip into one point: the depth is r - x cos(angle) + ..., and all its force is at that point."""
+    """A cylinder that turns about its tip into one point: the depth is r - x cos(angle) + ..., and
+    all its force is at that point."""
     K, r, n, dt, at = 1000.0, 0.5e-3, 200, 0.001, np.array([0.6e-3, 0.0, 4e-3])
     bench.write("one.csv", "x_m,y_m,z_m,nx,ny,nz", [(*at, -1, 0, 0)])
     turn = {"type": "ramp", "start": 0.0, "rate_per_s": 0.5}

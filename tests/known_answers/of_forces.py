@@ -1,4 +1,5 @@
-"""Scenes behind the comparison with a reference force, friction and stages, and forces of contacts that come late."""
+"""Scenes behind the comparison with a reference force, friction and stages, and forces of contacts
+that come late."""
 import math
 
 import numpy as np
@@ -258,7 +259,8 @@ def periodic_force(bench):
 
 @scene
 def recorded_force(bench):
-    """A stroke with a force measured in its middle: between samples both are linear, and rows beyond the measurement have no reference."""
+    """A stroke with a force measured in its middle: between samples both are linear, and rows
+    beyond the measurement have no reference."""
     K, dt, n = 500.0, 0.001, 1000
     t = np.array([0.1, 0.25, 0.45, 0.7])
     place, force = np.array([0, -1e-3, -3e-3, -2e-3]), np.array(
@@ -498,7 +500,8 @@ def bristle(bench):
 
 @scene
 def tank(bench):
-    """A mass on one spring whose energy tank holds a tenth of what the spring does: the stage's formula, row by row."""
+    """A mass on one spring whose energy tank holds a tenth of what the spring does: the stage's
+    formula, row by row."""
     K, B, M, dt, n, capacity = 2000.0, 2.0, 0.1, 0.0005, 400, 1e-4
     run = bench.run(
         bench.scenario(
@@ -562,7 +565,8 @@ def tank(bench):
 
 @scene
 def late(bench):
-    """A mass on one spring whose contacts are asked for every fourth row, serve three rows later and are often lost."""
+    """A mass on one spring whose contacts are asked for every fourth row, serve three rows later
+    and are often lost."""
     K, dt, n = 2000.0, 0.0005, 400
     run = bench.run(
         bench.scenario(

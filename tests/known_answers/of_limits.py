@@ -1,4 +1,5 @@
-"""Scenes behind the tables of limit, tune and stress: the eigenvalues and the motion of linear recurrences."""
+"""Scenes behind the tables of limit, tune and stress: the eigenvalues and the motion of linear
+recurrences."""
 import math
 
 import numpy as np
@@ -54,7 +55,8 @@ def limits_of_springs(bench):
         ),
         asked("dt", "--vary", "time.step_s", "--between", "1e-5:0.1"),
     )
-    # 4 - 2 lam B dt / M - lam K dt^2 / M = 0 with B = 2 zeta sqrt(K M): a quadratic in s = sqrt(K) dt / sqrt(M).
+    # 4 - 2 lam B dt / M - lam K dt^2 / M = 0 with B = 2 zeta sqrt(K M): a quadratic in
+    # s = sqrt(K) dt / sqrt(M).
     s = -2 * zeta + math.sqrt(4 * zeta**2 + 4 / lam)
     value = [4 * M / (lam * dt**2), M * s * s / dt**2, 2 * M / (lam * dt), s * math.sqrt(M / K)]
     fine = Within("bisected to 1e-12, of eigenvalues near a double one to rounding", relative=1e-9)
@@ -69,7 +71,8 @@ def limits_of_springs(bench):
             within,
             wrong,
         )
-    # |1 + z + z^2/2 + z^3/6 + z^4/24| = 1 at z = i 2 sqrt 2, and on the real axis at the root of z^3/24 + z^2/6 + z/2 + 1.
+    # |1 + z + z^2/2 + z^3/6 + z^4/24| = 1 at z = i 2 sqrt 2, and on the real axis at the root of
+    # z^3/24 + z^2/6 + z/2 + 1.
     rk4 = ("--set", "integrator.type=rk4")
     real = -np.roots([1 / 24, 1 / 6, 1 / 2, 1]).real[
         np.abs(np.roots([1 / 24, 1 / 6, 1 / 2, 1]).imag) < 1e-9
@@ -99,7 +102,8 @@ def limits_of_springs(bench):
 
 @scene
 def tuned(bench):
-    """A handle on one spring, with a sample of delay: the largest edge of the held loop over B, over the margin, and what lies around it."""
+    """A handle on one spring, with a sample of delay: the largest edge of the held loop over B,
+    over the margin, and what lies around it."""
     m, b, T, delay = 0.1, 0.5, 0.001, 1
     base = bench.scenario(
         "tuned",
@@ -185,7 +189,10 @@ def tuned(bench):
         ("velocity_filter", "", "difference"),
         ("mass_kg", None, m),
     ):
-        how = "one spring, whose loop alone binds; 48 gains between and 8 just below the margin; nothing to relax or chosen beside K and zeta"
+        how = (
+            "one spring, whose loop alone binds; 48 gains between and 8 just below the margin; "
+            "nothing to relax or chosen beside K and zeta"
+        )
         bench.add(
             f"tune.csv:{name}",
             law[name],
@@ -249,7 +256,8 @@ def tuned(bench):
         EXACT,
         ("none", None),
     )
-    # Each trial by its own eigenvalues: feasible below half the edge of its zeta, but for the strip in which runs cannot tell.
+    # Each trial by its own eigenvalues: feasible below half the edge of its zeta, but for the strip
+    # in which runs cannot tell.
     given = [row for row in trials.rows if row["feasible"] in ("true", "false")]
     edges = [
         edge_of(
@@ -342,7 +350,8 @@ HANDS = [(0, 0), *((m, k) for m in (0.1, 0.2, 0.5) for k in (100, 300, 1000))]
 
 @scene
 def over_another_field(bench):
-    """K over B, delay and hand of a handle at a wall on both sides: each class by the linear recurrence, each edge by its eigenvalues."""
+    """K over B, delay and hand of a handle at a wall on both sides: each class by the linear
+    recurrence, each edge by its eigenvalues."""
     ask = (
         "limit",
         "wall_on_handle",
@@ -420,7 +429,10 @@ def over_another_field(bench):
         EXACT,
         ("friction", ["dry friction"]),
     )
-    hand = '{"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":100,"damping_N_s_per_m":2,"target":{"x_m":0,"y_m":0,"z_m":0}}'
+    hand = (
+        '{"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":100,'
+        '"damping_N_s_per_m":2,"target":{"x_m":0,"y_m":0,"z_m":0}}'
+    )
     for name, path, values, loop, more in (
         (
             "delay",
@@ -548,7 +560,8 @@ def limits_of_walls(bench, table, bare, xs, handle):
 
 @scene
 def devices(bench):
-    """The stiffness of two springs, and of a wall that only pushes, on a handle: by the held loop's motion behind scipy's filter."""
+    """The stiffness of two springs, and of a wall that only pushes, on a handle: by the held loop's
+    motion behind scipy's filter."""
     m, b, T, B, n, resolution, most = 0.1, 0.5, 0.001, 2.0, 2000, 1e-3, 1e-3
     (bench.folder / "mine.json").write_text(
         '{"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5}', encoding="utf-8"
@@ -691,7 +704,8 @@ def devices(bench):
         ROUNDING,
         ("the resolution asked", [resolution * limit for limit in limits]),
     )
-    # What is ours of an omega.3 is its mass and viscous friction once dry friction, encoder and saturation are gone.
+    # What is ours of an omega.3 is its mass and viscous friction once dry friction, encoder and
+    # saturation are gone.
     bare = [
         word
         for field in ("coulomb_N=0", "encoder_step_m=0", "force_max_N=null")
@@ -823,7 +837,8 @@ def stressed(bench):
         ("some twice", len(table.rows) - 1),
     )
     reached = Within("sums of up to 137 equal springs, rounded", relative=1e-13)
-    # Parallel springs of one depth are among the sets: as stiff as one, and under the rule of 10 / N as ten.
+    # Parallel springs of one depth are among the sets: as stiff as one, and under the rule
+    # of 10 / N as ten.
     bench.add(
         "stress.csv:largest_force_per_K_d",
         table["largest_force_per_K_d"][rows],

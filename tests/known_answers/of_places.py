@@ -1,4 +1,5 @@
-"""Scenes whose answers are places: the ideal trajectory of a hole, depth below a surface, targets of subjects, and how runs end."""
+"""Scenes whose answers are places: the ideal trajectory of a hole, depth below a surface, targets
+of subjects, and how runs end."""
 import math
 
 import numpy as np
@@ -16,7 +17,8 @@ def depth_in_block(q):
 
 
 def interpenetration(tip, tilt):
-    """The deepest point of the tool's solid, by ever finer grids about the deepest points of a coarse one."""
+    """The deepest point of the tool's solid, by ever finer grids about the deepest points of a
+    coarse one."""
     axis, e1, e2 = (
         -np.array([math.sin(tilt), 0, math.cos(tilt)]),
         np.array([math.cos(tilt), 0, -math.sin(tilt)]),
@@ -47,7 +49,8 @@ def interpenetration(tip, tilt):
 
 @scene
 def beside_the_ideal(bench):
-    """A drill led beside 3.6's ideal trajectory by offsets that are chosen, half of the rows with a gentle hand, some without an ideal."""
+    """A drill led beside 3.6's ideal trajectory by offsets that are chosen, half of the rows with a
+    gentle hand, some without an ideal."""
     n, dt = 24, 0.001
     tilt = np.r_[
         np.linspace(0.35, 0.95, 20), 1.10, 1.15, 1.2, 1.25
@@ -237,7 +240,8 @@ def beside_the_ideal(bench):
 
 @scene
 def pressed_ball(bench):
-    """A ball of 1 mm pressed 3 mm into a plane: its depth is radius less height, whatever its width; a contact's ends at the radius."""
+    """A ball of 1 mm pressed 3 mm into a plane: its depth is radius less height, whatever its
+    width; a contact's ends at the radius."""
     n, dt, a = 600, 0.001, 0.5e-3
     height = {
         "type": "waypoints",
@@ -343,7 +347,8 @@ def pressed_ball(bench):
 
 @scene
 def counted(bench):
-    """A ball that comes down on a plane of 81 x 81 points for seven rows and goes: the work of it with and without skips, and the tool."""
+    """A ball that comes down on a plane of 81 x 81 points for seven rows and goes: the work of it
+    with and without skips, and the tool."""
     fields = dict(
         time={"step_s": 0.001, "steps": 600},
         environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},
@@ -481,7 +486,8 @@ def counted(bench):
 
 @scene
 def subjects(bench):
-    """Subjects on targets: means and their standard errors are over subjects, each by the mean of its own targets."""
+    """Subjects on targets: means and their standard errors are over subjects, each by the mean of
+    its own targets."""
     run = bench.run(
         "vertical_peg_in_hole_shaped_stiffness",
         "--set",
@@ -547,8 +553,8 @@ def subjects(bench):
 
 @scene
 def one_subject(bench):
-    """A subject's targets by the rule: held for 1 s without a break within 0.2 mm while the force that the hand meets, rendered in the row
-    before, is 1 N, until 1.5 s have passed."""
+    """A subject's targets by the rule: held for 1 s without a break within 0.2 mm while the force
+    that the hand meets, rendered in the row before, is 1 N, until 1.5 s have passed."""
     run = bench.run(
         "vertical_peg_in_hole_shaped_stiffness",
         "--set",
@@ -626,7 +632,8 @@ def one_subject(bench):
 
 @scene
 def verdicts(bench):
-    """Verdicts on claims, by tests that give the rules of claims numbers beside their thresholds, for each verdict and for another."""
+    """Verdicts on claims, by tests that give the rules of claims numbers beside their thresholds,
+    for each verdict and for another."""
     for word, said, refused in (
         ("reproduced", '{"T4", costs, {{"", reproduced}', "not_reproduced"),
         ("not reproduced", '"1.reduced_mean=1.1 1.reduced_max=2", not_reproduced', "reproduced"),

@@ -1,4 +1,5 @@
-"""Scenes behind the metrics of summary.json and the tables of a run: a tool led along a path on springs, whose every row is known."""
+"""Scenes behind the metrics of summary.json and the tables of a run: a tool led along a path on
+springs, whose every row is known."""
 import math
 
 import numpy as np
@@ -15,7 +16,8 @@ from physics import (
     settled_high_pass,
 )
 
-# Two nearly parallel springs, of which the reduction keeps the deeper, one across, and five that are never reached.
+# Two nearly parallel springs, of which the reduction keeps the deeper, one across, and five that
+# are never reached.
 NEAR = 0.03
 DIRECTIONS = np.array(
     [
@@ -71,7 +73,8 @@ TOUCHES = {
 
 
 class Touches:
-    """Every row of TOUCHES by the formulas of the rendering: f = -K sum d u - B S v - (mu_s + mu_f |f_spring|) (v - S v)."""
+    """Every row of TOUCHES by the formulas of the rendering:
+    f = -K sum d u - B S v - (mu_s + mu_f |f_spring|) (v - S v)."""
 
     def __init__(self, dt=0.0005, K=1000.0, B=2.0, mu_s=1.0, mu_f=1.0):
         self.dt, self.t = dt, np.arange(1200) * dt
@@ -105,7 +108,8 @@ class Touches:
 
 @scene
 def touches(bench):
-    """A tool led three times onto springs, twice after a time away that counts, with a ripple of 100 Hz across."""
+    """A tool led three times onto springs, twice after a time away that counts, with a ripple of
+    100 Hz across."""
     run, r = bench.run(bench.scenario("touches", **TOUCHES)), Touches()
     F, settled, landing, touching = norms(r.f), r.phases.settled, r.phases.landing, r.contact
     last = int(np.flatnonzero(touching)[-1])
@@ -371,7 +375,8 @@ def touches(bench):
 
 
 def touch_tables(bench, run, r):
-    """trajectory.csv, stiffness_tensor.csv, ratios.csv, contacts.csv and contact_trace.csv of the same run."""
+    """trajectory.csv, stiffness_tensor.csv, ratios.csv, contacts.csv and contact_trace.csv of the
+    same run."""
     rows, touching = "the formula", r.contact
     columns = [
         ("step", np.arange(1200.0), "0, 1, ...", EXACT, "from 1", np.arange(1200.0) + 1),
@@ -572,7 +577,8 @@ def contact_table(bench, run, r):
 
 @scene
 def rubbed(bench):
-    """A free mass pushed against a spring and along it: friction stronger than what leapfrog steps stably, from some row on."""
+    """A free mass pushed against a spring and along it: friction stronger than what leapfrog steps
+    stably, from some row on."""
     K, M, dt, n, mu_s, mu_f = 5000.0, 0.1, 0.001, 120, 2.0, 20.0
     B = 2 * 0.3 * math.sqrt(K * M)
     push = {"type": "ramp", "start": 0.0, "rate_per_s": -150.0}
@@ -635,7 +641,8 @@ def rubbed(bench):
         ],
     )
     held = Within(
-        "120 steps, of which the last enlarge rounding by up to |1 - (mu_s + mu_f |f|) dt / M| each",
+        "120 steps, of which the last enlarge rounding by up to |1 - (mu_s + mu_f |f|) dt / M| "
+        "each",
         relative=1e-9,
         absolute=1e-15,
     )
@@ -657,7 +664,8 @@ def rubbed(bench):
 
 @scene
 def from_rows(bench):
-    """Bundled scenes on a mesh, in a hole, with devices of both kinds: metrics anew from the rows of trajectory.csv, by their definitions."""
+    """Bundled scenes on a mesh, in a hole, with devices of both kinds: metrics anew from the rows
+    of trajectory.csv, by their definitions."""
     for name in (
         "drag_molar",
         "peg_in_hole_2d_original_averaging",
@@ -747,7 +755,8 @@ def from_rows(bench):
 
 @scene
 def too_coarse(bench):
-    """A step of 20 ms, at which nothing above 30 Hz is sampled, and a contact of one row: no number instead of 0."""
+    """A step of 20 ms, at which nothing above 30 Hz is sampled, and a contact of one row: no number
+    instead of 0."""
     run = bench.run(
         bench.scenario(
             "too_coarse",

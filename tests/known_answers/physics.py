@@ -1,4 +1,5 @@
-"""What scenes share: filters and phases of a run, linear recurrences, and the classes of their motion."""
+"""What scenes share: filters and phases of a run, linear recurrences, and the classes of their
+motion."""
 import math
 
 import numpy as np
@@ -21,7 +22,8 @@ STEPPED = Within(
     absolute=1e-15,
 )
 FILTERED = Within(
-    "scipy's second-order sections are ours in another order: rounding times the filter's memory of some hundred rows",
+    "scipy's second-order sections are ours in another order: rounding times the filter's memory "
+    "of some hundred rows",
     relative=1e-9,
     absolute=1e-15,
 )
@@ -52,7 +54,8 @@ class Phases:
 
 
 def settled_high_pass(f, phases, dt):
-    """The force behind the high-pass, which starts at rest in the first settled row after each landing."""
+    """The force behind the high-pass, which starts at rest in the first settled row after each
+    landing."""
     found = np.zeros_like(f)
     for rows in np.split(np.arange(len(f)), np.flatnonzero(np.diff(phases.landing)) + 1):
         rows = rows[np.cumsum(phases.settled[rows]) > 0]
@@ -71,7 +74,8 @@ def step_matrix(K, B, M, dt):
 
 
 def bisected(holds, low, high, width=0.0):
-    """The edge between `low`, where it holds, and `high`, where it does not, to a relative width or to rounding."""
+    """The edge between `low`, where it holds, and `high`, where it does not, to a relative width or
+    to rounding."""
     while low < (middle := 0.5 * (low + high)) < high and high - low > width * high:
         low, high = (middle, high) if holds(middle) else (low, middle)
     return low
@@ -83,12 +87,14 @@ def radius(matrix):
 
 
 def edge_of(loop, low, high):
-    """The value between low and high from which on the motion of the loop, a matrix by the value, does not die out."""
+    """The value between low and high from which on the motion of the loop, a matrix by the value,
+    does not die out."""
     return bisected(lambda value: radius(loop(value)) < 1, low, high)
 
 
 def held_loop(m, b, T, K, B, delay=0, spring=0.0):
-    """The handle of an impedance device on a spring and damper that hold their force over each period: its exact linear map."""
+    """The handle of an impedance device on a spring and damper that hold their force over each
+    period: its exact linear map."""
     whole = int(delay)
     part = delay - whole
     state = np.eye(
@@ -108,7 +114,8 @@ def held_loop(m, b, T, K, B, delay=0, spring=0.0):
 
 
 def motion_of(matrix, x, n=8000):
-    """Speeds of n rows of step_matrix or held_loop from rest at x, or None if it leaves the default bounds."""
+    """Speeds of n rows of step_matrix or held_loop from rest at x, or None if it leaves the default
+    bounds."""
     values, vectors = np.linalg.eig(matrix)
     start = np.zeros(len(matrix))
     start[:3:2] = x  # and at the last sample

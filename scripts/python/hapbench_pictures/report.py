@@ -316,7 +316,10 @@ def outcome_cell(run):
 
 def contact_text(run):
     share = run.metric("contact_share")
-    return f"{'–' if share is None else f'{number(100 * share, 3)} %'} of {number(at(run.summary, '/duration_s'), 4)} s"
+    return (
+        f"{'–' if share is None else f'{number(100 * share, 3)} %'} of "
+        f"{number(at(run.summary, '/duration_s'), 4)} s"
+    )
 
 
 def said_section(runs, labels, of_run):
