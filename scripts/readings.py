@@ -6,8 +6,8 @@
 A Latin hypercube of the ranges and options of results/reference/choices.json: along each choice,
 every reading lies in another of equal strata. With --calibrate a hand that is calibrated gets, in
 each reading, the value at which its scenario has the raw points that it should, which takes some
-runs of the built program. The strata of results/reference/readings.csv came from the generator of
-the program of commit 661d2580, so no seed draws them again.
+runs of the built program. The strata of results/reference/readings.csv came from an
+earlier generator, so no seed draws them again.
 """
 import argparse
 import csv
