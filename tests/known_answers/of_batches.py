@@ -449,6 +449,54 @@ def verdict_on(f):
 
 
 @scene
+def convergence_in_thirds(bench):
+    """Leapfrog on one damped spring at steps that are divided by r = 3: with the differences d of
+    successive levels the order is p = log(d_1 / d_2) / log r, and Richardson's value is
+    f + (f - f_before) / (r^p - 1)."""
+    K, M, dt, n, r = 1500.0, 0.1, 0.002, 40, 3
+    B = 2 * 0.2 * math.sqrt(K * M)
+    base = bench.scenario(
+        "convergence_in_thirds",
+        time={"step_s": dt, "steps": n},
+        environment=SPRING,
+        initial={"position_m": [1e-3, 0, 0]},
+        rendering={
+            **PLAIN,
+            "algorithm": "summation",
+            "stiffness_N_per_m": K,
+            "damping_ratio": 0.2,
+            "mass_kg": M,
+        },
+    )
+    ask = ("converge", base, "--metric", "final_position_m.x", "--levels", "4", "--ratio", r)
+    printed = bench.json(*ask, "--out", bench.folder / "thirds")
+    f = np.array(
+        [
+            1e-3 * np.linalg.matrix_power(step_matrix(K, B, M, dt / r**i), (n - 1) * r**i)[0, 0]
+            for i in range(4)
+        ]
+    )
+    drop = (f[-3] - f[-2]) / (f[-2] - f[-1])
+    p = math.log(drop) / math.log(r)
+    near = Within(
+        "positions of 1e-4 m known to 1e-18 m after 1080 steps, over differences of 1e-6 m",
+        relative=1e-8,
+    )
+    how = "recurrence of leapfrog, formulas of Roache"
+    bench.add(
+        "converge --json: order", printed["order"], p, how, near, ("of halves", math.log2(drop))
+    )
+    bench.add(
+        "converge.csv:extrapolated",
+        printed["extrapolated"],
+        f[-1] + (f[-1] - f[-2]) / (r**p - 1),
+        how,
+        near,
+        ("of halves", f[-1] + (f[-1] - f[-2]) / (2**p - 1)),
+    )
+
+
+@scene
 def convergence(bench):
     """Leapfrog on one damped spring at five steps, where it is after the same time: orders and
     limit by hand of a recurrence."""

@@ -101,6 +101,68 @@ def limits_of_springs(bench):
 
 
 @scene
+def smallest_mass(bench):
+    """The smallest mass of one damped spring under leapfrog, from 4 - 2 B dt / M - K dt^2 / M = 0
+    with B = 2 zeta sqrt(K M): M = K (dt / s)^2 with s = 2 (sqrt(1 + zeta^2) - zeta)."""
+    K, dt, zeta = 20000.0, 0.0005, 0.7
+    base = bench.scenario(
+        "smallest_mass",
+        time={"step_s": dt, "steps": 20000},
+        initial={"position_m": [1e-3, 0, 0]},
+        environment=SPRING,
+        rendering={**SUMMED, "damping_ratio": zeta, "stiffness_N_per_m": K},
+    )
+    ask = ("limit", base, "--vary", "rendering.mass_kg", "--between", "1e-4:10", "--smallest")
+    row = bench.json(*ask, "--stable", "bounded", "--resolution", "1e-4", "--out", "mass")[
+        "limits"
+    ][0]
+    known = K * (dt / (2 * (math.sqrt(1 + zeta**2) - zeta))) ** 2
+    undamped = ("without damping", K * dt**2 / 4)
+    fine = Within("bisected to 1e-12, of eigenvalues near a double one to rounding", relative=1e-9)
+    runs = Within("bisection ends at 1e-4; growth of 2e-6 a step is seen", relative=1.1e-4)
+    how = "4 - 2 B dt / M - K dt^2 / M = 0"
+    bench.add("limit.csv:theory", row["theory"], known, how, fine, undamped)
+    bench.add("limit.csv:limit", row["limit"], known, how, runs, undamped)
+    bench.add("limit.csv:low", row["low"], known, how, runs, ("the low end of the range", 1e-4))
+
+
+@scene
+def smallest_stiffness(bench):
+    """The smallest stiffness that holds a force F at rest within x of the spring's free end:
+    K = F / x."""
+    F, x = 1.0, 5e-5
+    base = bench.scenario(
+        "smallest_stiffness",
+        time={"step_s": 0.0005, "steps": 2000},
+        environment=SPRING,
+        hand={"type": "force", "x_N": F},
+        rendering={**SUMMED, "damping_ratio": 0.7},
+    )
+    ask = (
+        "limit",
+        base,
+        "--vary",
+        "rendering.stiffness_N_per_m",
+        "--between",
+        "1e3:1e5",
+        "--smallest",
+    )
+    bound = ("--bound", f"final_position_m.x={x}", "--resolution", "1e-4", "--out", "held")
+    row = bench.json(*ask, *bound)["limits"][0]
+    within = Within("bisection ends at 1e-4; the motion has died out to e^-300", relative=1.1e-4)
+    bench.add("limit.csv:limit", row["limit"], F / x, "F / x", within, ("half of it", F / x / 2))
+    bench.add("limit.csv:low", row["low"], F / x, "F / x", within, ("the range's", 1e3))
+    bench.add(
+        "limit.csv:class_below",
+        row["class_below"],
+        "beyond_bound",
+        "F / K > x below",
+        EXACT,
+        ("it is stable", "stable"),
+    )
+
+
+@scene
 def tuned(bench):
     """A handle on one spring, with a sample of delay: the largest edge of the held loop over B,
     over the margin, and what lies around it."""

@@ -148,8 +148,7 @@ TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
   }
 }
 
-// Limits of springs by theory and by runs, of fields beside K, and under bounds on metrics are in tests/known_answers
-// and tests/equivalence.
+// Limits of springs by theory and by runs, of fields beside K, and under bounds on metrics are in tests/known_answers.
 
 using Words = std::vector<std::string>;
 
