@@ -593,6 +593,41 @@ def convergence(bench):
         near,
         ("of all", [f.min(), f.max()]),
     )
+    levels_of_convergence(bench, dt, errors, f, fine, levels, metric, near, orders, out, steps)
+    error_of_step(bench, base, f, fine, metric, printed)
+
+
+def error_of_step(bench, base, f, fine, metric, printed):
+    """The error that compare gives a number: that of the coarsest of three levels."""
+    error = verdict_on(f[:3])[2][0]
+    (said,) = bench.json(
+        "compare",
+        base,
+        "--algorithms",
+        "summation",
+        "--by",
+        metric,
+        "--errors",
+        "--out",
+        bench.folder / "errors",
+    )["errors"]
+    number = said["numbers"][0]
+    assert (
+        number["value"] == printed["levels"][0]["result"]
+        and number["error_estimate"] == number["error_of_step"]
+    )
+    bench.add(
+        "compare --json: error_of_step",
+        number["error_of_step"],
+        error,
+        "three levels of the same recurrence",
+        fine,
+        ("from the finest of three", abs(f[0] - f[2])),
+    )
+
+
+def levels_of_convergence(bench, dt, errors, f, fine, levels, metric, near, orders, out, steps):
+    """converge_levels.csv: steps, results, orders and errors of each level."""
     for name, (value, within, naive, wrong) in {
         "value": (steps, EXACT, "the coarsest over 1, 2, 3 ...", dt / np.arange(1, 6)),
         "result": (f, near, "of the last row of each run", np.append(f[1:], f[0])),
@@ -633,29 +668,4 @@ def convergence(bench):
         "640 steps take more than a microsecond, less than 0.1 s",
         EXACT,
         ("of a step", bool(np.all(seconds / 640 > 1e-6))),
-    )
-    error = verdict_on(f[:3])[2][0]
-    (said,) = bench.json(
-        "compare",
-        base,
-        "--algorithms",
-        "summation",
-        "--by",
-        metric,
-        "--errors",
-        "--out",
-        bench.folder / "errors",
-    )["errors"]
-    number = said["numbers"][0]
-    assert (
-        number["value"] == printed["levels"][0]["result"]
-        and number["error_estimate"] == number["error_of_step"]
-    )
-    bench.add(
-        "compare --json: error_of_step",
-        number["error_of_step"],
-        error,
-        "three levels of the same recurrence",
-        fine,
-        ("from the finest of three", abs(f[0] - f[2])),
     )

@@ -482,6 +482,48 @@ def limit_of_spring(bench):
             ("the resolution asked", naive),
         )
     digits(bench, base, field)
+    words_of_limit(bench, base, printed, resolution, row)
+    limit_under_bound(bench, base, field, strip)
+
+
+def limit_under_bound(bench, base, field, strip):
+    """The force is largest at the start, K 1 mm, as long as damping takes more than it adds."""
+    # The force is largest at the start, K 1 mm, as long as damping takes more than it adds.
+    ask = (
+        "limit",
+        base,
+        "--vary",
+        field,
+        "--between",
+        "1e3:1e5",
+        "--resolution",
+        "1e-4",
+        "--out",
+        "bound",
+        "--bound",
+        "force_max_N=30",
+    )
+    row = bench.json(*ask)["limits"][0]
+    bench.add(
+        "limit.csv:limit",
+        row["limit"],
+        30000.0,
+        "bound over the start's 1 mm",
+        strip,
+        ("the stable limit", 1e5),
+    )
+    bench.add(
+        "beyond_bound (class of motion, of limit and stability)",
+        row["class_beyond"],
+        "beyond_bound",
+        "K 1 mm > 30 N",
+        EXACT,
+        ("it is stable", "stable"),
+    )
+
+
+def words_of_limit(bench, base, printed, resolution, row):
+    """What is told as it was asked, and that a field without an effect has none."""
     for key, known, naive in (
         ("from", 1e3, 1.0),
         ("to", 1e7, 1e6),
@@ -516,38 +558,6 @@ def limit_of_spring(bench):
         "summation has no iterations",
         EXACT,
         ("as a limit was found", True),
-    )
-    # The force is largest at the start, K 1 mm, as long as damping takes more than it adds.
-    ask = (
-        "limit",
-        base,
-        "--vary",
-        field,
-        "--between",
-        "1e3:1e5",
-        "--resolution",
-        "1e-4",
-        "--out",
-        "bound",
-        "--bound",
-        "force_max_N=30",
-    )
-    row = bench.json(*ask)["limits"][0]
-    bench.add(
-        "limit.csv:limit",
-        row["limit"],
-        30000.0,
-        "bound over the start's 1 mm",
-        strip,
-        ("the stable limit", 1e5),
-    )
-    bench.add(
-        "beyond_bound (class of motion, of limit and stability)",
-        row["class_beyond"],
-        "beyond_bound",
-        "K 1 mm > 30 N",
-        EXACT,
-        ("it is stable", "stable"),
     )
 
 

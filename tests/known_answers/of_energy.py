@@ -146,6 +146,68 @@ def mean_of_two(bench):
             ),
         ],
     )
+    events_of_two(bench, by, count, created, d, run, t)
+    rows_of_two(
+        bench,
+        K,
+        by,
+        created,
+        d,
+        dt,
+        f,
+        held,
+        kinetic,
+        n,
+        onto,
+        rect,
+        run,
+        script,
+        spring,
+        stored,
+        t,
+    )
+
+
+def rows_of_two(
+    bench, K, by, created, d, dt, f, held, kinetic, n, onto, rect, run, script, spring, stored, t
+):
+    """energy.csv: the sums of the work along the path, row by row."""
+    rows = [
+        ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1),
+        ("time_s", t, "k dt", EXACT, "after the step", t + dt),
+        ("kinetic_J", kinetic, "M v^2 / 2", STEPPED, "of the handle's speed squared", 2 * kinetic),
+        (
+            "stored_J",
+            stored,
+            "sum K c d^2 / 2",
+            STEPPED,
+            "of all springs in full",
+            0.5 * K * np.sum(d**2, axis=1),
+        ),
+        ("spring_J", onto(spring), by, STEPPED, rect, held(spring)),
+        ("damping_J", onto(f - spring), by, STEPPED, rect, held(f - spring)),
+        (
+            "created_J",
+            np.r_[0, np.cumsum(created)],
+            by,
+            STEPPED,
+            rect,
+            stored - stored[0] + held(spring),
+        ),
+        (
+            "script_J",
+            script,
+            "kinetic energy less the work of f",
+            STEPPED,
+            "without the kinetic energy",
+            -onto(f),
+        ),
+    ]
+    bench.columns(run.table("energy.csv"), rows)
+
+
+def events_of_two(bench, by, count, created, d, run, t):
+    """The rows that create most energy, and the touches and leaves in them."""
     events = [
         event for event in run.summary["energy"]["events"] if event["created_J"] > 1e-12
     ]  # the others are rounding
@@ -179,38 +241,6 @@ def mean_of_two(bench):
             STEPPED,
             ("another order, or row", naive),
         )
-    rows = [
-        ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1),
-        ("time_s", t, "k dt", EXACT, "after the step", t + dt),
-        ("kinetic_J", kinetic, "M v^2 / 2", STEPPED, "of the handle's speed squared", 2 * kinetic),
-        (
-            "stored_J",
-            stored,
-            "sum K c d^2 / 2",
-            STEPPED,
-            "of all springs in full",
-            0.5 * K * np.sum(d**2, axis=1),
-        ),
-        ("spring_J", onto(spring), by, STEPPED, rect, held(spring)),
-        ("damping_J", onto(f - spring), by, STEPPED, rect, held(f - spring)),
-        (
-            "created_J",
-            np.r_[0, np.cumsum(created)],
-            by,
-            STEPPED,
-            rect,
-            stored - stored[0] + held(spring),
-        ),
-        (
-            "script_J",
-            script,
-            "kinetic energy less the work of f",
-            STEPPED,
-            "without the kinetic energy",
-            -onto(f),
-        ),
-    ]
-    bench.columns(run.table("energy.csv"), rows)
 
 
 @scene
@@ -606,43 +636,12 @@ def turned_into_point(bench):
             )
         ],
     )
-    k = np.flatnonzero(touching)
-    sets = [
-        (
-            name,
-            np.full(len(k), value),
-            "the point of the file",
-            ROUNDING,
-            "seen from the tool",
-            np.full(len(k), value) + axis[k, 0] * 1e-3 - 1e-5,
-        )
-        for name, value in zip(("x_m", "y_m", "z_m", "nx", "ny", "nz"), (*at, -1.0, 0.0, 0.0))
-    ]
-    bench.columns(
-        run.table("contacts.csv"),
-        [
-            *sets,
-            (
-                "depth_m",
-                d[k],
-                "r less the distance to the axis",
-                shape,
-                "r - x",
-                np.full(len(k), r - at[0]),
-            ),
-        ]
-        + [
-            (
-                f"gradient_{x}",
-                u[k, i],
-                "from the axis to the point",
-                ROUNDING,
-                "minus the normal",
-                np.full(len(k), float(x == "x")) + (x == "y"),
-            )
-            for i, x in enumerate("xyz")
-        ],
-    )
+    contact_with_point(bench, at, axis, d, r, run, shape, touching, u)
+    pose_of_turned(bench, K, axis, d, f, n, run, shape, torque)
+
+
+def pose_of_turned(bench, K, axis, d, f, n, run, shape, torque):
+    """trajectory.csv: the axis -(sin a, 0, cos a), its quaternion, and the torque."""
     table = run.table()
     turned = Rotation.from_quat(table.vectors("qx", "qy", "qz", "qw")).apply([0, 0, 1])
     bench.add(
@@ -687,6 +686,48 @@ def turned_into_point(bench):
                 shape,
                 "along the normal",
                 K * d * (x == "x") + (x == "y"),
+            )
+            for i, x in enumerate("xyz")
+        ],
+    )
+
+
+def contact_with_point(bench, at, axis, d, r, run, shape, touching, u):
+    """contacts.csv: the point of the file, its depth r less its distance to the axis, and
+    its gradient."""
+    k = np.flatnonzero(touching)
+    sets = [
+        (
+            name,
+            np.full(len(k), value),
+            "the point of the file",
+            ROUNDING,
+            "seen from the tool",
+            np.full(len(k), value) + axis[k, 0] * 1e-3 - 1e-5,
+        )
+        for name, value in zip(("x_m", "y_m", "z_m", "nx", "ny", "nz"), (*at, -1.0, 0.0, 0.0))
+    ]
+    bench.columns(
+        run.table("contacts.csv"),
+        [
+            *sets,
+            (
+                "depth_m",
+                d[k],
+                "r less the distance to the axis",
+                shape,
+                "r - x",
+                np.full(len(k), r - at[0]),
+            ),
+        ]
+        + [
+            (
+                f"gradient_{x}",
+                u[k, i],
+                "from the axis to the point",
+                ROUNDING,
+                "minus the normal",
+                np.full(len(k), float(x == "x")) + (x == "y"),
             )
             for i, x in enumerate("xyz")
         ],

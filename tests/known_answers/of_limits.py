@@ -217,6 +217,29 @@ def tuned(bench):
         Within("K falls by as many percent as zeta is off on either side", relative=0.05),
         ("with B at K", B / (2 * math.sqrt(edge(B) / 2 * m))),
     )
+    tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zeta)
+    tuned_words(bench, law, m)
+    for name, within in (
+        ("linear_edge", Within("bisected to 1e-12", relative=1e-9)),
+        ("edge_in_runs", margin),
+    ):
+        bench.add(f"tune --json: {name}", law[name], gain * K, by, within, ("K", K))
+    bench.add(
+        "tune.csv:why",
+        "unstable" in law["why"],
+        True,
+        "the loop is what ends it",
+        EXACT,
+        ("a limit", "vibration" in law["why"]),
+    )
+    tuned_order(bench, law, printed, runs, table)
+    tuned_trials(bench, by, loop, m, trials)
+    tuned_choice(bench, K, base, trials, zeta)
+
+
+def tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zeta):
+    """Margins by the eigenvalues of the held loop: the gain and the delay at which one leaves the
+    unit circle, and the smallest damping ratio -Re s / |s|, s = ln z / T."""
     late = edge_of(lambda d: loop(K, at_K, d), 0.0, 8.0)
     z = np.linalg.eigvals(loop(K, at_K))
     s = np.log(z[np.abs(z) > 1e-9].astype(complex))
@@ -241,41 +264,10 @@ def tuned(bench):
             ROUNDING,
             ("the margin asked for", 2.0 if name != "gain" else 1.0),
         )
-    for name, known, naive in (
-        ("feasible", True, False),
-        ("lambda_max", 1.0, 2.0),
-        ("binding", "margin", "range"),
-        ("relax", "", "the margin"),
-        ("verified", 56, 5),
-        ("may_fail_share", 1 - 0.05 ** (1 / 48), 0.05),
-        ("velocity_filter", "", "difference"),
-        ("mass_kg", None, m),
-    ):
-        how = (
-            "one spring, whose loop alone binds; 48 gains between and 8 just below the margin; "
-            "nothing to relax or chosen beside K and zeta"
-        )
-        bench.add(
-            f"tune.csv:{name}",
-            law[name],
-            known,
-            how,
-            ROUNDING if name == "may_fail_share" else EXACT,
-            ("another", naive),
-        )
-    for name, within in (
-        ("linear_edge", Within("bisected to 1e-12", relative=1e-9)),
-        ("edge_in_runs", margin),
-    ):
-        bench.add(f"tune --json: {name}", law[name], gain * K, by, within, ("K", K))
-    bench.add(
-        "tune.csv:why",
-        "unstable" in law["why"],
-        True,
-        "the loop is what ends it",
-        EXACT,
-        ("a limit", "vibration" in law["why"]),
-    )
+
+
+def tuned_order(bench, law, printed, runs, table):
+    """What holds of a single law, and the limits as asked."""
     bench.add(
         "tune.csv:algorithm",
         table["algorithm"],
@@ -318,48 +310,37 @@ def tuned(bench):
         EXACT,
         ("none", None),
     )
-    # Each trial by its own eigenvalues: feasible below half the edge of its zeta, but for the strip
-    # in which runs cannot tell.
-    given = [row for row in trials.rows if row["feasible"] in ("true", "false")]
-    edges = [
-        edge_of(
-            lambda k: loop(k, 2 * float(row["rendering.damping_ratio"]) * math.sqrt(k * m)),
-            1e-3,
-            1e6,
+
+
+def tuned_words(bench, law, m):
+    """The words of the answer: one law, whose loop alone binds, as asked."""
+    for name, known, naive in (
+        ("feasible", True, False),
+        ("lambda_max", 1.0, 2.0),
+        ("binding", "margin", "range"),
+        ("relax", "", "the margin"),
+        ("verified", 56, 5),
+        ("may_fail_share", 1 - 0.05 ** (1 / 48), 0.05),
+        ("velocity_filter", "", "difference"),
+        ("mass_kg", None, m),
+    ):
+        how = (
+            "one spring, whose loop alone binds; 48 gains between and 8 just below the margin; "
+            "nothing to relax or chosen beside K and zeta"
         )
-        / 2
-        for row in given
-    ]
-    clear = [
-        (row, e)
-        for row, e in zip(given, edges)
-        if abs(float(row["stiffness_N_per_m"]) / e - 1) > 0.02
-    ]
-    stable = [float(row["stiffness_N_per_m"]) < e for row, e in clear]
-    bench.add(
-        "tune_trials.csv:feasible",
-        [float(row["feasible"] == "true") for row, _ in clear],
-        [float(s) for s in stable],
-        by,
-        EXACT,
-        ("up to the edge", [float(float(row["stiffness_N_per_m"]) < 2 * e) for row, e in clear]),
-    )
-    bench.add(
-        "tune_trials.csv:binding",
-        [row["binding"] for row, _ in clear],
-        ["" if s else "margin" for s in stable],
-        by,
-        EXACT,
-        ("settled", ["" if s else "settled" for s in stable]),
-    )
-    bench.add(
-        "tune_trials.csv:why",
-        [float("unstable" in row["why"]) for row, _ in clear],
-        [float(not s) for s in stable],
-        by,
-        EXACT,
-        ("always", [1.0] * len(stable)),
-    )
+        bench.add(
+            f"tune.csv:{name}",
+            law[name],
+            known,
+            how,
+            ROUNDING if name == "may_fail_share" else EXACT,
+            ("another", naive),
+        )
+
+
+def tuned_choice(bench, K, base, trials, zeta):
+    """The row of the choice among the trials: its words as asked, its metrics by a run
+    of its own."""
     own = next(
         row
         for row in trials.rows
@@ -405,6 +386,53 @@ def tuned(bench):
             EXACT,
             ("twice it was", sum(float(row[name]) == 2 * cell for row in trials.rows) > 0),
         )
+
+
+def tuned_trials(bench, by, loop, m, trials):
+    """Each trial by its own eigenvalues: feasible below half the edge of its zeta, but for the
+    strip in which runs cannot tell."""
+    # Each trial by its own eigenvalues: feasible below half the edge of its zeta, but for the strip
+    # in which runs cannot tell.
+    given = [row for row in trials.rows if row["feasible"] in ("true", "false")]
+    edges = [
+        edge_of(
+            lambda k: loop(k, 2 * float(row["rendering.damping_ratio"]) * math.sqrt(k * m)),
+            1e-3,
+            1e6,
+        )
+        / 2
+        for row in given
+    ]
+    clear = [
+        (row, e)
+        for row, e in zip(given, edges)
+        if abs(float(row["stiffness_N_per_m"]) / e - 1) > 0.02
+    ]
+    stable = [float(row["stiffness_N_per_m"]) < e for row, e in clear]
+    bench.add(
+        "tune_trials.csv:feasible",
+        [float(row["feasible"] == "true") for row, _ in clear],
+        [float(s) for s in stable],
+        by,
+        EXACT,
+        ("up to the edge", [float(float(row["stiffness_N_per_m"]) < 2 * e) for row, e in clear]),
+    )
+    bench.add(
+        "tune_trials.csv:binding",
+        [row["binding"] for row, _ in clear],
+        ["" if s else "margin" for s in stable],
+        by,
+        EXACT,
+        ("settled", ["" if s else "settled" for s in stable]),
+    )
+    bench.add(
+        "tune_trials.csv:why",
+        [float("unstable" in row["why"]) for row, _ in clear],
+        [float(not s) for s in stable],
+        by,
+        EXACT,
+        ("always", [1.0] * len(stable)),
+    )
 
 
 HANDS = [(0, 0), *((m, k) for m in (0.1, 0.2, 0.5) for k in (100, 300, 1000))]
@@ -491,6 +519,14 @@ def over_another_field(bench):
         EXACT,
         ("friction", ["dry friction"]),
     )
+    limits_over_delay_and_hand(bench, ask, close, given, handle)
+    limits_of_walls(bench, edges, Table(bench.folder / "bare" / "limit.csv"), xs, handle)
+    limits_over_encoder(bench, ask, damping, given)
+    stressed(bench)
+
+
+def limits_over_delay_and_hand(bench, ask, close, given, handle):
+    """K over a delay and over the stiffness of the hand, by the eigenvalues of the held loop."""
     hand = (
         '{"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":100,'
         '"damping_N_s_per_m":2,"target":{"x_m":0,"y_m":0,"z_m":0}}'
@@ -536,7 +572,11 @@ def over_another_field(bench):
             close,
             ("without", [edge_of(lambda K: handle(5.0, K), 1.0, 1e6)] * 6),
         )
-    limits_of_walls(bench, edges, Table(bench.folder / "bare" / "limit.csv"), xs, handle)
+
+
+def limits_over_encoder(bench, ask, damping, given):
+    """K over the encoder's step q with dry friction c: min(2 b / T, 2 c / q) of Abbott and
+    Okamura."""
     q = np.geomspace(1e-6, 1e-3, 4)
     told = bench.json(
         *ask,
@@ -574,7 +614,6 @@ def over_another_field(bench):
         EXACT,
         ("linear", [False] * 4),
     )
-    stressed(bench)
 
 
 def limits_of_walls(bench, table, bare, xs, handle):
@@ -766,6 +805,98 @@ def devices(bench):
         ROUNDING,
         ("the resolution asked", [resolution * limit for limit in limits]),
     )
+    limits_of_both_ends(bench, fine, how, most, resolution, vibration)
+    classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
+    bench.add(
+        "limit.csv:class_beyond",
+        [cell[key]["class_beyond"] for key in keys],
+        classes,
+        how,
+        EXACT,
+        ("diverged", ["diverged"] * 2),
+    )
+    bench.add(
+        "limit_runs.csv:class",
+        says,
+        judged[0] + judged[1],
+        how,
+        EXACT,
+        (
+            "by the eigenvalues",
+            [
+                "stable" if K < edge else "diverged"
+                for values, edge in zip(tried, theory)
+                for K in values
+            ],
+        ),
+    )
+    names_of_devices(bench, number, runs, table)
+    linear_limit_of_device(bench, B, T, b, cell, m, number, printed, theory)
+
+
+def linear_limit_of_device(bench, B, T, b, cell, m, number, printed, theory):
+    """The linear edge with the hand, by the eigenvalues of the held loop."""
+    pushed = ("mine", "pushes", "summation")
+    linear = edge_of(lambda K: held_loop(m + 0.2, b + 2, T, K, B, spring=300), 100.0, 1e6)
+    close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
+    bench.add(
+        "limit.csv:linear",
+        number(cell[pushed], "linear"),
+        linear,
+        "eigenvalues of the held loop with the hand",
+        close,
+        ("without the hand", 2 * theory[0]),
+    )
+    alone = {(r["device"], r["scenario"]): r["unstable_without_contact"] for r in printed["limits"]}
+    bench.add(
+        "limit --json: unstable_without_contact",
+        alone["mine", "pushes"],
+        False,
+        "handle and hand are passive",
+        EXACT,
+        ("with the wall", True),
+    )
+
+
+def names_of_devices(bench, number, runs, table):
+    """Which device, scene and law a row is of, and what its maker publishes."""
+    order = [
+        (d, s, a)
+        for d in ("mine", "omega.3")
+        for s in ("both_ways", "pushes")
+        for a in ("summation", "mean")
+    ]
+    for i, name in enumerate(("device", "scenario", "algorithm")):
+        bench.add(
+            f"limit.csv:{name}",
+            table[name],
+            [key[i] for key in order],
+            "devices, scenes, algorithms",
+            EXACT,
+            ("reversed", [key[i] for key in order[::-1]]),
+        )
+        bench.add(
+            f"limit_runs.csv:{name}",
+            list(dict.fromkeys(runs[name])),
+            list(dict.fromkeys(key[i] for key in order)),
+            "devices, scenes, algorithms",
+            EXACT,
+            ("reversed", list(dict.fromkeys(key[i] for key in order[::-1]))),
+        )
+    of_maker = [number(row, "published_N_per_m") for row in table.rows]
+    bench.add(
+        "limit.csv:published_N_per_m",
+        of_maker,
+        [math.nan] * 4 + [5000.0] * 4,
+        "CHAI3D's largest stiffness for an omega.3",
+        EXACT,
+        ("its maker's closed loop", [math.nan] * 4 + [14500.0] * 4),
+    )
+
+
+def limits_of_both_ends(bench, fine, how, most, resolution, vibration):
+    """Both ends of what nobody published of a preset: mass over and times 1.3, viscous friction
+    from 0.5 to 5 N s/m."""
     # What is ours of an omega.3 is its mass and viscous friction once dry friction, encoder and
     # saturation are gone.
     bare = [
@@ -807,82 +938,6 @@ def devices(bench):
         how,
         fine,
         ("of the preset's own numbers", [ends[0]] * 3),
-    )
-    classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
-    bench.add(
-        "limit.csv:class_beyond",
-        [cell[key]["class_beyond"] for key in keys],
-        classes,
-        how,
-        EXACT,
-        ("diverged", ["diverged"] * 2),
-    )
-    bench.add(
-        "limit_runs.csv:class",
-        says,
-        judged[0] + judged[1],
-        how,
-        EXACT,
-        (
-            "by the eigenvalues",
-            [
-                "stable" if K < edge else "diverged"
-                for values, edge in zip(tried, theory)
-                for K in values
-            ],
-        ),
-    )
-    order = [
-        (d, s, a)
-        for d in ("mine", "omega.3")
-        for s in ("both_ways", "pushes")
-        for a in ("summation", "mean")
-    ]
-    for i, name in enumerate(("device", "scenario", "algorithm")):
-        bench.add(
-            f"limit.csv:{name}",
-            table[name],
-            [key[i] for key in order],
-            "devices, scenes, algorithms",
-            EXACT,
-            ("reversed", [key[i] for key in order[::-1]]),
-        )
-        bench.add(
-            f"limit_runs.csv:{name}",
-            list(dict.fromkeys(runs[name])),
-            list(dict.fromkeys(key[i] for key in order)),
-            "devices, scenes, algorithms",
-            EXACT,
-            ("reversed", list(dict.fromkeys(key[i] for key in order[::-1]))),
-        )
-    of_maker = [number(row, "published_N_per_m") for row in table.rows]
-    bench.add(
-        "limit.csv:published_N_per_m",
-        of_maker,
-        [math.nan] * 4 + [5000.0] * 4,
-        "CHAI3D's largest stiffness for an omega.3",
-        EXACT,
-        ("its maker's closed loop", [math.nan] * 4 + [14500.0] * 4),
-    )
-    pushed = ("mine", "pushes", "summation")
-    linear = edge_of(lambda K: held_loop(m + 0.2, b + 2, T, K, B, spring=300), 100.0, 1e6)
-    close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
-    bench.add(
-        "limit.csv:linear",
-        number(cell[pushed], "linear"),
-        linear,
-        "eigenvalues of the held loop with the hand",
-        close,
-        ("without the hand", 2 * theory[0]),
-    )
-    alone = {(r["device"], r["scenario"]): r["unstable_without_contact"] for r in printed["limits"]}
-    bench.add(
-        "limit --json: unstable_without_contact",
-        alone["mine", "pushes"],
-        False,
-        "handle and hand are passive",
-        EXACT,
-        ("with the wall", True),
     )
 
 
