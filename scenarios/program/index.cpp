@@ -20,7 +20,7 @@
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 #include "scenarios/thesis/choices.hpp"
-#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/judging.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {

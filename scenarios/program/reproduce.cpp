@@ -13,6 +13,11 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis/choices.hpp"
 #include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/evidence.hpp"
+#include "scenarios/thesis/judging.hpp"
+#include "scenarios/thesis/ledger.hpp"
+#include "scenarios/thesis/published_numbers.hpp"
+#include "scenarios/thesis/robustness.hpp"
 
 namespace hapbench {
 namespace {

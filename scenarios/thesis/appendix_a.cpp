@@ -6,6 +6,7 @@
 
 #include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
 
 /// Claims of appendix A: the planar peg (A.1), a mass on many springs (A.2), the integrator's stability limits (A.3).
 namespace hapbench {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "algorithms/registry.hpp"
 #include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of appendices B, what is wrong with the original algorithm, C, what the proposed one does to point density

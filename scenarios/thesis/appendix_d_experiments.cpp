@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/batch/comparison.hpp"
 #include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of appendix D: the man-machine experiments with simulated subjects.

@@ -8,9 +8,13 @@
 #include <utility>
 
 #include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/force_law.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/scene/parts.hpp"
 #include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 

@@ -4,7 +4,9 @@
 
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/penalty_rendering.hpp"
+#include "algorithms/registry.hpp"
 #include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
 
 /// Claims of 1.2, 2.8, 3.4 and F.2: what the points cost. Times of this machine, so no two ledgers agree in digits.
 namespace hapbench {

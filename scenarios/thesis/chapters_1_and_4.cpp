@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/penalty_rendering.hpp"
+#include "algorithms/registry.hpp"
 #include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/scene/parts.hpp"
 #include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
 
 /// Claims of chapters 1 and 4: how far a drill pressed into the hole sinks in under other ways to merge forces, and
 /// what their plain sum does (1.1, 1.2, B.3.1); both depth models (4.2), and what else is discussed as limits.

@@ -8,7 +8,7 @@
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
-#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
 #include "sim/core/random.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"
 

@@ -10,7 +10,7 @@
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"
 #include "tests/results/observing.hpp"

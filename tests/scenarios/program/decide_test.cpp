@@ -6,6 +6,9 @@
 #include <optional>
 
 #include "scenarios/thesis/choices.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/ledger.hpp"
+#include "scenarios/thesis/robustness.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
