@@ -77,33 +77,48 @@ std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts,
           is_near(c[counts + "_deviation"], one.spread, other.spread)};
 }
 
-/// The appendix gives other counts than 3.3.
+/// What the counts of one density have in common with the published ones, those of 3.3 or of the appendix.
+struct CountsAgree {
+  bool raw = false;    ///< mean and spread of the raw counts
+  bool mean = false;   ///< and the mean of the number that is left
+  bool whole = false;  ///< and its spread, with no row beyond the bound
+};
+
+/// Compares the counts of one density with both published recordings of a task: the appendix gives other counts
+/// than 3.3.
+CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, const std::string& task, bool bounded) {
+  CountsAgree agree;
+  for (const auto& [one, other] : {std::pair("", ".C3"), std::pair(".C3", "")}) {
+    const auto [raw_mean, raw_spread] =
+        nearness(c, "raw", published[task + ".raw" + one], published[task + ".raw" + other]);
+    const auto [mean_left, spread_left] =
+        nearness(c, "reduced", published[task + ".reduced" + one], published[task + ".reduced" + other]);
+    if (!raw_mean || !raw_spread) continue;
+    agree.raw = true;
+    agree.mean = agree.mean || mean_left;
+    agree.whole = agree.whole || (mean_left && spread_left && bounded);
+  }
+  return agree;
+}
+
+std::string agreement_text(const CountsAgree& agree, bool bounded, double bound) {
+  if (agree.whole) return "as published";
+  if (!agree.raw) return "the raw counts are not the published ones";
+  if (!agree.mean) return "another number is left than published";
+  return "the number left is as published, " +
+         (bounded ? std::string("its spread is not") : fmt::format("some rows keep {} or more", bound));
+}
+
 Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& published, const std::string& task) {
   const double bound = published["T3.reduced.bound"].at_most;
   std::size_t all = 0, means = 0;
   std::string why;
   for (const MeasuredCase& c : counts) {
     const bool bounded = c["outside_taps"] < bound;
-    bool whole = false, mean = false, raw = false;
-    for (const auto& [one, other] : {std::pair("", ".C3"), std::pair(".C3", "")}) {
-      const auto [raw_mean, raw_spread] =
-          nearness(c, "raw", published[task + ".raw" + one], published[task + ".raw" + other]);
-      const auto [mean_left, spread_left] =
-          nearness(c, "reduced", published[task + ".reduced" + one], published[task + ".reduced" + other]);
-      if (!raw_mean || !raw_spread) continue;
-      raw = true;
-      mean = mean || mean_left;
-      whole = whole || (mean_left && spread_left && bounded);
-    }
-    if (whole) ++all;
-    if (mean) ++means;
-    append_item(why, fmt::format("{}: {}", c.name,
-                                 whole   ? "as published"
-                                 : !raw  ? "the raw counts are not the published ones"
-                                 : !mean ? "another number is left than published"
-                                         : fmt::format("the number left is as published, {}",
-                                                       bounded ? "its spread is not"
-                                                               : fmt::format("some rows keep {} or more", bound))));
+    const CountsAgree agree = agreement(c, published, task, bounded);
+    all += agree.whole ? 1U : 0U;
+    means += agree.mean ? 1U : 0U;
+    append_item(why, fmt::format("{}: {}", c.name, agreement_text(agree, bounded, bound)));
   }
   return {decide(all == counts.size(), means > 0), why};
 }
