@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "sim/core/random.hpp"

@@ -8,7 +8,7 @@
 
 #include "results/io/columns.hpp"
 #include "scenarios/batch/comparison.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/run_scenario.hpp"

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <regex>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"

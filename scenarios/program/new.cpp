@@ -9,7 +9,7 @@
 #include "device_model/hands/drag_hand.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/report.hpp"

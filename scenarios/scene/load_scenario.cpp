@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "results/io/columns.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/scene/parts.hpp"

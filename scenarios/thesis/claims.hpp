@@ -18,7 +18,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/batch/comparison.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/tool/cylinder.hpp"
 

@@ -10,7 +10,7 @@
 #include "results/observe/energy.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/load_module.hpp"

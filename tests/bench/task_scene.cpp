@@ -3,7 +3,7 @@
 #include <functional>
 #include <map>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench::bench {

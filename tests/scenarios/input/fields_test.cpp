@@ -8,7 +8,7 @@
 
 #include "algorithms/registry.hpp"
 #include "results/io/columns.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/fields.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/writer.hpp"

@@ -9,7 +9,7 @@
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/index.hpp"

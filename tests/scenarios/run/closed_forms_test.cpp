@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "sim/contact/contact_source.hpp"

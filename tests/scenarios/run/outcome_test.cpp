@@ -7,7 +7,7 @@
 
 #include "algorithms/registry.hpp"
 #include "results/observe/metrics.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/outcome.hpp"

@@ -12,7 +12,7 @@
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"

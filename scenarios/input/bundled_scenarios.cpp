@@ -1,4 +1,4 @@
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
