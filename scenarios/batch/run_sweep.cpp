@@ -15,6 +15,7 @@
 #include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -1,18 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
-#include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hapbench {
-
-// Largest sizes of a scenario; larger requests, which may exceed every integer, are refused before they take memory.
-inline constexpr double kMostPoints = 2e7;  ///< shell points or springs of an environment
-inline constexpr double kMostSteps = 1e9;   ///< steps of a run
-inline constexpr double kMostRows = 2e7;    ///< rows that a run may record
 
 /// `text` with a '?' in place of each control character (file names and values from outside may have some).
 std::string one_line(std::string text);
@@ -57,19 +52,5 @@ class InputError : public std::runtime_error {
 [[noreturn]] void fail_at(const std::string& place, const std::string& problem);
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
-
-/// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest. Case does not
-/// matter, and an ending after an underscore, such as a unit, may be missing.
-std::string nearest_name(std::string_view given, std::span<const std::string> valid);
-
-/// `; nearest valid name: "x"`, or empty.
-std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
-
-/// Throws an InputError, `got` before the name, when the name is not among the valid ones. `shown_by`: see below.
-void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
-                        std::string_view shown_by = {});
-
-/// "a", "b", "c"; of more than 50 only how many more there are, of more than 8 where the command `shown_by` shows them.
-std::string quoted_list(std::span<const std::string> names, std::string_view shown_by = {});
 
 }  // namespace hapbench

@@ -10,6 +10,7 @@
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -6,7 +6,7 @@
 #include "results/io/atomic_file.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
-#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/point_shell_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"

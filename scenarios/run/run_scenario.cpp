@@ -8,6 +8,7 @@
 #include "algorithms/registry.hpp"
 #include "results/observe/step_times.hpp"
 #include "results/summary/allocations.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"

@@ -9,6 +9,7 @@
 
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
+#include "scenarios/input/largest_sizes.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/scene/load_scenario.hpp"

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/largest_sizes.hpp"
+#include "scenarios/input/shared_cache.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/scene/parts.hpp"
 #include "sim/contact/grid_index.hpp"

@@ -5,6 +5,8 @@
 
 #include "results/io/columns.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/reader.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/scene/parts.hpp"

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/input/json_schema.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/parts.hpp"
 

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/input/writer.hpp"
+#include "scenarios/input/json_schema.hpp"
+
 
 namespace hapbench {
 

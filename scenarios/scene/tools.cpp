@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/shared_cache.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/scene/parts.hpp"
 #include "sim/tool/mesh_tool.hpp"

@@ -9,6 +9,9 @@
 #include <numeric>
 
 #include "results/io/columns.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/core/random.hpp"
 

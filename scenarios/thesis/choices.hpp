@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/thesis/claims.hpp"
 
 /// Choices that the thesis leaves open and that the bundled scenarios make, and the claims judged again under other

@@ -19,6 +19,8 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/tool/cylinder.hpp"
 

@@ -6,6 +6,9 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"

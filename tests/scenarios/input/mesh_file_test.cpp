@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <limits>
 
-#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_file.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/input/mesh_sampling.hpp"
+#include "scenarios/input/point_shell_file.hpp"
+#include "scenarios/input/read_ply.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/mesh/half_edge_mesh.hpp"

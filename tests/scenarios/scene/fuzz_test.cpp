@@ -6,6 +6,7 @@
 #include "results/io/columns.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/point_shell_file.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "tests/results/files.hpp"
