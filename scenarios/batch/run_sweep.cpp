@@ -20,8 +20,8 @@
 #include "scenarios/input/writer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/describe_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
-#include "scenarios/scene/parts.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

@@ -11,6 +11,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {

@@ -19,7 +19,7 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"

@@ -14,7 +14,8 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {

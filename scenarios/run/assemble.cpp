@@ -5,6 +5,12 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/run/load_module.hpp"
+#include "scenarios/scene/devices.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/hands.hpp"
+#include "scenarios/scene/recordings.hpp"
+#include "scenarios/scene/tools.hpp"
+#include "scenarios/scene/trials.hpp"
 #include "sim/contact/contact_source.hpp"
 
 namespace hapbench {

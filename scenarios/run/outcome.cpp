@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "scenarios/run/scene_checks.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 namespace {

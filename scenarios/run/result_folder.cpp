@@ -13,6 +13,7 @@
 #include "results/io/columns.hpp"
 #include "results/observe/energy.hpp"
 #include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/scene/trials.hpp"
 
 namespace hapbench {
 namespace {

@@ -16,6 +16,8 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/trials.hpp"
 
 namespace hapbench {
 namespace {

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "results/record/recorder.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/trials.hpp"
+#include "sim/geometry/point_shell.hpp"
 
 /// A run: what it records, row by row, the directory of its results, and the running itself.
 namespace hapbench {

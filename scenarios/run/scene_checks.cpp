@@ -10,6 +10,9 @@
 #include "results/observe/inside_observer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/recordings.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "sim/geometry/triangle_tree.hpp"
 #include "sim/tool/mesh_tool.hpp"
 

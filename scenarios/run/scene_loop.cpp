@@ -8,7 +8,7 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/devices.hpp"
 
 namespace hapbench {
 namespace {

@@ -9,7 +9,8 @@
 #include "scenarios/input/reader.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/describe_scenario.hpp"
+#include "scenarios/scene/relation_warnings.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 #include "sim/core/hash.hpp"
 

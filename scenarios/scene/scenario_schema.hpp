@@ -5,7 +5,6 @@
 
 #include "scenarios/input/json_schema.hpp"
 
-
 namespace hapbench {
 
 /// The whole JSON Schema (draft 7) that scenarios/library/scenario.schema.json holds.

@@ -1,11 +1,14 @@
+#include "scenarios/scene/tools.hpp"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <stdexcept>
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/shared_cache.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/field_checks.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {

@@ -9,6 +9,7 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {

@@ -15,6 +15,8 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/motions.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/loop/simulation.hpp"
 

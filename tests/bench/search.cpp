@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "scenarios/scene/environments.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/support/searches.hpp"

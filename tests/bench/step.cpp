@@ -11,6 +11,7 @@
 #include "results/observe/energy.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/observe/step_times.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"

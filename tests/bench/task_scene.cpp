@@ -5,6 +5,7 @@
 
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench::bench {
 namespace {

@@ -12,7 +12,8 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/run/scene_loop.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/devices.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 

@@ -10,6 +10,8 @@
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"

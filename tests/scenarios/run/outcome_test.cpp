@@ -14,6 +14,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/scene/metric_sections.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 
 namespace hapbench::outcome_test {

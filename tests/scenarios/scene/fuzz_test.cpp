@@ -8,7 +8,7 @@
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/point_shell_file.hpp"
 #include "scenarios/scene/load_scenario.hpp"
-#include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/recordings.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/scenarios/support/mutation.hpp"

@@ -13,6 +13,7 @@
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench::stability_test {
