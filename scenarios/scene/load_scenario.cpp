@@ -41,6 +41,12 @@ void merge(Json& base, const Json& more) {
   for (const auto& entry : more.items()) merge(base[entry.key()], entry.value());
 }
 
+/// Removes the delay of the device in samples where the scenario has it in seconds too, as effective scenarios do: the
+/// samples are those of a time step that is no longer the scenario's.
+void drop_derived_samples(Json& scenario) {
+  if (scenario.contains(Json::json_pointer("/device/delay_s"))) scenario["device"].erase("delay_samples");
+}
+
 /// Makes relative paths of files start from `directory`.
 void keep_files(Json& json, const fs::path& directory) {
   if (!json.is_structured()) return;
@@ -97,6 +103,7 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
   if (base.parent_path() != file.parent_path()) keep_files(merged, fs::current_path() / base.parent_path());
   for (const char* own : {"name", "expect"}) merged.erase(own);
   json.erase(kExtends);
+  if (json.contains(Json::json_pointer("/time/step_s"))) drop_derived_samples(merged);
   merge(merged, json);
   return merged;
 }
@@ -129,9 +136,7 @@ void apply_override(Json& json, const std::string& text) {
     }
   }
   *node = Json::accept(value) ? parse_json(value) : Json(value);
-  // An effective scenario has the device's delay in seconds and in samples of the step that is no longer its own.
-  if (path == "time.step_s" && json.contains(Json::json_pointer("/device/delay_s")))
-    json["device"].erase("delay_samples");
+  if (path == "time" || path == "time.step_s") drop_derived_samples(json);
 }
 
 /// True when a run with this field overridden is still the run that the scenario's expectations were written for.

@@ -12,6 +12,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/recordings.hpp"
 #include "sim/core/hash.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -96,6 +97,20 @@ TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
   const Json effective = effective_scenario(loaded.scenario, directory_.path());
   EXPECT_EQ(effective["environment"]["file"], "there/data/cube.obj");
   EXPECT_FALSE(effective.contains("extends"));
+}
+
+TEST_F(Extends, AnotherTimeStepReplacesTheSamplesOfADelayInSeconds) {
+  // As an effective scenario has them: 0.0023 s are 4.6 steps of 0.0005 s.
+  write("base.json", R"({"time": {"step_s": 0.0005, "steps": 20}, "environment": {"type": "plane"},
+    "device": {"type": "impedance", "handle_mass_kg": 0.1, "delay_s": 0.0023, "delay_samples": 4.6}})");
+  const auto samples = [&](const std::string& text) {
+    const Scenario scenario = load_scenario(write("mine.json", text)).scenario;
+    return std::get<ImpedanceDeviceConfig>(scenario.device).delay_samples;
+  };
+  EXPECT_EQ(samples(R"({"extends": "base.json"})"), 0.0023 / 0.0005);
+  EXPECT_EQ(samples(R"({"extends": "base.json", "time": {"step_s": 0.001}})"), 0.0023 / 0.001);
+  // What the file gives itself stays.
+  EXPECT_EQ(samples(R"({"extends": "base.json", "time": {"step_s": 0.001}, "device": {"delay_samples": 3}})"), 3.0);
 }
 
 TEST_F(Extends, AcceptsItselfInNoJsonInMemory) {
@@ -187,6 +202,7 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
   const std::string both = "device=" + with({device}).at("device").dump();
   EXPECT_EQ(with({both}), with({device}));
   EXPECT_EQ(with({both, "time.step_s=0.0003"}), with({device, "time.step_s=0.0003"}));
+  EXPECT_EQ(with({both, R"(time={"step_s":0.0003,"steps":20})"}), with({device, "time.step_s=0.0003"}));
   EXPECT_EQ(
       refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.0023,"delay_samples":2.3})")
           .find(
