@@ -12,6 +12,7 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_schema.hpp"
 #include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/rounding.hpp"
 #include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
@@ -176,7 +177,7 @@ constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the 
 
 /// Rounds to two significant digits, as people write lengths.
 double rounded(double value) {
-  return std::stod(fmt::format("{:.2g}", value));
+  return rounded_to_digits(value, 2);
 }
 
 Json list_of(const Vec3& v) {
@@ -276,7 +277,7 @@ class Start {
           mesh_file(), object, length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
           length_text(kLongestObject), command, longest, command, longest));
     }
-    const double scale = extent_ ? std::stod(fmt::format("{:.6g}", *extent_ / longest)) : 1.0;
+    const double scale = extent_ ? rounded_to_digits(*extent_ / longest, 6) : 1.0;
     notes.push_back(
         fmt::format("longest edge of the {}'s box: {}, with scale {}", object, length_text(longest * scale), scale));
     return scale;

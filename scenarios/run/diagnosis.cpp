@@ -6,6 +6,7 @@
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/impedance_device.hpp"
+#include "scenarios/input/rounding.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 
@@ -101,7 +102,7 @@ Number share_of_edge(const DiagnosedRun& run) {
     at.rendering.stiffness = stiffness;
     return contact_step(at, *lambda);
   });
-  return std::stod(fmt::format("{:.6g}", K / std::max(kLeast * K, edge)));
+  return rounded_to_digits(K / std::max(kLeast * K, edge), 6);
 }
 
 /// Where the run vibrates as at an edge, left its bounds or was thrown off.
