@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace hapbench {
@@ -15,6 +14,19 @@ std::string one_line(std::string text);
 /// Maximum number of errors reported per file.
 inline constexpr std::size_t kMostFaults = 20;
 
+/// The place of a fault, as data. What does not apply is empty.
+struct ErrorLocation {
+  std::string option = {};                        ///< option with the fault, as typed: "--set time.step_s=0"
+  std::vector<std::filesystem::path> outer = {};  ///< files by which `file` was found, the outermost first
+  std::filesystem::path file = {};
+  std::size_t line = 0;      ///< in the file, from 1; 0: none
+  std::string entry = {};    ///< of the file, as "sample 3"
+  std::string pointer = {};  ///< JSON pointer of the field
+
+  /// The parts that are there, as a message begins with them: "scene.json: /time/step_s" or "mesh.obj, line 3".
+  std::string text() const;
+};
+
 /// Bad input: a file, an argument or a field the program refuses. Exit status 2. The message is one line that names the
 /// place, the value given, what is allowed and, for names, the nearest valid one: the first of perhaps several faults.
 class InputError : public std::runtime_error {
@@ -24,33 +36,36 @@ class InputError : public std::runtime_error {
     relation,  ///< fields contradict each other or the world (a missing file); a schema cannot express that
   };
 
-  InputError(Kind kind, std::string place, const std::string& problem)
-      : std::runtime_error(one_line(place.empty() ? problem : place + ": " + problem)),
-        kind_(kind),
-        place_(std::move(place)),
-        problem_(problem) {}
+  InputError(Kind kind, ErrorLocation location, const std::string& problem);
+  /// An error in the field at a JSON pointer; an empty pointer means the whole file.
+  InputError(Kind kind, const std::string& pointer, const std::string& problem);
   /// An error of kind `relation` that is not about a particular field.
-  explicit InputError(const std::string& problem) : InputError(Kind::relation, "", problem) {}
+  explicit InputError(const std::string& problem);
   /// Several faults, at most kMostFaults of them, those of kind `shape` first. Precondition: there is at least one.
   static InputError all(const std::vector<InputError>& errors);
 
   Kind kind() const { return kind_; }
-  /// JSON pointer of the field; empty for the whole file.
+  const ErrorLocation& location() const { return location_; }
+  /// The text of the location; empty for the whole file.
   const std::string& place() const { return place_; }
   const std::string& problem() const { return problem_; }
   /// The faults one by one; only one unless the error was made by `all`.
   std::vector<InputError> faults() const;
 
  private:
+  InputError(Kind kind, ErrorLocation location, std::string place, std::string problem);
+
   Kind kind_;
+  ErrorLocation location_;
   std::string place_;
   std::string problem_;
   std::vector<InputError> more_;  ///< all faults but the first
 };
 
-/// Throws an InputError (a relation) about a place, about a file, or about a line of it.
-[[noreturn]] void fail_at(const std::string& place, const std::string& problem);
+/// Throws an InputError (a relation) about the field at a JSON pointer, about a file, a line of it, or another place.
+[[noreturn]] void fail_at(const std::string& pointer, const std::string& problem);
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
+[[noreturn]] void fail_in(ErrorLocation location, const std::string& problem);
 
 }  // namespace hapbench

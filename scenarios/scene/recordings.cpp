@@ -21,7 +21,7 @@ constexpr std::size_t kForceColumns = 3;
 constexpr std::size_t kAxisPose = 7;  ///< columns of time, position and axis; a quaternion has one more
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::size_t row, const std::string& problem) {
-  fail_at(fmt::format("{}, sample {}", file.string(), row + 1), problem);
+  fail_in({.file = file, .entry = fmt::format("sample {}", row + 1)}, problem);
 }
 
 Vec3 axis_of(std::span<const double> cells, const std::filesystem::path& file, std::size_t row) {
@@ -86,7 +86,7 @@ ContactTrace trace_in(std::string_view text, const std::filesystem::path& file) 
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
     const auto refuse = [&](const std::string& problem) {
-      fail_at(fmt::format("{}, contact {}", file.string(), i + 1), problem);
+      fail_in({.file = file, .entry = fmt::format("contact {}", i + 1)}, problem);
     };
     if (trace.times.empty() || trace.times.back().time < row[0])
       trace.times.push_back({row[0], i});
