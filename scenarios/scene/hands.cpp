@@ -79,9 +79,9 @@ static void describe(Fields& f, DragHandFields& hand) {
 
 static void describe(Fields& f, Gauge& gauge) {
   f.number("cutoff_Hz", gauge.cutoff, {0.0, 1e6, "Hz", true}, "of the low-pass of the spring force it shows");
-  f.number(
-      "grace_s", gauge.grace, {0.0, 1000.0, "s"},
-      "how long it may show less than least_press_N without a break of the hold; without effect together with threshold");
+  f.number("grace_s", gauge.grace, {0.0, 1000.0, "s"},
+           "how long it may show less than least_press_N without a break of the hold; without effect together with "
+           "threshold");
 }
 
 static void describe(Fields& f, Threshold& threshold) {

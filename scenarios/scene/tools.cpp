@@ -54,8 +54,8 @@ static void describe(Fields& f, CylinderFields& tool) {
 static void describe(Fields& f, RevolvedFields& tool) {
   f.list(
       "profile_m", tool.profile, {2, kMostCorners},
-      "corners [s, rho] of the outline beside the axis, from the far end to the tip: s <= 0 along the axis from the tip "
-      "centre, rho from the axis",
+      "corners [s, rho] of the outline beside the axis, from the far end to the tip: s <= 0 along the axis from the "
+      "tip centre, rho from the axis",
       [](Fields& p, ProfilePoint& point) {
         p.pair("two numbers [s, rho]: along the axis from the tip centre, and from the axis [m]", point.s,
                {-1000.0, 1000.0, "m"}, point.rho, {0.0, 1000.0, "m"});

@@ -119,7 +119,8 @@ TEST_F(Extends, AcceptsItselfInNoJsonInMemory) {
 constexpr const char* kScenario = R"({
   "name": "base",
   "time": {"step_s": 0.0005, "steps": 20},
-  "environment": {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}, {"direction": [0, 1, 0], "count": 3}]},
+  "environment": {"type": "springs",
+    "groups": [{"direction": [1, 0, 0], "count": 2}, {"direction": [0, 1, 0], "count": 3}]},
   "rendering": {"reduction": {"threshold": 0.9}}
 })";
 
@@ -200,8 +201,8 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
   EXPECT_EQ(with({both, R"(time={"step_s":0.0003,"steps":20})"}), with({device, "time.step_s=0.0003"}));
   EXPECT_EQ(
       refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.0023,"delay_samples":2.3})")
-          .find(
-              "/device/delay_s: got 0.0023 s together with delay_samples 2.3; allowed: one of the two, or both where they"),
+          .find("/device/delay_s: got 0.0023 s together with delay_samples 2.3; allowed: one of the two, or both where "
+                "they"),
       0u);
   EXPECT_NE(refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":-1})").find("/device/delay_s: got -1"),
             std::string::npos);
