@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/expectations.hpp"
 #include "scenarios/run/result_folder.hpp"

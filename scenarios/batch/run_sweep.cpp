@@ -15,12 +15,13 @@
 #include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/describe_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
-#include "scenarios/scene/parts.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "scenarios/batch/cases.hpp"
+#include "scenarios/input/largest_sizes.hpp"
 
 /// Sweeps: cases that are checked first, then run, and the table that they leave, sweep.csv.
 namespace hapbench {

@@ -13,8 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "scenarios/input/json_file.hpp"
-#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/mesh_sampling.hpp"
 #include "sim/core/types.hpp"
 
 /// The format of scenario files, described once, so that program, files, schema and documentation cannot disagree. A
@@ -288,11 +287,5 @@ class Fields {
     ((index == I ? static_cast<void>(value.template emplace<I>()) : void()), ...);
   }
 };
-
-/// Reads and checks a JSON value, found at the JSON pointer `at`, into what `value` describes. Fields that the file
-/// does not have leave their members as they are. Throws InputError, of kind shape for what the schema refuses too,
-/// that names the place, the value and what is allowed. After a fault the remaining fields and entries are still read,
-/// so that one error reports the faults of all.
-void read_value(const Json& json, const std::string& at, Fields::Body value);
 
 }  // namespace hapbench

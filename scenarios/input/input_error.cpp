@@ -1,45 +1,45 @@
 #include "scenarios/input/input_error.hpp"
 
-#include <algorithm>
-#include <numeric>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "scenarios/input/text_lines.hpp"
+#include <algorithm>
+#include <utility>
 
 namespace hapbench {
-namespace {
-
-/// Number of letters to replace, remove, insert or swap with a neighbour to turn `a` into `b`. If that is less, one
-/// more than the number for a part of `b` that ends before an underscore.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1), before(row), before_that(row);  // for the first letters of `a`
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    before_that.swap(before);
-    before.swap(row);
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      row[j] = std::min({replaced, before[j] + 1, row[j - 1] + 1});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        row[j] = std::min(row[j], before_that[j - 2] + 1);
-    }
-  }
-  std::size_t least = row.back();
-  for (std::size_t j = 1; j < b.size(); ++j)
-    if (b[j] == '_') least = std::min(least, row[j] + 1);
-  return least;
-}
-
-}  // namespace
 
 std::string one_line(std::string text) {
   std::ranges::replace_if(
       text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
   return text;
 }
+
+std::string ErrorLocation::text() const {
+  std::vector<std::string> parts;
+  if (!option.empty()) parts.push_back(option);
+  for (const std::filesystem::path& path : outer) parts.push_back(path.string());
+  std::string in_file = file.string();
+  if (line > 0) in_file += fmt::format(", line {}", line);
+  if (!entry.empty()) in_file += ", " + entry;
+  if (!in_file.empty()) parts.push_back(in_file);
+  if (!pointer.empty()) parts.push_back(pointer);
+  return fmt::format("{}", fmt::join(parts, ": "));
+}
+
+InputError::InputError(Kind kind, ErrorLocation location, std::string place, std::string problem)
+    : std::runtime_error(one_line(place.empty() ? problem : place + ": " + problem)),
+      kind_(kind),
+      location_(std::move(location)),
+      place_(std::move(place)),
+      problem_(std::move(problem)) {}
+
+InputError::InputError(Kind kind, ErrorLocation location, const std::string& problem)
+    : InputError(kind, location, location.text(), problem) {}
+
+InputError::InputError(Kind kind, const std::string& pointer, const std::string& problem)
+    : InputError(kind, ErrorLocation{.pointer = pointer}, problem) {}
+
+InputError::InputError(const std::string& problem) : InputError(Kind::relation, ErrorLocation{}, problem) {}
 
 InputError InputError::all(const std::vector<InputError>& errors) {
   std::vector<InputError> faults;
@@ -55,59 +55,25 @@ InputError InputError::all(const std::vector<InputError>& errors) {
 }
 
 std::vector<InputError> InputError::faults() const {
-  std::vector<InputError> faults = {InputError(kind_, place_, problem_)};
+  std::vector<InputError> faults = {InputError(kind_, location_, problem_)};
   faults.insert(faults.end(), more_.begin(), more_.end());
   return faults;
 }
 
-void fail_at(const std::string& place, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, place, problem);
+void fail_at(const std::string& pointer, const std::string& problem) {
+  fail_in({.pointer = pointer}, problem);
 }
 
 void fail_in_file(const std::filesystem::path& file, const std::string& problem) {
-  fail_at(file.string(), problem);
+  fail_in({.file = file}, problem);
 }
 
 void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem) {
-  fail_at(fmt::format("{}, line {}", file.string(), line), problem);
+  fail_in({.file = file, .line = line}, problem);
 }
 
-std::string nearest_name(std::string_view given, std::span<const std::string> valid) {
-  const std::string lower = lower_case(given);
-  std::string best;
-  // A third of the letters may be wrong, but only one in a short name, which would otherwise match anything.
-  std::size_t best_distance = std::max<std::size_t>(given.size() > 4 ? 2 : 1, given.size() / 3) + 1;
-  for (const std::string& name : valid) {
-    // Letters to remove alone are too many. A hostile name may be megabytes long.
-    if (given.size() >= name.size() + best_distance) continue;
-    const bool contains = given.size() >= 3 && name.find(given) != std::string::npos;
-    const std::size_t distance = contains ? 1 : edit_distance(lower, lower_case(name));
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = name;
-    }
-  }
-  return best;
-}
-
-std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid) {
-  const std::string name = nearest_name(given, valid);
-  return name.empty() ? "" : fmt::format("; nearest valid name: \"{}\"", name);
-}
-
-void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
-                        std::string_view shown_by) {
-  if (std::find(valid.begin(), valid.end(), name) != valid.end()) return;
-  throw InputError(
-      fmt::format("{} \"{}\"{}; allowed: {}", got, name, nearest_name_hint(name, valid), quoted_list(valid, shown_by)));
-}
-
-std::string quoted_list(std::span<const std::string> names, std::string_view shown_by) {
-  if (names.empty()) return "nothing";
-  const std::size_t most = shown_by.empty() ? 50 : 8, more = names.size() - std::min(names.size(), most);
-  std::string text = fmt::format("\"{}\"", fmt::join(names.first(names.size() - more), "\", \""));
-  if (more > 0) text += fmt::format(" and {} more", more);
-  return more > 0 && !shown_by.empty() ? text + fmt::format(", which \"{}\" tells", shown_by) : text;
+void fail_in(ErrorLocation location, const std::string& problem) {
+  throw InputError(InputError::Kind::relation, std::move(location), problem);
 }
 
 }  // namespace hapbench

@@ -1,24 +1,31 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
-#include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace hapbench {
-
-// Largest sizes of a scenario; larger requests, which may exceed every integer, are refused before they take memory.
-inline constexpr double kMostPoints = 2e7;  ///< shell points or springs of an environment
-inline constexpr double kMostSteps = 1e9;   ///< steps of a run
-inline constexpr double kMostRows = 2e7;    ///< rows that a run may record
 
 /// `text` with a '?' in place of each control character (file names and values from outside may have some).
 std::string one_line(std::string text);
 
 /// Maximum number of errors reported per file.
 inline constexpr std::size_t kMostFaults = 20;
+
+/// The place of a fault, as data. What does not apply is empty.
+struct ErrorLocation {
+  std::string option = {};                        ///< option with the fault, as typed: "--set time.step_s=0"
+  std::vector<std::filesystem::path> outer = {};  ///< files by which `file` was found, the outermost first
+  std::filesystem::path file = {};
+  std::size_t line = 0;      ///< in the file, from 1; 0: none
+  std::string entry = {};    ///< of the file, as "sample 3"
+  std::string pointer = {};  ///< JSON pointer of the field
+
+  /// The parts that are there, as a message begins with them: "scene.json: /time/step_s" or "mesh.obj, line 3".
+  std::string text() const;
+};
 
 /// Bad input: a file, an argument or a field the program refuses. Exit status 2. The message is one line that names the
 /// place, the value given, what is allowed and, for names, the nearest valid one: the first of perhaps several faults.
@@ -29,47 +36,36 @@ class InputError : public std::runtime_error {
     relation,  ///< fields contradict each other or the world (a missing file); a schema cannot express that
   };
 
-  InputError(Kind kind, std::string place, const std::string& problem)
-      : std::runtime_error(one_line(place.empty() ? problem : place + ": " + problem)),
-        kind_(kind),
-        place_(std::move(place)),
-        problem_(problem) {}
+  InputError(Kind kind, ErrorLocation location, const std::string& problem);
+  /// An error in the field at a JSON pointer; an empty pointer means the whole file.
+  InputError(Kind kind, const std::string& pointer, const std::string& problem);
   /// An error of kind `relation` that is not about a particular field.
-  explicit InputError(const std::string& problem) : InputError(Kind::relation, "", problem) {}
+  explicit InputError(const std::string& problem);
   /// Several faults, at most kMostFaults of them, those of kind `shape` first. Precondition: there is at least one.
   static InputError all(const std::vector<InputError>& errors);
 
   Kind kind() const { return kind_; }
-  /// JSON pointer of the field; empty for the whole file.
+  const ErrorLocation& location() const { return location_; }
+  /// The text of the location; empty for the whole file.
   const std::string& place() const { return place_; }
   const std::string& problem() const { return problem_; }
   /// The faults one by one; only one unless the error was made by `all`.
   std::vector<InputError> faults() const;
 
  private:
+  InputError(Kind kind, ErrorLocation location, std::string place, std::string problem);
+
   Kind kind_;
+  ErrorLocation location_;
   std::string place_;
   std::string problem_;
   std::vector<InputError> more_;  ///< all faults but the first
 };
 
-/// Throws an InputError (a relation) about a place, about a file, or about a line of it.
-[[noreturn]] void fail_at(const std::string& place, const std::string& problem);
+/// Throws an InputError (a relation) about the field at a JSON pointer, about a file, a line of it, or another place.
+[[noreturn]] void fail_at(const std::string& pointer, const std::string& problem);
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
-
-/// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest. Case does not
-/// matter, and an ending after an underscore, such as a unit, may be missing.
-std::string nearest_name(std::string_view given, std::span<const std::string> valid);
-
-/// `; nearest valid name: "x"`, or empty.
-std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
-
-/// Throws an InputError, `got` before the name, when the name is not among the valid ones. `shown_by`: see below.
-void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
-                        std::string_view shown_by = {});
-
-/// "a", "b", "c"; of more than 50 only how many more there are, of more than 8 where the command `shown_by` shows them.
-std::string quoted_list(std::span<const std::string> names, std::string_view shown_by = {});
+[[noreturn]] void fail_in(ErrorLocation location, const std::string& problem);
 
 }  // namespace hapbench

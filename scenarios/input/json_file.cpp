@@ -4,13 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <set>
 #include <vector>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_file.hpp"
 
 namespace hapbench {
 namespace {
@@ -93,23 +91,6 @@ class Guard {
 };
 
 }  // namespace
-
-std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
-  // The system would open the file whose name ends before the zero byte.
-  if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("cannot be read: {}", std::strerror(errno)));
-  // Read in pieces up to the limit, because pipes and devices have no size.
-  std::string text;
-  std::vector<char> piece(1 << 16);
-  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0) {
-    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > largest) throw InputError(fmt::format("is larger than {} MiB", largest >> 20));
-  }
-  return text;
-}
 
 Json parse_json(const std::string& text) {
   // The parser takes a zero byte for the end of the text.

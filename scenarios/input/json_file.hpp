@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -12,9 +14,6 @@ using Json = nlohmann::ordered_json;
 
 /// Largest JSON file read [bytes].
 inline constexpr std::uintmax_t kLargestJsonFile = 64 << 20;
-
-/// Reads a whole file. Throws InputError without a place when it cannot be read or is larger than `largest` bytes.
-std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest);
 
 /// Parses JSON that may be hostile. Throws InputError for syntax errors (with line, column and what was expected),
 /// nesting deeper than 64, objects with more than 10 000 keys, duplicate keys and numbers beyond the range of double.

@@ -1,13 +1,15 @@
+#include "scenarios/input/reader.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/input/fields.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_schema.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/input/writer.hpp"
 
 namespace hapbench {
 namespace {

@@ -8,7 +8,9 @@
 
 #include "results/io/columns.hpp"
 #include "scenarios/batch/comparison.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/new_directories.hpp"

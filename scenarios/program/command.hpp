@@ -20,6 +20,7 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11

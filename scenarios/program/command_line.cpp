@@ -13,8 +13,8 @@
 #include "algorithms/module/module.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/input/writer.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -405,26 +405,34 @@ Command CommandLine::add(const std::string& name, const std::string& summary, Ou
   return Command(app);
 }
 
-InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides) {
+namespace {
+
+/// The location with the override in place of its file, if the override gave its field. `pointer` is the override's.
+void name_override(ErrorLocation& location, const std::string& override, const std::string& pointer) {
   constexpr std::size_t kMostTyped = 60;
+  const bool is_long = override.size() > kMostTyped;
+  const bool has_option = !location.option.empty();  // what else was typed, as --device
+  location.option +=
+      fmt::format("{}--set {}{}", has_option ? ": " : "", override.substr(0, kMostTyped), is_long ? "…" : "");
+  location.file.clear();
+  if (location.pointer == pointer) location.pointer.clear();  // the override says it
+}
+
+}  // namespace
+
+InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides) {
   std::vector<InputError> faults;
   for (const InputError& fault : error.faults()) {
-    std::string place = fault.place();
+    ErrorLocation location = fault.location();
     for (const std::string& override : overrides) {
       std::string pointer = "/" + std::string(overridden_path(override));
       std::ranges::replace(pointer, '.', '/');
-      const std::size_t at = place.find(": " + pointer);
-      if (at == std::string::npos) continue;
-      const std::string rest = place.substr(at + 2 + pointer.size());
-      if (!rest.empty() && !rest.starts_with('/')) continue;
-      const std::size_t file = place.rfind(": ", at - 1);  // behind what else was typed, as --device
-      const std::string typed = file == std::string::npos ? "" : place.substr(0, file + 2);
-      const bool is_long = override.size() > kMostTyped;
-      place = fmt::format("{}--set {}{}{}", typed, override.substr(0, kMostTyped), is_long ? "…" : "",
-                          rest.empty() ? "" : ": " + pointer + rest);
+      const bool is_in_it = location.pointer == pointer || location.pointer.starts_with(pointer + "/");
+      if (!is_in_it || location.file.empty()) continue;
+      name_override(location, override, pointer);
       break;
     }
-    faults.emplace_back(fault.kind(), place, fault.problem());
+    faults.emplace_back(fault.kind(), location, fault.problem());
   }
   return InputError::all(faults);
 }

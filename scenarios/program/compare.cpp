@@ -7,7 +7,7 @@
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/convergence/convergence.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/expectations.hpp"

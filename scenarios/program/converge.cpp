@@ -7,10 +7,11 @@
 #include "scenarios/analysis/convergence/convergence.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/batch/run_sweep.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {

@@ -5,7 +5,10 @@
 #include <iterator>
 #include <regex>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"

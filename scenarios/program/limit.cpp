@@ -9,7 +9,8 @@
 #include <set>
 
 #include "device_model/theory/linear_loops.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -122,8 +123,10 @@ InputError on_device(const ComparedDevice& device, const InputError& error) {
   std::vector<InputError> faults;
   for (const InputError& fault : error.faults()) {
     if (fault.place().empty()) return error;  // of an option
-    const bool is_of_type = fault.place().find("/device/") != std::string::npos && !device.has_place_for_mass;
-    faults.emplace_back(fault.kind(), fmt::format("--device {}: {}", device.name, fault.place()),
+    ErrorLocation location = fault.location();
+    const bool is_of_type = location.pointer.starts_with("/device/") && !device.has_place_for_mass;
+    location.option = fmt::format("--device {}", device.name);
+    faults.emplace_back(fault.kind(), location,
                         fault.problem() + (is_of_type ? "; \"--device impedance\" leaves this one out" : ""));
   }
   return InputError::all(faults);

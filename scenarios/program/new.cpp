@@ -9,17 +9,27 @@
 #include "device_model/hands/drag_hand.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/fields.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/json_schema.hpp"
+#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/rounding.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/input/writer.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_distances.hpp"
 #include "scenarios/run/scene_warnings.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/named_files.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
@@ -176,7 +186,7 @@ constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the 
 
 /// Rounds to two significant digits, as people write lengths.
 double rounded(double value) {
-  return std::stod(fmt::format("{:.2g}", value));
+  return rounded_to_digits(value, 2);
 }
 
 Json list_of(const Vec3& v) {
@@ -276,7 +286,7 @@ class Start {
           mesh_file(), object, length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
           length_text(kLongestObject), command, longest, command, longest));
     }
-    const double scale = extent_ ? std::stod(fmt::format("{:.6g}", *extent_ / longest)) : 1.0;
+    const double scale = extent_ ? rounded_to_digits(*extent_ / longest, 6) : 1.0;
     notes.push_back(
         fmt::format("longest edge of the {}'s box: {}, with scale {}", object, length_text(longest * scale), scale));
     return scale;

@@ -11,7 +11,7 @@
 
 #include "device_model/handle_motion.hpp"
 #include "results/io/atomic_file.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/progress_bar.hpp"

@@ -5,7 +5,9 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"

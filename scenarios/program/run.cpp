@@ -2,7 +2,7 @@
 
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 

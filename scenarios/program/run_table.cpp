@@ -5,13 +5,14 @@
 #include <algorithm>
 
 #include "results/summary/summary.hpp"
+#include "scenarios/input/rounding.hpp"
 
 namespace hapbench {
 namespace {
 
 /// A number of few characters: "1440" in place of "1.44e+03", and never "-0".
 std::string cell(std::optional<double> value, int digits = 3) {
-  if (value && digits < 3) value = std::stod(significant(*value, digits));
+  if (value && digits < 3) value = rounded_to_digits(*value, digits);
   if (value && std::abs(*value) >= 100.0 && std::abs(*value) < 1e6) return fmt::format("{:.0f}", *value);
   return value ? significant(*value + 0.0, digits) : "-";
 }

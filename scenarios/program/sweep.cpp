@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "scenarios/batch/run_sweep.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/load_module.hpp"

@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "scenarios/analysis/tuning/tune.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/program/limit.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -5,8 +5,8 @@
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
-#include "scenarios/input/bundled_files.hpp"
-#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/point_shell_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -16,7 +16,8 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {

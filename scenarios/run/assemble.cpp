@@ -5,6 +5,12 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/run/load_module.hpp"
+#include "scenarios/scene/devices.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/hands.hpp"
+#include "scenarios/scene/recordings.hpp"
+#include "scenarios/scene/tools.hpp"
+#include "scenarios/scene/trials.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/contact/late_contacts.hpp"
@@ -90,16 +96,16 @@ LoadedScenario checked(LoadedScenario loaded) {
       file->check();
       if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // it must also be closed
     } catch (const InputError& error) {
-      const std::string place = file_of(loaded, file->pointer()).string() + ": " + file->pointer();
-      throw InputError(InputError::Kind::relation, place, error.what());
+      fail_in({.file = file_of(loaded, file->pointer()), .pointer = file->pointer()}, error.what());
     }
     for (Warning& warning : file->warnings()) loaded.file_warnings.push_back(std::move(warning));
   }
   NamedFile* const file = loaded.files.find(kMotionFile);
   if (file == nullptr) return loaded;
   if (scenario.record.force_reference && !scenario.reference_force && !file->stroke()->force) {
-    throw InputError(
-        InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
+    constexpr const char* kReference = "/record/force_reference";
+    fail_in(
+        {.file = file_of(loaded, kReference), .pointer = kReference},
         fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
   if (auto warning = clock_warning(*file->stroke(), scenario.time)) loaded.file_warnings.push_back(std::move(*warning));

@@ -3,8 +3,9 @@
 #include <memory>
 
 #include "scenarios/scene/load_scenario.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/trials.hpp"
 #include "sim/geometry/triangle_tree.hpp"
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 

@@ -6,7 +6,9 @@
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/impedance_device.hpp"
+#include "scenarios/input/rounding.hpp"
 #include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_distances.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/run/scripted_motion.hpp"
@@ -95,7 +97,7 @@ Number share_of_edge(const DiagnosedRun& run) {
     at.rendering.stiffness = stiffness;
     return contact_step(at, *lambda);
   });
-  return std::stod(fmt::format("{:.6g}", K / std::max(kLeast * K, edge)));
+  return rounded_to_digits(K / std::max(kLeast * K, edge), 6);
 }
 
 /// Where the run vibrates as at an edge, left its bounds or was thrown off.

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "device_model/impedance_device.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/scenario.hpp"
 
 namespace hapbench {
 namespace {

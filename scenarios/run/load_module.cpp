@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "algorithms/module/module.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/hash.hpp"

@@ -13,9 +13,11 @@
 #include "scenarios/run/approach.hpp"
 #include "scenarios/run/drag_course.hpp"
 #include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_distances.hpp"
 #include "scenarios/run/scene_warnings.hpp"
 #include "scenarios/run/standstill.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 namespace {

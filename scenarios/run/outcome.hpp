@@ -6,7 +6,9 @@
 #include "results/observe/inside_observer.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/scenario.hpp"
+#include "sim/loop/simulation.hpp"
 
 /// Outcomes of runs, and warnings about them.
 namespace hapbench {

@@ -11,7 +11,7 @@
 #include "results/observe/energy.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/scenario.hpp"
 
 namespace hapbench {
 namespace {

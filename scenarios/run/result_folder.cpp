@@ -15,7 +15,10 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
+#include "results/observe/energy.hpp"
+#include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/target_metrics.hpp"
+#include "scenarios/scene/trials.hpp"
 
 namespace hapbench {
 namespace {

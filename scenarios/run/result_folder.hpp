@@ -5,10 +5,12 @@
 #include <memory>
 
 #include "results/summary/summary.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/run/new_directories.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/scene/load_scenario.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/scenario.hpp"
+#include "scenarios/scene/trials.hpp"
 
 namespace hapbench {
 

@@ -8,6 +8,8 @@
 #include "algorithms/registry.hpp"
 #include "results/observe/step_times.hpp"
 #include "results/summary/allocations.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/diagnosis_observer.hpp"
@@ -18,6 +20,8 @@
 #include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/scene_warnings.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/trials.hpp"
 
 namespace hapbench {
 namespace {

@@ -1,12 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "results/summary/summary.hpp"
 #include "scenarios/run/run_tables.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/metric_sections.hpp"
+#include "scenarios/scene/trials.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {

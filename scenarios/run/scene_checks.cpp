@@ -12,6 +12,9 @@
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_warnings.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/recordings.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {

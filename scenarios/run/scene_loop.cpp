@@ -8,7 +8,7 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/devices.hpp"
 
 namespace hapbench {
 namespace {
@@ -69,16 +69,39 @@ Scenario stuck_scene(Scenario scenario) {
   return scenario;
 }
 
-/// The fields of devices that their loops have, that SampledLoop::nonlinearity names, or that do nothing while nothing
-/// saturates, with a blank before and after each. Any other that is not at its default leaves no theory.
-constexpr std::string_view kKnownToTheory =
-    " /handle_mass_kg /viscous_N_s_per_m /coulomb_N /encoder_step_m /delay_samples /delay_s /force_max_N /force_step_N "
-    "/force_slew_N_per_s /position_noise_m /velocity_filter/noise_m /velocity_filter/cutoff_Hz /velocity_filter/order "
-    "/position_filter/cutoff_Hz /position_filter/order /transmission/motor_share /transmission/stiffness_N_per_m "
-    "/transmission/damping_N_s_per_m /force_limit_N /sensor/weight_offset_N /sensor/weight_compensated /sensor/noise_N "
-    "/servo/stiffness_N_per_m /servo/damping_N_s_per_m /servo/max_force_N /servo/delay_samples "
-    "/mechanics/carriage_mass_kg /mechanics/handle_mass_kg /mechanics/friction_N_s_per_m "
-    "/mechanics/structure_stiffness_N_per_m /mechanics/structure_damping_N_s_per_m ";
+/// JSON pointers, within a device, of the fields that its loop has, that SampledLoop::nonlinearity names, or that do
+/// nothing while nothing saturates. Any other field that is not at its default leaves no theory.
+constexpr std::string_view kKnownToTheory[] = {"/handle_mass_kg",
+                                               "/viscous_N_s_per_m",
+                                               "/coulomb_N",
+                                               "/encoder_step_m",
+                                               "/delay_samples",
+                                               "/delay_s",
+                                               "/force_max_N",
+                                               "/force_step_N",
+                                               "/force_slew_N_per_s",
+                                               "/position_noise_m",
+                                               "/velocity_filter/noise_m",
+                                               "/velocity_filter/cutoff_Hz",
+                                               "/velocity_filter/order",
+                                               "/position_filter/cutoff_Hz",
+                                               "/position_filter/order",
+                                               "/transmission/motor_share",
+                                               "/transmission/stiffness_N_per_m",
+                                               "/transmission/damping_N_s_per_m",
+                                               "/force_limit_N",
+                                               "/sensor/weight_offset_N",
+                                               "/sensor/weight_compensated",
+                                               "/sensor/noise_N",
+                                               "/servo/stiffness_N_per_m",
+                                               "/servo/damping_N_s_per_m",
+                                               "/servo/max_force_N",
+                                               "/servo/delay_samples",
+                                               "/mechanics/carriage_mass_kg",
+                                               "/mechanics/handle_mass_kg",
+                                               "/mechanics/friction_N_s_per_m",
+                                               "/mechanics/structure_stiffness_N_per_m",
+                                               "/mechanics/structure_damping_N_s_per_m"};
 
 }  // namespace
 
@@ -124,7 +147,7 @@ std::string unknown_to_theory(const Scenario& scenario) {
   std::string unknown;
   for (const Json& change : Json::diff(written(plain), written(scenario.device))) {
     const std::string path = change["path"].get<std::string>();
-    if (kKnownToTheory.find(" " + path + " ") == std::string_view::npos)
+    if (std::ranges::find(kKnownToTheory, path) == std::end(kKnownToTheory))
       unknown += (unknown.empty() ? "device" : ", device") + path;
   }
   std::replace(unknown.begin(), unknown.end(), '/', '.');

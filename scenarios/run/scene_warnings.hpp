@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/scene/load_scenario.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/scenario.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 /// What is odd about a scene before it runs: warnings, and questions about the field that is likely wrong.

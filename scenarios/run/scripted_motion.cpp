@@ -1,11 +1,10 @@
 #include "scenarios/run/scripted_motion.hpp"
+#include "scenarios/scene/scenario.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <span>
 #include <variant>
-
-#include "scenarios/scene/parts.hpp"
 
 namespace hapbench {
 namespace {

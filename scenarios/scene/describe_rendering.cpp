@@ -1,8 +1,14 @@
+#include "scenarios/scene/describe_rendering.hpp"
+
 #include <algorithm>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "algorithms/registry.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/scenario.hpp"
 
 namespace hapbench {
 namespace {
@@ -155,12 +161,6 @@ static void describe(Fields& f, ForceStageConfig& stage) {
   f.variant(stage, "force stage",
             {{"energy_tank", "gives away no more energy than it holds"},
              {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"}});
-}
-
-Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {
-  scenario.rendering.algorithm = algorithm;
-  scenario.rendering = with_fixed_stages(scenario.rendering);
-  return scenario;
 }
 
 void describe(Fields& f, RenderingConfig& rendering) {

@@ -1,12 +1,18 @@
+#include "scenarios/scene/devices.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "device_model/admittance_device.hpp"
+#include "device_model/impedance_device.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/scene/parts.hpp"
 
 namespace hapbench {
 
@@ -139,12 +145,6 @@ void describe(Fields& f, DeviceFields& device) {
       {{"ideal", "measures and pushes without error"},
        {"admittance", "the thesis's device: force sensor, limiter and servo"},
        {"impedance", "measures positions and renders forces: a light handle with motors, as most desktop devices"}});
-}
-
-std::optional<double> input_force_limit(const DeviceFields& device) {
-  if (const auto* ideal = std::get_if<IdealDeviceFields>(&device)) return ideal->force_limit;
-  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&device);
-  return admittance != nullptr ? admittance->force_limit : std::nullopt;
 }
 
 void resolve_delay(Scenario& scenario) {

@@ -1,12 +1,18 @@
+#include "scenarios/scene/environments.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/largest_sizes.hpp"
+#include "scenarios/input/shared_cache.hpp"
 #include "scenarios/input/writer.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/field_checks.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/core/random.hpp"
 #include "sim/mesh/marching_cubes.hpp"

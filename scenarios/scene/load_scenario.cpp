@@ -4,10 +4,13 @@
 #include <algorithm>
 
 #include "results/io/columns.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/reader.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/describe_scenario.hpp"
+#include "scenarios/scene/relation_warnings.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 #include "sim/core/hash.hpp"
 
@@ -36,6 +39,12 @@ void merge(Json& base, const Json& more) {
   }
   for (const auto& entry : more.items()) drop_alternative(base, entry.key());
   for (const auto& entry : more.items()) merge(base[entry.key()], entry.value());
+}
+
+/// Removes the delay of the device in samples where the scenario has it in seconds too, as effective scenarios do: the
+/// samples are those of a time step that is no longer the scenario's.
+void drop_derived_samples(Json& scenario) {
+  if (scenario.contains(Json::json_pointer("/device/delay_s"))) scenario["device"].erase("delay_samples");
 }
 
 /// Makes relative paths of files start from `directory`.
@@ -94,6 +103,7 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
   if (base.parent_path() != file.parent_path()) keep_files(merged, fs::current_path() / base.parent_path());
   for (const char* own : {"name", "expect"}) merged.erase(own);
   json.erase(kExtends);
+  if (json.contains(Json::json_pointer("/time/step_s"))) drop_derived_samples(merged);
   merge(merged, json);
   return merged;
 }
@@ -126,9 +136,7 @@ void apply_override(Json& json, const std::string& text) {
     }
   }
   *node = Json::accept(value) ? parse_json(value) : Json(value);
-  // An effective scenario has the device's delay in seconds and in samples of the step that is no longer its own.
-  if (path == "time.step_s" && json.contains(Json::json_pointer("/device/delay_s")))
-    json["device"].erase("delay_samples");
+  if (path == "time" || path == "time.step_s") drop_derived_samples(json);
 }
 
 /// True when a run with this field overridden is still the run that the scenario's expectations were written for.
@@ -155,31 +163,42 @@ void expect_less(Json& expect) {
   expect["outcome"] = std::move(outcomes);
 }
 
+/// The reader's refusals of fields that do not exist begin with this.
+constexpr std::string_view kUnknownField = "unknown field";
+
 /// The hint for a field whose name resembles no field of its object: fields elsewhere with the nearest name.
-std::string hint_elsewhere(const std::string& place) {
+std::string hint_elsewhere(const std::string& pointer) {
   const std::vector<std::string> paths = scenario_field_paths();
   const auto own_name = [](const std::string& path) { return parts_of(path, '.').back(); };
-  const std::string nearest = nearest_name(parts_of(place, '/').back(), names_of(paths, own_name));
+  const std::string nearest = nearest_name(parts_of(pointer, '/').back(), names_of(paths, own_name));
   std::vector<std::string> found;
   std::ranges::copy_if(paths, std::back_inserter(found), [&](const auto& path) { return own_name(path) == nearest; });
-  std::string typed = place.substr(1);
+  std::string typed = pointer.substr(1);
   std::replace(typed.begin(), typed.end(), '/', '.');
   if (std::find(found.begin(), found.end(), typed) != found.end()) return "; only an object of another type has it";
   return found.empty() ? "" : "; nearest valid names: " + quoted_list(found);
 }
 
+/// The hint for a field that does not exist, and whose name resembles none of its object; may be empty.
+std::string hint_for(const InputError& fault) {
+  const bool is_of_law = fault.location().pointer.starts_with("/rendering/parameters/");
+  return is_of_law ? "; a law from outside brings its own with --module" : hint_elsewhere(fault.location().pointer);
+}
+
 /// The fault with its file in front, and with hints.
 InputError in_file(const InputError& fault, const fs::path& file) {
-  constexpr std::string_view kUnknown = "unknown field";
+  ErrorLocation location = fault.location();
+  if (!location.file.empty()) {  // that the scenario's file names
+    location.outer.insert(location.outer.begin(), file);
+    return {fault.kind(), location, fault.problem()};
+  }
+  location.file = file;
   std::string problem = fault.problem();
-  const bool has_hint = problem.find("nearest valid name") != std::string::npos;
-  if (problem.starts_with(kUnknown) && !has_hint)
-    problem.insert(kUnknown.size(), fault.place().starts_with("/rendering/parameters/")
-                                        ? "; a law from outside brings its own with --module"
-                                        : hint_elsewhere(fault.place()));
-  if (fault.place() == "/rendering/algorithm" && !has_hint) problem += "; a law from outside comes with --module";
-  const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
-  return {fault.kind(), place, problem};
+  if (problem.find("nearest valid name") == std::string::npos) {
+    if (problem.starts_with(kUnknownField)) problem.insert(kUnknownField.size(), hint_for(fault));
+    if (location.pointer == "/rendering/algorithm") problem += "; a law from outside comes with --module";
+  }
+  return {fault.kind(), location, problem};
 }
 
 }  // namespace
@@ -192,7 +211,10 @@ void rethrow_with_file(const InputError& error, const fs::path& file) {
 
 void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
   std::vector<InputError> faults;
-  for (const InputError& fault : error.faults()) faults.push_back(in_file(fault, file_of(loaded, fault.place())));
+  for (const InputError& fault : error.faults()) {
+    const ErrorLocation& location = fault.location();
+    faults.push_back(in_file(fault, location.file.empty() ? file_of(loaded, location.pointer) : loaded.file));
+  }
   throw InputError::all(faults);
 }
 
@@ -214,14 +236,10 @@ ScenarioText read_scenario_text(const fs::path& file) {
 
 fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   if (!pointer.starts_with('/')) return loaded.file;
-  try {
-    // A field that no file has is at its default; the object around it is the nearest place to name.
-    for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
-      for (const ScenarioLayer& layer : loaded.layers)
-        if (layer.json.contains(at)) return layer.file;
-    }
-  } catch (const Json::exception&) {
-    // A place that is not a pointer, such as the path of a mesh.
+  // A field that no file has is at its default; the object around it is the nearest place to name.
+  for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
+    for (const ScenarioLayer& layer : loaded.layers)
+      if (layer.json.contains(at)) return layer.file;
   }
   return loaded.file;
 }

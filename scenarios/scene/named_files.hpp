@@ -1,91 +1,21 @@
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <functional>
-#include <list>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "results/observe/force_fidelity.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/input/fields.hpp"
+#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/scene/recordings.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "sim/contact/trace_source.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/tool/motion.hpp"
 
 namespace hapbench {
-
-/// Values that take long to make, for all runs of a process: parsed files, point shells, distance grids. Thread-safe.
-/// Those used last are kept, up to 128 of them and 512 MB, but at least two for each thread of the machine, so that
-/// runs side by side do not take each other's away. A dropped value lives on while a run holds it.
-class SharedCache {
- public:
-  /// The value of that key, which says all that the value depends on. Unless it is there, `make` makes it, a
-  /// std::shared_ptr<const T>; `bytes` of the value says about how large it is. Waits while another thread makes it.
-  /// What `make` throws is passed on, and the next caller tries again.
-  template <class T, class Make, class Bytes>
-  std::shared_ptr<const T> get(const std::string& key, const Make& make, const Bytes& bytes) {
-    return std::static_pointer_cast<const T>(get_untyped(key, [&]() -> Made {
-      std::shared_ptr<const T> value = make();
-      const std::size_t size = bytes(*value);
-      return {std::move(value), size};
-    }));
-  }
-
-  /// Number of values made so far.
-  std::size_t made() const {
-    const std::lock_guard lock(mutex_);
-    return made_;
-  }
-
- private:
-  struct Made {
-    std::shared_ptr<const void> value;
-    std::size_t bytes = 0;
-  };
-  struct Entry {
-    std::string key;
-    std::mutex mutex;
-    Made made;
-  };
-  static constexpr std::size_t kMost = 128;
-  static constexpr std::size_t kMostBytes = std::size_t{512} << 20;
-
-  std::shared_ptr<const void> get_untyped(const std::string& key, const std::function<Made()>& make);
-  std::shared_ptr<Entry> entry_of(const std::string& key);
-  /// Precondition: the list is locked.
-  void drop_oldest();
-
-  mutable std::mutex mutex_;
-  std::list<std::shared_ptr<Entry>> entries_;  ///< the one used last first
-  std::size_t made_ = 0;
-};
-
-/// The one of this process.
-SharedCache& shared_cache();
-
-/// A recorded stroke: the motion of the tool and, optionally, the force on it that was measured at the same time.
-struct Stroke {
-  RecordedMotion motion;
-  std::optional<ReferenceForce> force;
-};
-
-/// The stroke in the contents of a CSV file with the header time_s,px_m,py_m,pz_m, then axis_x,axis_y,axis_z or
-/// qw,qx,qy,qz, then perhaps a measured force mfx_N,mfy_N,mfz_N. Times must increase strictly, axes must not be zero,
-/// and quaternions must have norm 1 within 0.001; both are normalised. A quaternion turns the tool's frame, whose axis
-/// points along -z, into the world's. Throws InputError that names the sample.
-Stroke stroke_in(std::string_view text, const std::filesystem::path& file);
-
-/// The contacts in a CSV file with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m: at most 20 million, 100 000 of one
-/// time. Times must not fall, depths must not be below 0, and gradients, normalised unless unit to rounding, must be
-/// unit to 0.001. Throws InputError that names the contact.
-ContactTrace trace_in(std::string_view text, const std::filesystem::path& file);
 
 // Pointers of the files that have a use of their own.
 inline constexpr std::string_view kEnvironmentFile = "/environment/file";

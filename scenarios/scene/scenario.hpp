@@ -258,6 +258,9 @@ struct Scenario {
 /// Runs of the scenario: one for each subject and trial of a tracking hand. May be more than any integer holds.
 double trial_count(const HandFields& hand);
 
+/// True when the contacts are not those of the scenario's own search, but of a recording or a library.
+bool has_other_contacts(const Scenario& scenario);
+
 /// The scenario with another algorithm, whose name is known, and the depth model and reduction that it fixes.
 Scenario with_algorithm(Scenario scenario, std::string_view algorithm);
 

@@ -7,8 +7,9 @@
 #include <mutex>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/input/json_schema.hpp"
+#include "scenarios/scene/describe_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
-#include "scenarios/scene/parts.hpp"
 
 namespace hapbench {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/input/writer.hpp"
+#include "scenarios/input/json_schema.hpp"
 
 namespace hapbench {
 

@@ -1,10 +1,14 @@
+#include "scenarios/scene/tools.hpp"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <stdexcept>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/shared_cache.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/field_checks.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
@@ -50,8 +54,8 @@ static void describe(Fields& f, CylinderFields& tool) {
 static void describe(Fields& f, RevolvedFields& tool) {
   f.list(
       "profile_m", tool.profile, {2, kMostCorners},
-      "corners [s, rho] of the outline beside the axis, from the far end to the tip: s <= 0 along the axis from the tip "
-      "centre, rho from the axis",
+      "corners [s, rho] of the outline beside the axis, from the far end to the tip: s <= 0 along the axis from the "
+      "tip centre, rho from the axis",
       [](Fields& p, ProfilePoint& point) {
         p.pair("two numbers [s, rho]: along the axis from the tip centre, and from the axis [m]", point.s,
                {-1000.0, 1000.0, "m"}, point.rho, {0.0, 1000.0, "m"});

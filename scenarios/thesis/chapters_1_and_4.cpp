@@ -8,7 +8,10 @@
 #include "algorithms/registry.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/batch/comparison.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/scenario.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 

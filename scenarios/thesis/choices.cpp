@@ -7,11 +7,17 @@
 #include <string_view>
 
 #include "results/io/columns.hpp"
-#include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/json_schema.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/expectations.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/scenario.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/scene/scenario.hpp"
+#include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
 
 /// Choices that the thesis leaves open and that the bundled scenarios make. results/reference/choices.json has them;

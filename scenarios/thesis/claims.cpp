@@ -6,9 +6,13 @@
 #include <filesystem>
 #include <map>
 
-#include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 

@@ -2,7 +2,14 @@
 
 #include <vector>
 
+#include "algorithms/registry.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/thesis/judging.hpp"
+#include "sim/tool/cylinder.hpp"
 
 /// The list of all claims. results/reference/rules.json has their texts, published.json the published numbers; the
 /// source of a chapter has what is measured and the rule of the verdict.

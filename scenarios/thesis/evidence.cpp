@@ -7,11 +7,15 @@
 #include <string_view>
 #include <utility>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/named_files.hpp"
 
 namespace hapbench {
 

@@ -8,7 +8,9 @@
 #include <memory>
 #include <string>
 
+#include "scenarios/scene/environments.hpp"
 #include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/support/searches.hpp"
 

@@ -3,8 +3,9 @@
 #include <functional>
 #include <map>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench::bench {
 namespace {

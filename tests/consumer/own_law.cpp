@@ -7,7 +7,7 @@
 #include <exception>
 #include <memory>
 #include <results/observe/metrics.hpp>
-#include <scenarios/input/bundled_files.hpp>
+#include <scenarios/input/bundled_scenarios.hpp>
 #include <scenarios/run/assemble.hpp>
 #include <scenarios/scene/load_scenario.hpp>
 #include <sim/loop/simulation.hpp>

@@ -20,11 +20,12 @@
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/input/largest_sizes.hpp"
 #include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/point_shell_file.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
-#include "scenarios/scene/named_files.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/recordings.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
 /// libFuzzer's targets: each reader of files from outside, fed with bytes of libFuzzer's choice (scripts/fuzz). It

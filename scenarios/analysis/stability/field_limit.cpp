@@ -8,10 +8,12 @@
 
 #include "device_model/impedance_device.hpp"
 #include "device_model/theory/linear_loops.hpp"
+#include "scenarios/input/reader.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/run/scene_loop.hpp"
-#include "scenarios/scene/parts.hpp"
+#include "scenarios/scene/devices.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 
@@ -142,17 +144,17 @@ double allowed_end(const LimitQuestion& question, double own, int sign) {
 void check_scene(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   if (!position_is_free(scenario.motion))
-    fail_at(loaded.file.string() + ": /motion/position/type",
+    fail_in({.file = loaded.file, .pointer = "/motion/position/type"},
             "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
   if (scenario.time.steps < 4)
-    fail_at(loaded.file.string() + ": /time/steps",
+    fail_in({.file = loaded.file, .pointer = "/time/steps"},
             fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
 }
 
 void check_sampling(const LoadedScenario& loaded) {
   const double step = loaded.scenario.time.step;
   if (kVibrationCutoff * step < 0.5) return;
-  fail_at(loaded.file.string() + ": /time/step_s",
+  fail_in({.file = loaded.file, .pointer = "/time/step_s"},
           fmt::format("got {}; allowed for --vibration, which is what is above {} Hz: below {:.4g}", step,
                       kVibrationCutoff, 0.5 / kVibrationCutoff));
 }

@@ -10,6 +10,7 @@
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_loop.hpp"
+#include "scenarios/scene/environments.hpp"
 
 /// The trials of tune: a setting at a stiffness, run with each member of a family and judged by stability and limits.
 namespace hapbench {

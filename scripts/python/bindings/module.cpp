@@ -20,7 +20,7 @@
 #include "bindings/bindings.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/run_table.hpp"

@@ -6,7 +6,9 @@
 
 #include "algorithms/module/module.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/benchmark_program.hpp"
 #include "tests/bench/peers/contact_library.hpp"

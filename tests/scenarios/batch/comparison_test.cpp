@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scenarios/batch/comparison.hpp"
+#include "scenarios/input/shared_cache.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"

@@ -6,8 +6,6 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/text_lines.hpp"
-#include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::json_file_test {
@@ -75,84 +73,27 @@ TEST(ParseJson, RefusesObjectsWithMoreThanTenThousandKeys) {
   EXPECT_NE(refusal_of(object_with(10'001)).find("more than 10000 keys"), std::string::npos);
 }
 
-TEST(ReadTextFile, RefusesANameThatTheSystemWouldCut) {
-  EXPECT_TRUE(test::input_error_of([] { read_text_file(std::string("/dev/null\0more", 14), 100); }));
+TEST(Pointer, EscapesTildeAndSlashAsRfc6901Says) {
+  // The examples of RFC 6901, section 5.
+  EXPECT_EQ(member("", "a/b"), "/a~1b");
+  EXPECT_EQ(member("", "m~n"), "/m~0n");
+  EXPECT_EQ(member("", "~1"), "/~01");
+  EXPECT_EQ(member("", ""), "/");
+  EXPECT_EQ(element(member("", "foo"), 0), "/foo/0");
 }
 
-TEST(ReadTextFile, ReadsUpToItsLimitAndNoFurther) {
-  const test::TemporaryDirectory directory;
-  const std::string contents(1 << 20, 'x');
-  test::write_plainly(directory / "file", contents);
-  EXPECT_EQ(read_text_file(directory / "file", contents.size()), contents);
-  const auto refusal = test::input_error_of([&] { read_text_file(directory / "file", contents.size() - 1); });
-  ASSERT_TRUE(refusal);
-  EXPECT_NE(refusal->problem().find("is larger than"), std::string::npos);
-  // A device without end stops at the limit too.
-  EXPECT_TRUE(test::input_error_of([] { read_text_file("/dev/zero", 1 << 20); }));
+TEST(Pointer, IsOneShortLineWhateverTheKey) {
+  EXPECT_EQ(member("", std::string(1'000'000, 'k')), "/" + std::string(200, 'k'));
+  EXPECT_EQ(member("", "a\nb\tc\x1b"), "/a?b?c?");
 }
 
-const std::vector<std::string> kNames = {"stiffness_N_per_m", "damping_ratio", "mass_kg", "mu_s_N_s_per_m", "mean"};
-
-TEST(InputError, IsOneLineWhateverNamesAndValuesHold) {
-  const InputError error(InputError::Kind::relation, "a\nb.csv", std::string("got \"\r\x1b[31m\0\x7f\"", 14));
-  EXPECT_STREQ(error.what(), "a?b.csv: got \"??[31m??\"");
-}
-
-TEST(NearestName, ForgivesOneSlipOfTheFingers) {
-  for (const char* slip : {"stiffnes_N_per_m", "stiffness_N_per_mm", "stiffness_n_per_m", "stifness_N_per_m"}) {
-    EXPECT_EQ(nearest_name(slip, kNames), "stiffness_N_per_m") << slip;
+TEST(ShownValue, IsShortAndInAscii) {
+  EXPECT_EQ(shown(Json(std::string(1000, 'x'))), "\"" + std::string(79, 'x') + "...");
+  EXPECT_EQ(shown(Json(std::vector<int>(1'000'000))), "a list of 1000000 entries");
+  for (const char* bytes : {"\xc3\xa4", "\xff\xfe", "\xed\xa0\x80", "\xe2\x80\xa8"}) {
+    const std::string text = shown(Json(bytes));
+    EXPECT_EQ(text.find_first_not_of("\"\\u0123456789abcdef"), std::string::npos) << text;
   }
-  EXPECT_EQ(nearest_name("maen", kNames), "mean") << "neighbours swapped";
-  EXPECT_EQ(nearest_name("moon", kNames), "") << "two letters of four: could mean anything";
-  EXPECT_EQ(nearest_name("mesn", kNames), "mean");
-}
-
-TEST(NearestName, KnowsANameByItsBeginningOrAPart) {
-  EXPECT_EQ(nearest_name("stiffness", kNames), "stiffness_N_per_m");
-  EXPECT_EQ(nearest_name("ratio", kNames), "damping_ratio");
-}
-
-TEST(NearestName, SuggestsNothingForSomethingElse) {
-  EXPECT_EQ(nearest_name("colour", kNames), "");
-  EXPECT_EQ(nearest_name("", kNames), "");
-  EXPECT_EQ(nearest_name("x", kNames), "");
-  EXPECT_EQ(nearest_name("mean", {}), "");
-  EXPECT_EQ(nearest_name(std::string(1'000'000, 'm'), kNames), "");
-}
-
-TEST(Numbers, AreTheWholeWordOrNone) {
-  EXPECT_EQ(finite_number("-1.5e-3"), -0.0015);
-  EXPECT_EQ(finite_number("0"), 0.0);
-  for (const char* word : {"", "+1", "1.0x", "x", "nan", "inf", "-inf", "1e999", "0x10", " 1", "1,5"})
-    EXPECT_EQ(finite_number(word), std::nullopt) << word;
-  EXPECT_EQ(whole_number("18446744073709551615"), 18446744073709551615u);
-  for (const char* word : {"", "-1", "+1", "1.0", "18446744073709551616", "x"})
-    EXPECT_EQ(whole_number(word), std::nullopt) << word;
-}
-
-const std::filesystem::path kFile = "t.csv";
-
-TEST(CsvReader, GivesRowsAsCells) {
-  CsvReader csv{LineReader("a,b\r\n 1 ,\t2\r\n,\n\n3,4"), kFile};
-  EXPECT_EQ(csv.header(), "a,b");
-  EXPECT_EQ(csv.columns(), (Words{"a", "b"}));
-  ASSERT_TRUE(csv.next());
-  EXPECT_EQ(csv.cells(), (Words{"1", "2"}));
-  EXPECT_EQ(csv.line(), 2u);
-  ASSERT_TRUE(csv.next());
-  EXPECT_EQ(csv.cells(), (Words{"", ""}));
-  ASSERT_TRUE(csv.next());
-  EXPECT_EQ(csv.cells(), (Words{"3", "4"}));
-  EXPECT_EQ(csv.line(), 5u);
-  EXPECT_FALSE(csv.next());
-}
-
-TEST(NumberTable, MayHaveBlanksBlankLinesCarriageReturnsAndAsManyRowsAsAllowed) {
-  const std::string text = "a,b\r\n\r\n 1 ,\t2\r\n  \n3,4";
-  EXPECT_EQ(number_table_in(text, kFile, {"a,b"}, 2).values, (std::vector<double>{1, 2, 3, 4}));
-  const auto error = test::input_error_of([&] { number_table_in(text, kFile, {"a,b"}, 1); });
-  ASSERT_TRUE(error);
-  EXPECT_STREQ(error->what(), "t.csv, line 5: more than 1 rows");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/hash.hpp"
 #include "tests/results/files.hpp"

@@ -152,8 +152,8 @@ TEST_F(Latency, IsPartOfTheJsonAndOfNoOtherFile) {
 
 // Hostile input, given to the real program: exit status 2, one line on standard error that names file and place,
 // nothing written, soon, in bounded memory. The wording for ordinary mistakes is in tests/data/golden/refused_*.txt,
-// refusals of every field in tests/scenarios/scene/fields_test.cpp, of texts that are no JSON in
-// tests/scenarios/scene/json_file_test.cpp.
+// refusals of every field in tests/scenarios/scene/scenario_schema_test.cpp, of texts that are no JSON in
+// tests/scenarios/input/json_file_test.cpp.
 
 /// Processor time within which bad input must be refused; it takes less than a tenth of it as people run the program.
 /// Code that is not optimised or is sanitized is up to thirty times slower.

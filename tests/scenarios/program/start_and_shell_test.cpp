@@ -5,7 +5,7 @@
 #include <cmath>
 #include <regex>
 
-#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/point_shell_file.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "tests/results/files.hpp"

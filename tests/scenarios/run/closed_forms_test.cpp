@@ -6,10 +6,12 @@
 #include <limits>
 #include <numbers>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 #include "tests/support/scale.hpp"
 

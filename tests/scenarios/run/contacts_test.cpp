@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"

@@ -7,7 +7,7 @@
 
 #include "algorithms/registry.hpp"
 #include "results/observe/metrics.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/diagnosis_observer.hpp"
@@ -16,6 +16,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/scene/metric_sections.hpp"
+#include "scenarios/scene/tools.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 
 namespace hapbench::outcome_test {

@@ -3,15 +3,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/registry.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
-#include "sim/core/hash.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
@@ -97,6 +94,20 @@ TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
   EXPECT_FALSE(effective.contains("extends"));
 }
 
+TEST_F(Extends, AnotherTimeStepReplacesTheSamplesOfADelayInSeconds) {
+  // As an effective scenario has them: 0.0023 s are 4.6 steps of 0.0005 s.
+  write("base.json", R"({"time": {"step_s": 0.0005, "steps": 20}, "environment": {"type": "plane"},
+    "device": {"type": "impedance", "handle_mass_kg": 0.1, "delay_s": 0.0023, "delay_samples": 4.6}})");
+  const auto samples = [&](const std::string& text) {
+    const Scenario scenario = load_scenario(write("mine.json", text)).scenario;
+    return std::get<ImpedanceDeviceConfig>(scenario.device).delay_samples;
+  };
+  EXPECT_EQ(samples(R"({"extends": "base.json"})"), 0.0023 / 0.0005);
+  EXPECT_EQ(samples(R"({"extends": "base.json", "time": {"step_s": 0.001}})"), 0.0023 / 0.001);
+  // What the file gives itself stays.
+  EXPECT_EQ(samples(R"({"extends": "base.json", "time": {"step_s": 0.001}, "device": {"delay_samples": 3}})"), 3.0);
+}
+
 TEST_F(Extends, AcceptsItselfInNoJsonInMemory) {
   Json json = Json::parse(kBase);
   json["extends"] = "poke_plane";
@@ -108,7 +119,8 @@ TEST_F(Extends, AcceptsItselfInNoJsonInMemory) {
 constexpr const char* kScenario = R"({
   "name": "base",
   "time": {"step_s": 0.0005, "steps": 20},
-  "environment": {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}, {"direction": [0, 1, 0], "count": 3}]},
+  "environment": {"type": "springs",
+    "groups": [{"direction": [1, 0, 0], "count": 2}, {"direction": [0, 1, 0], "count": 3}]},
   "rendering": {"reduction": {"threshold": 0.9}}
 })";
 
@@ -186,10 +198,11 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
   const std::string both = "device=" + with({device}).at("device").dump();
   EXPECT_EQ(with({both}), with({device}));
   EXPECT_EQ(with({both, "time.step_s=0.0003"}), with({device, "time.step_s=0.0003"}));
+  EXPECT_EQ(with({both, R"(time={"step_s":0.0003,"steps":20})"}), with({device, "time.step_s=0.0003"}));
   EXPECT_EQ(
       refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.0023,"delay_samples":2.3})")
-          .find(
-              "/device/delay_s: got 0.0023 s together with delay_samples 2.3; allowed: one of the two, or both where they"),
+          .find("/device/delay_s: got 0.0023 s together with delay_samples 2.3; allowed: one of the two, or both where "
+                "they"),
       0u);
   EXPECT_NE(refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":-1})").find("/device/delay_s: got -1"),
             std::string::npos);
@@ -225,168 +238,50 @@ TEST_F(Override, NestedDeeplyIsRefused) {
             std::string::npos);
 }
 
-/// The warnings about a bundled scenario with these overrides, without the file in front.
-std::vector<std::string> warnings_with(std::vector<std::string> overrides) {
-  std::vector<std::string> warnings;
-  for (const Warning& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)
-    warnings.push_back(warning.told());
-  return warnings;
+// The effective scenario: with every default filled in, a file that means the same.
+
+std::string content_hash(const Scenario& scenario) {
+  return scenario_hash(effective_scenario(scenario, {}), NamedFiles(scenario));
 }
 
-TEST(Warnings, NameFieldsThatTheAlgorithmDoesNotRead) {
-  EXPECT_TRUE(warnings_with({"rendering.iterations=3"}).empty()) << "the default";
-  EXPECT_TRUE(warnings_with({"rendering.iterations=7"}).empty()) << "shaped_stiffness reads it";
-  const auto found =
-      warnings_with({"rendering.algorithm=mean", "rendering.iterations=7", "rendering.virtual_coupling_N_per_m=100",
-                     "rendering.angular_velocity_cutoff_Hz=5"});
-  ASSERT_EQ(found.size(), 3u);
-  EXPECT_TRUE(found[0].starts_with("/rendering/iterations: has no effect on this algorithm")) << found[0];
-  EXPECT_TRUE(found[1].ends_with("it is a parameter of virtual_coupling, static_coupling")) << found[1];
-  EXPECT_EQ(found[2], "/rendering/angular_velocity_cutoff_Hz: has no effect without rendering.angular_damping");
-}
-
-class NamedFilesOfAScenario : public testing::Test {
- protected:
-  NamedFilesOfAScenario() {
-    for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
-      test::write_plainly(directory_ / name, test::read_file(test::data_directory() / name));
+void expect_fixed_point(const Scenario& scenario, const fs::path& directory) {
+  const Json effective = effective_scenario(scenario, directory);
+  // Through text, as the file is.
+  const LoadedScenario again = read_scenario(parse_json(json_text(effective)), directory);
+  EXPECT_EQ(json_text(effective_scenario(again.scenario, directory)), json_text(effective));
+  for (const auto& [kind, pointer, text] : again.warnings) {
+    EXPECT_TRUE(text.find("has no effect") != std::string::npos || text.ends_with("have no value")) << text;
   }
-  LoadedScenario load(const char* environment, const char* patch = "{}") const {
-    Json json = test::minimal_scenario(environment);
-    json.merge_patch(Json::parse(patch));
-    return read_scenario(json, directory_.path());
-  }
-
-  test::TemporaryDirectory directory_;
-};
-
-constexpr const char* kStroke = R"({"motion": {"position": {"type": "file", "file": "stroke.csv"}}})";
-
-TEST_F(NamedFilesOfAScenario, AreThoseItNames) {
-  const NamedFiles none = load("plane").files;
-  EXPECT_TRUE(none.all().empty());
-  const NamedFiles both = load("point_shell", kStroke).files;
-  ASSERT_EQ(both.all().size(), 2u);
-  ASSERT_NE(both.find(kEnvironmentFile), nullptr);
-  ASSERT_NE(both.find(kMotionFile), nullptr);
-  EXPECT_EQ(both.find(kToolFile), nullptr);
-  EXPECT_EQ(both.at(kEnvironmentFile).path(), directory_ / "shell.csv");
-  for (const auto& file : both.all()) EXPECT_EQ(file->hash(), hash_text(hash_of(test::read_file(file->path()))));
+  EXPECT_EQ(content_hash(again.scenario), content_hash(scenario));
 }
 
-// Whoever changes a file while a run is under way changes neither the run nor what it says of itself.
-TEST_F(NamedFilesOfAScenario, AreReadOnce) {
-  for (const char* environment : {"mesh", "point_shell"}) {
-    const LoadedScenario loaded = checked(load(environment, kStroke));
-    const Result report = run_scenario(loaded, directory_ / "out", false);
-    for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
-      fs::rename(directory_ / name, directory_ / (std::string(name) + ".gone"));
-    const Result again = run_scenario(loaded, directory_ / "again", false);
-    EXPECT_EQ(again.state_hash, report.state_hash);
-    EXPECT_EQ(again.scenario_hash, report.scenario_hash);
-    EXPECT_THROW(run_scenario(load(environment, kStroke), {}, false), InputError);
-    for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
-      fs::rename(directory_ / (std::string(name) + ".gone"), directory_ / name);
+TEST(EffectiveScenario, OfEveryKindOfFieldIsAFixedPoint) {
+  for (const auto& list : {test::minimal_scenarios(), test::rich_scenarios()}) {
+    for (const test::NamedScenario& scenario : list) {
+      SCOPED_TRACE(scenario.name);
+      expect_fixed_point(read_scenario(scenario.json, test::data_directory()).scenario, test::data_directory());
+    }
   }
 }
 
-// Laws side by side share the parsed mesh, the shell and the inside; a scale of its own keeps other tests' values away.
-TEST_F(NamedFilesOfAScenario, AreParsedOnceForAllLaws) {
-  const std::size_t before = shared_cache().made();
-  for (const AlgorithmEntry& algorithm : algorithms()) {
-    Json patch = {{"environment", {{"scale", 0.00123}}}, {"rendering", {{"algorithm", algorithm.info->name}}}};
-    run_scenario(checked(load("mesh", patch.dump().c_str())), {}, false);
-  }
-  EXPECT_EQ(shared_cache().made() - before, 3u);
-}
-
-// Refusals of recorded motions are in tests/data/golden/refused_files.txt.
-
-const std::string kHeader = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n";
-
-const std::string kQuaternions = "time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n";
-
-constexpr const char* kFile = "stroke.csv";
-
-RecordedMotion read(const std::string& rows) {
-  return stroke_in(kHeader + rows, kFile).motion;
-}
-
-TEST(MotionFile, IsPlayedBackLinearly) {
-  const RecordedMotion motion = read("0,0,0,0,0,0,-1\n2,1,2,4,0,0,-1\n");
-  EXPECT_FALSE(motion.position_is_free());
-  EXPECT_EQ(motion.position_at(0.5), Vec3(0.25, 0.5, 1.0));
-  EXPECT_EQ(motion.position_at(-1.0), Vec3(0, 0, 0));
-  EXPECT_EQ(motion.position_at(3.0), Vec3(1, 2, 4));
-}
-
-TEST(MotionFile, HasItsAxesNormalised) {
-  for (const char* axis : {"0,0,-1", "0,0,-1e-9", "0,0,-7", "0,0,-1e11"}) {
-    EXPECT_EQ(read(std::string("0,0,0,0,") + axis + "\n").axis_at(0.0), Vec3(0, 0, -1)) << axis;
-  }
-  for (const char* axis : {"1e-13,0,0", "0,1e300,0", "1e200,1e200,1e200"})
-    EXPECT_THROW(read(std::string("0,0,0,0,") + axis + "\n"), InputError) << axis;
-}
-
-/// A quarter of a turn about x takes the axis from -z to y.
-TEST(MotionFileOfQuaternions, TurnsTheToolsFrameIntoTheWorlds) {
-  const RecordedMotion motion = stroke_in(kQuaternions + "0,1,2,3,1,0,0,0\n1,1,2,3,0.7072,0.7072,0,0\n", kFile).motion;
-  EXPECT_EQ(motion.axis_at(0.0), Vec3(0, 0, -1));
-  EXPECT_LE((motion.axis_at(1.0) - Vec3(0, 1, 0)).norm(), 4e-16) << "normalised";
-  EXPECT_EQ(motion.position_at(0.5), Vec3(1, 2, 3));
-  EXPECT_TRUE(motion.scripts_roll());
-  EXPECT_NO_THROW(stroke_in(kQuaternions + "1,0,0,0,0,1.0009,0,0\n", kFile)) << "within a thousandth";
-  EXPECT_THROW(stroke_in(kQuaternions + "1,0,0,0,0,1.0011,0,0\n", kFile), InputError);
-}
-
-const std::string kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m\n";
-
-/// The message with which a trace of these rows is refused; empty when it is read.
-std::string refusal(const std::string& rows) {
-  try {
-    trace_in(kTraceHeader + rows, "t.csv");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(TraceFile, HasContactsByTime) {
-  const ContactTrace trace =
-      trace_in(kTraceHeader + "0,1,2,3,0,0,-1,0.5\n0,4,5,6,1,0,0,0\n\n0.25,7,8,9,0,0.6,0.8,1e-3\n", "t.csv");
-  ASSERT_EQ(trace.times.size(), 2u);
-  EXPECT_EQ(trace.times[1].time, 0.25);
-  EXPECT_EQ(trace.times[1].first, 2u);
-  EXPECT_EQ(trace.most(), 2u);
-  ASSERT_EQ(trace.contacts.size(), 3u);
-  EXPECT_EQ(trace.contacts[0].point, Vec3(1, 2, 3));
-  EXPECT_EQ(trace.contacts[2].gradient, Vec3(0, 0.6, 0.8));
-  EXPECT_EQ(trace.contacts[2].depth, 1e-3);
-  EXPECT_TRUE(trace_in(kTraceHeader, "t.csv").times.empty());
-}
-
-TEST(TraceFile, NormalisesRoundedGradientsAlone) {
-  const double exact = 0.57735026918962573;
-  const auto gradient = [](const std::string& text) {
-    return trace_in(kTraceHeader + "0,0,0,0," + text + ",1\n", "t.csv").contacts[0].gradient;
+TEST(ScenarioHash, FollowsTheContentsOfFilesNotTheirPaths) {
+  const test::TemporaryDirectory directory;
+  struct Case {
+    const char *environment, *source, *more;
   };
-  EXPECT_EQ(gradient("0.57735026918962573,0.57735026918962573,0.57735026918962573"), Vec3::Constant(exact));
-  EXPECT_NEAR(gradient("0.5774,0.5774,0.5774").norm(), 1.0, 1e-15);
-}
-
-TEST(TraceFile, IsRefusedWithItsRow) {
-  EXPECT_EQ(refusal("0,0,0,0,0,0,1,1\n0.1,0,0,0,0,0,1,1\n0.05,0,0,0,0,0,1,1\n"),
-            "t.csv, contact 3: got time 0.05 after 0.1; allowed: ascending times");
-  EXPECT_EQ(refusal("0,0,0,0,0,0,1.01,1\n"),
-            "t.csv, contact 1: got a gradient ux,uy,uz of length 1.01; allowed: 1 within 0.001");
-  EXPECT_EQ(refusal("0,0,0,0,0,0,1,-1e-9\n"),
-            "t.csv, contact 1: got depth -1e-09; allowed: >= 0, how deep the point is in the tool");
-  EXPECT_NE(refusal("0,0,0\n"), "");
-  std::string many;
-  for (int i = 0; i < 100'001; ++i) many += "0,0,0,0,0,0,1,1\n";
-  EXPECT_EQ(refusal(many), "t.csv, contact 100001: got more contacts at time 0; allowed: at most 100000");
-  EXPECT_THROW(trace_in("time_s,x,y,z\n", "t.csv"), InputError);
-  EXPECT_THROW(trace_in("", "t.csv"), InputError);
+  for (const Case& of : {Case{"point_shell", "shell.csv", "0,0,0,0,0,1\n"}, Case{"mesh", "cube.obj", "# more\n"}}) {
+    const std::string end = fs::path(of.source).extension(),
+                      contents = test::read_file(test::data_directory() / of.source);
+    const auto hash_with = [&](const std::string& file, const std::string& text) {
+      test::write_plainly(directory / (file + end), text);
+      Json json = test::minimal_scenario(of.environment);
+      json["environment"]["file"] = file + end;
+      return content_hash(read_scenario(json, directory.path()).scenario);
+    };
+    const std::string hash = hash_with("a", contents);
+    EXPECT_EQ(hash_with("b", contents), hash);
+    EXPECT_NE(hash_with("b", contents + of.more), hash);
+  }
 }
 
 }  // namespace

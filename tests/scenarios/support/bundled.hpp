@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 

@@ -1,6 +1,6 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench::test {

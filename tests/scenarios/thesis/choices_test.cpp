@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/thesis/choices.hpp"
 #include "scenarios/thesis/judging.hpp"

@@ -10,9 +10,10 @@
 #include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/analysis/tuning/tune.hpp"
-#include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench::stability_test {

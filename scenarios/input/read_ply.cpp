@@ -1,193 +1,24 @@
+#include "scenarios/input/read_ply.hpp"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <type_traits>
 
+#include "scenarios/input/byte_reader.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/mesh_lines.hpp"
 #include "scenarios/input/text_lines.hpp"
 
-/// Files come from outside: each word is checked, and memory grows with what a file holds, never with what it declares.
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Cuts a polygon into a fan of triangles from its first corner. `corner(k)` gives the next vertex, the k-th.
-template <class Corner>
-void add_polygon(std::size_t corners, TriangleSoup& soup, Corner corner) {
-  const std::uint32_t first = corner(0);
-  std::uint32_t last = corner(1);
-  for (std::size_t k = 2; k < corners; ++k) {
-    const std::uint32_t next = corner(k);
-    soup.triangles.push_back({first, last, next});
-    last = next;
-  }
-}
-
-/// The lines of a mesh file in text form, each as its words. Comments (from '#' to the end of the line) and blank lines
-/// are skipped. Every function throws an InputError that names file and line when a word is not what it should be.
-class MeshLines {
- public:
-  MeshLines(LineReader lines, const fs::path& file) : lines_(lines), file_(file) {}
-
-  /// Goes to the next line that has words; false at the end of the text.
-  bool next() {
-    while (const auto line = lines_.next()) {
-      words_ = words_of(line->substr(0, line->find('#')));
-      if (!words_.empty()) return true;
-    }
-    words_.clear();
-    return false;
-  }
-  const Words& words() const { return words_; }
-
-  /// The word as a finite number. Precondition: there is such a word.
-  double number(std::size_t word) const {
-    std::string_view text = words_[word];
-    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-    const auto value = finite_number(text);
-    if (!value) fail("got " + quoted_word(text) + "; allowed: a finite number");
-    return *value;
-  }
-  /// Three coordinates from that word on.
-  Vec3 position(std::size_t first) const {
-    if (words_.size() < first + 3) fail(fmt::format("got {} coordinates; allowed: 3", words_.size() - first));
-    return {number(first), number(first + 1), number(first + 2)};
-  }
-  /// The word as a count or an index, within 31 bits; `what` it counts is for the message.
-  std::size_t count(std::size_t word, const char* what) const {
-    const auto number = word < words_.size() ? whole_number(words_[word]) : std::nullopt;
-    if (number && *number <= std::numeric_limits<std::int32_t>::max()) return *number;
-    fail(fmt::format("got {} {}; allowed: an integer from 0", word < words_.size() ? quoted_word(words_[word]) : "no",
-                     what));
-  }
-  [[noreturn]] void fail(const std::string& problem) const { fail_in_line(file_, lines_.line(), problem); }
-
- private:
-  LineReader lines_;
-  const fs::path& file_;
-  Words words_;  ///< of the current line
-};
-
-/// Takes the numbers of a binary file one after another. The bytes must outlive it.
-class ByteReader {
- public:
-  ByteReader(std::string_view bytes, std::endian order) : bytes_(bytes), order_(order) {}
-
-  /// Number of bytes that have not been taken yet.
-  std::size_t left() const { return bytes_.size(); }
-  void skip(std::size_t bytes) { bytes_.remove_prefix(bytes); }
-
-  /// Precondition: at least sizeof(T) bytes are left.
-  template <class T>
-  T take() {
-    std::array<char, sizeof(T)> number;
-    std::copy_n(bytes_.begin(), sizeof(T), number.begin());
-    bytes_.remove_prefix(sizeof(T));
-    if (order_ != std::endian::native) std::reverse(number.begin(), number.end());
-    return std::bit_cast<T>(number);
-  }
-
- private:
-  std::string_view bytes_;
-  std::endian order_;
-};
-
-// ---- OBJ
-
-/// Index of the vertex that a face's corner names: "7/1/3" the file's seventh, "-1" the last of the `vertices` so far.
-std::uint32_t vertex_of(std::string_view word, std::size_t vertices, const MeshLines& lines) {
-  const auto index = whole_word_as<int>(word.substr(0, word.find('/')));
-  const auto count = static_cast<std::int64_t>(vertices);
-  if (!index || *index == 0 || *index < -count) {
-    lines.fail(fmt::format("got {}; allowed: the number of a vertex, from 1, or back from -1, the last one",
-                           quoted_word(word)));
-  }
-  return static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index);
-}
-
-// ---- OFF
-
-/// Reads what follows the header's keyword. What comes after a position or corners, as normals or colours, is ignored.
-TriangleSoup read_off_text(MeshLines& lines) {
-  // The counts may stand in the line of the header.
-  const std::size_t counts = lines.words().size() > 1 ? 1 : 0;
-  if (counts == 0 && !lines.next()) lines.fail("the file ends before its counts of vertices, faces and edges");
-  const std::size_t vertices = lines.count(counts, "vertices"), faces = lines.count(counts + 1, "faces");
-  const auto next = [&lines](std::size_t count, const char* what) {
-    if (!lines.next()) lines.fail(fmt::format("the file ends before its {} {}; allowed: a complete file", count, what));
-  };
-  TriangleSoup soup;
-  for (std::size_t i = 0; i < vertices; ++i) {
-    next(vertices, "vertices");
-    soup.vertices.push_back(lines.position(0));
-  }
-  for (std::size_t i = 0; i < faces; ++i) {
-    next(faces, "faces");
-    const std::size_t count = lines.count(0, "corners");
-    if (count < 3 || lines.words().size() <= count)
-      lines.fail(fmt::format("face {}: got {} corners; allowed: at least 3, and as many vertices", i, count));
-    add_polygon(count, soup,
-                [&](std::size_t k) { return static_cast<std::uint32_t>(lines.count(k + 1, "as a vertex")); });
-  }
-  return soup;
-}
-
-// ---- STL
-
-constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;  // bytes of a binary file
-
-void add_triangle(const std::array<Vec3, 3>& corners, TriangleSoup& soup) {
-  const auto first = static_cast<std::uint32_t>(soup.vertices.size());
-  soup.vertices.insert(soup.vertices.end(), corners.begin(), corners.end());
-  soup.triangles.push_back({first, first + 1, first + 2});
-}
-
-TriangleSoup read_stl_text(std::string_view text, const fs::path& file) {
-  TriangleSoup soup;
-  MeshLines lines{LineReader(text), file};
-  while (lines.next()) {
-    const std::string first = lower_case(lines.words()[0]);
-    if (first == "outer") {
-      std::array<Vec3, 3> corners;
-      for (Vec3& corner : corners) {
-        if (!lines.next() || lower_case(lines.words()[0]) != "vertex")
-          lines.fail("allowed after \"outer loop\": three vertices");
-        corner = lines.position(1);
-      }
-      add_triangle(corners, soup);
-    } else if (first != "solid" && first != "facet" && first != "endloop" && first != "endfacet" &&
-               first != "endsolid") {
-      lines.fail(
-          fmt::format("got {}; allowed: solid, facet, outer loop, three times vertex, endloop, endfacet, endsolid",
-                      quoted_word(lines.words()[0])));
-    }
-  }
-  return soup;
-}
-
-TriangleSoup read_stl_binary(ByteReader reader, std::size_t triangles, const fs::path& file) {
-  TriangleSoup soup;
-  for (std::size_t t = 0; t < triangles; ++t) {
-    reader.skip(3 * sizeof(float));  // the normal
-    std::array<Vec3, 3> corners;
-    for (Vec3& corner : corners) {
-      for (double& coordinate : corner) coordinate = reader.take<float>();
-      if (!corner.allFinite()) fail_in_file(file, fmt::format("triangle {}: a vertex is not finite", t));
-    }
-    reader.skip(2);  // attributes
-    add_triangle(corners, soup);
-  }
-  return soup;
-}
-
-// ---- PLY: the triangles of a surface, or points with normals
 
 /// A type of numbers in a PLY file.
 struct PlyType {
@@ -441,55 +272,6 @@ Contents contents_of(std::string_view text, Wanted wanted, const fs::path& file)
 }
 
 }  // namespace
-
-TriangleSoup read_obj(std::string_view text, const fs::path& file) {
-  TriangleSoup soup;
-  MeshLines lines{LineReader(text), file};
-  while (lines.next()) {
-    const Words& words = lines.words();
-    if (words[0] == "v") {
-      soup.vertices.push_back(lines.position(1));
-    } else if (words[0] == "f") {
-      if (words.size() < 4)
-        lines.fail(fmt::format("got a face with {} corners; allowed: at least 3", words.size() - 1));
-      add_polygon(words.size() - 1, soup,
-                  [&](std::size_t k) { return vertex_of(words[k + 1], soup.vertices.size(), lines); });
-    }
-  }
-  return soup;
-}
-
-TriangleSoup read_off(std::string_view text, const fs::path& file) {
-  MeshLines lines{LineReader(text), file};
-  constexpr std::array<std::string_view, 8> kKinds = {"OFF",   "COFF",   "NOFF",   "CNOFF",
-                                                      "STOFF", "STCOFF", "STNOFF", "STCNOFF"};
-  if (!lines.next() || std::find(kKinds.begin(), kKinds.end(), lines.words()[0]) == kKinds.end())
-    lines.fail("is not an OFF file; allowed: \"OFF\" in the first line, perhaps with ST, C or N before it");
-  const Words& header = lines.words();
-  if (header.size() > 1 && header[1] == "BINARY")
-    lines.fail("is a binary OFF file; allowed: a text, or binary PLY or STL");
-  return read_off_text(lines);
-}
-
-TriangleSoup read_stl(std::string_view text, const fs::path& file) {
-  const std::string first_word = lower_case(text.substr(0, text.find_first_of(" \t\r\n")));
-  ByteReader reader(text, std::endian::little);
-  std::size_t triangles = 0;
-  bool complete = text.size() >= kHeader;
-  if (complete) {
-    reader.skip(kName);
-    triangles = reader.take<std::uint32_t>();
-    complete = reader.left() / kTriangle >= triangles;
-  }
-  // Binary files may begin with "solid" too, but not fill their header with text.
-  const bool exact = complete && text.size() == kHeader + kTriangle * triangles;
-  const bool is_text = text.substr(0, kHeader).find('\0') == std::string_view::npos;
-  if (first_word == "solid" && is_text && !exact) return read_stl_text(text, file);
-  if (!complete)
-    fail_in_file(file,
-                 "is not an STL file, or cut short; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle");
-  return read_stl_binary(reader, triangles, file);
-}
 
 TriangleSoup read_ply(std::string_view text, const fs::path& file) {
   return contents_of(text, Wanted::faces, file).soup;

@@ -1,0 +1,67 @@
+#include "scenarios/input/number_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+
+#include "scenarios/input/input_error.hpp"
+
+namespace hapbench {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+Words cells_of(std::string_view row) {
+  Words cells = parts_of(row, ',');
+  for (std::string_view& cell : cells) cell = trimmed(cell);
+  return cells;
+}
+
+}  // namespace
+
+CsvReader::CsvReader(LineReader lines, const std::filesystem::path& file) : lines_(lines), file_(file) {
+  header_ = trimmed(lines_.next().value_or(""));
+  columns_ = cells_of(header_);
+}
+
+bool CsvReader::next() {
+  auto row = lines_.next();
+  while (row && trimmed(*row).empty()) row = lines_.next();
+  if (!row) return false;
+  cells_ = cells_of(*row);
+  if (cells_.size() != columns_.size())
+    fail_in_line(file_, line(), fmt::format("got {} cells; allowed: {}", cells_.size(), columns_.size()));
+  return true;
+}
+
+NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
+                            std::initializer_list<std::string_view> headers, std::size_t most_rows) {
+  const auto allowed = [headers] { return fmt::format("\"{}\"", fmt::join(headers, "\" or \"")); };
+  if (text.empty()) fail_in_line(file, 1, fmt::format("the file is empty; allowed: header {} and rows", allowed()));
+  CsvReader csv{LineReader(text), file};
+  if (std::find(headers.begin(), headers.end(), csv.header()) == headers.end())
+    fail_in_line(file, 1, fmt::format("got header {}; allowed: {}", quoted_word(csv.header()), allowed()));
+  NumberTable table;
+  table.columns = csv.columns().size();
+  while (csv.next()) {
+    for (std::size_t i = 0; i < table.columns; ++i) {
+      const auto value = finite_number(csv.cells()[i]);
+      if (!value) {
+        fail_in_line(file, csv.line(),
+                     fmt::format("column {}: got {}; allowed: a finite number", i + 1, quoted_word(csv.cells()[i])));
+      }
+      table.values.push_back(*value);
+    }
+    if (table.rows() > most_rows) fail_in_line(file, csv.line(), fmt::format("more than {} rows", most_rows));
+  }
+  return table;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,89 @@
+#include "scenarios/input/point_shell_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/largest_sizes.hpp"
+#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/read_ply.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCsvHeader = "x_m,y_m,z_m,nx,ny,nz";
+
+std::vector<SurfacePoint> csv_points_in(std::string_view text, const fs::path& file) {
+  const NumberTable table = number_table_in(text, file, {kCsvHeader}, static_cast<std::size_t>(kMostPoints));
+  std::vector<SurfacePoint> points;
+  points.reserve(table.rows());
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto row = table.row(i);
+    points.push_back({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}});
+  }
+  return points;
+}
+
+void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file) {
+  if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");
+  if (static_cast<double>(points.size()) > kMostPoints)
+    fail_in_file(file, fmt::format("has {} points; allowed: at most {:.0g}", points.size(), kMostPoints));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    SurfacePoint& point = points[i];
+    const double largest = point.position.cwiseAbs().maxCoeff();
+    if (!point.position.allFinite() || largest > kFarthestPoint)
+      fail_in_file(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
+    const double length = point.normal.norm();
+    if (!(std::abs(length - 1.0) <= 1e-3))
+      fail_in_file(file, fmt::format("point {}: got a normal of length {}; allowed: unit normals", i, length));
+    // Unit to rounding is left alone, so that an exported shell reads back bit for bit.
+    if (std::abs(length - 1.0) > 1e-12) point.normal /= length;
+  }
+}
+
+std::string csv_text(const std::vector<SurfacePoint>& points) {
+  std::string text = fmt::format("{}\n", kCsvHeader);
+  for (const SurfacePoint& p : points) {
+    fmt::format_to(std::back_inserter(text), "{},{}\n", fmt::join(p.position, ","), fmt::join(p.normal, ","));
+  }
+  return text;
+}
+
+std::string ply_text(const std::vector<SurfacePoint>& points) {
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nelement face 0\n"
+      "property list uchar int vertex_indices\nend_header\n",
+      points.size());
+  for (const SurfacePoint& p : points) {
+    const Eigen::Vector3f position = p.position.cast<float>(), normal = p.normal.cast<float>();
+    // Nine digits are all that single precision holds.
+    fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g}\n", fmt::join(position, " "), fmt::join(normal, " "));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string shell_extension(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension != ".csv" && extension != ".ply") fail_in_file(file, "has another extension; allowed: .csv or .ply");
+  return extension;
+}
+
+std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file) {
+  auto points = shell_extension(file) == ".csv" ? csv_points_in(text, file) : ply_points_in(text, file);
+  check_and_normalise(points, file);
+  return points;
+}
+
+std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file) {
+  return shell_extension(file) == ".csv" ? csv_text(points) : ply_text(points);
+}
+
+}  // namespace hapbench

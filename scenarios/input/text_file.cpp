@@ -1,0 +1,42 @@
+#include "scenarios/input/text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include "scenarios/input/input_error.hpp"
+
+namespace hapbench {
+
+static constexpr std::uintmax_t kLargestTable = std::uintmax_t{4} << 30;  ///< that is read [bytes]
+
+std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
+  // The system would open the file whose name ends before the zero byte.
+  if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(fmt::format("cannot be read: {}", std::strerror(errno)));
+  // Read in pieces up to the limit, because pipes and devices have no size.
+  std::string text;
+  std::vector<char> piece(1 << 16);
+  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0) {
+    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > largest) throw InputError(fmt::format("is larger than {} MiB", largest >> 20));
+  }
+  return text;
+}
+
+std::string read_named_file(const std::filesystem::path& file) {
+  try {
+    return read_text_file(file, kLargestTable);
+  } catch (const InputError& error) {
+    fail_in_file(file, error.problem());
+  }
+}
+
+}  // namespace hapbench

@@ -1,0 +1,86 @@
+#include "scenarios/scene/profiles.hpp"
+
+#include <cstddef>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kLargestValue = 1e9;
+
+using MovingShape = std::variant<Profile::Ramp, Profile::Sine, Profile::Waypoints>;
+
+void check_times(const Profile::Waypoints& waypoints, const std::string& at) {
+  const auto& points = waypoints.points;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (points[i - 1].first < points[i].first) continue;
+    fail_at(element(at + "/points", i), "got time " + shown(points[i].first) + " after " + shown(points[i - 1].first) +
+                                            "; allowed: strictly increasing times");
+  }
+}
+
+void describe_shape(Fields& f, Profile::Ramp& ramp, NumberRange range) {
+  f.number("start", ramp.start, range, "value at t = 0", Presence::required);
+  f.number("rate_per_s", ramp.rate_per_s, range, "slope, per second", Presence::required);
+}
+
+void describe_shape(Fields& f, Profile::Sine& sine, NumberRange range) {
+  f.number("mean", sine.mean, range, "m of m + a sin(2 pi t / T + phase)", Presence::required);
+  f.number("amplitude", sine.amplitude, range, "a", Presence::required);
+  f.number("period_s", sine.period_s, {0.0, kLargestValue, "s", true}, "T", Presence::required);
+  f.number("phase_rad", sine.phase_rad, {-kLargestValue, kLargestValue, "rad"}, "phase at t = 0");
+}
+
+void describe_shape(Fields& f, Profile::Waypoints& waypoints, NumberRange range) {
+  const auto point = [range](Fields& p, std::pair<double, double>& value) {
+    p.pair("a pair [time in s, value]", value.first, {-kLargestValue, kLargestValue, "s"}, value.second, range);
+  };
+  f.list("points", waypoints.points, {1, 1'000'000}, "[t, v] pairs, t increasing; held constant outside", point,
+         Presence::required);
+  f.choice("interpolation", waypoints.interpolation, {"linear", "cosine"}, "interpolation",
+           "between the points: straight, or cosine (at rest in each point)");
+  if (f.reads()) check_times(waypoints, f.at());
+}
+
+}  // namespace
+
+void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc, Presence presence) {
+  const NumberRange range = {-kLargestValue, kLargestValue, unit};
+  const auto describe_profile = [&](Fields& value) {
+    double constant = profile.is_constant() ? profile(0.0) : 0.0;
+    MovingShape moving;
+    const auto take = [&moving](const auto& shape) {
+      if constexpr (!std::is_same_v<std::decay_t<decltype(shape)>, Profile::Constant>) moving = shape;
+    };
+    std::visit(take, profile.shape());
+    value.plain_or_object(
+        !profile.is_constant(),
+        [&](Fields& v) {
+          v.number(constant, range);
+          if (v.reads()) profile = Profile(constant);
+        },
+        [&](Fields& v) {
+          v.variant(moving, "profile",
+                    {{"ramp", "a value that grows at a constant rate"},
+                     {"sine", "an oscillation about a value"},
+                     {"waypoints", "values at times, joined by straight lines or cosines"}},
+                    Untyped::refused, [range](Fields& s, auto& shape) { describe_shape(s, shape, range); });
+          if (!v.reads()) return;
+          std::visit([&](auto& shape) { profile = Profile(Profile::Shape(std::move(shape))); }, moving);
+        });
+  };
+  f.field(name, doc, presence, [&](Fields& value) { value.shared("profile", describe_profile); });
+}
+
+void profiles(Fields& f, const char* const (&names)[3], std::array<Profile, 3>& profiles, const char* unit,
+              const char* doc, Presence presence) {
+  for (std::size_t i = 0; i < 3; ++i) profile(f, names[i], profiles[i], unit, doc, presence);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,178 @@
+#include "scenarios/scene/scenario_rules.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include "device_model/hands/drag_hand.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/largest_sizes.hpp"
+#include "scenarios/scene/field_checks.hpp"
+#include "sim/loop/integrators/table.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kMostDelaySamples = 1e6;  ///< longest reaction delay of a simulated subject [time steps]
+constexpr double kLongestDrag = 1e6;       ///< entries of the table of a path over a surface
+
+void check_sizes(const Scenario& scenario, double steps) {
+  if (!(steps >= 1.0 && steps <= kMostSteps)) {
+    fail_at("/time/duration_s",
+            fmt::format("got {:.3g} steps (duration_s / step_s); allowed: 1 ... {:.0g}", steps, kMostSteps));
+  }
+  const double rows = steps / static_cast<double>(scenario.record.every);
+  if (records_rows(scenario.record) && rows > kMostRows) {
+    fail_at("/record/every", fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less",
+                                         rows, kMostRows));
+  }
+  // Every step of every trial has its time in memory.
+  if (scenario.record.timing)
+    require_at_most(kMostRows, steps * trial_count(scenario.hand), "/record/timing", "timed steps");
+}
+
+void check_orientation(const MotionFields& motion) {
+  if (!motion.orientation) return;
+  const Vec3 &up = motion.orientation->up, &lean = motion.orientation->lean;
+  // 1e-9 forgives the rounding of directions that were normalised by somebody else.
+  if (up.norm() >= kShortestDirection && lean.norm() >= kShortestDirection &&
+      std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm())
+    return;
+  fail_at("/motion/orientation", fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero",
+                                             shown(up), shown(lean)));
+}
+
+template <class Type, class Variant>
+bool is(const Variant& value) {
+  return std::holds_alternative<Type>(value);
+}
+
+bool is_zero(const Profile& profile) {
+  return profile.is_constant() && profile(0.0) == 0.0;
+}
+
+/// A combination of fields that is refused.
+struct Rule {
+  const char* at;
+  const char* problem;  ///< with {} for the source of contacts
+  bool (*is_broken)(const Scenario& scenario);
+};
+
+/// A later rule may rely on the earlier ones.
+constexpr Rule kRules[] = {
+    {"/rendering/local_average", "got true; allowed: false, because springs have no grid cells",
+     [](const Scenario& s) { return s.rendering.local_average && is<SpringsEnvironment>(s.environment); }},
+    {"/rendering/local_average", "got true; allowed: false, unless environment.grid_m gives the cells",
+     [](const Scenario& s) {
+       const auto* shell = std::get_if<PointShellEnvironment>(&s.environment);
+       const auto* mesh = std::get_if<MeshEnvironment>(&s.environment);
+       return s.rendering.local_average && ((shell != nullptr && !shell->grid) || (mesh != nullptr && !mesh->grid));
+     }},
+    {"/record/ideal_trajectory",
+     "got true; allowed: false, unless the environment is block_with_hole and the tool a cylinder with a flat tip",
+     [](const Scenario& s) {
+       const auto* cylinder = std::get_if<CylinderFields>(&s.tool);
+       const bool is_flat = cylinder != nullptr && cylinder->tip == Tip::flat;
+       return s.record.ideal_trajectory && !(is<BlockEnvironment>(s.environment) && is_flat);
+     }},
+    {"/integrator/tolerance_s", "allowed for integrator.type \"event\" only",
+     [](const Scenario& s) { return s.integrator.type != &kEvent && s.integrator.tolerance != kEventTolerance; }},
+    {"/reference_force", "contradicts motion.position of type \"free\"; allowed with a way that is known beforehand",
+     [](const Scenario& s) { return s.reference_force && is<FreePosition>(s.motion.position); }},
+    {"/record/force_reference",
+     "got true; allowed: false, unless there is a reference_force or motion.position is of type \"file\"",
+     [](const Scenario& s) {
+       return s.record.force_reference && !s.reference_force && !is<RecordedPosition>(s.motion.position);
+     }},
+    {"/hand/type", "got \"push\", which pushes along z; allowed in the plane of \"hole_2d\": \"force\"",
+     [](const Scenario& s) { return is<PushHandFields>(s.hand) && is<Hole2d>(s.environment); }},
+    {"/hand/type", "got \"drag\" with springs, which have no surface; allowed: environments that have one",
+     [](const Scenario& s) { return is<DragHandFields>(s.hand) && is<SpringsEnvironment>(s.environment); }},
+    {"/motion/position/type", "got a prescribed position; allowed: \"free\" with hand \"drag\", which moves the tool",
+     [](const Scenario& s) { return is<DragHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
+    {"/motion/orientation",
+     "got tilt_rad, azimuth_rad or roll_rad together with hand \"drag\", which turns the tool; allowed: without, or "
+     "hand.tilt_rad null",
+     [](const Scenario& s) {
+       const auto* drag = std::get_if<DragHandFields>(&s.hand);
+       if (drag == nullptr || !drag->tilt) return false;
+       const OrientationFields& orientation = *s.motion.orientation;
+       return !(is_zero(orientation.tilt) && is_zero(orientation.azimuth) && is_zero(orientation.roll));
+     }},
+    {"/motion/position/type",
+     "got a prescribed position; allowed: \"free\" with hand \"tracking\", which moves the tool",
+     [](const Scenario& s) { return is<TrackingHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
+    // The contacts of a trace belong to its motion, and neither they nor those of a library are points of our shell.
+    {"/rendering/contact_source", "got \"{}\"; allowed: \"own\", with springs, which have no surface",
+     [](const Scenario& s) { return has_other_contacts(s) && is<SpringsEnvironment>(s.environment); }},
+    {"/rendering/contact_source",
+     "got \"{}\"; allowed: \"own\", unless motion.position is prescribed, as it was when the contacts were recorded",
+     [](const Scenario& s) {
+       return s.rendering.contact_source == kTrace && (position_is_free(s.motion) || handle_moves_tool(s.device));
+     }},
+    {"/rendering/contact_source", "got \"{}\"; allowed: \"own\", with local_average, which merges shell points",
+     [](const Scenario& s) { return has_other_contacts(s) && s.rendering.local_average; }},
+    {"/rendering/contact_source",
+     "got \"{}\"; allowed: \"own\", with reduction.shuffle_seed, which orders shell points",
+     [](const Scenario& s) {
+       return has_other_contacts(s) && s.rendering.reduction && s.rendering.reduction->shuffle_seed;
+     }},
+    // The rules below are about the virtual mass between hand and tool, which an impedance device does not have.
+    {"/hand/type",
+     "got \"mass_spring_damper\", which is fixed to the handle of device \"impedance\"; allowed with other devices: "
+     "\"impedance\", the same spring and damper without the mass",
+     [](const Scenario& s) { return is<MassSpringDamperHandFields>(s.hand) && !handle_moves_tool(s.device); }},
+    {"/motion/position/type",
+     "got a prescribed position; allowed: \"free\" with device \"impedance\", whose handle moves the tool",
+     [](const Scenario& s) { return handle_moves_tool(s.device) && !is<FreePosition>(s.motion.position); }},
+    {"/rendering/passivity_controller",
+     "got true; allowed: false with device \"impedance\": the controller looks ahead by the virtual mass, which is "
+     "not there",
+     [](const Scenario& s) { return handle_moves_tool(s.device) && s.rendering.passivity_controller; }},
+    {"/rendering/force_stage/max_damping_N_s_per_m",
+     "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual mass "
+     "to take it from",
+     [](const Scenario& s) {
+       const bool has_mass = is<FreePosition>(s.motion.position) && !handle_moves_tool(s.device);
+       if (has_mass || !s.rendering.force_stage) return false;
+       const auto* limited = std::get_if<ActuatorLimitedPassivityConfig>(&*s.rendering.force_stage);
+       return limited != nullptr && !limited->max_damping;
+     }},
+};
+
+void check_drag_hand(const Scenario& scenario, double steps) {
+  const auto* hand = std::get_if<DragHandFields>(&scenario.hand);
+  if (hand == nullptr) return;
+  if (hand->direction) require_direction(*hand->direction, "/hand/direction");
+  const double entries = drag_length(*hand, steps * scenario.time.step) / SurfacePath::spacing(hand->smoothing);
+  if (entries <= kLongestDrag) return;
+  fail_at("/hand/smoothing_m",
+          fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kLongestDrag));
+}
+
+void check_tracking_hand(const Scenario& scenario, double steps) {
+  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
+  if (hand == nullptr) return;
+  for (std::size_t i = 0; i < hand->subjects.size(); ++i)
+    require_at_most(kMostDelaySamples, hand->subjects[i].reaction_delay / scenario.time.step,
+                    fmt::format("/hand/subjects/{}/reaction_delay_s", i), "time steps");
+  require_at_most(kMostSteps, trial_count(scenario.hand) * steps, "/hand/trials", "steps in all trials");
+}
+
+}  // namespace
+
+void check_relations(const Scenario& scenario, double steps) {
+  check_sizes(scenario, steps);
+  check_orientation(scenario.motion);
+  for (const Rule& rule : kRules) {
+    if (rule.is_broken(scenario))
+      fail_at(rule.at, fmt::format(fmt::runtime(rule.problem), scenario.rendering.contact_source));
+  }
+  check_drag_hand(scenario, steps);
+  check_tracking_hand(scenario, steps);
+}
+
+}  // namespace hapbench

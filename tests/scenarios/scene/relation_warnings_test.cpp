@@ -1,0 +1,55 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+namespace hapbench::relation_warnings_test {
+namespace {
+
+/// The warnings about a bundled scenario with these overrides, without the file in front.
+std::vector<std::string> warnings_with(std::vector<std::string> overrides) {
+  std::vector<std::string> warnings;
+  for (const Warning& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)
+    warnings.push_back(warning.told());
+  return warnings;
+}
+
+TEST(Warnings, NameFieldsThatTheAlgorithmDoesNotRead) {
+  EXPECT_TRUE(warnings_with({"rendering.iterations=3"}).empty()) << "the default";
+  EXPECT_TRUE(warnings_with({"rendering.iterations=7"}).empty()) << "shaped_stiffness reads it";
+  const auto found =
+      warnings_with({"rendering.algorithm=mean", "rendering.iterations=7", "rendering.virtual_coupling_N_per_m=100",
+                     "rendering.angular_velocity_cutoff_Hz=5"});
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_TRUE(found[0].starts_with("/rendering/iterations: has no effect on this algorithm")) << found[0];
+  EXPECT_TRUE(found[1].ends_with("it is a parameter of virtual_coupling, static_coupling")) << found[1];
+  EXPECT_EQ(found[2], "/rendering/angular_velocity_cutoff_Hz: has no effect without rendering.angular_damping");
+}
+
+TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
+  const auto warnings = [](const char* hand, const char* device) {
+    Json json = test::minimal_scenario("plane");
+    json["hand"] = Json::parse(hand);
+    json["device"] = Json::parse(device);
+    return read_scenario(json, "").warnings;
+  };
+  constexpr const char* kDelay = R"({"type": "admittance", "servo": {"delay_samples": 20}})";
+  for (const char* device : {kDelay, R"({"type": "admittance"})"}) {
+    ASSERT_EQ(warnings(R"({"type": "none"})", device).size(), 1u) << device;
+    EXPECT_EQ(warnings(R"({"type": "none"})", device)[0].told().find("/device: servo and mechanics"), 0u);
+  }
+  EXPECT_EQ(warnings(R"({"type": "push", "force_N": 1})", kDelay).size(), 1u);
+  EXPECT_TRUE(warnings(R"({"type": "push", "force_N": 1})", R"({"type": "ideal"})").empty());
+  EXPECT_TRUE(warnings(R"({"type": "none"})", R"({"type": "admittance", "sensor": {"noise_N": 0.02}})").empty())
+      << "sensor and limiter work whatever the hand";
+  EXPECT_TRUE(warnings(R"({"type": "impedance", "target": {"x_m": 0, "y_m": 0, "z_m": 0}})", kDelay).empty());
+}
+
+}  // namespace
+}  // namespace hapbench::relation_warnings_test
