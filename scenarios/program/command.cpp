@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "results/io/columns.hpp"
-#include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/ranking.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"

@@ -6,7 +6,10 @@
 
 #include "scenarios/analysis/convergence/convergence.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/ranking.hpp"
 #include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/batch/sweep_plan.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"

@@ -9,6 +9,9 @@
 #include <set>
 
 #include "device_model/theory/linear_loops.hpp"
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/jobs.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"

@@ -4,7 +4,16 @@
 #include <algorithm>
 #include <limits>
 
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/join_shards.hpp"
+#include "scenarios/batch/number_with_error.hpp"
+#include "scenarios/batch/ranking.hpp"
 #include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/batch/sampling.hpp"
+#include "scenarios/batch/shard.hpp"
+#include "scenarios/batch/sweep_plan.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"

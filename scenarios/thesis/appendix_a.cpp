@@ -5,6 +5,8 @@
 #include <map>
 
 #include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/thesis/claims.hpp"
 
 /// Claims of appendix A: the planar peg (A.1), a mass on many springs (A.2), the integrator's stability limits (A.3).

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/core/math.hpp"
 

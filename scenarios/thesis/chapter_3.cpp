@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"

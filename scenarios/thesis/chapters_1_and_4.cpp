@@ -5,6 +5,7 @@
 
 #include "algorithms/penalty_rendering.hpp"
 #include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis/claims.hpp"
 
 /// Claims of chapters 1 and 4: how far a drill pressed into the hole sinks in under other ways to merge forces, and

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <regex>
 
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/core/math.hpp"

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/tool/cylinder.hpp"

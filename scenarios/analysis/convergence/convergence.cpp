@@ -12,6 +12,7 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "results/io/columns.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/batch/run_all.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/core/math.hpp"

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/number_with_error.hpp"
 
 /// How far a number is from converged in a scene's step or any field: observed order, Richardson's value and grid
 /// convergence index (Roache 1994; ASME V&V 20) at levels h, h/r, h/r^2, … of the field; or why no order can be stated.

@@ -8,6 +8,7 @@
 
 #include "device_model/impedance_device.hpp"
 #include "device_model/theory/linear_loops.hpp"
+#include "scenarios/batch/jobs.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/run/scene_loop.hpp"

@@ -7,7 +7,7 @@
 
 #include "algorithms/rendering_config.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
-#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/axis.hpp"
 #include "sim/core/math.hpp"
 
 /// The search for the edge of stable values, whatever makes them stable, and with it the largest or smallest value of a

@@ -5,7 +5,7 @@
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/analysis/tuning/tune.hpp"
-#include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/seed_axis.hpp"
 
 namespace hapbench {
 namespace {

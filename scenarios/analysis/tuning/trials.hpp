@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scenarios/analysis/tuning/tune.hpp"
+#include "scenarios/batch/jobs.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_loop.hpp"

@@ -8,6 +8,8 @@
 
 #include "scenarios/analysis/convergence/convergence.hpp"
 #include "scenarios/analysis/tuning/trials.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/run_all.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {

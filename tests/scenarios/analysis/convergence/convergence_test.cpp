@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/run_all.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
