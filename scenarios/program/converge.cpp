@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "scenarios/analysis/convergence/convergence.hpp"
-#include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/analysis/current_value.hpp"
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/batch/ranking.hpp"
 #include "scenarios/batch/run_sweep.hpp"
@@ -192,7 +192,7 @@ LevelRun run_of(const LoadedScenario& loaded) {
 /// The levels of a scene's field. Throws InputError where it has none.
 LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenario) {
   const LoadedScenario loaded = checked(load_scenario(scenario, options.overrides));  // the plan tells its warnings
-  if (own_value(loaded.scenario, options.field).is_null()) {
+  if (current_value(loaded.scenario, options.field).is_null()) {
     std::vector<std::string> given = options.overrides;
     given.push_back(options.field + "=1");
     load_scenario(scenario, given);  // a field that does not exist, or takes no number, says so itself

@@ -11,7 +11,7 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "results/record/recorder.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/analysis/stability/run_stability.hpp"
+#include "scenarios/analysis/stability/run_verdict.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/diagnosis.hpp"

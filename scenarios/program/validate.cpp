@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "results/io/atomic_file.hpp"
-#include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/analysis/stability/compared_devices.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/text_lines.hpp"

@@ -11,9 +11,10 @@
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "results/io/columns.hpp"
-#include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/analysis/current_value.hpp"
 #include "scenarios/batch/run_all.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/core/math.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -56,7 +57,7 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
 }
 
 double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
-  const Json own = own_value(loaded.scenario, path);
+  const Json own = current_value(loaded.scenario, path);
   if (own.is_number_float() && own.get<double>() > 0.0) return own.get<double>();
   if (own.is_null()) {
     const auto distance = point_distance(loaded);

@@ -18,7 +18,7 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
   std::vector<std::string> overrides = question.overrides;
   overrides.push_back("rendering.algorithm=" + algorithm);
   TuneRanges ranges;
-  ranges.stiffness = limit_question(question.scenario, overrides, kStiffnessPath, {}).range;
+  ranges.stiffness = limit_question(question.scenario, overrides, kStiffnessPath, {}).search.range;
   const Scenario own = load_scenario(question.scenario, overrides).scenario;
   if (!own.rendering.hunt_crossley) {
     ranges.damping_ratio = question.damping_ratio;
@@ -231,14 +231,14 @@ bool own_edge_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   const ScenarioText& scene = trials.question.scenario;
   const std::vector<std::string> chosen = trials.overrides(choice, choice.stiffness);
   LimitQuestion question = limit_question(scene, chosen, kStiffnessPath, {});
-  static_cast<StabilityRule&>(question) = rule_of(load_scenario(scene, chosen).scenario);
+  question.rule = rule_of(load_scenario(scene, chosen).scenario);
   question.threads = trials.question.threads;
   law.edge = field_limit(question);
   trials.runs += law.edge.runs.size();
   const double G_K = trials.question.margin * choice.stiffness;
-  if (!law.edge.value) return refute(trials, choice, G_K, "stable values are scattered");
-  if (!law.edge.beyond) return false;
-  const auto& [K, verdict] = *law.edge.beyond;
+  if (!law.edge.end.value) return refute(trials, choice, G_K, "stable values are scattered");
+  if (!law.edge.end.beyond) return false;
+  const auto& [K, verdict] = *law.edge.end.beyond;
   if (K < G_K) return refute(trials, choice, K, std::string(run_verdict_name(verdict)));
   trials.refuted = std::min(trials.refuted, K);
   return false;

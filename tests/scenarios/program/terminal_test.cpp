@@ -8,7 +8,7 @@
 
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/analysis/stability/run_stability.hpp"
+#include "scenarios/analysis/stability/run_verdict.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"

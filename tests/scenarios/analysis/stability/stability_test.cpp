@@ -8,6 +8,8 @@
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/analysis/stability/interval_search.hpp"
+#include "scenarios/analysis/stability/motion_classifier.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/analysis/tuning/tune.hpp"
 #include "scenarios/input/bundled_files.hpp"
@@ -167,8 +169,8 @@ FieldLimit ask(const Asked& asked, const char* algorithm = "summation") {
   Words overrides = asked.overrides;
   overrides.push_back(std::string("rendering.algorithm=") + algorithm);
   LimitQuestion question = limit_question(scenario, overrides, asked.field, asked.range);
-  question.smallest = asked.smallest;
-  static_cast<StabilityRule&>(question) = asked.rule;
+  question.search.smallest = asked.smallest;
+  question.rule = asked.rule;
   return field_limit(question);
 }
 
@@ -212,7 +214,7 @@ TEST(FieldLimit, OfWhatNeverRestsIsNone) {
                                 {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5", "rendering.reduction=null",
                                  "rendering.damping_ratio=0", R"(rendering.friction={"mu_s_N_s_per_m":0})"}},
                                "mean");
-  EXPECT_FALSE(limit.value) << *limit.value;
+  EXPECT_FALSE(limit.end.value) << *limit.end.value;
 }
 
 /// 2000 steps, within which a decay of a tenth in a quarter tells stable from vibrating 0.1 % below the limit.
@@ -226,7 +228,7 @@ const Words kSlow = {"time={\"step_s\":0.001,\"steps\":1000}",
 
 TEST(FieldLimit, IsNoneWhereGrowthIsSlow) {
   const FieldLimit limit = ask({"single_spring", "rendering.stiffness_N_per_m", kSlow, Range{10.0, 1000.0, false}});
-  EXPECT_FALSE(limit.value) << "35 N/m make half a turn in 100 ms, a quarter of the run";
+  EXPECT_FALSE(limit.end.value) << "35 N/m make half a turn in 100 ms, a quarter of the run";
   EXPECT_TRUE(limit.theory_has_none);
   EXPECT_FALSE(limit.theory);
 }
@@ -239,7 +241,7 @@ TEST(FieldLimit, OfADeviceAtAWallIsComparedWithItsLinearLoop) {
                                 .field = "rendering.stiffness_N_per_m",
                                 .overrides = device,
                                 .rule = {.most_vibration = 1e-3}});
-  ASSERT_TRUE(limit.value && limit.linear);
+  ASSERT_TRUE(limit.end.value && limit.linear);
   EXPECT_NEAR(*limit.linear, 1773.8, 0.1);
   EXPECT_TRUE(limit.is_beyond_linear(0.01));
 }
@@ -247,8 +249,8 @@ TEST(FieldLimit, OfADeviceAtAWallIsComparedWithItsLinearLoop) {
 TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
   // n (2 B dt / M + K dt^2 / M) = 4 with B = 62.6 N s/m, K = 20 000 N/m: n = 5.9.
   const FieldLimit limit = ask({"single_spring", "environment.groups.0.count", kLong, Range{1.0, 100.0, false}});
-  EXPECT_EQ(*limit.value, 5.0);
-  EXPECT_EQ(limit.beyond->value, 6.0);
+  EXPECT_EQ(*limit.end.value, 5.0);
+  EXPECT_EQ(limit.end.beyond->value, 6.0);
   EXPECT_EQ(*limit.theory, 5.0);
 }
 
@@ -257,8 +259,8 @@ TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
   const Words rubbing = {R"(device={"type":"impedance","handle_mass_kg":0.136,"coulomb_N":0.25,"delay_samples":1})",
                          "time.step_s=0.00035"};
   const FieldLimit limit = ask({"tap_wall", "rendering.stiffness_N_per_m", rubbing, Range{1e3, 1e6, true}});
-  ASSERT_TRUE(limit.value && limit.beyond);
-  EXPECT_EQ(limit.beyond->verdict, RunVerdict::vibrating);
+  ASSERT_TRUE(limit.end.value && limit.end.beyond);
+  EXPECT_EQ(limit.end.beyond->verdict, RunVerdict::vibrating);
   EXPECT_FALSE(limit.unstable_alone);
 }
 
