@@ -9,6 +9,7 @@
 
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/batch/statistics.hpp"
+#include "scenarios/scene/parts.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"

@@ -20,6 +20,7 @@
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "sim/tool/cylinder.hpp"
 
 /// The claims of the thesis, how each is judged, and the ledger of the verdicts. results/reference/rules.json has their
