@@ -6,7 +6,8 @@
 
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/analysis/convergence/convergence.hpp"
+#include "scenarios/analysis/convergence/finer_runs.hpp"
+#include "scenarios/analysis/convergence/held_order.hpp"
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/ranking.hpp"
 #include "scenarios/batch/run_all.hpp"

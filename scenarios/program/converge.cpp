@@ -4,7 +4,8 @@
 #include <cmath>
 #include <ctime>
 
-#include "scenarios/analysis/convergence/convergence.hpp"
+#include "scenarios/analysis/convergence/levels.hpp"
+#include "scenarios/analysis/convergence/observed_order.hpp"
 #include "scenarios/analysis/current_value.hpp"
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/batch/ranking.hpp"

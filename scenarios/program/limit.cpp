@@ -17,6 +17,7 @@
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {

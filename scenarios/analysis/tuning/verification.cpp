@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "scenarios/analysis/convergence/convergence.hpp"
+#include "scenarios/analysis/convergence/levels.hpp"
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/batch/run_all.hpp"
 #include "scenarios/run/scene_checks.hpp"
