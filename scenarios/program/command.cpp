@@ -8,13 +8,18 @@
 
 #include "results/io/columns.hpp"
 #include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/ranking.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/input/writer.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/new_directories.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench {
 

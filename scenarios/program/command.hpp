@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/jobs.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/scene/load_scenario.hpp"

@@ -6,11 +6,19 @@
 
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/analysis/convergence/convergence.hpp"
+#include "scenarios/analysis/convergence/finer_runs.hpp"
+#include "scenarios/analysis/convergence/held_order.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/ranking.hpp"
+#include "scenarios/batch/run_all.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/input/writer.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/expectations.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {

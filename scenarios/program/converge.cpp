@@ -4,14 +4,22 @@
 #include <cmath>
 #include <ctime>
 
-#include "scenarios/analysis/convergence/convergence.hpp"
-#include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/analysis/convergence/levels.hpp"
+#include "scenarios/analysis/convergence/observed_order.hpp"
+#include "scenarios/analysis/current_value.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/ranking.hpp"
 #include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/batch/sweep_plan.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/input/writer.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
@@ -190,7 +198,7 @@ LevelRun run_of(const LoadedScenario& loaded) {
 /// The levels of a scene's field. Throws InputError where it has none.
 LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenario) {
   const LoadedScenario loaded = checked(load_scenario(scenario, options.overrides));  // the plan tells its warnings
-  if (own_value(loaded.scenario, options.field).is_null()) {
+  if (current_value(loaded.scenario, options.field).is_null()) {
     std::vector<std::string> given = options.overrides;
     given.push_back(options.field + "=1");
     load_scenario(scenario, given);  // a field that does not exist, or takes no number, says so itself

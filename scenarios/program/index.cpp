@@ -12,6 +12,7 @@
 #include "results/record/recorder.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
+#include "scenarios/analysis/stability/run_verdict.hpp"
 #include "scenarios/input/json_schema.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/report.hpp"

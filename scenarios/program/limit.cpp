@@ -9,15 +9,24 @@
 #include <set>
 
 #include "device_model/theory/linear_loops.hpp"
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/jobs.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/input/writer.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scripted_motion.hpp"
 #include "scenarios/run/vibration_limit.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
+#include "scenarios/scene/scenario.hpp"
 
 namespace hapbench {
 namespace {
@@ -25,7 +34,8 @@ namespace {
 // ---- The question
 
 /// The answer of a case, and what it was: a line of limit.csv.
-struct LimitRow : FieldLimit {
+struct LimitRow {
+  FieldLimit limit = {};
   std::vector<std::string> axis_values = {};  ///< of LimitTable::cases
   const ComparedDevice* device = nullptr;     ///< none: the scene's own
   Scenario scenario = {};                     ///< as it is asked for, with its own value of the field
@@ -139,21 +149,22 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
     throw InputError(
         fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
   LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
-  question.smallest = options.smallest;
-  if (!options.resolution.empty()) question.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
+  question.search.smallest = options.smallest;
+  if (!options.resolution.empty())
+    question.search.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
   question.between = options.devices.empty() && options.over.empty();
-  question.bounded = options.stable == "bounded";
+  question.rule.bounded = options.stable == "bounded";
   if (!options.vibration.empty()) {
     if (!options.stable.empty() && options.stable != "still")
       throw InputError(
           fmt::format("--vibration: cannot be combined with --stable {}; allowed: with still", options.stable));
-    question.most_vibration = number_between("--vibration", options.vibration, 1e-9, 1e3);
+    question.rule.most_vibration = number_between("--vibration", options.vibration, 1e-9, 1e3);
   } else if (options.stable.empty()) {
-    question.most_vibration = rule_of(scenario).most_vibration;
+    question.rule.most_vibration = rule_of(scenario).most_vibration;
   } else if (options.stable == "still") {
-    question.most_vibration = kMostVibration;
+    question.rule.most_vibration = kMostVibration;
   }
-  for (const std::string& bound : options.bounds) add_bound(bound, question.bounds);
+  for (const std::string& bound : options.bounds) add_bound(bound, question.rule.bounds);
   return question;
 }
 
@@ -205,17 +216,17 @@ void find_limits(const LimitOptions& options, std::vector<LimitRow>& rows) {
   if (alone) rows[0].asked.threads = job_options(options, "").threads;
   const WaitNotice notice("limit", !options.output.quiet && alone);
   for_each_job(rows.size(), job_options(options, alone ? "" : "limit"),
-               [&](std::size_t i) { static_cast<FieldLimit&>(rows[i]) = field_limit(rows[i].asked); });
+               [&](std::size_t i) { rows[i].limit = field_limit(rows[i].asked); });
 }
 
 void add_ratios(LimitTable& table) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     LimitRow& row = table.rows[i];
-    const FieldLimit& reference = table.rows[i - i % table.columns()];
-    if (!row.value || !reference.value) continue;
-    row.stiffness_ratio = *row.value / *reference.value;
+    const FieldLimit& reference = table.rows[i - i % table.columns()].limit;
+    if (!row.limit.end.value || !reference.end.value) continue;
+    row.stiffness_ratio = *row.limit.end.value / *reference.end.value;
     if (const double lambda = reference.settled.lambda_max; lambda > 0.0)
-      row.rendered_ratio = *row.stiffness_ratio * row.settled.lambda_max / lambda;
+      row.rendered_ratio = *row.stiffness_ratio * row.limit.settled.lambda_max / lambda;
   }
 }
 
@@ -265,10 +276,10 @@ Columns<LimitRunRow> run_columns(const LimitTable* table) {
 }
 
 const IntervalEnd& low_end(const LimitRow& row) {
-  return row.asked.smallest ? row : row.other;
+  return row.asked.search.smallest ? row.limit.end : row.limit.other;
 }
 const IntervalEnd& high_end(const LimitRow& row) {
-  return row.asked.smallest ? row.other : row;
+  return row.asked.search.smallest ? row.limit.other : row.limit.end;
 }
 
 Cell value_beyond(const IntervalEnd& end) {
@@ -279,12 +290,13 @@ Cell class_beyond(const IntervalEnd& end) {
 }
 /// Without a limit, the class at the range's low end.
 Cell class_beyond_limit(const LimitRow& row) {
-  if (!row.beyond && !row.value) return cell_of(run_verdict_name(row.runs.front().verdict));
-  return row.beyond ? class_beyond(row) : Cell("end of the range");
+  const IntervalEnd& end = row.limit.end;
+  if (!end.beyond && !end.value) return cell_of(run_verdict_name(row.limit.runs.front().verdict));
+  return end.beyond ? class_beyond(end) : Cell("end of the range");
 }
 
 std::string linear_edge_text(const LimitRow& row) {
-  const auto& edge = row.linear_edge();
+  const auto& edge = row.limit.linear_edge();
   if (!edge) return "-";
   return std::isinf(*edge) || *edge == 0.0 ? "none" : significant(*edge, 6);
 }
@@ -298,9 +310,11 @@ auto of(Part part, Get get) {
 /// The edge, the interval that it ends, and the edge in theory. Of one case alone the end on the other side is printed.
 Columns<LimitRow> edge_columns(const LimitTable* table) {
   const auto is_printed = [table](bool low) {
-    return table == nullptr || (!table->is_grid() && low != table->first().asked.smallest);
+    return table == nullptr || (!table->is_grid() && low != table->first().asked.search.smallest);
   };
-  const auto has_inequality = [](const LimitRow& row) { return row.closed_form.has_value(); };
+  const auto has_inequality = [](const LimitRow& row) { return row.limit.closed_form.has_value(); };
+  const auto limit_end = [](const LimitRow& row) -> const IntervalEnd& { return row.limit.end; };
+  const auto tolerance = [](const LimitRow& row) { return row.limit.end.tolerance(); };
   using Row = LimitRow;
   return {
       {"field", "", "path of the field", of(&Row::asked, &LimitQuestion::path), kOnlyCsv},
@@ -308,9 +322,10 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
        kOnlyCsv},
       {"linear\nedge", "by field", "of limit: theory, or where there is none linear", linear_edge_text, only_printed()},
       {"limit", "by field",
-       "the last stable value before the first edge, by bisection on runs; empty when there is none", &Row::value,
-       under("edge in\nruns", 6), &Row::tolerance},
-      {"beyond", "by field", "the first unstable value beyond it; empty when the range ends stable", value_beyond},
+       "the last stable value before the first edge, by bisection on runs; empty when there is none",
+       of(limit_end, &IntervalEnd::value), under("edge in\nruns", 6), tolerance},
+      {"beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
+       of(limit_end, value_beyond)},
       {"class_beyond", "", "what became of the run there (describe stability), or \"end of the range\"",
        class_beyond_limit, under("beyond it")},
       {"low", "by field",
@@ -326,40 +341,44 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
       {"above", "by field", "the first value above that is not stable; empty when the range ends stable",
        of(high_end, value_beyond)},
       {"class_above", "", "what became of the run there", of(high_end, class_beyond)},
-      {"theory", "by field", "the limit in theory; empty where there is none", &Row::theory},
+      {"theory", "by field", "the limit in theory; empty where there is none", of(&Row::limit, &FieldLimit::theory)},
       {"closed_form", "by field",
        "the same where the integrator's inequality ends, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0 "
        "with lambda = lambda_max(S) (A.3); empty where it has none",
-       &Row::closed_form, when(table == nullptr || std::ranges::any_of(table->rows, has_inequality))},
+       of(&Row::limit, &FieldLimit::closed_form),
+       when(table == nullptr || std::ranges::any_of(table->rows, has_inequality))},
       {"linear", "by field",
        "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
        "while they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by "
        "bounces, dry friction or the end of the run; empty where there is a theory or no device",
-       &Row::linear}};
+       of(&Row::limit, &FieldLimit::linear)}};
 }
 
 /// What is known of the answer, and in a table of cases numbers of the run at the limit, for these to be compared by.
 Columns<LimitRow> search_columns(bool devices, bool grid) {
   using Row = LimitRow;
   const auto may_fail = [](const Row& r) {
-    return r.tried_between > 0 ? Cell(may_fail_share(r.tried_between)) : Cell();
+    return r.limit.tried_between > 0 ? Cell(may_fail_share(r.limit.tried_between)) : Cell();
   };
   const auto settled = [](auto member) {
-    return [member](const Row& r) { return r.value ? cell_of(std::invoke(member, r.settled)) : Cell(); };
+    return
+        [member](const Row& r) { return r.limit.end.value ? cell_of(std::invoke(member, r.limit.settled)) : Cell(); };
   };
   return {
-      {"limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit", &Row::tolerance,
-       kOnlyJson},
+      {"limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit",
+       [](const Row& r) { return r.limit.end.tolerance(); }, kOnlyJson},
       {"low_tolerance", "by field", "the same of the low end", of(low_end, &IntervalEnd::tolerance), kOnlyJson},
       {"high_tolerance", "by field", "the same of the high end", of(high_end, &IntervalEnd::tolerance), kOnlyJson},
-      {"undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened", &Row::undecided},
+      {"undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
+       of(&Row::limit, &FieldLimit::undecided)},
       {"unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
-       &Row::unstable_alone, kOnlyJson},
-      {"has_effect", "", "false when the field changes no run", &Row::has_effect, kOnlyJson},
-      {"scattered", "", "true where stable values are scattered and there is no edge", &Row::scattered, kOnlyJson},
+       of(&Row::limit, &FieldLimit::unstable_alone), kOnlyJson},
+      {"has_effect", "", "false when the field changes no run", of(&Row::limit, &FieldLimit::has_effect), kOnlyJson},
+      {"scattered", "", "true where stable values are scattered and there is no edge",
+       of(&Row::limit, &FieldLimit::scattered), kOnlyJson},
       {"tried_between", "1",
        "values between the ends of the interval that were tried, all stable; 0 in a table of devices or values",
-       &Row::tried_between},
+       of(&Row::limit, &FieldLimit::tried_between)},
       {"may_fail_share", "1", "share of the interval that may be unstable for all that, with 95 % confidence",
        may_fail},
       {"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
@@ -382,21 +401,22 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
   Columns<Row> columns = place_columns<Row>(table);
   columns.add(edge_columns(table));
   columns.add(search_columns(table == nullptr || !table->devices.empty(), table == nullptr || table->is_grid()));
-  const auto has_forms = [](const Row& r) { return !r.closed_forms.empty(); };
+  const auto has_forms = [](const Row& r) { return !r.limit.closed_forms.empty(); };
   const bool forms = table == nullptr || std::ranges::any_of(table->rows, has_forms);
   for (std::size_t i = 0; i < stiffness_limits().size(); ++i) {
     const StiffnessLimit& known = stiffness_limits()[i];
     columns.add(
         {{known.name, "N/m", fmt::format("the K at which {}; for {} ({})", known.formula, known.applies, known.source),
-          [i](const Row& r) { return r.closed_forms.empty() ? Cell() : cell_of(r.closed_forms[i]); }, when(forms)}});
+          [i](const Row& r) { return r.limit.closed_forms.empty() ? Cell() : cell_of(r.limit.closed_forms[i]); },
+          when(forms)}});
   }
-  const auto inconsistent = [](const Row& r) { return r.inconsistent.size(); };
-  columns.add({{"no_theory", "", "why the eigenvalues of the loop tell nothing; empty where they do", &Row::no_theory,
-                when(forms)},
+  const auto inconsistent = [](const Row& r) { return r.limit.inconsistent.size(); };
+  columns.add({{"no_theory", "", "why the eigenvalues of the loop tell nothing; empty where they do",
+                of(&Row::limit, &FieldLimit::no_theory), when(forms)},
                {"worst_hand", "N/m",
                 "least edge over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and none, by eigenvalues",
-                &Row::worst_hand, when(forms)},
-               {"runs", "1", "runs of the search", [](const Row& r) { return r.runs.size(); }},
+                of(&Row::limit, &FieldLimit::worst_hand), when(forms)},
+               {"runs", "1", "runs of the search", [](const Row& r) { return r.limit.runs.size(); }},
                {kInconsistent, "1", "runs that are unstable on the stable side of the limit, or stable beyond it",
                 inconsistent, under("inconsistent")},
                {kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent}});
@@ -436,13 +456,13 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
 
 /// States the question of one scene; `over`: other fields also vary.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over) {
-  const std::string width = question.whole ? "1"
-                            : question.range.logarithmic
-                                ? fmt::format("{} %", 100.0 * question.resolution)
-                                : fmt::format("{} % of the range", 100.0 * question.resolution);
-  const auto end = [&question](double value) { return significant(question.whole ? std::round(value) : value); };
+  const SearchWay& search = question.search;
+  const std::string width = search.whole               ? "1"
+                            : search.range.logarithmic ? fmt::format("{} %", 100.0 * search.resolution)
+                                                       : fmt::format("{} % of the range", 100.0 * search.resolution);
+  const auto end = [&search](double value) { return significant(search.whole ? std::round(value) : value); };
   std::string text = fmt::format("{}: {} stable {} between {} and {}, to {}", scenario.name, question.side(),
-                                 question.path, end(question.range.from), end(question.range.to), width);
+                                 question.path, end(search.range.from), end(search.range.to), width);
   if (!over) text += fmt::format("; {} steps", scenario.time.steps);
   if (!over && question.path != "time.step_s") text += fmt::format(" of {} s", significant(scenario.time.step));
   if (!over && question.path == kStiffnessPath) text += "; " + damping_text(scenario.rendering);
@@ -462,18 +482,18 @@ std::string none_text(const FieldLimit& limit) {
 }
 
 std::string remarks_text(const LimitRow& row) {
-  const FieldLimit& limit = row;
+  const FieldLimit& limit = row.limit;
   const LimitQuestion& question = row.asked;
   std::string text;
   const auto say = [&](const std::string& what) { text += wrapped(row.algorithm() + ": " + what, 0); };
-  if (limit.value && limit.own && !question.holds(limit.own->verdict)) {
+  if (limit.end.value && limit.own && !question.rule.holds(limit.own->verdict)) {
     say(fmt::format("{} at the scenario's own {}: the edge is that of the first stable values from the {} end",
                     run_verdict_name(limit.own->verdict), significant(limit.own->value),
-                    question.smallest ? "high" : "low"));
+                    question.search.smallest ? "high" : "low"));
   }
   if (limit.theory_has_none)
     say(fmt::format("by the eigenvalues of a step no value of the range is stable{}",
-                    limit.value ? ": the runs are too short for its growth" : ""));
+                    limit.end.value ? ": the runs are too short for its growth" : ""));
   if (limit.undecided > 0)
     say(fmt::format("{} runs were too short to tell slow motion from rest, though made up to 64 times as long",
                     limit.undecided));
@@ -481,7 +501,7 @@ std::string remarks_text(const LimitRow& row) {
     say(fmt::format("{} has no effect here: the handle moves alike in all {} runs", question.path, limit.runs.size()));
   if (limit.unstable_alone)
     say(fmt::format("at {} hand and device are unstable by themselves: the tool also vibrates without contact",
-                    significant((limit.beyond ? *limit.beyond : limit.runs.front()).value)));
+                    significant((limit.end.beyond ? *limit.end.beyond : limit.runs.front()).value)));
   return text;
 }
 
@@ -490,7 +510,9 @@ std::string notes_text(const LimitTable& table) {
   for (const LimitRow& row : table.rows)
     if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device))
       friction = std::max(friction, std::optional(device->coulomb));
-  const auto is_beyond_linear = [](const LimitRow& row) { return row.is_beyond_linear(row.asked.resolution); };
+  const auto is_beyond_linear = [](const LimitRow& row) {
+    return row.limit.is_beyond_linear(row.asked.search.resolution);
+  };
   const auto is_published = [](const ComparedDevice& device) { return device.published_stiffness.has_value(); };
   std::string names;
   for (const ComparedDevice& device : table.devices) names += device.name + " ";
@@ -529,12 +551,12 @@ std::string limits_text(const LimitTable& table, const Columns<LimitRow>& column
     if (i == 0 || row.scene() != table.rows[i - 1].scene())
       text += question_text(row.asked, row.scenario, table.over() > 0);
     if (table.is_grid()) continue;
-    answers += wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row, row.asked.resolution)), 0);
+    answers += wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row.limit, row.asked.search.resolution)), 0);
     remarks += remarks_text(row);
   }
   const LimitRow& first = table.first();
   return fmt::format("{}\n{}{}{}\n{}{}{}", text, answers, answers.empty() ? "" : "\n", columns.table(table.rows).text(),
-                     wrapped(rule_text(first.asked, first.scenario), 0), remarks, notes_text(table));
+                     wrapped(rule_text(first.asked.rule, first.scenario), 0), remarks, notes_text(table));
 }
 
 // ---- The command
@@ -546,21 +568,21 @@ void tell_limits(const LimitTable& table, Report& report) {
   Json limits = Json::array();
   for (const LimitRow& row : table.rows) {
     Json inconsistent = Json::array();
-    for (const JudgedValue& run : row.inconsistent)
+    for (const JudgedValue& run : row.limit.inconsistent)
       inconsistent.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
     Json& limit = limits.emplace_back(columns.json(row));
     limit[kInconsistent] = limit[kAstray] = inconsistent;
-    for (const JudgedValue& run : row.runs) runs.push_back({row, run});
+    for (const JudgedValue& run : row.limit.runs) runs.push_back({row, run});
   }
   report.write("limit.csv", columns, table.rows);
   report.write("limit_runs.csv", run_columns(&table), runs);
   report.say(limits_text(table, columns));
   report.json() = {{"field", question.path},
                    {"side", question.side()},
-                   {"from", question.range.from},
-                   {"to", question.range.to},
-                   {"resolution", question.resolution},
-                   {"rule", rule_text(question, table.first().scenario)},
+                   {"from", question.search.range.from},
+                   {"to", question.search.range.to},
+                   {"resolution", question.search.resolution},
+                   {"rule", rule_text(question.rule, table.first().scenario)},
                    {"limits", std::move(limits)}};
 }
 
@@ -630,10 +652,10 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
 }
 
 std::string limit_answer(const FieldLimit& found, double resolution) {
-  if (!found.value) return none_text(found);
-  std::string text = found.beyond
-                         ? fmt::format("edge in runs {}", deserved(*found.value, found.tolerance()))
-                         : fmt::format("stable in runs to the end of the range, {}", significant(*found.value, 6));
+  if (!found.end.value) return none_text(found);
+  std::string text = found.end.beyond
+                         ? fmt::format("edge in runs {}", deserved(*found.end.value, found.end.tolerance()))
+                         : fmt::format("stable in runs to the end of the range, {}", significant(*found.end.value, 6));
   const auto& linear = found.linear_edge();
   if (linear && std::isfinite(*linear) && *linear > 0.0) {
     const std::string edge = fmt::format("linear edge {}; ", significant(*linear, 6));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scenarios/analysis/stability/compared_devices.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
 
 /// What `limit` and other searches share: their options, and how an edge is told.

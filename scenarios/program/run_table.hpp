@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/number_with_error.hpp"
 #include "scenarios/program/report.hpp"
 
 /// Tables with a row for each run, as `run` and `compare` print and write them.

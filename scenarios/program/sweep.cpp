@@ -4,11 +4,24 @@
 #include <algorithm>
 #include <limits>
 
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/join_shards.hpp"
+#include "scenarios/batch/number_with_error.hpp"
+#include "scenarios/batch/ranking.hpp"
 #include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/batch/sampling.hpp"
+#include "scenarios/batch/shard.hpp"
+#include "scenarios/batch/sweep_plan.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/largest_sizes.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/load_module.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <atomic>
 
+#include "scenarios/analysis/stability/compared_devices.hpp"
+#include "scenarios/analysis/stability/interval_search.hpp"
+#include "scenarios/analysis/tuning/family.hpp"
 #include "scenarios/analysis/tuning/tune.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/program/limit.hpp"
@@ -68,6 +71,9 @@ Columns<TunedLaw> choice_columns() {
   const auto of_choice = [](auto member) {
     return [member](const Row& r) { return r.choice ? cell_of(std::invoke(member, *r.choice)) : Cell(); };
   };
+  const auto of_setting = [](auto member) {
+    return [member](const Row& r) { return r.choice ? cell_of(std::invoke(member, r.choice->setting)) : Cell(); };
+  };
   const auto feasible = [](const Row& r) { return r.choice.has_value(); };
   const auto stiffness = [](const Row& r) { return r.choice ? stiffness_text(*r.choice) : "none"; };
   return {
@@ -76,12 +82,12 @@ Columns<TunedLaw> choice_columns() {
       {"stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible", of_choice(&TuneTrial::stiffness)},
       {"K [N/m]", "N/m", "of tune: the largest stiffness that keeps margin and limits [N/m]", stiffness,
        only_printed()},
-      {kRatioColumn, "1", "zeta with it; empty where it has no part", of_choice(&TuneTrial::damping_ratio),
+      {kRatioColumn, "1", "zeta with it; empty where it has no part", of_setting(&TuneSetting::damping_ratio),
        under("zeta", 3, kOnlyCsv)},
-      {"damping_ratio", "1", "the same", of_choice(&TuneTrial::damping_ratio), kOnlyJson},
+      {"damping_ratio", "1", "the same", of_setting(&TuneSetting::damping_ratio), kOnlyJson},
       {"mass_kg", "kg", "virtual mass with it, of an admittance device; else empty: the scene's",
-       of_choice(&TuneTrial::mass)},
-      {"velocity_filter", "", "with it, as JSON; empty: the scene's", of_choice(&TuneTrial::filter)},
+       of_setting(&TuneSetting::mass)},
+      {"velocity_filter", "", "with it, as JSON; empty: the scene's", of_setting(&TuneSetting::filter)},
       {"lambda_max", "1",
        "largest eigenvalue of the mean S in the end of the run: K lambda_max is the stiffness rendered",
        of_choice(&TuneTrial::lambda_max)},
@@ -122,12 +128,15 @@ Columns<TunedLaw> tuned_columns() {
 
 Columns<TuneTrial> trial_columns() {
   using Row = TuneTrial;
+  const auto of_setting = [](auto member) {
+    return [member](const Row& r) { return cell_of(std::invoke(member, r.setting)); };
+  };
   Columns<Row> columns = {
       {"algorithm", "", "force algorithm", &Row::algorithm},
       {"stiffness_N_per_m", "N/m", "K", &Row::stiffness},
-      {kRatioColumn, "1", "zeta; empty where it has no part", &Row::damping_ratio},
-      {"mass_kg", "kg", "virtual mass; empty where it is not searched", &Row::mass},
-      {"velocity_filter", "", "of the device, as JSON; empty: the scene's", &Row::filter},
+      {kRatioColumn, "1", "zeta; empty where it has no part", of_setting(&TuneSetting::damping_ratio)},
+      {"mass_kg", "kg", "virtual mass; empty where it is not searched", of_setting(&TuneSetting::mass)},
+      {"velocity_filter", "", "of the device, as JSON; empty: the scene's", of_setting(&TuneSetting::filter)},
       {"feasible", "", "true when every constraint is kept", &Row::feasible},
       {"binding", "",
        "the first constraint that is not: settled (at K), margin (up to G K), a limited metric, or runs, the bound on "
@@ -148,7 +157,7 @@ Json law_json(const TunedLaw& law) {
   json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
   json["error"] = law.error;
   json["linear_edge"] = law.choice ? cell_json(cell_of(law.edge.linear_edge())) : Json();
-  json["edge_in_runs"] = law.choice ? cell_json(cell_of(law.edge.value)) : Json();
+  json["edge_in_runs"] = law.choice ? cell_json(cell_of(law.edge.end.value)) : Json();
   return json;
 }
 
@@ -199,7 +208,7 @@ std::string limits_text(const Tuning& tuning) {
 }
 
 std::string choice_text(const TuneTrial& choice) {
-  return fmt::format("K = {} N/m{}", stiffness_text(choice), setting_text(choice));
+  return fmt::format("K = {} N/m{}", stiffness_text(choice), setting_text(choice.setting));
 }
 
 std::string margins_text(const TuneMargins& margins) {

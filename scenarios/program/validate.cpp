@@ -4,8 +4,13 @@
 #include <cstdio>
 
 #include "results/io/atomic_file.hpp"
+#include "scenarios/analysis/stability/compared_devices.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/fields.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/point_shell_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
@@ -17,6 +22,9 @@
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/scenario.hpp"
 #include "scenarios/scene/tools.hpp"
 #include "sim/tool/mesh_tool.hpp"
 

@@ -5,6 +5,8 @@
 #include <map>
 
 #include "scenarios/analysis/stability/field_limit.hpp"
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
@@ -171,10 +173,10 @@ double largest_bounded(const Evidence& e, const std::string& field, const Range&
   overrides.insert(overrides.end(), {"time.steps=20000", "initial.velocity_m_per_s=[0.001,0,0]"});
   const Cases scene = e.scene(kSpring, overrides);
   LimitQuestion question = limit_question(scene.scene(0), scene.sets(), field, range);
-  question.bounded = true;
-  question.resolution = kLimitResolution;
+  question.rule.bounded = true;
+  question.search.resolution = kLimitResolution;
   question.between = false;
-  return field_limit(question).value.value_or(0.0);
+  return field_limit(question).end.value.value_or(0.0);
 }
 
 double largest_stiffness(const Evidence& e, std::vector<std::string> overrides = {}) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 #include "sim/core/math.hpp"

@@ -12,6 +12,7 @@
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"

@@ -8,6 +8,7 @@
 #include "algorithms/registry.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "scenarios/scene/scenario.hpp"

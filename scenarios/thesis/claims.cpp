@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"

@@ -3,11 +3,13 @@
 #include <vector>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/number_table.hpp"
 #include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis/judging.hpp"
 #include "sim/tool/cylinder.hpp"
 

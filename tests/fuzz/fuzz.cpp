@@ -16,8 +16,9 @@
 #include <vector>
 
 #include "algorithms/module/module.hpp"
-#include "scenarios/analysis/stability/field_limit.hpp"
-#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/analysis/stability/compared_devices.hpp"
+#include "scenarios/batch/csv_cells.hpp"
+#include "scenarios/batch/table_file.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/largest_sizes.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "algorithms/rendering_config.hpp"
-#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/jobs.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/cylinder.hpp"
 

@@ -1,11 +1,16 @@
+#include "scenarios/analysis/tuning/family.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "device_model/theory/linear_loops.hpp"
-#include "scenarios/analysis/tuning/tune.hpp"
-#include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/seed_axis.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/scenario.hpp"
 
 namespace hapbench {
 namespace {
@@ -38,8 +43,8 @@ std::vector<FamilyMember> seeds_of(const LoadedScenario& loaded) {
   return seeds;
 }
 
-/// Makes everything in the JSON of a hand or a motion so many times as fast.
-void hasten(Json& json, double times) {
+/// Scales the speed of everything in the JSON of a hand or a motion by a factor.
+void scale_speed(Json& json, double times) {
   if (!json.is_structured()) return;
   for (auto& [key, value] : json.items()) {
     if (value.is_number() && (key == "speed_m_per_s" || key == "rate_per_s")) value = value.get<double>() * times;
@@ -47,7 +52,7 @@ void hasten(Json& json, double times) {
     if (key == "points" && value.is_array()) {
       for (Json& point : value) point[0] = point[0].get<double>() / times;
     } else {
-      hasten(value, times);
+      scale_speed(value, times);
     }
   }
 }
@@ -59,7 +64,7 @@ std::vector<FamilyMember> speeds_of(const LoadedScenario& loaded) {
     FamilyMember member{times < 1.0 ? "half the speed" : "twice the speed"};
     for (const char* section : {"hand", "motion"}) {
       Json json = own.value(section, Json());
-      hasten(json, times);
+      scale_speed(json, times);
       if (json != own.value(section, Json())) member.overrides.push_back(fmt::format("{}={}", section, json.dump()));
     }
     if (member.overrides.empty()) return {};

@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/batch/table_file.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
@@ -178,7 +178,7 @@ TEST_F(InterruptedCommand, EndsWith130AndLeavesWhatWasThereBefore) {
   EXPECT_EQ(test::files_below(out_), before);
 }
 
-/// Sweeps that are killed and go on; every way to end one is in cases/sweep_test.cpp.
+/// Sweeps that are killed and go on; every way to end one is in batch/sweep_test.cpp.
 class KilledSweep : public testing::Test {
  protected:
   /// Runs of some milliseconds, 180 of them or more.

@@ -1,0 +1,97 @@
+#include "scenarios/analysis/convergence/levels.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "results/io/columns.hpp"
+#include "scenarios/analysis/current_value.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/scene_checks.hpp"
+#include "scenarios/run/scene_loop.hpp"
+#include "sim/loop/integrators/table.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Formal order in the step. A device samples: between its samples the force is held, which is of the first order.
+double order_in_step(const Scenario& scenario) {
+  const IntegratorEntry& integrator = *scenario.integrator.type;
+  if (has_device(scenario)) return 1.0;
+  const RenderingConfig& r = scenario.rendering;
+  return normal_damping(r) > 0.0 || r.has_friction() ? integrator.damped_order : integrator.order;
+}
+
+std::string noise_reason(const Scenario& scenario) {
+  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
+  if (std::holds_alternative<TrackingHandFields>(scenario.hand))
+    return "the noise of the hand is drawn anew in every step";
+  const bool senses = admittance != nullptr && admittance->sensor.noise > 0.0;
+  return senses ? "the noise of the force sensor is drawn anew in every step" : "";
+}
+
+LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double ratio) {
+  if (ratio != std::round(ratio))
+    throw InputError(fmt::format(
+        "--ratio: got {}; allowed for {}: whole numbers, so that the rows of all levels coincide", ratio, kStepPath));
+  LevelSweep sweep{{kStepPath}, ratio, order_in_step(scenario), noise_reason(scenario)};
+  std::int64_t times = 1;
+  for (std::size_t i = 0; i < levels; ++i, times *= static_cast<std::int64_t>(ratio)) {
+    std::vector<std::string> overrides = {fmt::format("time.steps={}", times * scenario.time.steps)};
+    if (const double delay = delay_of(scenario); delay > 0.0)  // which keeps its length
+      overrides.push_back(fmt::format("{}={}", delay_path(scenario), static_cast<double>(times) * delay));
+    sweep.axis.values.push_back(fmt::format("{}", scenario.time.step / static_cast<double>(times)));
+    sweep.axis.along.push_back({std::move(overrides), times});
+  }
+  return sweep;
+}
+
+double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
+  const Json own = current_value(loaded.scenario, path);
+  if (own.is_number_float() && own.get<double>() > 0.0) return own.get<double>();
+  if (own.is_null()) {
+    const auto distance = point_distance(loaded);
+    if (distance && path == distance->path) return distance->metres;
+  }
+  throw InputError(
+      fmt::format("--vary: got {}, which is {} in the scenario; allowed: a field that is a number > 0 and no "
+                  "integer, such as {}, environment.grid_m, environment.spacing_m or tool.grid_m",
+                  path, own.is_null() ? "not given" : own.dump(), kStepPath));
+}
+
+}  // namespace
+
+LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio) {
+  if (path == kStepPath) return step_levels(loaded.scenario, levels, ratio);
+  LevelSweep sweep{{path}, ratio};
+  double value = coarsest_value(loaded, path);
+  for (std::size_t i = 0; i < levels; ++i, value /= ratio)
+    sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
+  return sweep;
+}
+
+Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
+  Axis axis = levels.axis;
+  axis.values.erase(axis.values.begin());
+  if (!axis.along.empty()) axis.along.erase(axis.along.begin());
+  std::vector<Axis> axes = cases.axes();
+  axes.insert(axes.begin(), axis);
+  Cases finer(cases.scenes(), cases.sets(), std::move(axes));
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    try {
+      checked(finer.load(i * cases.size()));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{} = {}: {}", axis.path, axis.values[i], error.problem()));
+    }
+  }
+  return finer;
+}
+
+}  // namespace hapbench

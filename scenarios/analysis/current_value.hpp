@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/scene/scenario.hpp"
+
+/// The value of a field in a scenario.
+namespace hapbench {
+
+/// Returns the scenario's current value at a path, dotted as in --set; null if the path names no field.
+Json current_value(const Scenario& scenario, const std::string& path);
+
+}  // namespace hapbench

@@ -1,0 +1,52 @@
+#include "scenarios/analysis/stability/last_rows.hpp"
+
+#include "results/observe/metrics.hpp"
+#include "scenarios/run/scene_checks.hpp"
+#include "sim/contact/contact_buffer.hpp"
+
+namespace hapbench {
+
+LastRows::LastRows(const Scenario& scenario, bool alone)
+    : steps_(static_cast<std::uint64_t>(scenario.time.steps)),
+      judged_(steps_, script_period(scenario) / scenario.time.step),
+      vibration_(scenario.time.step),
+      bounces_(scenario.time.step) {
+  if (alone) judged_.touch(0);
+}
+
+void LastRows::on_step(const StepRecord& record) noexcept {
+  touches_ = record.colliding > 0;
+  if (touches_) judged_.touch(record.step);
+  vibration_.add(record.step, record.handle.velocity, judged_.contain(record.step));
+  bounces_.add(record, judged_);
+  tip_ = record.tool.pose.position;
+  for (const double coordinate : record.handle.position) motion_.real(coordinate);
+  if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
+    quarter_ = quarter;
+    rows_in_contact_ = contacts_ = 0;
+    S_sum_.setZero();
+  }
+  if (record.rendered->size() == 0) return;
+  ++rows_in_contact_;
+  contacts_ += record.rendered->size();
+  S_sum_ += record.force.S;
+}
+
+bool LastRows::has_left(const PointShell& shell, double reach) const {
+  const Box bounds = shell.bounds();
+  const Vec3 beyond = (bounds.min - tip_).cwiseMax(tip_ - bounds.max);
+  return !touches_ && beyond.maxCoeff() > reach;
+}
+
+SettledState LastRows::state(bool rests) const {
+  SettledState state;
+  // A tool at rest is not simulated to the end: nothing moves in the rows that are left out.
+  state.vibration = vibration_.rms(if_any(rests && judged_.begin(), judged_.end() - judged_.begin().value_or(0)));
+  if (rows_in_contact_ == 0) return state;
+  const auto rows = static_cast<double>(rows_in_contact_);
+  state.contacts = static_cast<double>(contacts_) / rows;
+  state.lambda_max = lambda_max(S_sum_ / rows);
+  return state;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,75 @@
+#include "scenarios/analysis/stability/limit_question.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/analysis/current_value.hpp"
+#include "scenarios/input/input_error.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Returns the value nearest to 2^10 (sign 1) or 2^-10 (sign -1) times the current value that the field allows.
+double allowed_end(const LimitQuestion& question, double current, int sign) {
+  for (int doublings = 10; doublings > 0; --doublings) {
+    const double end = std::ldexp(current, sign * doublings);
+    try {
+      question.at(end);
+      return end;
+    } catch (const InputError&) {  // try a nearer one
+    }
+  }
+  return current;
+}
+
+void check_scene(const LoadedScenario& loaded) {
+  const Scenario& scenario = loaded.scenario;
+  if (!position_is_free(scenario.motion))
+    fail_in({.file = loaded.file, .pointer = "/motion/position/type"},
+            "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
+  if (scenario.time.steps < 4)
+    fail_in({.file = loaded.file, .pointer = "/time/steps"},
+            fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
+}
+
+Range default_range(const LimitQuestion& question, const Json& current) {
+  // A field that does not exist or is no number is refused by its own error.
+  if (!current.is_number()) question.at(1.0);
+  if (!current.is_number() || !(current.get<double>() > 0.0))
+    throw InputError(fmt::format("--vary {}: {} in the scenario; allowed without --between: a number > 0",
+                                 question.path, current.is_null() ? "not given" : current.dump()));
+  const double value = current.get<double>();
+  return {allowed_end(question, value, -1), allowed_end(question, value, 1)};
+}
+
+}  // namespace
+
+LoadedScenario LimitQuestion::at(double value) const {
+  std::vector<std::string> all = overrides;
+  all.push_back(search.whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value));
+  return load_scenario(*scene, all);
+}
+
+LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
+                             const std::string& path, std::optional<Range> range) {
+  const LoadedScenario loaded = load_scenario(scenario, overrides);
+  check_scene(loaded);
+  const Json current = current_value(loaded.scenario, path);
+  LimitQuestion question;
+  question.scene = &scenario;
+  question.overrides = overrides;
+  question.path = path;
+  question.search.whole = current.is_number_integer();
+  const Range searched = range ? *range : default_range(question, current);
+  question.at(searched.from);
+  const LoadedScenario last = question.at(searched.to);
+  question.warnings = with_files(last, last.warnings);
+  question.search.range = {searched.from, searched.to, searched.from > 0.0};
+  if (current.is_number() && current.get<double>() >= searched.from && current.get<double>() <= searched.to)
+    question.search.own = current.get<double>();
+  return question;
+}
+
+}  // namespace hapbench

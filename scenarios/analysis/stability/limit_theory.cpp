@@ -1,0 +1,128 @@
+#include "scenarios/analysis/stability/limit_theory.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <limits>
+
+#include "device_model/impedance_device.hpp"
+#include "device_model/theory/linear_loops.hpp"
+#include "scenarios/run/scene_loop.hpp"
+
+namespace hapbench {
+namespace {
+
+using IsTrueOf = std::function<bool(const Scenario&)>;
+
+// Theory costs a thousandth of a run: its scan is finer, and it is bisected to rounding.
+constexpr int kTheoryIntervals = 256;
+constexpr double kTheoryResolution = 1e-12;
+
+/// Returns true for springs that stay in contact, with a tool that is alone or a device whose loop is linear.
+bool has_eigenvalues(const Scenario& scenario) {
+  if (!springs_stay(scenario)) return false;
+  if (has_device(scenario)) return device_loop(scenario, 1.0).no_theory.empty();
+  return std::holds_alternative<NoHandFields>(scenario.hand);
+}
+
+/// Returns true if no mode of the springs leaves the unit circle, alone or in the loop of the device.
+bool step_is_stable(const Scenario& scenario) {
+  constexpr double kNoWall = 1e-12;  // a direction without springs, in which the handle is free
+  const Vec3 lambdas = stiffness_eigenvalues(scenario);
+  return std::all_of(lambdas.begin(), lambdas.end(), [&](double lambda) {
+    if (!has_device(scenario)) return tool_on_spring(scenario, lambda).is_stable();
+    return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
+  });
+}
+
+/// Returns true if the integrator has an inequality for stable steps.
+bool has_inequality(const Scenario& scenario) {
+  return !has_device(scenario) && has_eigenvalues(scenario) && scenario.integrator.type->stability_margin != nullptr;
+}
+
+bool keeps_inequality(const Scenario& scenario) {
+  const double lambda = stiffness_eigenvalues(scenario)[2];
+  return scenario.integrator.type->stability_margin(tool_on_spring(scenario, lambda)) >= 0.0;
+}
+
+/// Returns the middles of the contiguous intervals of stable parameters.
+std::vector<double> stable_intervals(const TriedParts& tried) {
+  std::vector<double> middles;
+  std::optional<double> begin, end;
+  const auto close = [&] {
+    if (begin) middles.push_back(0.5 * (*begin + *end));
+    begin.reset();
+  };
+  for (const auto& [t, is_stable] : tried) {
+    if (!is_stable) {
+      close();
+      continue;
+    }
+    if (!begin) begin = t;
+    end = t;
+  }
+  close();
+  return middles;
+}
+
+/// Returns the limit by the condition `stable`; empty unless `applies` to the scene at both ends of the range.
+TheoreticalLimit limit_by(const LimitQuestion& question, const IsTrueOf& applies, const IsTrueOf& stable,
+                          int intervals) {
+  const auto scenario_at = [&](double t) { return question.at(question.search.value_at(t)).scenario; };
+  const auto holds = [&](double t) { return stable(scenario_at(t)); };
+  TheoreticalLimit limit;
+  if (!applies(scenario_at(0.0)) || !applies(scenario_at(1.0))) return limit;
+  TriedParts tried = scanned(intervals, holds);
+  limit.islands = stable_intervals(tried);
+  limit.has_none = limit.islands.empty();
+  SearchWay way = question.search;
+  way.resolution = kTheoryResolution;
+  const FoundEdge edge = find_edge(way, tried, holds, false);
+  if (edge.stable) limit.value = way.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+  if (edge.beyond) limit.value = way.value_at(*edge.stable);
+  return limit;
+}
+
+}  // namespace
+
+TheoreticalLimit eigenvalue_limit(const LimitQuestion& question) {
+  return limit_by(question, has_eigenvalues, step_is_stable, kTheoryIntervals);
+}
+
+TheoreticalLimit inequality_limit(const LimitQuestion& question) {
+  return limit_by(question, has_inequality, keeps_inequality, kEdgeIntervals);
+}
+
+std::optional<double> contact_limit(const LimitQuestion& question, double lambda) {
+  const auto applies = [lambda](const Scenario& scenario) {
+    return has_device(scenario) && contact_step(scenario, lambda).size() != 0;
+  };
+  const auto stable = [lambda](const Scenario& scenario) {
+    return std::ranges::all_of(contact_loops(scenario, lambda, false),
+                               [](const auto& loop) { return is_stable_step(loop.second); });
+  };
+  return limit_by(question, applies, stable, 2 * kEdgeIntervals).value;
+}
+
+WallLimits wall_limits(const LimitQuestion& question) {
+  WallLimits limits;
+  const Scenario scenario = question.at(question.search.value_at(0.0)).scenario;
+  if (question.path != kStiffnessPath || question.search.smallest || !springs_stay(scenario) ||
+      !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device))
+    return limits;
+  // The formulas take a damping B that does not depend on K.
+  if (!scenario.rendering.damping && scenario.rendering.damping_ratio != 0.0) return limits;
+  const double lambda = stiffness_eigenvalues(scenario)[2];
+  const DeviceLoop start = device_loop(scenario, lambda);
+  const auto& sampled = std::get<SampledLoop>(start.loop);
+  limits.no_theory = start.no_theory;
+  if (start.no_theory.empty()) limits.worst_hand = worst_hand_edge(sampled) / lambda;
+  const bool is_known = unknown_to_theory(scenario).empty();
+  for (const StiffnessLimit& known : stiffness_limits()) {
+    const std::optional<double> K = is_known ? known.largest(sampled) : std::nullopt;
+    limits.closed_forms.push_back(K ? std::optional(*K / lambda) : std::nullopt);
+  }
+  return limits;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,18 @@
+#include "scenarios/analysis/stability/stability_rule.hpp"
+
+#include "results/observe/contact_forces.hpp"
+#include "scenarios/run/scene_checks.hpp"
+
+namespace hapbench {
+
+bool StabilityRule::holds(RunVerdict verdict) const noexcept {
+  return is_stable(verdict) || (bounded && verdict == RunVerdict::vibrating);
+}
+
+StabilityRule rule_of(const Scenario& scenario) {
+  StabilityRule rule;
+  if (vibration_filter(scenario.time.step) && is_moved(scenario)) rule.most_vibration = kMostVibration;
+  return rule;
+}
+
+}  // namespace hapbench

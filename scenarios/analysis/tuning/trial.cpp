@@ -1,0 +1,26 @@
+#include "scenarios/analysis/tuning/trial.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace hapbench {
+
+std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor) {
+  const auto found = metrics.find(name);
+  return found == metrics.end() ? std::nullopt : std::optional(factor * found->second);
+}
+
+std::string setting_text(const TuneSetting& setting) {
+  std::string text;
+  if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *setting.damping_ratio);
+  if (setting.mass) text += fmt::format(", {:.3g} kg", *setting.mass);
+  return setting.filter.empty() ? text : text + ", " + setting.filter;
+}
+
+void TuneTrial::fail(std::string constraint, std::string reason) {
+  binding = std::move(constraint);
+  why = std::move(reason);
+}
+
+}  // namespace hapbench

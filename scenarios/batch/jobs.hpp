@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+/// A pool of threads that runs a list of jobs in order, with a progress bar.
+namespace hapbench {
+
+/// Number of threads that this process may use at once.
+std::size_t available_threads();
+
+/// How for_each_job processes a list of jobs.
+struct JobOptions {
+  unsigned threads = 1;  ///< jobs at once; at least 1
+  std::string label;     ///< text before the progress bar; empty for no bar
+};
+
+/// Calls job(0) … job(count - 1), each once, on several threads. Jobs begin in this order and at most `threads` of them
+/// are under way; each writes to its own place, so that the result does not depend on the number of threads. After an
+/// exception no further job starts, and that of the lowest job is rethrown; a signal (stop_signal.hpp) ends the loop
+/// the same way. Throws std::runtime_error before any job begins when there are not so many threads to be had.
+/// Overhead: some microseconds a job, some tens a thread.
+void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job);
+
+}  // namespace hapbench

@@ -1,0 +1,36 @@
+#include "scenarios/batch/run_all.hpp"
+
+#include <optional>
+
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
+                            const std::function<fs::path(std::size_t)>& folder) {
+  struct Run {
+    const Cases& cases;
+    std::size_t i, number;
+  };
+  std::vector<Run> runs;  // in their order
+  for (const Cases& cases : all) {
+    const std::size_t first = runs.size();
+    for (std::size_t place = 0; place < cases.size(); ++place)
+      runs.push_back({cases, cases.at(place), first + cases.at(place)});
+  }
+  std::vector<Result> results(runs.size());
+  for_each_job(runs.size(), jobs, [&](std::size_t place) {
+    const auto& [cases, i, number] = runs[place];
+    results[number] =
+        run_scenario(checked(cases.load(i)), folder ? std::optional(folder(number)) : std::nullopt, false);
+    results[number].targets.clear();
+  });
+  return results;
+}
+
+}  // namespace hapbench

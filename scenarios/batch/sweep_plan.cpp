@@ -1,0 +1,182 @@
+#include "scenarios/batch/sweep_plan.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "algorithms/registry.hpp"
+#include "results/io/columns.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/writer.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/metric_sections.hpp"
+#include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/scenario.hpp"
+#include "sim/core/hash.hpp"
+
+namespace hapbench {
+namespace {
+
+/// The facts about one run's scenario that the sweep needs.
+struct Point {
+  std::vector<std::string> warnings;
+  MetricList metrics;
+  std::string files;  ///< the folder and the objects that name files
+  AlgorithmOrigin origin;
+};
+
+Point examine(const SweepPlan& plan, std::size_t run) {
+  const LoadedScenario loaded = plan.cases.load(run);
+  const Scenario& scenario = loaded.scenario;
+  Point point{with_files(loaded, loaded.warnings),
+              metrics_without_values(scenario, scenario.reference_force.has_value()), "",
+              find_algorithm(scenario.rendering.algorithm)->origin};
+  if (loaded.files.all().empty()) return point;
+  const Json json = written_object(scenario);
+  point.files = loaded.file.parent_path().string() + "\n";
+  for (const auto& file : loaded.files.all()) {
+    const Json::json_pointer field(file->pointer());
+    point.files += file->pointer() + " " + json.at(field.parent_pointer()).dump() + "\n";
+  }
+  return point;
+}
+
+using Names = std::set<std::string>;
+
+void add_names(Names& names, const MetricList& metrics) {
+  for (const Metric& metric : metrics) names.insert(metric.name);
+}
+
+/// Reads the files that the scenarios of these runs name, adds their warnings to the plan and the metrics of what they
+/// measured, and returns their hashes.
+Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& metrics) {
+  Json hashes = Json::array();
+  for (const std::size_t run : runs) {
+    LoadedScenario loaded = checked(plan.cases.load(run));
+    append_new(plan.warnings, with_files(loaded, loaded.file_warnings));
+    if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position)) {
+      const bool has_force = loaded.files.at(kMotionFile).stroke()->force.has_value();
+      add_names(metrics, metrics_without_values(loaded.scenario, has_force));
+    }
+    loaded.scenario.name.clear();  // may be that of the scenario's file
+    hashes.push_back(
+        with_file(loaded, [&] { return scenario_hash(effective_scenario(loaded.scenario, {}), loaded.files); }));
+  }
+  return hashes;
+}
+
+/// The values of an axis; only the ends of a range that has very many.
+Json axis_content(const Axis& axis, bool of_a_file) {
+  constexpr std::size_t kMostListed = 10'000;
+  Json content = {{"path", axis.path}};
+  if (of_a_file) return content;
+  if (axis.range && (axis.steps == 0 || axis.steps > kMostListed)) {
+    content["range"] = {axis.range->from, axis.range->to};
+    content["scale"] = axis.range->logarithmic ? "log" : "linear";
+    if (axis.steps > 0) content["count"] = axis.steps;
+    return content;
+  }
+  content["values"] = Json::array();
+  for (std::size_t i = 0; i < axis.size(); ++i) content["values"].push_back(axis.value(i));
+  for (const Axis::Along& along : axis.along)
+    content["along"].push_back({{"set", along.overrides}, {"metrics_every_rows", along.stride}});
+  return content;
+}
+
+std::string hash_of_points(const Cases& cases) {
+  std::string text;
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    for (const std::string& change : cases.changes(i)) text += change + "\n";
+  return hash_text(hash_of(text));
+}
+
+/// The CPU does not count: shards of one sweep may come from several machines.
+Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
+  const Provenance program = provenance();
+  const std::vector<ScenarioText>& scenes = plan.cases.scenes();
+  const auto& sampling = plan.cases.sampling();
+  const bool of_a_file = sampling && sampling->method == kPointsOfFile;
+  Json content;
+  if (scenes.size() == 1) content["scenario"] = scenes[0].json;
+  if (scenes.size() > 1)
+    for (const ScenarioText& scene : scenes) content["scenarios"].push_back(scene.json);
+  content["set"] = plan.cases.sets();
+  content["vary"] = Json::array();
+  for (const Axis& axis : plan.cases.axes()) content["vary"].push_back(axis_content(axis, of_a_file));
+  if (sampling) content["sample"] = {{"method", sampling->method}, {"runs", sampling->count}};
+  if (of_a_file) content["sample"]["hash"] = hash_of_points(plan.cases);
+  if (sampling && !of_a_file) content["sample"]["seed"] = sampling->seed;
+  content["files"] = files;
+  if (!plugins.empty()) content["plugins"] = plugins;
+  content["program"] = {{"hapbench_version", program.version},
+                        {"commit", program.commit},
+                        {"compiler", program.compiler},
+                        {"build_type", program.build_type},
+                        {"flags", program.flags}};
+  return content;
+}
+
+}  // namespace
+
+std::vector<std::string> SweepPlan::columns() const {
+  std::vector<std::string> columns = {"index"};
+  for (const Axis& axis : cases.axes()) columns.push_back(axis.path);
+  columns.insert(columns.end(), {"outcome", "expected", "steps"});
+  columns.insert(columns.end(), metrics.begin(), metrics.end());
+  for (const std::string& metric : bounded) columns.push_back(std::string(kToleranceOf) + metric);
+  columns.emplace_back("state_hash");
+  return columns;
+}
+
+std::vector<std::size_t> runs_to_check(const Cases& cases) {
+  if (cases.size() <= kMostChecked || cases.sampling()) {
+    std::vector<std::size_t> runs(std::min(cases.size(), kMostChecked));
+    std::iota(runs.begin(), runs.end(), std::size_t{0});
+    return runs;
+  }
+  std::set<std::size_t> runs;
+  std::size_t stride = 1;
+  for (std::size_t a = cases.axes().size(); a-- > 0;) {
+    const std::size_t size = cases.axes()[a].size(), count = std::min(size, kMostChecked);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t place = count == 1 ? 0 : i * (size - 1) / (count - 1);
+      runs.insert(place * stride);
+      if (cases.axes().size() > 1) runs.insert(cases.size() - 1 - place * stride);
+    }
+    stride *= size;
+  }
+  return {runs.begin(), runs.end()};
+}
+
+SweepPlan plan_sweep(Cases cases, const JobOptions& jobs) {
+  SweepPlan plan{std::move(cases)};
+  const std::vector<std::size_t> runs = runs_to_check(plan.cases);
+  std::vector<Point> points(runs.size());
+  for_each_job(runs.size(), jobs, [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
+  Names metrics;
+  std::map<std::string, std::string> plugins;
+  Names files;                               // combinations of them
+  std::vector<std::size_t> runs_with_files;  // the first one of each
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Point& point = points[i];
+    add_names(metrics, point.metrics);
+    append_new(plan.warnings, point.warnings);
+    if (!point.origin.file.empty()) plugins.emplace(point.origin.file, point.origin.hash);
+    if (!point.files.empty() && files.insert(point.files).second) runs_with_files.push_back(runs[i]);
+  }
+  const Json hashes = check_files(plan, runs_with_files, metrics);
+  for (const Metric& metric : metrics_without_values(TrackingHandFields::kMostPlaces)) {
+    if (!metrics.contains(metric.name)) continue;
+    plan.metrics.push_back(metric.name);
+    if (metric.bounded) plan.bounded.push_back(metric.name);
+  }
+  plan.content = content_of(plan, hashes, plugins);
+  plan.definition = hash_text(hash_of(json_text(plan.content)));
+  return plan;
+}
+
+}  // namespace hapbench

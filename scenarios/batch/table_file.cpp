@@ -1,0 +1,148 @@
+#include "scenarios/batch/table_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "results/io/atomic_file.hpp"
+#include "results/io/columns.hpp"
+#include "scenarios/batch/table_description.hpp"
+#include "scenarios/batch/table_lines.hpp"
+#include "scenarios/input/input_error.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path part_of(fs::path file) {
+  return file += ".part";
+}
+
+}  // namespace
+
+TableFile::TableFile(TableTitle title, const Keep& keep)
+    : title_(std::move(title)),
+      part_(part_of(title_.file)),
+      about_part_(part_of(beside(title_.file))),
+      out_(nullptr, std::fclose),
+      has_(title_.cases) {
+  std::error_code error;
+  const std::size_t rows = rows_under_way(title_.file);
+  if (keep) {
+    resume(keep);
+  } else if (rows > 0 && is_of_this_definition()) {
+    fail_in_file(part_, fmt::format("holds {} finished runs of this sweep, which was interrupted; allowed: --resume to "
+                                    "go on from there, another --out, or to begin anew without this file",
+                                    rows));
+  }
+  const bool is_new = !keep || !fs::exists(part_, error) || fs::file_size(part_, error) == 0;
+  if (is_new) {
+    fs::remove(part_, error);  // first: a kill must not leave its rows beside another description
+    write_file_atomically(about_part_, json_text(title_.about));
+  }
+  out_.reset(std::fopen(part_.c_str(), is_new ? "wbe" : "abe"));
+  if (!out_) throw IoError("write", part_, {errno, std::generic_category()});
+  std::setvbuf(out_.get(), nullptr, _IONBF, 0);  // so that a line is written at once
+  if (is_new) append(title_.header + "\n");
+}
+
+/// True if the table under way, or else the finished one, has this definition.
+bool TableFile::is_of_this_definition() const {
+  std::error_code ignored;
+  const std::string found = definition_in(fs::exists(part_, ignored) ? about_part_ : beside(title_.file));
+  return title_.about.at("definition") == found;
+}
+
+/// Finds the rows that are there, and leaves the part without its last line if that is torn.
+void TableFile::resume(const Keep& keep) {
+  std::error_code error;
+  const bool is_part = fs::exists(part_, error);
+  if (!is_part && !fs::exists(title_.file, error)) return;
+  if (!is_of_this_definition()) {
+    fail_in_file(
+        is_part ? part_ : title_.file,
+        "is not the table of this sweep; --resume needs the same scenario, --set, --vary, --shard, named files, "
+        "plugins and program; without --resume the sweep begins anew");
+  }
+  if (!is_part) {
+    write_file_atomically(about_part_, json_text(title_.about));
+    fs::copy_file(title_.file, part_, error);
+    if (error) throw IoError("write", part_, error);
+  }
+  TableLines lines(part_, title_.cases);
+  if (lines.next() && lines.line() != title_.header) lines.refuse();
+  while (lines.next()) {
+    const std::size_t i = lines.row();
+    try {
+      has_[i] = keep(i, lines.line());
+    } catch (const InputError& refusal) {
+      lines.refuse(refusal.problem());
+    }
+  }
+  fs::resize_file(part_, lines.end(), error);
+  if (error) throw IoError("write", part_, error);
+}
+
+std::size_t TableFile::rows_under_way(const fs::path& file) {
+  std::size_t lines = 0;
+  for (TableLines table(part_of(file), 0); table.next();) ++lines;
+  return lines - std::min<std::size_t>(lines, 1);
+}
+
+void TableFile::append(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), out_.get()) != text.size())
+    throw IoError("write", part_, {errno, std::generic_category()});
+}
+
+void TableFile::add(std::size_t i, std::string_view row) {
+  append(std::string(row) + "\n");
+  has_[i] = true;
+}
+
+void TableFile::finish() {
+  out_.reset();
+  if (put_in_order(title_, {part_}, count()) != count())  // another process has begun it anew
+    throw IoError("read", part_, std::make_error_code(std::errc::io_error));
+  std::error_code ignored;
+  for (const fs::path& part : {part_, about_part_}) fs::remove(part, ignored);
+}
+
+std::size_t put_in_order(const TableTitle& title, const std::vector<fs::path>& parts, std::size_t rows) {
+  // Places as if one file followed the other; 0, where a header stands: no row.
+  std::vector<std::uintmax_t> places(title.cases), begins = {0};
+  for (const fs::path& part : parts) {
+    TableLines lines(part, title.cases);
+    if (lines.next() && lines.line() != title.header) lines.refuse();
+    while (lines.next()) places[lines.row()] = begins.back() + lines.begin();
+    begins.push_back(begins.back() + lines.end());
+  }
+  const std::size_t found = places.size() - static_cast<std::size_t>(std::ranges::count(places, 0u));
+  if (found != rows) return found;
+  AtomicFile table(title.file);
+  table.append(title.header + "\n");
+  std::ifstream in;
+  std::size_t opened = parts.size();
+  std::string line;
+  for (const std::uintmax_t place : places) {
+    if (place == 0) continue;
+    const auto file = static_cast<std::size_t>(std::ranges::upper_bound(begins, place) - begins.begin()) - 1;
+    const auto offset = static_cast<std::streamoff>(place - begins[file]);
+    if (std::exchange(opened, file) != file) in = std::ifstream(parts[file], std::ios::binary);
+    if (in.tellg() != offset) in.seekg(offset);
+    if (!std::getline(in, line)) throw IoError("read", parts[file], std::make_error_code(std::errc::io_error));
+    table.append(line + "\n");
+  }
+  FileSet together;
+  together.write(beside(title.file), json_text(title.about));
+  together.take(std::move(table));
+  together.commit();
+  return found;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,51 @@
+#include "scenarios/analysis/convergence/finer_runs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "results/io/columns.hpp"
+#include "scenarios/analysis/convergence/held_order.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/run_all.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+namespace hapbench::finer_runs_test {
+namespace {
+
+/// A flat tip of radius 0.5 mm in a plane whose points are 0.4 mm apart: 5 of them lie within, 21 of those that are
+/// 0.2 mm apart and 69 at 0.1 mm. The 10/N rule is min(N, 10) springs stiff, and N springs in series with K_vc = 40 K
+/// are 40 N / (40 + N): 5 and 4.44 for 5 points, 10 and 13.8 for 21, 10 and 25.3 for 69.
+TEST(FinerRuns, LeaveNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
+  constexpr double kDepth = 2e-5, kOne = 1000.0 * kDepth;  // [m], [N]
+  const Json scene = {
+      {"time", {{"step_s", 0.0005}, {"steps", 200}}},
+      {"environment", {{"type", "plane"}, {"size_m", 0.004}, {"spacing_m", 0.0004}}},
+      {"tool", {{"diameter_m", 0.001}, {"length_m", 0.01}, {"tip", "flat"}}},
+      {"motion", {{"position", {{"type", "prescribed"}, {"x_m", 0}, {"y_m", 0}, {"z_m", -kDepth}}}}},
+      {"rendering", {{"stiffness_N_per_m", 1000}, {"damping_N_s_per_m", 0}, {"virtual_coupling_N_per_m", 40'000}}}};
+  const test::TemporaryDirectory directory;
+  test::write_plainly(directory / "scene.json", scene.dump());
+  const std::vector<std::string> laws = {"mcneely", "virtual_coupling"};
+  const Comparison comparison = planned({.scenarios = {directory / "scene.json"}, .algorithms = laws});
+  const std::vector<Result> reports = run_all(comparison.scenes, {});
+  const FinerRuns finer(comparison, reports, {});
+  std::vector<KnownError> known;
+  std::vector<NumberWithError> numbers;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    known.push_back(finer.known_error(i, "force_max_N"));
+    numbers.push_back({number_of(reports[i].metrics, "force_max_N"), known.back().sum()});
+  }
+  EXPECT_EQ(held_text(numbers, laws), "no order holds: virtual_coupling ~ mcneely");
+  EXPECT_NEAR(*numbers[0].value, 5.0 * kOne, 1e-12);
+  EXPECT_NEAR(*known[0].spacing, 5.0 * kOne, 1e-9) << "the plain difference: no order is seen";
+  EXPECT_GE(*known[1].spacing, (25.3 - 4.45) * kOne);
+  EXPECT_EQ(known[0].step, 0.0) << "the motion is prescribed";
+  EXPECT_EQ(finer.refined(0), "time.step_s 0.0005, 0.00025, 0.000125; environment.spacing_m 4e-04, 2e-04, 1e-04");
+}
+
+}  // namespace
+}  // namespace hapbench::finer_runs_test

@@ -1,0 +1,96 @@
+#include "scenarios/analysis/convergence/levels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "scenarios/analysis/convergence/observed_order.hpp"
+#include "scenarios/batch/run_all.hpp"
+#include "sim/loop/integrators/table.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+namespace hapbench::levels_test {
+namespace {
+
+struct Study {
+  LevelSweep levels;
+  std::vector<Result> runs;
+
+  std::vector<LevelResult> levels_of(const std::string& metric) const {
+    std::vector<LevelResult> results;
+    for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i], metric));
+    return results;
+  }
+  Convergence of(const std::string& metric) const { return convergence_of(levels, levels_of(metric)); }
+};
+
+Study studied(const Json& json, std::size_t count = 5, const std::string& path = kStepPath) {
+  const ScenarioText scenario{test::data_directory() / "converge.json", json};
+  LevelSweep levels = level_sweep(load_scenario(scenario, {}), path, count, 2.0);
+  const Cases cases({scenario}, {}, {levels.axis});
+  return {std::move(levels), run_all({&cases, 1}, {})};
+}
+
+constexpr double kStep = 1e-3, kStiffness = 1000.0, kMass = 0.1, kStart = 1e-3;
+constexpr int kSteps = 40;
+
+/// A mass on one spring that holds from both sides.
+Json spring(double zeta, const char* integrator) {
+  return {{"time", {{"step_s", kStep}, {"steps", kSteps}}},
+          {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}},
+          {"initial", {{"position_m", {kStart, 0, 0}}}},
+          {"integrator", {{"type", integrator}}},
+          {"rendering",
+           {{"algorithm", "summation"},
+            {"stiffness_N_per_m", kStiffness},
+            {"mass_kg", kMass},
+            {"damping_ratio", zeta},
+            {"friction", {{"mu_s_N_s_per_m", 0}, {"mu_f_s_per_m", 0}}}}}};
+}
+
+TEST(Converge, KnowsTheFormalOrderOfEveryIntegrator) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
+    for (const double zeta : {0.0, 0.2}) {
+      const ScenarioText scenario{"x.json", spring(zeta, integrator->info.name)};
+      EXPECT_EQ(level_sweep(load_scenario(scenario, {}), kStepPath, 3, 2.0).formal_order,
+                zeta > 0.0 ? integrator->damped_order : integrator->order)
+          << integrator->info.name << " " << zeta;
+    }
+  }
+}
+
+/// All levels are measured at the same times: a prescribed motion gives the same force steps, whatever the step, and
+/// none that a quarter of the step makes a quarter of.
+TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
+  Json scene = spring(0.2, "leapfrog");
+  scene["motion"] = {{"position",
+                      {{"type", "prescribed"},
+                       {"x_m", {{"type", "sine"}, {"mean", 0}, {"amplitude", 1e-3}, {"period_s", 0.013}}},
+                       {"y_m", 0},
+                       {"z_m", 0}}}};
+  scene["rendering"]["damping_ratio"] = 0;
+  const Study study = studied(scene);
+  for (const char* metric : {"force_max_N", "force_step_max_N", "force_reversals"}) {
+    const auto levels = study.levels_of(metric);
+    const double first = *levels.front().result;
+    // Times are products of two roundings each, over a period of 2 pi 1e-3 m.
+    for (const LevelResult& level : levels) EXPECT_NEAR(*level.result, first, 1e-12 * first) << metric;
+    EXPECT_NE(study.of(metric).reason.find("rounding"), std::string::npos) << study.of(metric).reason;
+  }
+  EXPECT_EQ(study.runs[4].end.rows, 16u * kSteps);
+}
+
+TEST(Converge, KeepsTheLengthOfDelays) {
+  Json scene = spring(0.2, "leapfrog");
+  scene["device"] = {{"type", "impedance"}, {"handle_mass_kg", 0.1}, {"delay_samples", 1.5}};
+  const LevelSweep levels = level_sweep(load_scenario(ScenarioText{"x.json", scene}, {}), kStepPath, 3, 2.0);
+  EXPECT_EQ(levels.axis.values, (std::vector<std::string>{"0.001", "0.0005", "0.00025"}));
+  EXPECT_EQ(levels.axis.along[2].stride, 4);
+  EXPECT_EQ(levels.axis.along[2].overrides, (std::vector<std::string>{"time.steps=160", "device.delay_samples=6"}));
+  EXPECT_EQ(levels.formal_order, 1.0);
+}
+
+}  // namespace
+}  // namespace hapbench::levels_test

@@ -1,0 +1,119 @@
+#include "scenarios/analysis/convergence/observed_order.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Observed orders of sequences whose order is known, and of sequences without an order. Roache's formulas on a
+/// recurrence are in tests/known_answers.
+
+namespace hapbench::observed_order_test {
+namespace {
+
+/// Levels h = 1, 1/r, … of a result f(h).
+std::vector<LevelResult> levels_of(const std::function<double(double)>& f, std::size_t count = 5, double ratio = 2.0) {
+  std::vector<LevelResult> levels;
+  double h = 1.0;
+  for (std::size_t i = 0; i < count; ++i, h /= ratio)
+    levels.push_back({"h = " + std::to_string(h), "completes", f(h), {}, i});
+  return levels;
+}
+
+std::vector<LevelResult> levels_with(const std::vector<double>& results) {
+  std::vector<LevelResult> levels;
+  for (const double result : results)
+    levels.push_back({"level " + std::to_string(levels.size()), "completes", result, {}, levels.size()});
+  return levels;
+}
+
+Convergence judged(const std::vector<LevelResult>& levels, double formal_order, double ratio = 2.0) {
+  return convergence_of({{}, ratio, formal_order}, levels);
+}
+
+/// No order, for a reason with these words; and then none of the numbers that only an order gives.
+void expect_no_order(const Convergence& c, const std::string& said) {
+  EXPECT_NE(c.reason.find(said), std::string::npos) << c.reason;
+  EXPECT_FALSE(c.order || c.extrapolated || c.gci || c.asymptotic) << c.reason;
+}
+
+TEST(ObservedOrder, IsThatOfAPureErrorTerm) {
+  for (const double p : {0.5, 1.0, 2.0, 4.0}) {
+    for (const double ratio : {1.5, 2.0, 10.0}) {
+      const Convergence c =
+          judged(levels_of([p](double h) { return 3.0 - 0.25 * std::pow(h, p); }, 3, ratio), 4.0, ratio);
+      ASSERT_TRUE(c.order) << p << " " << ratio << ": " << c.reason;
+      // The differences are known to 3 * 2.2e-16 * 2; the smallest of them is 0.25 (10^-1 - 10^-2)^... = 2e-9 at p = 4.
+      EXPECT_NEAR(*c.order, p, 1e-6);
+      EXPECT_NEAR(*c.extrapolated, 3.0, 1e-13);
+      // The error of the finest level, with Roache's factor.
+      const double error = 0.25 * std::pow(ratio, -2.0 * p);
+      EXPECT_NEAR(*c.gci, 1.25 * error / (3.0 - error), 1e-6 * error + 1e-13);
+      EXPECT_NEAR(*c.errors.back(), 1.25 * error, 1e-6 * error + 1e-13);
+      EXPECT_NEAR(*c.errors.front(), 1.25 * 0.25, 1e-12);
+    }
+  }
+}
+
+TEST(ObservedOrder, IsAsymptoticWhereTheIndicesAgreeWithinATenth) {
+  EXPECT_TRUE(judged(levels_with({1.5, 1.1, 1.0}), 2.0).asymptotic) << "f_3 / f_2 = 1 / 1.1";
+  EXPECT_FALSE(judged(levels_with({1.6, 1.2, 1.0}), 2.0).asymptotic) << "1 / 1.2";
+}
+
+TEST(ObservedOrder, IsNotStatedWhereTheDifferencesShowNone) {
+  const double ulp = std::nextafter(1.0, 2.0) - 1.0;
+  const std::pair<std::vector<double>, const char*> kCases[] = {
+      {{1.0, 1.2, 1.1, 1.15, 1.125}, "change their sign"},
+      {{2.0, 1.0, 1.4, 1.2, 1.1}, "change their sign"},  // the last three alone would have order 1
+      {{1.0, 1.1, 1.3, 1.7}, "do not shrink"},
+      {{1.0, 1.1, 1.2, 1.3}, "do not shrink"},
+      {{1.0, 1.01, 1.2, 1.344}, "do not shrink"},  // the last three alone would have order 0.4
+      {{2.0, 1.125, 1.015625, 1.001953125}, "more than twice the formal one, 1"},
+      {{2.0, 2.0, 2.0}, "rounding"},
+      {{0.0, 0.0, 0.0}, "rounding"},
+      {{1.1, 1.0 + 16 * ulp, 1.0 + 4 * ulp, 1.0 + 2 * ulp, 1.0 + ulp}, "rounding"},
+      {{1.0, 2.0, 2.0, 3.0, 3.5}, "some of the last levels"}};
+  for (const auto& [results, said] : kCases) expect_no_order(judged(levels_with(results), 1.0), said);
+}
+
+TEST(ObservedOrder, IsNotStatedWhereContactsSwitch) {
+  std::vector<LevelResult> levels = levels_of([](double h) { return 1.0 + h; });
+  for (LevelResult& level : levels) level.contacts = {{"landings", 1.0}, {"colliding_mean", 21.0}};
+  levels[1].contacts[1].second = 22.0;
+  EXPECT_TRUE(judged(levels, 1.0).order) << "the coarse levels do not count";
+  levels[4].contacts[1].second = 21.5;
+  const Convergence c = judged(levels, 1.0);
+  expect_no_order(c, "contacts switch between the last levels (colliding_mean is 21 at");
+  EXPECT_EQ(c.band, std::pair(1.0625, 1.25));
+  EXPECT_NEAR(*c.errors[0], 1.0 - 0.0625, 1e-12);
+}
+
+TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
+  std::vector<LevelResult> levels = levels_of([](double h) { return 1.0 + h; });
+  levels[0] = {"h = 1", "diverges", std::nullopt};
+  levels[1].outcome = "went_through";
+  const Convergence c = judged(levels, 1.0);
+  ASSERT_TRUE(c.order) << c.reason;
+  EXPECT_NEAR(*c.extrapolated, 1.0, 1e-12);
+  EXPECT_FALSE(c.errors[0] || c.errors[1] || !c.errors[2]);
+  levels[2].result.reset();
+  const Convergence two = judged(levels, 1.0);
+  expect_no_order(two, "the run at h = 0.250000 has no value of the metric (completes), which leaves 2 levels");
+  EXPECT_EQ(two.band, std::pair(1.0625, 1.125));
+  levels[4].outcome = "stuck";
+  expect_no_order(judged(levels, 1.0), "ends with completes, which leaves 1 levels");
+  EXPECT_FALSE(judged(levels, 1.0).band);
+  levels[4].result.reset();
+  const Convergence none = judged(levels, 1.0);
+  expect_no_order(none, "the finest run, at h = 0.062500, has no value of the metric (stuck)");
+  for (const auto& error : none.errors) EXPECT_FALSE(error);
+  expect_no_order(judged(levels_with({1.0, 2.0}), 1.0), "2 levels are fewer than three");
+}
+
+}  // namespace
+}  // namespace hapbench::observed_order_test

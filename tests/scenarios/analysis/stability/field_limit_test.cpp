@@ -1,0 +1,105 @@
+#include "scenarios/analysis/stability/field_limit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+
+namespace hapbench::field_limit_test {
+namespace {
+
+// Limits of springs by theory and by runs, of fields beside K, and under bounds on metrics are in tests/known_answers.
+
+using Words = std::vector<std::string>;
+
+struct Asked {
+  const char* scenario;
+  const char* field;
+  Words overrides = {};
+  std::optional<Range> range = {};
+  bool smallest = false;
+  StabilityRule rule = {};
+};
+
+FieldLimit ask(const Asked& asked, const char* algorithm = "summation") {
+  const ScenarioText scenario = read_scenario_text(find_scenario(asked.scenario));
+  Words overrides = asked.overrides;
+  overrides.push_back(std::string("rendering.algorithm=") + algorithm);
+  LimitQuestion question = limit_question(scenario, overrides, asked.field, asked.range);
+  question.search.smallest = asked.smallest;
+  question.rule = asked.rule;
+  return field_limit(question);
+}
+
+/// A flat tip without damping and friction under 1 N bounces for ever: a run that seems to die out does so by chance.
+TEST(FieldLimit, OfWhatNeverRestsIsNone) {
+  const FieldLimit limit = ask({"poke_plane",
+                                "rendering.stiffness_N_per_m",
+                                {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5", "rendering.reduction=null",
+                                 "rendering.damping_ratio=0", R"(rendering.friction={"mu_s_N_s_per_m":0})"}},
+                               "mean");
+  EXPECT_FALSE(limit.end.value) << *limit.end.value;
+}
+
+/// 2000 steps, within which a decay of a tenth in a quarter tells stable from vibrating 0.1 % below the limit.
+const Words kLong = {"time.steps=2000"};
+
+/// The handle, 0.1 kg without friction, on an undamped spring behind a delay is unstable at every K, if slowly at small
+/// ones: K = 1 N/m grows by 0.1 % a second.
+const Words kSlow = {"time={\"step_s\":0.001,\"steps\":1000}",
+                     R"(device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0,"delay_samples":1})",
+                     "rendering.damping_N_s_per_m=0"};
+
+TEST(FieldLimit, IsNoneWhereGrowthIsSlow) {
+  const FieldLimit limit = ask({"single_spring", "rendering.stiffness_N_per_m", kSlow, Range{10.0, 1000.0, false}});
+  EXPECT_FALSE(limit.end.value) << "35 N/m make half a turn in 100 ms, a quarter of the run";
+  EXPECT_TRUE(limit.theory_has_none);
+  EXPECT_FALSE(limit.theory);
+}
+
+/// A heavy handle that taps a wall bounces below 30 Hz: its force stays, but one that rests is stable up to the edge of
+/// the linear loop alone, 1774 N/m.
+TEST(FieldLimit, OfADeviceAtAWallIsComparedWithItsLinearLoop) {
+  const Words device = {R"(device={"type":"impedance","handle_mass_kg":3,"viscous_N_s_per_m":0.2,"delay_samples":3})"};
+  const FieldLimit limit = ask({.scenario = "tap_wall",
+                                .field = "rendering.stiffness_N_per_m",
+                                .overrides = device,
+                                .rule = {.most_vibration = 1e-3}});
+  ASSERT_TRUE(limit.end.value && limit.linear);
+  EXPECT_NEAR(*limit.linear, 1773.8, 0.1);
+  EXPECT_TRUE(limit.is_beyond_linear(0.01));
+}
+
+TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
+  // n (2 B dt / M + K dt^2 / M) = 4 with B = 62.6 N s/m, K = 20 000 N/m: n = 5.9.
+  const FieldLimit limit = ask({"single_spring", "environment.groups.0.count", kLong, Range{1.0, 100.0, false}});
+  EXPECT_EQ(*limit.end.value, 5.0);
+  EXPECT_EQ(limit.end.beyond->value, 6.0);
+  EXPECT_EQ(*limit.theory, 5.0);
+}
+
+/// A passive hand on a handle with dry friction is stable, although it sticks and slips.
+TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
+  const Words rubbing = {R"(device={"type":"impedance","handle_mass_kg":0.136,"coulomb_N":0.25,"delay_samples":1})",
+                         "time.step_s=0.00035"};
+  const FieldLimit limit = ask({"tap_wall", "rendering.stiffness_N_per_m", rubbing, Range{1e3, 1e6, true}});
+  ASSERT_TRUE(limit.end.value && limit.end.beyond);
+  EXPECT_EQ(limit.end.beyond->verdict, RunVerdict::vibrating);
+  EXPECT_FALSE(limit.unstable_alone);
+}
+
+/// What is asked about hand and device alone has no points, and yet a stage that merges the points of a cell.
+TEST(FieldLimit, OfASceneWithLocalAverageIsOne) {
+  const Asked asked{"tap_corner", "rendering.stiffness_N_per_m", {"time.steps=200"}, Range{1e6, 1e8, true}};
+  Asked averaged = asked;
+  averaged.overrides.emplace_back("rendering.local_average=true");
+  EXPECT_EQ(ask(averaged).unstable_alone, ask(asked).unstable_alone);
+}
+
+}  // namespace
+}  // namespace hapbench::field_limit_test

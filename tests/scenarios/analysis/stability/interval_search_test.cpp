@@ -1,0 +1,47 @@
+#include "scenarios/analysis/stability/interval_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <span>
+
+namespace hapbench::interval_search_test {
+namespace {
+
+using Stable = std::function<bool(double value)>;
+
+/// What find_tried_edge gives from 1e4 to 1e6: the last stable value, 0 without an edge, -1 for scattered ones.
+double tried_edge(const Stable& stable) {
+  const SearchWay way{.range = {1e4, 1e6, true}};
+  const auto holds = [&](double part) { return stable(way.value_at(part)); };
+  std::map<double, bool> tried = scanned(kEdgeIntervals, holds);
+  const FoundEdge edge = find_tried_edge(way, tried, holds, true, [](std::span<const double>) {});
+  return edge.stable ? way.value_at(*edge.stable) : edge.scattered ? -1.0 : 0.0;
+}
+
+TEST(TriedEdge, IsBelowAnIslandThatBisectionDoesNotMeet) {
+  const Stable islands = [](double K) { return K < 3e5 && !(K > 1.05e5 && K < 1.2e5); };
+  const SearchWay way{.range = {1e4, 1e6, true}};
+  const auto holds = [&](double part) { return islands(way.value_at(part)); };
+  std::map<double, bool> tried = scanned(kEdgeIntervals, holds);
+  EXPECT_NEAR(way.value_at(find_edge(way, tried, holds, true).stable.value()), 3e5, 300.0);
+  EXPECT_NEAR(tried_edge(islands), 1.05e5, 105.0);
+}
+
+TEST(TriedEdge, IsOfAStretchOfTwoPercent) {
+  // 56 234 and 237 137 are values of the scan.
+  EXPECT_EQ(tried_edge([](double K) { return K > 56000.0 && K < 56500.0; }), -1.0);
+  EXPECT_NEAR(tried_edge([](double K) { return (K > 56000.0 && K < 56500.0) || (K > 2e5 && K < 3e5); }), 3e5, 300.0);
+  EXPECT_EQ(tried_edge([](double K) { return std::fmod(std::sqrt(K) + 0.5, 1.0) < 0.5; }), -1.0) << "by chance";
+  EXPECT_EQ(tried_edge([](double) { return false; }), 0.0);
+}
+
+TEST(TriedEdge, LeavesAShareThatMayFail) {
+  EXPECT_NEAR(std::pow(1.0 - may_fail_share(48), 48.0), 0.05, 1e-12);
+  EXPECT_NEAR(may_fail_share(48), 0.0605, 1e-4);
+}
+
+}  // namespace
+}  // namespace hapbench::interval_search_test

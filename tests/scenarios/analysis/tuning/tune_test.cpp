@@ -1,0 +1,125 @@
+#include "scenarios/analysis/tuning/tune.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "device_model/theory/linear_loops.hpp"
+#include "scenarios/analysis/tuning/trials.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/scenario.hpp"
+
+namespace hapbench::tune_test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+TuneQuestion question(const char* scene, const Words& overrides) {
+  TuneQuestion question;
+  question.scenario = read_scenario_text(find_scenario(scene));
+  question.overrides = overrides;
+  return question;
+}
+
+/// Three percent: the search ends at half a percent of K, and the runs near the edge need a strip of less than
+/// 1 % below it to tell decay from vibration in 4000 steps (run_stability.hpp).
+constexpr double kWithin = 0.03;
+
+/// A hand on the handle, whose loop is stable up to twice K with the worst hand of the family. That K is the largest
+/// over damping ratios is a known answer of a handle without a hand.
+TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
+  constexpr double kMass = 0.1;  // of the scene, by which zeta counts
+  const Words device = {
+      R"(device={"type":"impedance","handle_mass_kg":0.3,"viscous_N_s_per_m":0.5,"delay_samples":1.5})",
+      "time.steps=4000",
+      R"(hand={"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":300,"damping_N_s_per_m":6,"target":{"x_m":0,"y_m":0,"z_m":0}})"};
+  const TuneQuestion asked = question("single_spring", device);
+  const TunedLaw law = tuned_law(asked, "summation");
+  ASSERT_TRUE(law.choice) << law.why;
+  SampledLoop loop;
+  loop.period = load_scenario(asked.scenario, device).scenario.time.step;
+  loop.device.handle_mass = 0.3;
+  loop.device.viscous = 0.5;
+  loop.device.delay_samples = 1.5;
+  const double K = 2.0 * law.choice->stiffness;
+  loop.wall_damping = 2.0 * *law.choice->setting.damping_ratio * std::sqrt(K * kMass);
+  EXPECT_NEAR(K / worst_hand_edge(loop), 1.0, kWithin);
+}
+
+/// The least edge of the loop of the virtual mass at a wall and its servo, over the scene's own hand and the family's.
+double worst_edge_at_wall(const Scenario& scenario, double zeta, double mass) {
+  AdmittanceLoop loop;
+  loop.servo = std::get<AdmittanceDeviceConfig>(scenario.device).servo;
+  loop.hand_damping = 6.0;
+  double least = INFINITY;
+  for (const double hand : {100.0, 300.0, 1000.0}) {
+    loop.hand_stiffness = hand;
+    least = std::min(least, first_edge(1e3, 1e8, [&](double K) {
+                       loop.tool = {K, 2.0 * zeta * std::sqrt(K * mass), mass, scenario.time.step, 1.0};
+                       return loop.state_matrix();
+                     }));
+  }
+  return least;
+}
+
+/// A wall that only pushes lets go of a tool that is damped less, and the bounces do not die out within the run: from
+/// 0.5 on the answer is the edge of the worst hand, at the best zeta and mass. Four seconds, so that the landing, which
+/// dies out slowly near the edge, is a small part of what is judged.
+TEST(Tune, OfTheDeviceAtAWallIsTheEdgeOfTheWorstHand) {
+  TuneQuestion asked = question("device_at_wall", {"device.force_limit_N=null", "time.steps=8000"});
+  asked.threads = 2;
+  asked.damping_ratio = {0.5, 3.0};
+  asked.limits["force_max_N"].max = 1e9;  // nothing needs to be quiet
+  const TunedLaw law = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(law.choice) << law.why;
+  EXPECT_EQ(law.verified, kTriedBetween + kTriedNear);
+  const Scenario scenario = load_scenario(asked.scenario, law.overrides).scenario;
+  double best = 0.0;
+  for (double zeta = 0.5; zeta < 3.0; zeta *= 1.05)
+    for (const double mass : {0.1, 0.14, 0.2, 0.28, 0.4})
+      best = std::max(best, worst_edge_at_wall(scenario, zeta, mass));
+  EXPECT_NEAR(2.0 * law.choice->stiffness / best, 1.0, kWithin);
+}
+
+TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
+  TuneQuestion asked = question("tap_wall", {});
+  asked.threads = 2;
+  asked.damping_ratio = {0.1, 0.3};
+  const TunedLaw free = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(free.choice) << free.why;
+  EXPECT_LE(free.runs, kMostTuneRuns + 1000);
+  const double buzz = free.choice->metrics.at("force_rms_above_30Hz_N");
+  asked.limits["force_rms_above_30Hz_N"].max = 0.7 * buzz;
+  const TunedLaw quiet = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(quiet.choice) << quiet.why;
+  EXPECT_LE(quiet.choice->worst.at("force_rms_above_30Hz_N"), 0.7 * buzz);
+  EXPECT_LE(quiet.choice->stiffness, 1.01 * free.choice->stiffness);
+  // What the choice is said to give is what a run gives.
+  const Result run = run_scenario(load_scenario(asked.scenario, quiet.overrides), std::nullopt, false);
+  for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(number_of(run.metrics, name), value) << name;
+}
+
+TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {
+  TuneQuestion asked = question("tap_wall", {});
+  asked.threads = 2;
+  asked.damping_ratio = {0.1, 0.3};
+  asked.limits["inside_max_m"].max = 1e-6;
+  const TunedLaw none = tuned_law(asked, "shaped_stiffness");
+  EXPECT_FALSE(none.choice);
+  EXPECT_EQ(none.binding, "inside_max_m");
+  double needed = 0.0;
+  ASSERT_EQ(std::sscanf(none.relax.c_str(), "inside_max_m <= %lf in place of 1e-06", &needed), 1) << none.relax;
+  EXPECT_GT(needed, 1e-6);
+  asked.limits["inside_max_m"].max = 1.01 * needed;  // it is printed with three digits
+  EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
+}
+
+}  // namespace
+}  // namespace hapbench::tune_test

@@ -1,0 +1,37 @@
+#include "scenarios/batch/jobs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+namespace hapbench::jobs_test {
+namespace {
+
+TEST(ForEachJob, BeginsEachOnceInOrderAndNoMoreThanItsThreads) {
+  for (const unsigned threads : {1u, 2u, 7u}) {
+    std::atomic<std::size_t> ended = 0;
+    for_each_job(400, {threads, ""}, [&](std::size_t i) {
+      // All before this one have begun, and all of them but threads - 1 have ended.
+      EXPECT_LT(i, ended + threads);
+      std::this_thread::yield();
+      ++ended;
+    });
+    EXPECT_EQ(ended, 400u);
+  }
+}
+
+TEST(ForEachJob, ThrowsWhatTheLowestFailingJobThrew) {
+  // All fail: the first one is begun before any other and is the lowest.
+  for (const unsigned threads : {1u, 4u})
+    EXPECT_THROW(for_each_job(50, {threads, ""},
+                              [](std::size_t i) {
+                                if (i == 0) throw std::domain_error("first");
+                                throw std::runtime_error("later");
+                              }),
+                 std::domain_error);
+}
+
+}  // namespace
+}  // namespace hapbench::jobs_test
