@@ -12,7 +12,7 @@
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
-#include "scenarios/program/index.hpp"
+#include "scenarios/program/describe/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/scene/metric_sections.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/program/index.hpp"
+#include "scenarios/program/describe/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "scenarios/analysis/tuning/tune.hpp"
 #include "scenarios/input/bundled_files.hpp"
-#include "scenarios/program/limit.hpp"
+#include "scenarios/program/limit/limit.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"

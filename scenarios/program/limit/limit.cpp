@@ -1,4 +1,4 @@
-#include "scenarios/program/limit.hpp"
+#include "scenarios/program/limit/limit.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "scenarios/program/index.hpp"
+#include "scenarios/program/describe/index.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/index.hpp"
+#include "scenarios/program/describe/index.hpp"
 #include "scenarios/program/report.hpp"
 
 /// The command `describe`, which explains the index and what lies in the folders beside the program.
