@@ -1,3 +1,5 @@
+#include "scenarios/program/converge.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,11 @@
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/names.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
+#include "scenarios/program/text.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/core/math.hpp"
 

@@ -13,7 +13,8 @@
 #include <string>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/run_program.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace {

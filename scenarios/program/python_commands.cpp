@@ -1,3 +1,5 @@
+#include "scenarios/program/python_commands.hpp"
+
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,11 +15,14 @@
 #include "results/io/atomic_file.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/old_words.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/run_program.hpp"
+#include "scenarios/program/text.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
-/// Commands whose work packages in Python do.
 namespace hapbench {
 namespace {
 

@@ -1,3 +1,5 @@
+#include "scenarios/program/reproduce.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,10 @@
 #include "results/io/columns.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/names.hpp"
+#include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
+#include "scenarios/program/text.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"

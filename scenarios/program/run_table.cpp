@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "results/summary/summary.hpp"
+#include "scenarios/program/digits.hpp"
+#include "scenarios/program/text.hpp"
 
 namespace hapbench {
 namespace {
@@ -129,6 +131,15 @@ std::string step_time_text(std::span<const Result> reports) {
     text += fmt::format(", longer than a step of {} us: fewer points, rendering.reduction or a cheaper law",
                         cell(1e6 * step, 2));
   return "\n" + wrapped(text, 0);
+}
+
+std::string number_text(double value, const std::optional<double>& error) {
+  if (error && *error == 0.0) return significant(value, 6);
+  return error && *error >= std::abs(value) ? significant(value, 1) : deserved(value, error);
+}
+
+std::string with_error_text(double value, const std::optional<double>& error) {
+  return number_text(value, error) + " +- " + (error ? significant(*error, 1) : "?");
 }
 
 std::vector<DescribedTable> run_tables() {

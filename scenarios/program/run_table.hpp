@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenarios/batch/comparison.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/program/columns.hpp"
 
 /// Tables with a row for each run, as `run` and `compare` print and write them.
 namespace hapbench {
@@ -60,13 +60,11 @@ std::string fidelity_text(std::span<const Result> reports);
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
 /// A number with the digits that its error leaves: one where the error is larger, six where it is 0, four if unknown.
-inline std::string number_text(double value, const std::optional<double>& error) {
-  if (error && *error == 0.0) return significant(value, 6);
-  return error && *error >= std::abs(value) ? significant(value, 1) : deserved(value, error);
-}
+std::string number_text(double value, const std::optional<double>& error);
 /// The same with the error behind: "1.234 +- 0.005".
-inline std::string with_error_text(double value, const std::optional<double>& error) {
-  return number_text(value, error) + " +- " + (error ? significant(*error, 1) : "?");
-}
+std::string with_error_text(double value, const std::optional<double>& error);
+
+/// For `describe`.
+std::vector<DescribedTable> run_tables();
 
 }  // namespace hapbench

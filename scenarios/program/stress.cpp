@@ -1,7 +1,12 @@
+#include "scenarios/program/stress.hpp"
+
 #include <fmt/format.h>
 
 #include "scenarios/analysis/stress/law_stress.hpp"
+#include "scenarios/program/names.hpp"
+#include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
+#include "scenarios/program/text.hpp"
 
 namespace hapbench {
 namespace {

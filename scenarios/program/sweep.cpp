@@ -1,3 +1,7 @@
+#include "scenarios/program/sweep.hpp"
+#include "scenarios/program/program_words.hpp"
+#include "scenarios/program/run_program.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,7 +11,11 @@
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/names.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
+#include "scenarios/program/text.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 

@@ -1,3 +1,5 @@
+#include "scenarios/program/validate.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,7 +10,10 @@
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/program_words.hpp"
+#include "scenarios/program/results_folder.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"

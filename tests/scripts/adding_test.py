@@ -223,8 +223,25 @@ static std::vector<SurfacePoint> surface_points(const RidgeEnvironment& ridge) {
         [
             (
                 Tree.write,
+                "scenarios/program/twice.hpp",
+                """#pragma once
+
+#include "scenarios/program/command_line.hpp"
+
+namespace hapbench {
+
+void add_twice(CommandLine& line);
+
+}  // namespace hapbench
+""",
+            ),
+            (
+                Tree.write,
                 "scenarios/program/twice.cpp",
-                """#include "scenarios/program/command.hpp"
+                """#include "scenarios/program/twice.hpp"
+
+#include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/output.hpp"
 
 namespace hapbench {
 
@@ -246,7 +263,10 @@ void add_twice(CommandLine& line) {
 }  // namespace hapbench
 """,
             ),
-            before("add_validate;", "add_twice, "),
+            before(
+                '#include "scenarios/program/validate.hpp"\n\nnamespace hapbench {',
+                '#include "scenarios/program/twice.hpp"\n',
+            ),
             behind(
                 "constexpr CommandGuide kCommands[] = {",
                 '\n    {"look", "twice", "what is a word two times?", add_twice, "twice this"},',

@@ -9,7 +9,7 @@
 
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/studies.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 

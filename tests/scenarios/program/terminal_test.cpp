@@ -13,7 +13,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/describe/index.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/scenario_schema.hpp"

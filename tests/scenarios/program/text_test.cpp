@@ -3,8 +3,9 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/program/describe/index.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/program/digits.hpp"
+#include "scenarios/program/table.hpp"
+#include "scenarios/program/text.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 
 /// Tables, digits and the words for fields. What they look like is in tests/data/golden.

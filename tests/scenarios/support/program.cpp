@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/run_program.hpp"
 #include "tests/results/files.hpp"
 
 namespace hapbench::test {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "scenarios/program/columns.hpp"
+#include "scenarios/program/describe/index.hpp"
+
+/// The descriptions of names that results and printed tables have: metrics, files, columns, words, headings.
+namespace hapbench {
+
+/// All metrics of summary.json.
+Description describe_metrics();
+/// A table by its columns.
+Description describe_table(const DescribedTable& table);
+/// All files of tables.
+Description describe_tables();
+/// The words that the program prints.
+Description describe_words();
+/// Adds metrics as terms.
+void add_metric_terms(Index& index);
+/// The columns of all files, those of one name and meaning once.
+void add_columns(Index& index, const std::vector<DescribedTable>& tables);
+/// Adds the words that the program prints.
+void add_words(Index& index);
+/// Adds the headings of printed tables.
+void add_headings(Index& index, const std::vector<DescribedTable>& tables);
+
+}  // namespace hapbench

@@ -1,0 +1,96 @@
+#include "scenarios/program/help.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/commands.hpp"
+#include "scenarios/program/options.hpp"
+#include "scenarios/program/text.hpp"
+
+namespace hapbench {
+
+namespace {
+
+std::string name_of(const CLI::Option& option) {
+  return option.get_name(option.get_positional(), true);
+}
+
+/// The kind of value, as in "TEXT ..."; empty for a flag.
+std::string kind_of_value(const CLI::Option& option) {
+  if (option.get_type_size() == 0 || option.get_type_name().empty()) return "";
+  std::string kind = option.get_type_name();
+  if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
+    kind += option.get_delimiter() == ',' ? ",..." : " ...";
+  return kind;
+}
+
+std::string usage(const CLI::App& app) {
+  std::string words = fmt::format("Usage: hapbench {} [OPTIONS]", app.get_name());
+  for (const CLI::Option* option : app.get_options([](const CLI::Option* o) { return o->get_positional(); })) {
+    const std::string name = name_of(*option) + (kind_of_value(*option).ends_with("...") ? "..." : "");
+    words += option->get_required() ? " " + name : " [" + name + "]";
+  }
+  return words + "\n";
+}
+
+/// The arguments, or the options; those that say nothing of their own stand in one line.
+std::string options_text(const CLI::App& app, bool arguments) {
+  std::string text, shared;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional() != arguments) continue;
+    std::string name = name_of(*option), help = option->get_description();
+    if (name == "-h,--help") name = "--help";
+    if (!arguments && help == shared_option_help(name)) {
+      shared += (shared.empty() ? "" : ", ") + name;
+      continue;
+    }
+    if (const std::string kind = kind_of_value(*option); !arguments && !kind.empty()) name += " " + kind;
+    for (const CLI::Option* other : option->get_needs()) help += "; with " + other->get_name();
+    if (option->get_required() && !arguments) help += "; required";
+    text += entry(name, help);
+  }
+  if (!shared.empty()) text += entry(shared, "as everywhere: hapbench --help");
+  return text.empty() ? "" : fmt::format("\n{}\n{}", bold(stdout, arguments ? "Arguments:" : "Options:"), text);
+}
+
+}  // namespace
+
+std::string front_text() {
+  std::string text = fmt::format("hapbench: {}\n\n", kProgramSummary);
+  std::string_view group;
+  for (const CommandGuide& guide : command_guides()) {
+    text += entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
+    group = guide.group;
+  }
+  return text +
+         "\n"
+         "first   hapbench run drag_molar\n"
+         "        hapbench new drag --from my.stl --extent 12mm\n"
+         "        hapbench describe\n\n"
+         "\"hapbench COMMAND --help\" explains a command, \"hapbench --help\" what all share.\n";
+}
+
+std::string program_help() {
+  std::string text = front_text() + "\n" + bold(stdout, "Options:") + "\n";
+  for (const auto& [name, help] : shared_options()) text += entry(name, help, 2, 14);
+  return text + entry("--version", "print the version; with --json also what it was built from and promises", 2, 14) +
+         "\n" +
+         wrapped(
+             "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
+             "expects, 130 stopped by Ctrl-C.",
+             0);
+}
+
+std::string command_help(const CLI::App& app) {
+  std::string text =
+      wrapped(app.get_description(), 0) + usage(app) + options_text(app, true) + options_text(app, false) + "\n";
+  if (!app.get_footer().empty()) text += wrapped(app.get_footer(), 0) + "\n";
+  LineReader examples(std::ranges::find(command_guides(), app.get_name(), &CommandGuide::name)->examples);
+  while (const auto example = examples.next()) text += fmt::format("  hapbench {}\n", *example);
+  return text;
+}
+
+}  // namespace hapbench
