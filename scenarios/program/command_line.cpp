@@ -9,6 +9,7 @@
 #include <iterator>
 #include <optional>
 
+#include "algorithms/module/module.hpp"
 #include "scenarios/program/commands.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/help.hpp"
@@ -18,7 +19,6 @@
 #include "scenarios/program/text.hpp"
 #include "scenarios/program/usage_errors.hpp"
 #include "scenarios/program/version.hpp"
-#include "algorithms/module/module.hpp"
 #include "scenarios/run/load_module.hpp"
 
 namespace hapbench {
@@ -45,6 +45,19 @@ int status_with_faults(int status) {
   return status == kSuccess ? kUnexpectedOutcome : status;
 }
 
+/// The command of that name; null for none.
+const CLI::App* command_named(const CLI::App& program, const std::string& name) {
+  const std::vector<const CLI::App*> found =
+      program.get_subcommands([&name](const CLI::App* command) { return command->get_name() == name; });
+  return found.empty() ? nullptr : found.front();
+}
+
+/// True for an option that takes a value, and for an unknown one, which may.
+bool takes_next_word(const CLI::App& command, const std::string& option) {
+  const CLI::Option* found = command.get_option_no_throw(option);
+  return found == nullptr || found->get_items_expected_min() > 0;
+}
+
 }  // namespace
 
 CommandLine::CommandLine() : app_(std::make_shared<CLI::App>(kProgramSummary, "hapbench")) {
@@ -54,6 +67,12 @@ CommandLine::CommandLine() : app_(std::make_shared<CLI::App>(kProgramSummary, "h
   app_->require_subcommand(1);
   for (const CommandGuide& command : command_guides())
     command.add != nullptr ? command.add(*this) : static_cast<void>(app_->add_subcommand(std::string(command.name)));
+  // Behind the options that each command has added.
+  for (const auto& [app, output] : outputs_) {
+    app->add_flag("--quiet", output->quiet, shared_option_help("--quiet"));
+    app->add_flag("--json", output->json, shared_option_help("--json"));
+    app->add_flag("--wide", output_in_full(), shared_option_help("--wide"));
+  }
 }
 
 /// The program and each command have it, so that it may stand before or behind the command.
@@ -79,8 +98,26 @@ Command CommandLine::add(const std::string& name, const std::string& summary, Ou
   return Command(app);
 }
 
+std::vector<std::size_t> CommandLine::argument_places(const ProgramWords& words) const {
+  std::vector<std::size_t> places;
+  const CLI::App* command = words.empty() ? nullptr : command_named(*app_, words[0]);
+  if (command == nullptr) return places;
+  bool are_options_over = false;  // behind "--"
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (are_options_over || !word.starts_with("-")) {
+      places.push_back(i);
+    } else if (word == "--") {
+      are_options_over = true;
+    } else if (word.find('=') == std::string::npos && takes_next_word(*command, word)) {
+      ++i;
+    }
+  }
+  return places;
+}
+
 int CommandLine::run(const ProgramWords& words) {
-  const std::optional<StudyWords> study = StudyWords::in(words);
+  const std::optional<StudyWords> study = StudyWords::in(words, argument_places(words));
   if (!study) return parse_and_run(words);
   try {
     return parse_and_run(study->words);
@@ -96,11 +133,6 @@ int CommandLine::parse_and_run(ProgramWords words) {
   }
   const auto guide = std::ranges::find(command_guides(), words[0], &CommandGuide::name);
   if (guide != command_guides().end() && guide->add == nullptr) return run_python_command(words);
-  for (const auto& [app, output] : outputs_) {
-    app->add_flag("--quiet", output->quiet, shared_option_help("--quiet"));
-    app->add_flag("--json", output->json, shared_option_help("--json"));
-    app->add_flag("--wide", output_in_full(), shared_option_help("--wide"));
-  }
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app_->parse(std::move(words));

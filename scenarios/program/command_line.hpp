@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -46,6 +47,9 @@ class CommandLine {
   Command add(const std::string& name, const std::string& summary, OutputOptions& output, std::function<int()> action,
               const std::string& when_stopped);
   void add_module_option(CLI::App& app);
+  /// The places of the words that are arguments of the command words[0]: neither options nor values of its options. A
+  /// word behind an unknown option may be its value and is left out. None without a command.
+  std::vector<std::size_t> argument_places(const ProgramWords& words) const;
   int parse_and_run(ProgramWords words);
 
   std::shared_ptr<CLI::App> app_;

@@ -112,13 +112,14 @@ std::vector<BundledStudy> bundled_studies() {
   return found;
 }
 
-std::optional<StudyWords> StudyWords::in(const ProgramWords& words) {
-  if (words.size() < 2 || words[0].starts_with("-") || words[0] == "describe") return std::nullopt;
-  // The value of an option is none: a file of a device has no "ask".
+std::optional<StudyWords> StudyWords::in(const ProgramWords& words, std::span<const std::size_t> arguments) {
+  if (words.empty() || words[0] == "describe") return std::nullopt;
   std::optional<std::pair<fs::path, std::string>> named;
   std::size_t place = 0;
-  while (!named && ++place < words.size())
-    if (!words[place].starts_with("-")) named = find_study(words[place]);
+  for (std::size_t i = 0; i < arguments.size() && !named; ++i) {
+    place = arguments[i];
+    named = find_study(words[place]);
+  }
   if (!named) return std::nullopt;
   const auto& [file, text] = *named;
   const Json study = study_json(file, text);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ std::vector<BundledStudy> bundled_studies();
 /// The words of a command line in which a study stood, and where in its file they come from.
 struct StudyWords {
   /// Replaces the first study behind the command by its scenarios and options; options that are given besides go before
-  /// those of the study. `words`: without the program's name. Throws InputError for a study of another command.
-  static std::optional<StudyWords> in(const ProgramWords& words);
+  /// those of the study. `words`: without the program's name. `arguments`: the places of the words that may name a
+  /// study, which are neither options nor values of options. Throws InputError for a study of another command.
+  static std::optional<StudyWords> in(const ProgramWords& words, std::span<const std::size_t> arguments);
 
   /// The error, about the line of the study that has the option which it names, if it names one.
   InputError located(const InputError& error) const;
