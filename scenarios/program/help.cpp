@@ -74,10 +74,13 @@ std::string front_text() {
 }
 
 std::string program_help() {
-  std::string text = front_text() + "\n" + bold(stdout, "Options:") + "\n";
-  for (const auto& [name, help] : shared_options()) text += entry(name, help, 2, 14);
-  return text + entry("--version", "print the version; with --json also what it was built from and promises", 2, 14) +
-         "\n" +
+  std::string text = front_text() + "\n" + bold(stdout, "Options without a command:") + "\n";
+  text += entry("--help", "print this text", 2, 14);
+  text += entry("--version", "print the version; with --json also what it was built from and promises", 2, 14);
+  // Indented by more: scripts/completion offers the options of a help that are indented by two.
+  text += "\n" + bold(stdout, "Options that mean the same in every command that has them, behind its name:") + "\n";
+  for (const auto& [name, help] : shared_options()) text += entry(name, help, 4, 16);
+  return text + "\n" +
          wrapped(
              "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
              "expects, 130 stopped by Ctrl-C.",
