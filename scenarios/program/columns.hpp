@@ -13,6 +13,7 @@
 #include "results/io/table_writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/digits.hpp"
+#include "scenarios/program/layout.hpp"
 #include "scenarios/program/table.hpp"
 
 /// Tables of results: one list of columns gives the CSV file, the JSON, the printed table and what `describe` says.
@@ -97,19 +98,19 @@ class Columns {
     return list;
   }
 
-  /// As wide as the output is to be; `rows`: rows, or references to them.
+  /// The printed table, as wide as the layout; `rows`: rows, or references to them.
   template <class Rows>
-  Table table(const Rows& rows) const {
-    Table table{headings(output_in_full())};
+  std::string text(const Rows& rows, const Layout& layout) const {
+    Table table{headings(layout.in_full())};
     for (const Row& row : rows) {
       std::vector<std::string> cells;
       for (const Entry& entry : entries_) {
-        if (!entry.is_printed(output_in_full())) continue;
+        if (!entry.is_printed(layout.in_full())) continue;
         cells.push_back(printed(entry.cell(row), entry.shown, entry.tolerance ? entry.tolerance(row) : std::nullopt));
       }
       table.rows.push_back(std::move(cells));
     }
-    return table;
+    return table.text(layout.width());
   }
 
   std::vector<Table::Column> headings(bool in_full = true) const {

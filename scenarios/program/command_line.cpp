@@ -36,12 +36,12 @@ void load_modules(const std::vector<std::string>& files) {
 }
 
 /// Makes a success fail when a module failed: its runs count as diverged, which by itself need not be a failure.
-int status_with_faults(int status) {
+int status_with_faults(int status, ProgramContext& context) {
   const ModuleFaults faults = take_module_faults();
   if (faults.count == 0) return status;
   std::fflush(stdout);
-  print_error(fmt::format("a law or source of contacts from outside failed {}; its runs count as diverged: {}",
-                          faults.count == 1 ? "once" : fmt::format("{} times", faults.count), faults.first));
+  print_error(context, fmt::format("a law or source of contacts from outside failed {}; its runs count as diverged: {}",
+                                   faults.count == 1 ? "once" : fmt::format("{} times", faults.count), faults.first));
   return status == kSuccess ? kUnexpectedOutcome : status;
 }
 
@@ -60,7 +60,8 @@ bool takes_next_word(const CLI::App& command, const std::string& option) {
 
 }  // namespace
 
-CommandLine::CommandLine() : app_(std::make_shared<CLI::App>(kProgramSummary, "hapbench")) {
+CommandLine::CommandLine(ProgramContext& context)
+    : context_(context), app_(std::make_shared<CLI::App>(kProgramSummary, "hapbench")) {
   CLI::Option* json = app_->add_flag("--json");
   json->needs(app_->set_version_flag("--version", [json] { return version_text(json->count() > 0); }));
   add_module_option(*app_);
@@ -71,7 +72,7 @@ CommandLine::CommandLine() : app_(std::make_shared<CLI::App>(kProgramSummary, "h
   for (const auto& [app, output] : outputs_) {
     app->add_flag("--quiet", output->quiet, shared_option_help("--quiet"));
     app->add_flag("--json", output->json, shared_option_help("--json"));
-    app->add_flag("--wide", output_in_full(), shared_option_help("--wide"));
+    app->add_flag("--wide", context_.in_full, shared_option_help("--wide"));
   }
 }
 
@@ -128,18 +129,19 @@ int CommandLine::run(const ProgramWords& words) {
 
 int CommandLine::parse_and_run(ProgramWords words) {
   if (words.empty()) {
-    fmt::print("{}", front_text());
+    fmt::print("{}", front_text(context_.layout()));
     return kSuccess;
   }
   const auto guide = std::ranges::find(command_guides(), words[0], &CommandGuide::name);
-  if (guide != command_guides().end() && guide->add == nullptr) return run_python_command(words);
+  if (guide != command_guides().end() && guide->add == nullptr) return run_python_command(words, context_);
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app_->parse(std::move(words));
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
     refuse_old_words(*app_, nullptr);
-    fmt::print("{}", chosen.empty() ? program_help() : command_help(*chosen.front()));
+    const Layout layout = context_.layout();
+    fmt::print("{}", chosen.empty() ? program_help(layout) : command_help(*chosen.front(), layout));
     return kSuccess;
   } catch (const CLI::CallForVersion& version) {
     fmt::print("{}\n", version.what());
@@ -149,7 +151,7 @@ int CommandLine::parse_and_run(ProgramWords words) {
   }
   load_modules(modules_);
   take_module_faults();  // forgets those of an earlier command of this process
-  return status_with_faults(action_());
+  return status_with_faults(action_(), context_);
 }
 
 }  // namespace hapbench

@@ -10,6 +10,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/options.hpp"
+#include "scenarios/program/program_context.hpp"
 #include "scenarios/program/program_words.hpp"
 #include "scenarios/program/typed_places.hpp"
 
@@ -18,18 +19,19 @@ namespace hapbench {
 /// The program's command line, to which every command adds itself; `run` parses and runs the one that was chosen.
 class CommandLine {
  public:
-  CommandLine();
+  /// The context must outlive the command line.
+  explicit CommandLine(ProgramContext& context);
 
   /// Adds a command and the options that `action` is called with when it is chosen; they live as long as the command
   /// line, and their `output` is what its last options write. `when_stopped`: a note on its results after Ctrl-C.
   template <class Options>
   std::pair<Command, Options&> command(const std::string& name, const std::string& summary,
-                                       int (*action)(const Options&),
+                                       int (*action)(const Options&, ProgramContext&),
                                        const std::string& when_stopped = "incomplete results are removed") {
     auto options = std::make_shared<Options>();
-    const auto run = [options, action] {
+    const auto run = [options, action, &context = context_] {
       try {
-        return action(*options);
+        return action(*options, context);
       } catch (const InputError& error) {
         if constexpr (requires { options->overrides; }) throw with_typed_places(error, options->overrides);
         throw;
@@ -52,6 +54,7 @@ class CommandLine {
   std::vector<std::size_t> argument_places(const ProgramWords& words) const;
   int parse_and_run(ProgramWords words);
 
+  ProgramContext& context_;
   std::shared_ptr<CLI::App> app_;
   std::function<int()> action_;  ///< of the chosen command
   std::string when_stopped_;

@@ -205,7 +205,8 @@ LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenari
   });
 }
 
-int converge(const ConvergeOptions& options) {
+int converge(const ConvergeOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
   // All input is checked before anything runs or is written.
   if (!(options.ratio > 1.0 && options.ratio <= kLargestRatio))
     throw InputError(fmt::format("--ratio: got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
@@ -218,8 +219,8 @@ int converge(const ConvergeOptions& options) {
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
   require_names("--metric: got", metrics, plan.metrics, "hapbench describe metrics");
-  print_warnings(plan.warnings);
-  Report report(options, "converge_" + file.stem().string());
+  print_warnings(context, plan.warnings);
+  Report report(options, "converge_" + file.stem().string(), context);
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(plan.cases.load(i)); });
   report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().result.name,
@@ -229,8 +230,8 @@ int converge(const ConvergeOptions& options) {
   for (const std::string& metric : metrics) {
     const ConvergeStudy& study = studies.emplace_back(studied(levels, runs, metric));
     rows.insert(rows.end(), study.levels.begin(), study.levels.end());
-    report.say(level_columns(study).table(study.levels).text() + "\n" + wrapped(verdict_text(study), 0));
-    if (most) report.say(wrapped(enough_text(study, *most), 0));
+    report.say(level_columns(study).text(study.levels, layout) + "\n" + layout.wrapped(verdict_text(study), 0));
+    if (most) report.say(layout.wrapped(enough_text(study, *most), 0));
     report.say("\n");
     report.json().push_back(study_json(study));
   }

@@ -37,7 +37,7 @@ std::string usage(const CLI::App& app) {
 }
 
 /// The arguments, or the options; those that say nothing of their own stand in one line.
-std::string options_text(const CLI::App& app, bool arguments) {
+std::string options_text(const CLI::App& app, bool arguments, const Layout& layout) {
   std::string text, shared;
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_positional() != arguments) continue;
@@ -50,19 +50,20 @@ std::string options_text(const CLI::App& app, bool arguments) {
     if (const std::string kind = kind_of_value(*option); !arguments && !kind.empty()) name += " " + kind;
     for (const CLI::Option* other : option->get_needs()) help += "; with " + other->get_name();
     if (option->get_required() && !arguments) help += "; required";
-    text += entry(name, help);
+    text += layout.entry(name, help);
   }
-  if (!shared.empty()) text += entry(shared, "as everywhere: hapbench --help");
+  if (!shared.empty()) text += layout.entry(shared, "as everywhere: hapbench --help");
   return text.empty() ? "" : fmt::format("\n{}\n{}", bold(stdout, arguments ? "Arguments:" : "Options:"), text);
 }
 
 }  // namespace
 
-std::string front_text() {
+std::string front_text(const Layout& layout) {
   std::string text = fmt::format("hapbench: {}\n\n", kProgramSummary);
   std::string_view group;
   for (const CommandGuide& guide : command_guides()) {
-    text += entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
+    text +=
+        layout.entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
     group = guide.group;
   }
   return text +
@@ -73,24 +74,24 @@ std::string front_text() {
          "\"hapbench COMMAND --help\" explains a command, \"hapbench --help\" what all share.\n";
 }
 
-std::string program_help() {
-  std::string text = front_text() + "\n" + bold(stdout, "Options without a command:") + "\n";
-  text += entry("--help", "print this text", 2, 14);
-  text += entry("--version", "print the version; with --json also what it was built from and promises", 2, 14);
+std::string program_help(const Layout& layout) {
+  std::string text = front_text(layout) + "\n" + bold(stdout, "Options without a command:") + "\n";
+  text += layout.entry("--help", "print this text", 2, 14);
+  text += layout.entry("--version", "print the version; with --json also what it was built from and promises", 2, 14);
   // Indented by more: scripts/completion offers the options of a help that are indented by two.
   text += "\n" + bold(stdout, "Options that mean the same in every command that has them, behind its name:") + "\n";
-  for (const auto& [name, help] : shared_options()) text += entry(name, help, 4, 16);
+  for (const auto& [name, help] : shared_options()) text += layout.entry(name, help, 4, 16);
   return text + "\n" +
-         wrapped(
+         layout.wrapped(
              "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
              "expects, 130 stopped by Ctrl-C.",
              0);
 }
 
-std::string command_help(const CLI::App& app) {
-  std::string text =
-      wrapped(app.get_description(), 0) + usage(app) + options_text(app, true) + options_text(app, false) + "\n";
-  if (!app.get_footer().empty()) text += wrapped(app.get_footer(), 0) + "\n";
+std::string command_help(const CLI::App& app, const Layout& layout) {
+  std::string text = layout.wrapped(app.get_description(), 0) + usage(app) + options_text(app, true, layout) +
+                     options_text(app, false, layout) + "\n";
+  if (!app.get_footer().empty()) text += layout.wrapped(app.get_footer(), 0) + "\n";
   LineReader examples(std::ranges::find(command_guides(), app.get_name(), &CommandGuide::name)->examples);
   while (const auto example = examples.next()) text += fmt::format("  hapbench {}\n", *example);
   return text;

@@ -10,6 +10,7 @@
 #include "scenarios/program/columns.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/output.hpp"
+#include "scenarios/program/program_context.hpp"
 #include "scenarios/program/results_folder.hpp"
 
 namespace hapbench {
@@ -17,11 +18,12 @@ namespace hapbench {
 /// Collects an answer, and gives it at once: its files all together, then what is printed, or its JSON.
 class Report {
  public:
-  Report(const OutputOptions& output, std::filesystem::path folder) : output_(output), folder_(std::move(folder)) {}
+  Report(const OutputOptions& output, std::filesystem::path folder, ProgramContext& context)
+      : output_(output), folder_(std::move(folder)), context_(context) {}
   /// Into the folder of --out, or results/out/`name`. Throws InputError unless it can be written to.
-  Report(const CommonOptions& options, const std::string& name)
-      : Report(options.output, results_directory(options.out, name)) {
-    require_writable_directory(folder_);
+  Report(const CommonOptions& options, const std::string& name, ProgramContext& context)
+      : Report(options.output, results_directory(options.out, name), context) {
+    require_writable_directory(context_, folder_);
   }
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -40,14 +42,15 @@ class Report {
   /// The exit status. Throws IoError.
   int finish() {
     files_.commit();
-    for (const std::string& fault : faults_) print_error(fault);
-    print(output_, text_, json_);
+    for (const std::string& fault : faults_) print_error(context_, fault);
+    print(context_, output_, text_, json_);
     return status_;
   }
 
  private:
   const OutputOptions& output_;
   std::filesystem::path folder_;
+  ProgramContext& context_;
   FileSet files_;
   std::string text_;
   Json json_;

@@ -4,13 +4,12 @@
 #include <unistd.h>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
 
-void require_writable_directory(const std::filesystem::path& directory, std::string_view option) {
-  static NewDirectories directories;  // lives until the program ends, which removes empty ones
-  if (const auto error = directories.create(directory))
+void require_writable_directory(ProgramContext& context, const std::filesystem::path& directory,
+                                std::string_view option) {
+  if (const auto error = context.directories.create(directory))
     throw InputError(fmt::format("{} {}: cannot be created: {}", option, directory.string(), error.message()));
   if (!std::filesystem::is_directory(directory))
     throw InputError(fmt::format("{} {}: is not a directory", option, directory.string()));

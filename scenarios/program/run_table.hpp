@@ -8,6 +8,7 @@
 
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/program/columns.hpp"
+#include "scenarios/program/layout.hpp"
 
 /// Tables with a row for each run, as `run` and `compare` print and write them.
 namespace hapbench {
@@ -44,16 +45,16 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
 /// The printed table of runs, of seven columns: names, how they ended and when, kRunHeadings. Of several algorithms in
 /// one scene also the vibration of the tool, which runs without settled contact also have. With --wide also the range
 /// of ratios, and what half of the steps take at most. `of_scenes`: of several, told apart by name.
-std::string run_table(std::span<const Result> reports, bool of_scenes);
+std::string run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
 
 /// Its root is the vibration of the tool.
 inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
 
 /// What 99 % of the steps take at most, in the slowest run, of which there is one; empty where all are too short.
-std::string step_time_text(std::span<const Result> reports);
+std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
 /// A table of the rendered force against the reference, for the reports that have one.
-std::string fidelity_text(std::span<const Result> reports);
+std::string fidelity_text(std::span<const Result> reports, const Layout& layout);
 
 /// The warnings about runs side by side, but for those that were known before: those of one kind once, in the words of
 /// the first run and with the names of the algorithms.

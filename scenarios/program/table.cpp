@@ -7,6 +7,8 @@
 #include <numeric>
 #include <sstream>
 
+#include "scenarios/program/text.hpp"
+
 namespace hapbench {
 
 namespace {

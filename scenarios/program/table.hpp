@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/program/text.hpp"
-
 namespace hapbench {
 
 /// A table for the terminal: columns as wide as their widest cell, a rule under the header. Numbers are aligned right,
@@ -21,7 +19,7 @@ struct Table {
 
   /// The table in at most `most_width` characters: a last column of text is wrapped; other columns that do not fit
   /// follow below, in blocks that each begin with the first column.
-  std::string text(std::size_t most_width = output_width()) const;
+  std::string text(std::size_t most_width) const;
 };
 
 }  // namespace hapbench

@@ -1,30 +1,12 @@
 #include "scenarios/program/text.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <cstring>
 
 namespace hapbench {
-
-namespace {
-
-/// A narrower output would not hold a name and its meaning.
-constexpr std::size_t kNarrowest = 40;
-}  // namespace
-
-std::size_t output_width() {
-  if (output_in_full()) return std::string::npos;
-  const char* columns = std::getenv("COLUMNS");
-  if (const long given = columns == nullptr ? 0 : std::atol(columns); given > 0)
-    return std::max(kNarrowest, static_cast<std::size_t>(given));
-  winsize size{};
-  if (isatty(STDOUT_FILENO) != 1 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
-    return std::string::npos;
-  return std::max<std::size_t>(kNarrowest, size.ws_col);
-}
 
 std::string fitted(std::string_view text, std::size_t width) {
   std::string all;
@@ -81,15 +63,6 @@ std::string entry(std::string_view name, std::string_view meaning, std::size_t i
   if (meaning.empty()) return head + "\n";
   if (head.size() + 2 > column) return head + "\n" + text;
   return text.replace(0, head.size(), head);
-}
-
-bool& output_in_full() {
-  static bool in_full = false;
-  return in_full;
-}
-
-std::size_t prose_width() {
-  return std::min<std::size_t>(output_width(), 100);
 }
 
 }  // namespace hapbench

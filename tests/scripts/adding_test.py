@@ -250,8 +250,8 @@ struct TwiceOptions {
   OutputOptions output;
 };
 
-static int twice(const TwiceOptions& options) {
-  print(options.output, options.word + " " + options.word + "\\n", Json(options.word));
+static int twice(const TwiceOptions& options, ProgramContext& context) {
+  print(context, options.output, options.word + " " + options.word + "\\n", Json(options.word));
   return kSuccess;
 }
 

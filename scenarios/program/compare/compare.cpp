@@ -76,7 +76,8 @@ void judge(const Comparison& comparison, const std::vector<Result>& reports, Rep
   for (const std::string& text : first_few(texts, kMostShown)) report.fault(text, kUnexpectedOutcome);
 }
 
-int compare(const CompareOptions& options) {
+int compare(const CompareOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
   if (options.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
   // All input is checked before anything runs or is written.
@@ -84,21 +85,22 @@ int compare(const CompareOptions& options) {
   const bool several = comparison.scenes.size() > 1;
   // Whether there is something to rank over, or metrics to rank by.
   const bool ranks = several || comparison.seeds > 1 || !options.metrics.empty();
-  print_warnings(comparison.warnings);
-  Report report(options, several ? "compare" : "compare_" + comparison.names[0]);
+  print_warnings(context, comparison.warnings);
+  Report report(options, several ? "compare" : "compare_" + comparison.names[0], context);
   const std::filesystem::path& out = report.folder();
   remove_earlier_comparison(out, comparison);
-  for (std::size_t run = 0; run < comparison.size(); ++run) require_writable_directory(out / comparison.folder(run));
+  for (std::size_t run = 0; run < comparison.size(); ++run)
+    require_writable_directory(context, out / comparison.folder(run));
   const JobOptions jobs = job_options(options, "compare");
   JobOptions timed = jobs;
   // The wide table of a single comparison shows times, which concurrent runs would lengthen.
-  if (options.jobs == 0 && !ranks && output_in_full()) timed.threads = 1;
+  if (options.jobs == 0 && !ranks && layout.in_full()) timed.threads = 1;
   const std::vector<Result> reports =
       run_all(comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); });
   const League league = league_of(comparison, reports, ranks ? options.metrics : printed_metrics(reports));
   for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
     const auto of_scene = std::span(reports).subspan(s * comparison.each(), comparison.each());
-    print_warnings(run_warnings(of_scene));
+    print_warnings(context, run_warnings(of_scene));
     std::vector<ComparedRun> runs;
     for (const Result& run : of_scene) runs.push_back({runs.size() % comparison.seeds, run});
     report.write(comparison.scene_folder(s) / "comparison.csv", comparison_columns(comparison.seeds > 1), runs);
@@ -107,20 +109,20 @@ int compare(const CompareOptions& options) {
   if (ranks || options.errors) report.json() = {{"runs", std::move(report.json())}};
   if (ranks) {
     report.write("league.csv", league_columns(false), league.standings);
-    report.say(league_text(league));
+    report.say(league_text(league, layout));
     report.json()["standings"] = league_columns(false).json_list(league.standings);
     Json& laws = report.json()["laws"] = law_columns().json_list(league.laws);
     for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
   } else {
-    report.say(fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
-                           options.errors ? "" : vibration_text(league),
-                           output_in_full() ? step_time_text(reports) : ""));
+    report.say(fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false, layout),
+                           fidelity_text(reports, layout), options.errors ? "" : vibration_text(league, layout),
+                           layout.in_full() ? step_time_text(reports, layout) : ""));
   }
   if (options.errors) {
     const FinerRuns finer(comparison, reports, jobs);
     for (std::size_t s = 0; s < league.scenarios.size(); ++s)
-      report_errors(league, finer, s, ranks || output_in_full(), report);
-    report.say("\n" + wrapped("<: less by more than both errors; ~: not so; ?: a finer run ends otherwise", 0));
+      report_errors(league, finer, s, ranks || layout.in_full(), report, layout);
+    report.say("\n" + layout.wrapped("<: less by more than both errors; ~: not so; ?: a finer run ends otherwise", 0));
   }
   report.say(fmt::format("\nresults in {}\n", out.string()));
   judge(comparison, reports, report);

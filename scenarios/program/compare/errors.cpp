@@ -59,7 +59,8 @@ std::vector<NumberWithError> numbers_of(const League& league, const FinerRuns& f
 
 }  // namespace
 
-void report_errors(const League& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report) {
+void report_errors(const League& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report,
+                   const Layout& layout) {
   Table table{{{"algorithm", false}}};
   for (const std::string& algorithm : league.algorithms) table.rows.push_back({algorithm});
   std::string sentences;
@@ -80,18 +81,19 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
       const auto shown_error = error ? std::optional(factor * *error) : error;
       table.rows[a].push_back(value ? with_error_text(factor * *value, shown_error) : "-");
     }
-    sentences += wrapped(fmt::format("{}: {}", metric, says), 0);
+    sentences += layout.wrapped(fmt::format("{}: {}", metric, says), 0);
   }
-  report.say(fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario], table.text(prose_width()),
-                         sentences, wrapped(fmt::format("+-: {}", finer.refined(scenario)), 0)));
+  report.say(fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario], table.text(layout.prose_width()),
+                         sentences, layout.wrapped(fmt::format("+-: {}", finer.refined(scenario)), 0)));
 }
 
-std::string vibration_text(const League& league) {
+std::string vibration_text(const League& league, const Layout& layout) {
   struct VibrationMetric {
     const char *of, *metric;
     double unfelt;  ///< [unit of the metric]
   };
-  constexpr VibrationMetric kVibrations[] = {{"force", "force_rms_above_30Hz_N", 1e-4}, {"tool", kToolVibrationPower, 1e-10}};
+  constexpr VibrationMetric kVibrations[] = {{"force", "force_rms_above_30Hz_N", 1e-4},
+                                             {"tool", kToolVibrationPower, 1e-10}};
   if (league.algorithms.size() < 2) return "";
   std::string says;
   std::vector<std::string> failing;
@@ -111,7 +113,7 @@ std::string vibration_text(const League& league) {
     if (known + failing.size() == league.algorithms.size()) break;
   }
   if (!failing.empty()) says += fmt::format("; failing: {}", fmt::join(failing, ", "));
-  return "\n" + wrapped(says + "; --errors tells whether finer runs agree", 0);
+  return "\n" + layout.wrapped(says + "; --errors tells whether finer runs agree", 0);
 }
 
 }  // namespace hapbench

@@ -54,14 +54,15 @@ std::string firsts_text(const League& league) {
                      fmt::join(first_few(firsts, kMostNamed), ", "));
 }
 
-std::string verdict(const League& league) {
-  const std::string text = wrapped(firsts_text(league), 0);
+std::string verdict(const League& league, const Layout& layout) {
+  const std::string text = layout.wrapped(firsts_text(league), 0);
   if (league.seeds < 2) return text + "one seed: no spread is known; --seeds K gives one\n";
   std::vector<std::string> alike;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s)
     if (!league.seeds_matter[s]) alike.push_back(league.scenarios[s]);
   if (alike.empty()) return text + "\"hapbench report\" says what lies between laws, seed by seed\n";
-  return text + wrapped(fmt::format("nothing is random in {}: all seeds are one run, no spread is known; --jitter "
+  return text +
+         layout.wrapped(fmt::format("nothing is random in {}: all seeds are one run, no spread is known; --jitter "
                                     "METRES shifts the start",
                                     fmt::join(alike, ", ")),
                         0);
@@ -69,13 +70,13 @@ std::string verdict(const League& league) {
 
 }  // namespace
 
-std::string league_text(const League& league) {
+std::string league_text(const League& league, const Layout& layout) {
   constexpr std::size_t kMostPrinted = 60;
   const std::string table =
-      league.standings.size() <= kMostPrinted || output_in_full()
-          ? league_columns(league.seeds > 1).table(ranked(league)).text()
+      league.standings.size() <= kMostPrinted || layout.in_full()
+          ? league_columns(league.seeds > 1).text(ranked(league), layout)
           : fmt::format("{} standings are in league.csv; --wide prints them\n", league.standings.size());
-  return fmt::format("{}\n{}\n{}", table, law_columns().table(league.laws).text(), verdict(league));
+  return fmt::format("{}\n{}\n{}", table, law_columns().text(league.laws, layout), verdict(league, layout));
 }
 
 }  // namespace hapbench

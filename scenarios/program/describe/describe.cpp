@@ -74,35 +74,36 @@ std::vector<Description> described_headings(const Index& index, const std::strin
 }
 
 /// What a name means that the program does not know by itself.
-std::vector<Description> other_meanings(const Index& index, const std::string& name) {
-  if (const std::optional<Description> place = describe_place(name)) return {*place};
+std::vector<Description> other_meanings(const Index& index, const std::string& name, const Layout& layout) {
+  if (const std::optional<Description> place = describe_place(name, layout)) return {*place};
   // Fields of that name in any section: "torque" for record.torque.
   std::vector<Description> found =
       described(index, [&](const Named& thing) { return thing.kind == "field" && thing.name.ends_with("." + name); });
   if (!found.empty()) return found;
-  const Index in_folders = folder_index();
+  const Index in_folders = folder_index(layout);
   found = described(in_folders, [&](const Named& thing) {
     return thing.name == name || (thing.kind == "claim" && lower_case(thing.name) == lower_case(name));
   });
   if (!found.empty()) return found;
   std::error_code ignored;
   if (!std::filesystem::exists(name, ignored)) refuse(name, index, in_folders);
-  return {describe_scenario(find_scenario(name))};
+  return {describe_scenario(find_scenario(name), layout)};
 }
 
-int describe(const DescribeOptions& options) {
-  if (options.name.empty() || is_kind(options.name)) return list(options);
-  const Index index = program_index();
+int describe(const DescribeOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
+  if (options.name.empty() || is_kind(options.name)) return list(options, context);
+  const Index index = program_index(layout);
   std::vector<Description> meanings = described_by_name(index, options.name);
   if (meanings.empty()) meanings = described_headings(index, options.name);
   const bool is_group = std::ranges::find(kScenarioGroups, options.name) != std::end(kScenarioGroups);
-  if (meanings.empty() && is_group) return list(options);
+  if (meanings.empty() && is_group) return list(options, context);
   if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
-  if (meanings.empty()) meanings = other_meanings(index, options.name);
+  if (meanings.empty()) meanings = other_meanings(index, options.name, layout);
   const Description d = joined(meanings);
   OutputOptions output = options.output;
   output.json |= d.text.empty();
-  print(output, d.text, d.json);
+  print(context, output, d.text, d.json);
   return kSuccess;
 }
 

@@ -39,7 +39,7 @@ Description joined(const std::vector<Description>& meanings) {
   return all;
 }
 
-std::string thing_text(const Json& thing, std::size_t indent) {
+std::string thing_text(const Json& thing, const Layout& layout, std::size_t indent) {
   std::string name = thing.value("name", "");
   std::replace(name.begin(), name.end(), '\n', ' ');
   const std::string kind = thing.value("kind", ""), unit = thing.value("unit", "");
@@ -50,12 +50,12 @@ std::string thing_text(const Json& thing, std::size_t indent) {
     std::replace(title.begin(), title.end(), '_', ' ');
     if (value.is_array() && !value.empty() && value.front().is_object()) {
       lists += fmt::format("\n{:{}}{}\n", "", indent + 2, title);
-      for (const Json& item : value) lists += thing_text(item, indent + 4);
+      for (const Json& item : value) lists += thing_text(item, layout, indent + 4);
     } else if (const std::string line = line_of(value); !line.empty()) {
       if (std::ranges::find(kProse, key) != std::end(kProse))
-        prose += wrapped(line, indent + 2);
+        prose += layout.wrapped(line, indent + 2);
       else
-        facts += entry(title, line, indent + 2, indent + 17);
+        facts += layout.entry(title, line, indent + 2, indent + 17);
     }
   }
   std::string text;
@@ -66,8 +66,8 @@ std::string thing_text(const Json& thing, std::size_t indent) {
   return text + prose + (facts.empty() || indent > 0 ? "" : "\n") + facts + lists;
 }
 
-Description thing_description(const Json& thing) {
-  return {thing_text(thing), thing};
+Description thing_description(const Json& thing, const Layout& layout) {
+  return {thing_text(thing, layout), thing};
 }
 
 }  // namespace hapbench

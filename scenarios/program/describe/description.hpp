@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/program/layout.hpp"
 
 namespace hapbench {
 
@@ -18,9 +19,9 @@ Description joined(const std::vector<Description>& meanings);
 
 /// The text of a thing that is described by its JSON: name, unit and kind in its first line, below it what it is, and
 /// its other members by their names; an array of objects is a list of such things.
-std::string thing_text(const Json& thing, std::size_t indent = 0);
+std::string thing_text(const Json& thing, const Layout& layout, std::size_t indent = 0);
 
 /// The description of a thing by its JSON.
-Description thing_description(const Json& thing);
+Description thing_description(const Json& thing, const Layout& layout);
 
 }  // namespace hapbench

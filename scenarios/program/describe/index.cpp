@@ -13,31 +13,45 @@ namespace hapbench {
 namespace {
 
 /// Names that stand for no single thing of a list.
-constexpr std::pair<const char*, Description (*)()> kSections[] = {
-    {"metrics", describe_metrics},          {"summary.json", describe_metrics},
-    {"columns", describe_tables},           {"columns.json", describe_tables},
-    {"algorithm", describe_algorithms},     {"profile", describe_profile},
-    {"scenario", describe_scenario_fields}, {"choices_schema", [] { return Description{"", choices_schema()}; }},
-    {"diagnosis", describe_diagnosis},      {"schema", [] { return Description{"", scenario_schema()}; }},
-    {"stability", describe_stability},      {"words", describe_words}};
+constexpr std::pair<const char*, Description (*)(const Layout&)> kSections[] = {
+    {"metrics", describe_metrics},
+    {"summary.json", describe_metrics},
+    {"columns", describe_tables},
+    {"columns.json", describe_tables},
+    {"algorithm", describe_algorithms},
+    {"profile", describe_profile},
+    {"scenario", describe_scenario_fields},
+    {"choices_schema",
+     [](const Layout&) {
+       return Description{"", choices_schema()};
+     }},
+    {"diagnosis", describe_diagnosis},
+    {"schema",
+     [](const Layout&) {
+       return Description{"", scenario_schema()};
+     }},
+    {"stability", describe_stability},
+    {"words", describe_words}};
 
 }  // namespace
 
-Index program_index() {
+Index program_index(const Layout& layout) {
   const std::vector<DescribedTable> tables = result_tables();
   Index index;
-  add_models(index);
-  add_presets(index);
-  for (const auto& [name, describe] : kSections) index.push_back({"section", name, "", describe});
-  add_metric_terms(index);
+  add_models(index, layout);
+  add_presets(index, layout);
+  for (const auto& [name, describe] : kSections)
+    index.push_back({"section", name, "", [describe, layout] { return describe(layout); }});
+  add_metric_terms(index, layout);
   for (const DescribedTable& table : tables)
-    if (!table.file.empty()) index.push_back({"file", table.file, "", [table] { return describe_table(table); }});
-  add_columns(index, tables);
+    if (!table.file.empty())
+      index.push_back({"file", table.file, "", [table, layout] { return describe_table(table, layout); }});
+  add_columns(index, tables, layout);
   for (const std::string& path : scenario_field_paths())
-    index.push_back({"field", path, "", [path] { return describe_field(path); }});
-  add_types(index);
-  add_words(index);
-  add_headings(index, tables);
+    index.push_back({"field", path, "", [path, layout] { return describe_field(path, layout); }});
+  add_types(index, layout);
+  add_words(index, layout);
+  add_headings(index, tables, layout);
   return index;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenarios/program/describe/description.hpp"
+#include "scenarios/program/layout.hpp"
 
 /// The index of names that users meet. `describe` lists those of some kinds and explains each, and refusals take the
 /// nearest name from it. Every part is made of the table of its kind, so that a new entry there is known here.
@@ -23,6 +24,6 @@ using Index = std::vector<Named>;
 
 /// Everything that `describe` can describe without the folders beside the program, in the order of its lists: from
 /// models and presets to words and headings.
-Index program_index();
+Index program_index(const Layout& layout);
 
 }  // namespace hapbench

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scenarios/program/options.hpp"
+#include "scenarios/program/program_context.hpp"
 
 /// The lists of `describe`.
 namespace hapbench {
@@ -22,6 +23,6 @@ std::string list_name(const std::string& kind);
 bool is_kind(const std::string& name);
 /// Lists what is of a kind or a group, or of each kind but the many metrics and claims the names. Returns the exit
 /// status.
-int list(const DescribeOptions& options);
+int list(const DescribeOptions& options, ProgramContext& context);
 
 }  // namespace hapbench

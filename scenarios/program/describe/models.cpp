@@ -46,12 +46,13 @@ Json model_json(const char* kind, const ModelInfo& info, std::span<const OwnPara
   return json;
 }
 
-Description describe_preset(const DevicePreset& preset) {
+Description describe_preset(const DevicePreset& preset, const Layout& layout) {
   Description d;
-  d.text = fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
-                       wrapped("of device.type \"impedance\": \"device\": {\"type\": \"impedance\", \"preset\": \"" +
-                               std::string(preset.name) + "\"}; fields next to it override its numbers")) +
-           "\n";
+  d.text =
+      fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
+                  layout.wrapped("of device.type \"impedance\": \"device\": {\"type\": \"impedance\", \"preset\": \"" +
+                                 std::string(preset.name) + "\"}; fields next to it override its numbers")) +
+      "\n";
   d.json = {{"kind", "preset"}, {"name", preset.name}, {"device", preset.device}, {"numbers", Json::object()}};
   const std::tuple<const char*, SourcedNumber, const char*> numbers[] = {
       {"handle_mass_kg", preset.handle_mass, ""},
@@ -65,7 +66,8 @@ Description describe_preset(const DevicePreset& preset) {
   for (const auto& [name, number, meaning] : numbers) {
     const std::string range =
         number.low < number.high ? fmt::format(", may be {:.3g} to {:.3g}", number.low, number.high) : "";
-    d.text += entry(fmt::format("{} {:g}", name, number.value), meaning + (std::string(number.source) + range), 2, 32);
+    d.text +=
+        layout.entry(fmt::format("{} {:g}", name, number.value), meaning + (std::string(number.source) + range), 2, 32);
     d.json["numbers"][name] = {
         {"value", number.value}, {"source", number.source}, {"low", number.low}, {"high", number.high}};
   }
@@ -74,11 +76,11 @@ Description describe_preset(const DevicePreset& preset) {
 
 }  // namespace
 
-void add_models(Index& index) {
-  const auto add = [&index](const char* kind, const ModelInfo& info, std::span<const OwnParameter> own = {},
-                            const AlgorithmOrigin& origin = {}) {
+void add_models(Index& index, const Layout& layout) {
+  const auto add = [&index, &layout](const char* kind, const ModelInfo& info, std::span<const OwnParameter> own = {},
+                                     const AlgorithmOrigin& origin = {}) {
     index.push_back({kind, info.name, info.summary,
-                     [kind, &info, own, origin] { return thing_description(model_json(kind, info, own, origin)); }});
+                     [=, &info] { return thing_description(model_json(kind, info, own, origin), layout); }});
   };
   for (const AlgorithmEntry& entry : algorithms()) add("algorithm", *entry.info, entry.own_parameters, entry.origin);
   for (const DepthModelEntry& entry : depth_models()) add("depth model", *entry.info);
@@ -86,26 +88,27 @@ void add_models(Index& index) {
   for (const IntegratorEntry* entry : kIntegrators) add("integrator", entry->info);
 }
 
-void add_presets(Index& index) {
+void add_presets(Index& index, const Layout& layout) {
   for (const DevicePreset& preset : device_presets())
-    index.push_back({"preset", preset.name, preset.device, [&preset] { return describe_preset(preset); }});
+    index.push_back(
+        {"preset", preset.name, preset.device, [&preset, layout] { return describe_preset(preset, layout); }});
 }
 
-Description describe_stability() {
+Description describe_stability(const Layout& layout) {
   Description d;
   d.json = {{"kind", "stability"}};
   for (const StiffnessLimit& limit : stiffness_limits())
     d.json["limits"].push_back(
         {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
   d.text = "stability\n";
-  d.text += wrapped(
+  d.text += layout.wrapped(
       "A run is judged by its motion, quarter by quarter; the amplitude is the largest speed. One that is too short to "
       "tell is made up to 64 times as long.\n\n");
   for (std::size_t i = kMotionClasses; i-- > 0;)  // "all else" last
-    d.text += entry(run_verdict_texts()[i].name, run_verdict_texts()[i].rule, 2, 13);
+    d.text += layout.entry(run_verdict_texts()[i].name, run_verdict_texts()[i].rule, 2, 13);
   d.text +=
       "\n" +
-      wrapped(
+      layout.wrapped(
           "Limits count stable and dying out as stable: the tool comes to rest if the run goes on. A run that goes through "
           "the surface, loses contact, is stuck or never touches (describe outcomes) has a class of its own and is not "
           "stable, however calm it is.\n\n"
@@ -116,18 +119,18 @@ Description describe_stability() {
           "circle, as long as nothing saturates and the contact lasts. With --stable bounded the edge by bisection is that of "
           "\"diverged\".");
   d.text += "\nlimits of the stiffness K of a wall on an impedance device\n";
-  d.text += wrapped(
+  d.text += layout.wrapped(
       "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = d T "
       "the delay. Each is written beside the edge where it applies.");
-  for (const Json& limit : d.json["limits"]) d.text += thing_text(limit, 2);
+  for (const Json& limit : d.json["limits"]) d.text += thing_text(limit, layout, 2);
   return d;
 }
 
-Description describe_diagnosis() {
+Description describe_diagnosis(const Layout& layout) {
   Description d{"rules of the diagnosis, which run prints and writes to summary.json\n\n", Json::array()};
   for (const Diagnosed& rule : diagnosis_rules()) {
     const std::string unit = rule.unit == "1" ? "" : " " + rule.unit;
-    d.text += entry(rule.rule, fmt::format("{} > {:g}{}", rule.number, rule.threshold, unit), 2, 14);
+    d.text += layout.entry(rule.rule, fmt::format("{} > {:g}{}", rule.number, rule.threshold, unit), 2, 14);
     d.json.push_back(
         {{"rule", rule.rule}, {"number", rule.number}, {"unit", rule.unit}, {"threshold", rule.threshold}});
   }

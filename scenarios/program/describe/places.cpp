@@ -80,19 +80,19 @@ std::vector<std::filesystem::path> pictures_of(const Place& place) {
 
 }  // namespace
 
-std::optional<Description> describe_place(const std::string& name) {
+std::optional<Description> describe_place(const std::string& name, const Layout& layout) {
   const std::optional<Place> place = asked_place(name);
   if (!place) return std::nullopt;
   const std::string title = place->kind + (place->kind.empty() ? "" : " ") + place->number;
   std::string scenarios, claims;
   Json json = {{"kind", "place"}, {"name", title}, {"scenarios", Json::array()}, {"claims", Json::array()}};
-  for (const Named& thing : folder_index()) {
+  for (const Named& thing : folder_index(layout)) {
     const std::string source = thing.more.value("source", "");
     if (!names_place(source, *place)) continue;
     if (thing.kind == "claim")
-      claims += entry(thing.name, fmt::format("{} ({})", thing.summary, source), 4, 10);
+      claims += layout.entry(thing.name, fmt::format("{} ({})", thing.summary, source), 4, 10);
     else
-      scenarios += entry(thing.name, source, 4, 44);
+      scenarios += layout.entry(thing.name, source, 4, 44);
     json[list_name(thing.kind)].push_back(thing.name);
   }
   std::string pictures;

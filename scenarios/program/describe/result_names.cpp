@@ -62,46 +62,48 @@ Json all_words() {
   return all;
 }
 
-void add_term(Index& index, const Json& json) {
+void add_term(Index& index, const Json& json, const Layout& layout) {
   const auto text = [&](const char* key) { return json.at(key).get<std::string>(); };
-  index.push_back({text("kind"), text("name"), text("meaning"), [json] { return thing_description(json); }});
+  index.push_back(
+      {text("kind"), text("name"), text("meaning"), [json, layout] { return thing_description(json, layout); }});
 }
 
 }  // namespace
 
-Description describe_metrics() {
+Description describe_metrics(const Layout& layout) {
   const Json json = {{"kind", "metrics"}, {"metrics", columns_json({}, all_metrics())["summary.json"]}};
   return {"metrics of summary.json, which expect.metrics may bound; f is f_render, the force on the tool\n" +
-              thing_text(json),
+              thing_text(json, layout),
           json};
 }
 
-Description describe_table(const DescribedTable& table) {
+Description describe_table(const DescribedTable& table, const Layout& layout) {
   Json columns = Json::array();
   for (const auto& [name, unit, meaning] : table.columns)
     columns.push_back({{"name", name}, {"unit", unit}, {"meaning", meaning}});
   return thing_description(
-      {{"kind", "file"}, {"name", table.file}, {"holds", table.holds}, {"columns", std::move(columns)}});
+      {{"kind", "file"}, {"name", table.file}, {"holds", table.holds}, {"columns", std::move(columns)}}, layout);
 }
 
-Description describe_tables() {
+Description describe_tables(const Layout& layout) {
   std::vector<Description> all;
   for (const DescribedTable& table : result_tables())
-    if (!table.file.empty()) all.push_back(describe_table(table));
+    if (!table.file.empty()) all.push_back(describe_table(table, layout));
   return joined(all);
 }
 
-Description describe_words() {
+Description describe_words(const Layout& layout) {
   const Json json = {{"kind", "words"}, {"words", all_words()}};
-  return {"words that the program prints\n" + thing_text(json), json};
+  return {"words that the program prints\n" + thing_text(json, layout), json};
 }
 
-void add_metric_terms(Index& index) {
+void add_metric_terms(Index& index, const Layout& layout) {
   for (const Metric& metric : all_metrics())
-    add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}});
+    add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}},
+             layout);
 }
 
-void add_columns(Index& index, const std::vector<DescribedTable>& tables) {
+void add_columns(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout) {
   std::vector<Json> all;
   for (const DescribedTable& table : tables) {
     if (table.file.empty()) continue;
@@ -113,18 +115,18 @@ void add_columns(Index& index, const std::vector<DescribedTable>& tables) {
       (same != all.end() ? *same : all.emplace_back(std::move(column)))["files"].push_back(table.file);
     }
   }
-  for (const Json& column : all) add_term(index, column);
+  for (const Json& column : all) add_term(index, column, layout);
 }
 
-void add_words(Index& index) {
-  for (const Json& word : all_words()) add_term(index, word);
+void add_words(Index& index, const Layout& layout) {
+  for (const Json& word : all_words()) add_term(index, word, layout);
 }
 
-void add_headings(Index& index, const std::vector<DescribedTable>& tables) {
+void add_headings(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout) {
   for (const DescribedTable& table : tables)
     for (const Table::Column& heading : table.headings)
       if (!heading.meaning.empty())
-        add_term(index, {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}});
+        add_term(index, {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}}, layout);
 }
 
 }  // namespace hapbench

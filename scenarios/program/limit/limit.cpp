@@ -33,7 +33,7 @@ void add_ratios(LimitTable& table) {
   }
 }
 
-void tell_limits(const LimitTable& table, Report& report) {
+void tell_limits(const LimitTable& table, const Layout& layout, Report& report) {
   const LimitQuestion& question = table.first().asked;
   const Columns<LimitRow> columns = limit_columns(&table);
   std::vector<LimitRunRow> runs;
@@ -48,7 +48,7 @@ void tell_limits(const LimitTable& table, Report& report) {
   }
   report.write("limit.csv", columns, table.rows);
   report.write("limit_runs.csv", limit_run_columns(&table), runs);
-  report.say(limits_text(table, columns));
+  report.say(limits_text(table, columns, layout));
   report.json() = {{"field", question.path},
                    {"side", question.side()},
                    {"from", question.range.from},
@@ -58,15 +58,16 @@ void tell_limits(const LimitTable& table, Report& report) {
                    {"limits", std::move(limits)}};
 }
 
-int limit(const LimitOptions& options) {
+int limit(const LimitOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
   LimitTable table = asked_table(options);
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < table.cases.size(); ++i) table.rows.push_back(asked_row(options, table, i, warnings));
-  print_warnings(warnings);
-  Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene());
+  print_warnings(context, warnings);
+  Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene(), context);
   find_limits(options, table.rows);
   add_ratios(table);
-  tell_limits(table, report);
+  tell_limits(table, layout, report);
   report.say(fmt::format("\nresults in {}\n", report.folder().string()));
   return report.finish();
 }

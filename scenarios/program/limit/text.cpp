@@ -30,7 +30,7 @@ std::string damping_text(const RenderingConfig& rendering) {
 }
 
 /// States the question of one scene; `over`: other fields also vary.
-std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over) {
+std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over, const Layout& layout) {
   const std::string width = question.whole ? "1"
                             : question.range.logarithmic
                                 ? fmt::format("{} %", 100.0 * question.resolution)
@@ -41,7 +41,7 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
   if (!over) text += fmt::format("; {} steps", scenario.time.steps);
   if (!over && question.path != "time.step_s") text += fmt::format(" of {} s", significant(scenario.time.step));
   if (!over && question.path == kStiffnessPath) text += "; " + damping_text(scenario.rendering);
-  return wrapped(text, 0);
+  return layout.wrapped(text, 0);
 }
 
 std::string none_text(const FieldLimit& limit) {
@@ -56,11 +56,11 @@ std::string none_text(const FieldLimit& limit) {
                      limit.runs.size(), fmt::join(texts, ", "));
 }
 
-std::string remarks_text(const LimitRow& row) {
+std::string remarks_text(const LimitRow& row, const Layout& layout) {
   const FieldLimit& limit = row;
   const LimitQuestion& question = row.asked;
   std::string text;
-  const auto say = [&](const std::string& what) { text += wrapped(row.algorithm() + ": " + what, 0); };
+  const auto say = [&](const std::string& what) { text += layout.wrapped(row.algorithm() + ": " + what, 0); };
   if (limit.value && limit.own && !question.holds(limit.own->verdict)) {
     say(fmt::format("{} at the scenario's own {}: the edge is that of the first stable values from the {} end",
                     run_verdict_name(limit.own->verdict), significant(limit.own->value),
@@ -80,7 +80,7 @@ std::string remarks_text(const LimitRow& row) {
   return text;
 }
 
-std::string notes_text(const LimitTable& table) {
+std::string notes_text(const LimitTable& table, const Layout& layout) {
   std::optional<double> friction;  // the most of a handle; none where no row is on an impedance device
   for (const LimitRow& row : table.rows)
     if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device))
@@ -109,11 +109,11 @@ std::string notes_text(const LimitTable& table) {
        "not of a device; --set device.coulomb_N=0 shows what is left without"}};
   std::string text;
   for (const auto& [holds, note] : notes)
-    if (holds) text += wrapped(note, 0);
+    if (holds) text += layout.wrapped(note, 0);
   std::vector<std::string> delays = {""};
   if (table.over() == 0)
     for (const LimitRow& row : table.rows) append_new(delays, {delay_note(row.scenario)});
-  for (const std::string& delay : std::span(delays).subspan(1)) text += wrapped(delay, 0);
+  for (const std::string& delay : std::span(delays).subspan(1)) text += layout.wrapped(delay, 0);
   return text;
 }
 
@@ -152,19 +152,19 @@ std::string limit_answer(const FieldLimit& found, double resolution) {
                             found.tried_between, 100.0 * may_fail_share(found.tried_between));
 }
 
-std::string limits_text(const LimitTable& table, const Columns<LimitRow>& columns) {
+std::string limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout) {
   std::string text, answers, remarks;
   for (std::size_t i = 0; i < table.columns(); ++i) {
     const LimitRow& row = table.rows[i];
     if (i == 0 || row.scene() != table.rows[i - 1].scene())
-      text += question_text(row.asked, row.scenario, table.over() > 0);
+      text += question_text(row.asked, row.scenario, table.over() > 0, layout);
     if (table.is_grid()) continue;
-    answers += wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row, row.asked.resolution)), 0);
-    remarks += remarks_text(row);
+    answers += layout.wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row, row.asked.resolution)), 0);
+    remarks += remarks_text(row, layout);
   }
   const LimitRow& first = table.first();
-  return fmt::format("{}\n{}{}{}\n{}{}{}", text, answers, answers.empty() ? "" : "\n", columns.table(table.rows).text(),
-                     wrapped(rule_text(first.asked, first.scenario), 0), remarks, notes_text(table));
+  return fmt::format("{}\n{}{}{}\n{}{}{}", text, answers, answers.empty() ? "" : "\n", columns.text(table.rows, layout),
+                     layout.wrapped(rule_text(first.asked, first.scenario), 0), remarks, notes_text(table, layout));
 }
 
 }  // namespace hapbench

@@ -22,22 +22,25 @@
 namespace hapbench {
 namespace {
 
-int list_kinds(const OutputOptions& output) {
+int list_kinds(const OutputOptions& output, ProgramContext& context) {
+  const Layout layout = context.layout();
   const Columns<StartKind> columns = {{"kind", "", "", &StartKind::name, under("KIND")},
                                       {"summary", "", "", &StartKind::summary, under("what it starts with")}};
-  print(output, columns.table(start_kinds()).text(), columns.json_list(start_kinds()));
+  print(context, output, columns.text(start_kinds(), layout), columns.json_list(start_kinds()));
   return kSuccess;
 }
 
-void draw_preview(const std::filesystem::path& scenario, const std::filesystem::path& picture, bool quiet) {
+void draw_preview(const std::filesystem::path& scenario, const std::filesystem::path& picture, bool quiet,
+                  ProgramContext& context) {
   const std::filesystem::path run = results_directory("", scenario.stem().string());
-  require_writable_directory(run);
+  require_writable_directory(context, run);
   run_scenario(load_scenario(scenario), run, !quiet);
-  write_way(run, picture, quiet);
+  write_way(context, run, picture, quiet);
 }
 
-int write_new(const NewOptions& options) {
-  if (options.kind.empty()) return list_kinds(options.output);
+int write_new(const NewOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
+  if (options.kind.empty()) return list_kinds(options.output, context);
   const StartKind& kind = kind_named(options.kind);
   check_options(options, kind);
   const std::filesystem::path source = options.from;
@@ -57,22 +60,22 @@ int write_new(const NewOptions& options) {
   LoadedScenario loaded = read_scenario(start.scene, directory);
   loaded.file = out;
   loaded = checked(std::move(loaded));
-  print_warnings(with_files(loaded, loaded.file_warnings));
-  require_writable_directory(directory.empty() ? "." : directory);
+  print_warnings(context, with_files(loaded, loaded.file_warnings));
+  require_writable_directory(context, directory.empty() ? "." : directory);
   write_file_atomically(out, json_text(start.scene));
 
-  print_warnings(start.warnings);
-  if (options.preview) draw_preview(out, picture, options.output.quiet || options.output.json);
+  print_warnings(context, start.warnings);
+  if (options.preview) draw_preview(out, picture, options.output.quiet || options.output.json, context);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
   for (const std::string& note : start.notes) text += note + "\n";
   if (options.preview) text += fmt::format("picture of a run in {}\n", picture.string());
   text += "\n";
   const Json fields = field_meanings(start.scene);
-  for (const auto& [path, meaning] : fields.items()) text += entry(path, meaning.get<std::string>(), 0, 34);
+  for (const auto& [path, meaning] : fields.items()) text += layout.entry(path, meaning.get<std::string>(), 0, 34);
   text += fmt::format("\n\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
   Json said = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
   if (options.preview) said["picture"] = picture.string();
-  print(options.output, text, said);
+  print(context, options.output, text, said);
   return kSuccess;
 }
 

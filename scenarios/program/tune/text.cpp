@@ -43,11 +43,11 @@ std::string margins_text(const TuneMargins& margins) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-std::string recommendation_text(const Tuning& tuning) {
+std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
   if (tuning.ranking.empty()) return "nothing is feasible\n";
   const TunedLaw* best = tuning.ranking[0];
   std::string text = bold(stdout, fmt::format("use {}, {}", best->algorithm, choice_text(*best->choice))) + "\n";
-  const auto line = [&](const char* name, const std::string& what) { text += entry(name, what, 2, 14); };
+  const auto line = [&](const char* name, const std::string& what) { text += layout.entry(name, what, 2, 14); };
   line("stops at", fmt::format("{}: {}", best->binding, best->why));
   line("margins", margins_text(best->margins));
   if (tuning.ranking.size() > 1) {
@@ -69,12 +69,12 @@ std::string recommendation_text(const Tuning& tuning) {
 
 }  // namespace
 
-std::string tuning_text(const Tuning& tuning) {
-  std::string text = wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
-                     recommendation_text(tuning) + "\n" + tuned_columns().table(tuning.laws).text() + "\n";
+std::string tuning_text(const Tuning& tuning, const Layout& layout) {
+  std::string text = layout.wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
+                     recommendation_text(tuning, layout) + "\n" + tuned_columns().text(tuning.laws, layout) + "\n";
   for (const TunedLaw& law : tuning.laws)
     if (!law.choice)
-      text += wrapped(fmt::format("{}: nothing is feasible, {}; {}", law.algorithm, law.why, law.relax), 0);
+      text += layout.wrapped(fmt::format("{}: nothing is feasible, {}; {}", law.algorithm, law.why, law.relax), 0);
   return text;
 }
 

@@ -38,7 +38,8 @@ void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& t
   tuning.ranking = ranking_of(tuning.laws);
 }
 
-int tune(const TuneOptions& options) {
+int tune(const TuneOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
   const std::filesystem::path file = find_scenario(options.scenario);
   Tuning tuning;
   tuning.question = tune_question(options, file);
@@ -47,18 +48,18 @@ int tune(const TuneOptions& options) {
   const std::vector<std::string> algorithms = options.algorithms.empty()
                                                   ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
                                                   : chosen_algorithms(options.algorithms);
-  print_warnings(loaded);
+  print_warnings(context, loaded);
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
-  Report report(options, "tune_" + file.stem().string());
+  Report report(options, "tune_" + file.stem().string(), context);
   const std::filesystem::path& out = report.folder();
   tune_laws(algorithms, options.output.quiet, tuning);
   report.write("tune.csv", tuned_columns(), tuning.laws);
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
   report.write("tune_trials.csv", trial_columns(), trials);
-  report.say(tuning_text(tuning));
-  if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(wrapped(delay, 0));
+  report.say(tuning_text(tuning, layout));
+  if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
   std::filesystem::path tuned;
   if (!tuning.ranking.empty()) {
     tuned = out / (file.stem().string() + "_tuned.json");
