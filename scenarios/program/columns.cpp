@@ -2,6 +2,8 @@
 
 #include <variant>
 
+#include "scenarios/program/digits.hpp"
+
 namespace hapbench {
 
 Shown under(std::string heading, int digits, Shown where) {

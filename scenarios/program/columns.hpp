@@ -12,7 +12,6 @@
 
 #include "results/io/table_writer.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/program/digits.hpp"
 #include "scenarios/program/layout.hpp"
 #include "scenarios/program/table.hpp"
 

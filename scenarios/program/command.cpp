@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <iterator>
 #include <optional>
 
 #include "algorithms/module/module.hpp"
@@ -16,7 +15,6 @@
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/python_commands.hpp"
 #include "scenarios/program/studies.hpp"
-#include "scenarios/program/text.hpp"
 #include "scenarios/program/usage_errors.hpp"
 #include "scenarios/program/version.hpp"
 #include "scenarios/run/load_module.hpp"
@@ -66,8 +64,13 @@ CommandLine::CommandLine(ProgramContext& context)
   json->needs(app_->set_version_flag("--version", [json] { return version_text(json->count() > 0); }));
   add_module_option(*app_);
   app_->require_subcommand(1);
-  for (const CommandGuide& command : command_guides())
-    command.add != nullptr ? command.add(*this) : static_cast<void>(app_->add_subcommand(std::string(command.name)));
+  for (const CommandGuide& command : command_guides()) {
+    if (command.add != nullptr) {
+      command.add(*this);
+    } else {
+      app_->add_subcommand(std::string(command.name));  // of a Python package, which reads its words
+    }
+  }
   // Behind the options that each command has added.
   for (const auto& [app, output] : outputs_) {
     app->add_flag("--quiet", output->quiet, shared_option_help("--quiet"));

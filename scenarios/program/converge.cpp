@@ -11,11 +11,11 @@
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/digits.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/text.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/core/math.hpp"
 
@@ -130,22 +130,24 @@ Json study_json(const ConvergeStudy& study) {
   return json;
 }
 
-std::string verdict_text(const ConvergeStudy& c) {
-  if (c.order) {
-    const bool three = std::ranges::count_if(c.errors, [](const auto& e) { return e.has_value(); }) == 3;
-    return fmt::format("order {:.2f}, {}: tends to {}{}", *c.order,
-                       three          ? "of three levels alone"
-                       : c.asymptotic ? "asymptotic"
-                                      : "not yet asymptotic",
-                       with_error_text(*c.extrapolated, c.errors.back()),
-                       c.gci ? fmt::format(", GCI {:.2g} %", 100.0 * *c.gci) : "");
+/// How far an observed order can be believed.
+std::string order_text(const ConvergeStudy& study) {
+  const auto is_known = [](const auto& error) { return error.has_value(); };
+  if (std::ranges::count_if(study.errors, is_known) == 3) return "of three levels alone";
+  return study.asymptotic ? "asymptotic" : "not yet asymptotic";
+}
+
+std::string verdict_text(const ConvergeStudy& study) {
+  if (study.order) {
+    const std::string gci = study.gci ? fmt::format(", GCI {:.2g} %", 100.0 * *study.gci) : "";
+    return fmt::format("order {:.2f}, {}: tends to {}{}", *study.order, order_text(study),
+                       with_error_text(*study.extrapolated, study.errors.back()), gci);
   }
-  if (!c.band) return fmt::format("no order: {}", c.reason);
-  const auto [low, high] = *c.band;
-  return fmt::format("no order: {}; last levels {}", c.reason,
-                     low == high
-                         ? significant(low, 6)
-                         : fmt::format("{} ... {}", number_text(low, high - low), number_text(high, high - low)));
+  if (!study.band) return fmt::format("no order: {}", study.reason);
+  const auto [low, high] = *study.band;
+  if (low == high) return fmt::format("no order: {}; last levels {}", study.reason, significant(low, 6));
+  return fmt::format("no order: {}; last levels {} ... {}", study.reason, number_text(low, high - low),
+                     number_text(high, high - low));
 }
 
 /// The coarsest level whose error and those of all finer ones are below, and what it costs.
@@ -270,12 +272,13 @@ void add_converge(CommandLine& line) {
   command.add("--to", options.to, "also name the coarsest level with a smaller relative error, as 1%, and its cost");
   add_common(command, options, "converge_NAME");
   command.footer(
-      "Observed order p, Richardson's value and grid convergence index of the three finest levels (Roache; ASME V&V 20; "
-      "\"hapbench describe converge.csv\"). No order is stated, and the reason said, where contacts switch between them, "
-      "where differences change their sign, grow or are rounding, where the order is more than twice the formal one, or "
-      "where fewer than three levels end as the finest; the last levels are the answer then. Runs of shorter steps last as "
-      "long, delays of devices keep their length, and metrics of motion, force and contact are taken at the times of the "
-      "coarsest rows: a peak between these rows is not seen. Files: converge.csv, converge_levels.csv, converge_levels_timing.csv.");
+      "Observed order p, Richardson's value and grid convergence index of the three finest levels (Roache; ASME V&V "
+      "20; \"hapbench describe converge.csv\"). No order is stated, and the reason said, where contacts switch "
+      "between them, where differences change their sign, grow or are rounding, where the order is more than twice "
+      "the formal one, or where fewer than three levels end as the finest; the last levels are the answer then. Runs "
+      "of shorter steps last as long, delays of devices keep their length, and metrics of motion, force and contact "
+      "are taken at the times of the coarsest rows: a peak between these rows is not seen. Files: converge.csv, "
+      "converge_levels.csv, converge_levels_timing.csv.");
 }
 
 }  // namespace hapbench

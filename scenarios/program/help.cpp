@@ -36,21 +36,28 @@ std::string usage(const CLI::App& app) {
   return words + "\n";
 }
 
+/// The entry of an argument or an option: its name with the kind of its value, what it means and what it needs.
+std::string option_entry(const CLI::Option& option, const std::string& name, const Layout& layout) {
+  if (option.get_positional()) return layout.entry(name, option.get_description());
+  const std::string kind = kind_of_value(option);
+  std::string help = option.get_description();
+  for (const CLI::Option* other : option.get_needs()) help += "; with " + other->get_name();
+  if (option.get_required()) help += "; required";
+  return layout.entry(kind.empty() ? name : name + " " + kind, help);
+}
+
 /// The arguments, or the options; those that say nothing of their own stand in one line.
 std::string options_text(const CLI::App& app, bool arguments, const Layout& layout) {
   std::string text, shared;
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_positional() != arguments) continue;
-    std::string name = name_of(*option), help = option->get_description();
+    std::string name = name_of(*option);
     if (name == "-h,--help") name = "--help";
-    if (!arguments && help == shared_option_help(name)) {
+    if (!arguments && option->get_description() == shared_option_help(name)) {
       shared += (shared.empty() ? "" : ", ") + name;
-      continue;
+    } else {
+      text += option_entry(*option, name, layout);
     }
-    if (const std::string kind = kind_of_value(*option); !arguments && !kind.empty()) name += " " + kind;
-    for (const CLI::Option* other : option->get_needs()) help += "; with " + other->get_name();
-    if (option->get_required() && !arguments) help += "; required";
-    text += layout.entry(name, help);
   }
   if (!shared.empty()) text += layout.entry(shared, "as everywhere: hapbench --help");
   return text.empty() ? "" : fmt::format("\n{}\n{}", bold(stdout, arguments ? "Arguments:" : "Options:"), text);

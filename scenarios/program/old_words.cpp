@@ -25,18 +25,20 @@ constexpr OldWords kOldWords[] = {
     {"", "complete completion", "scripts/completion, which prints a completion for bash"},
     {"", "diff", "hapbench report A B --tolerance 0, which says what differs, with status 3"},
     {"", "explain",
-     "hapbench run SCENE, which prints what is wrong and writes it to summary.json; hapbench describe diagnosis lists the rules"},
+     "hapbench run SCENE, which prints what is wrong and writes it to summary.json; hapbench describe diagnosis "
+     "lists the rules"},
     {"", "identify", "hapbench import device LOG"},
     {"", "list", "hapbench describe, of a kind hapbench describe KIND; --grep TEXT searches"},
     {"", "man", "hapbench --help, and --help of each command"},
     {"", "merge", "hapbench sweep FOLDER, which joins the tables of the shards in it"},
     {"", "precision",
-     "hapbench_accuracy, the benchmark of run time against error (tests/README.md), whose picture scripts/reproduce draws; "
-     "hapbench converge SCENE --metric NAME"},
+     "hapbench_accuracy, the benchmark of run time against error (tests/README.md), whose picture scripts/reproduce "
+     "draws; hapbench converge SCENE --metric NAME"},
     {"", "shell", "hapbench validate SCENE --points FILE.csv"},
     {"", "stability",
-     "hapbench limit spring_stiffness, spring_damping or spring_time_step; for --map other studies (hapbench describe studies), "
-     "for --stress hapbench stress, for --search hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5"},
+     "hapbench limit spring_stiffness, spring_damping or spring_time_step; for --map other studies (hapbench "
+     "describe studies), for --stress hapbench stress, for --search hapbench sweep SCENE --sample lhs:400 --vary "
+     "hand.x_N=-5:5"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
     {"compare", "--check --sure", "hapbench compare SCENE --errors, of one number hapbench converge SCENE"},
     {"compare", "--devices --friction --resolution --vibration",

@@ -19,7 +19,6 @@
 #include "scenarios/program/old_words.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/program_context.hpp"
-#include "scenarios/program/text.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 

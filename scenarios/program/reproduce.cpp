@@ -12,7 +12,6 @@
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/program/text.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -206,8 +205,8 @@ void add_reproduce(CommandLine& line) {
                                          "finished runs are kept, and the same command continues from there");
   command.add(
       "--only", options.only,
-      "ids of claims, separated by commas; \"hapbench describe claims\" shows them, and scripts/reproduce --only draws their "
-      "figures",
+      "ids of claims, separated by commas; \"hapbench describe claims\" shows them, and scripts/reproduce --only "
+      "draws their figures",
       {.comma_separated = true});
   add_out(command, options.out, "reproduce");
   command.add(
@@ -223,7 +222,8 @@ void add_reproduce(CommandLine& line) {
       "claims");
   command.footer(
       "results/reference/choices.json has what the thesis leaves open; scripts/readings.py draws readings of it.\n"
-      "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C.");
+      "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by "
+      "Ctrl-C.");
 }
 
 }  // namespace hapbench

@@ -1,15 +1,16 @@
 #include "scenarios/program/run.hpp"
 
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/input/bundled_files.hpp"
-#include "scenarios/program/names.hpp"
+#include "scenarios/program/digits.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/text.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench {

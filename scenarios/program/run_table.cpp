@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "results/summary/summary.hpp"
 #include "scenarios/program/digits.hpp"
-#include "scenarios/program/text.hpp"
 
 namespace hapbench {
 namespace {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -65,7 +64,7 @@ std::string number_text(double value, const std::optional<double>& error);
 /// The same with the error behind: "1.234 +- 0.005".
 std::string with_error_text(double value, const std::optional<double>& error);
 
-/// For `describe`.
+/// Returns the tables that this command writes and prints, for `describe`.
 std::vector<DescribedTable> run_tables();
 
 }  // namespace hapbench

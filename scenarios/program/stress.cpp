@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include "scenarios/analysis/stress/law_stress.hpp"
-#include "scenarios/program/names.hpp"
-#include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/program/text.hpp"
 
 namespace hapbench {
 namespace {

@@ -1,6 +1,4 @@
 #include "scenarios/program/sweep.hpp"
-#include "scenarios/program/program_context.hpp"
-#include "scenarios/program/program_words.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,11 +9,15 @@
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/columns.hpp"
+#include "scenarios/program/digits.hpp"
+#include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/program/program_context.hpp"
+#include "scenarios/program/program_words.hpp"
+#include "scenarios/program/results_folder.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/text.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
@@ -82,6 +84,12 @@ std::string summary_text(const SweepTable& table, const std::string& metric, con
   return text + count_columns().text(table.kept.outcomes, layout);
 }
 
+/// A number or another value of JSON where the cell is one; null for an empty cell; else its text.
+Json json_of_cell(const std::string& cell) {
+  if (cell.empty()) return Json();
+  return Json::accept(cell) ? Json::parse(cell) : Json(cell);
+}
+
 Json summary_json(const SweepTable& table) {
   const SweepCounts& counts = table.kept;
   Json outcomes = Json::object();
@@ -94,8 +102,7 @@ Json summary_json(const SweepTable& table) {
     Json& added = rows.emplace_back(Json::object());
     for (std::size_t c = 0; c < row.size(); ++c) {
       const bool is_hash = c + 1 == row.size();  // which may look like a number
-      const bool is_json = !is_hash && Json::accept(row[c]);
-      added[table.columns[c]] = row[c].empty() ? Json() : is_json ? Json::parse(row[c]) : Json(row[c]);
+      added[table.columns[c]] = is_hash && !row[c].empty() ? Json(row[c]) : json_of_cell(row[c]);
     }
   }
   return json;
@@ -284,10 +291,10 @@ void add_sweep(CommandLine& line) {
   command.needs("--print", "--row");
   command.add("--shard", options.shard, "i/n with 0 <= i < n: do only every n-th run, from the i-th on");
   command.footer(
-      "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "
-      "expected, steps, every metric, state_hash. \"hapbench sweep FOLDER\" prints it again, without a run. Shards write "
-      "sweep.I_of_N.csv, and the same joins them. "
-      "Ctrl-C stops after the runs that are under way.\n"
+      "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be "
+      "computed), expected, steps, every metric, state_hash. \"hapbench sweep FOLDER\" prints it again, without a "
+      "run. Shards write sweep.I_of_N.csv, and the same joins them. Ctrl-C stops after the runs that are under "
+      "way.\n"
       "Exit status: 0 success, 1 a run could not be computed, 2 bad input or usage, 3 a run did not end as expected, "
       "130 stopped by Ctrl-C.");
 }

@@ -54,8 +54,12 @@ std::string block_text(const Table& table, const std::vector<std::size_t>& width
     const std::size_t last = places.back();
     std::istringstream prose(wrapped(row[last], 0, widths[last]));
     bool first = true;
-    for (std::string part; std::getline(prose, part); first = false)
-      text += line([&](std::size_t c) { return c == last ? part : first ? row[c] : ""; });
+    for (std::string part; std::getline(prose, part); first = false) {
+      text += line([&](std::size_t c) {
+        if (c == last) return part;
+        return first ? row[c] : std::string();
+      });
+    }
   }
   return text;
 }

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <vector>
 
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/old_words.hpp"
 #include "scenarios/program/program_words.hpp"

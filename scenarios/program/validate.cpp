@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"

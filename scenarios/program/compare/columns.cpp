@@ -18,10 +18,10 @@ namespace {
 /// Programs may read these by their place: append new ones.
 constexpr std::string_view kComparedMetrics =
     "force_max_N velocity_total_variation_m_per_s force_reversals vibration_power_above_30Hz_m2_per_s2 depth_max_m "
-    "ratio_min ratio_max steps_in_contact contact_share landings landing_force_max_N landing_force_step_max_N settled_s "
-    "force_mean_in_contact_N settled_force_max_N force_step_p99_N settled_force_step_max_N force_rms_above_30Hz_N "
-    "force_reversals_per_s reduction_changes reduction_force_step_max_N inside_max_m inside_settled_m "
-    "centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
+    "ratio_min ratio_max steps_in_contact contact_share landings landing_force_max_N landing_force_step_max_N "
+    "settled_s force_mean_in_contact_N settled_force_max_N force_step_p99_N settled_force_step_max_N "
+    "force_rms_above_30Hz_N force_reversals_per_s reduction_changes reduction_force_step_max_N inside_max_m "
+    "inside_settled_m centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
     "fidelity.force_direction_error_rad fidelity.force_artefact_share";
 
 /// By how much the mean may be wrong: as its numbers, or by other seeds; at least what means of one rank differ by.

@@ -21,7 +21,7 @@ Columns<ComparedRun> comparison_columns(bool seeds);
 Columns<Standing> league_columns(bool seeds);
 /// The table of the algorithms over all scenarios and metrics.
 Columns<LawStanding> law_columns();
-/// For `describe`.
+/// Returns the tables that this command writes and prints, for `describe`.
 std::vector<DescribedTable> league_tables();
 
 }  // namespace hapbench

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <iterator>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,13 +13,13 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/convergence/convergence.hpp"
 #include "scenarios/input/bundled_files.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/compare/columns.hpp"
 #include "scenarios/program/compare/errors.hpp"
 #include "scenarios/program/compare/league_text.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/text.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {
@@ -76,6 +77,34 @@ void judge(const Comparison& comparison, const std::vector<Result>& reports, Rep
   for (const std::string& text : first_few(texts, kMostShown)) report.fault(text, kUnexpectedOutcome);
 }
 
+/// Writes comparison.csv of each scene, and prints the warnings about its runs.
+void write_runs(const Comparison& comparison, const std::vector<Result>& reports, ProgramContext& context,
+                Report& report) {
+  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
+    const auto of_scene = std::span(reports).subspan(s * comparison.each(), comparison.each());
+    print_warnings(context, run_warnings(of_scene));
+    std::vector<ComparedRun> runs;
+    for (const Result& run : of_scene) runs.push_back({runs.size() % comparison.seeds, run});
+    report.write(comparison.scene_folder(s) / "comparison.csv", comparison_columns(comparison.seeds > 1), runs);
+  }
+}
+
+void report_league(const League& league, const Layout& layout, Report& report) {
+  report.write("league.csv", league_columns(false), league.standings);
+  report.say(league_text(league, layout));
+  report.json()["standings"] = league_columns(false).json_list(league.standings);
+  Json& laws = report.json()["laws"] = law_columns().json_list(league.laws);
+  for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
+}
+
+/// The table of the runs of one scene; `errors`: how sure its numbers are is said elsewhere.
+std::string runs_text(const std::vector<Result>& reports, const League& league, bool errors, const Layout& layout) {
+  std::string text = reports.front().name + "\n\n" + run_table(reports, false, layout) + fidelity_text(reports, layout);
+  if (!errors) text += vibration_text(league, layout);
+  if (layout.in_full()) text += step_time_text(reports, layout);
+  return text;
+}
+
 int compare(const CompareOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   if (options.scenarios.empty())
@@ -98,25 +127,13 @@ int compare(const CompareOptions& options, ProgramContext& context) {
   const std::vector<Result> reports =
       run_all(comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); });
   const League league = league_of(comparison, reports, ranks ? options.metrics : printed_metrics(reports));
-  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
-    const auto of_scene = std::span(reports).subspan(s * comparison.each(), comparison.each());
-    print_warnings(context, run_warnings(of_scene));
-    std::vector<ComparedRun> runs;
-    for (const Result& run : of_scene) runs.push_back({runs.size() % comparison.seeds, run});
-    report.write(comparison.scene_folder(s) / "comparison.csv", comparison_columns(comparison.seeds > 1), runs);
-  }
+  write_runs(comparison, reports, context, report);
   report.json() = summaries_json(comparison, reports, ranks);
   if (ranks || options.errors) report.json() = {{"runs", std::move(report.json())}};
   if (ranks) {
-    report.write("league.csv", league_columns(false), league.standings);
-    report.say(league_text(league, layout));
-    report.json()["standings"] = league_columns(false).json_list(league.standings);
-    Json& laws = report.json()["laws"] = law_columns().json_list(league.laws);
-    for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
+    report_league(league, layout, report);
   } else {
-    report.say(fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false, layout),
-                           fidelity_text(reports, layout), options.errors ? "" : vibration_text(league, layout),
-                           layout.in_full() ? step_time_text(reports, layout) : ""));
+    report.say(runs_text(reports, league, options.errors, layout));
   }
   if (options.errors) {
     const FinerRuns finer(comparison, reports, jobs);
@@ -154,11 +171,11 @@ void add_compare(CommandLine& line) {
                "each metric how far that moves it and which laws' order holds");
   command.footer(
       "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several, and "
-      "comparison.csv of each scenario beside them. Several scenarios or seeds, or --by, give a league: rank, mean and "
-      "spread over the seeds, and where each algorithm fails; league.csv has all of it. A run fails when it diverges, has no contact or loses it, goes through the "
-      "surface, is not dragged or stuck, or "
-      "ends otherwise than its scenario allows; it ranks behind all others. The results of an earlier comparison in OUT "
-      "are removed, other files are not.");
+      "comparison.csv of each scenario beside them. Several scenarios or seeds, or --by, give a league: rank, mean "
+      "and spread over the seeds, and where each algorithm fails; league.csv has all of it. A run fails when it "
+      "diverges, has no contact or loses it, goes through the surface, is not dragged or stuck, or ends otherwise "
+      "than its scenario allows; it ranks behind all others. The results of an earlier comparison in OUT are "
+      "removed, other files are not.");
 }
 
 }  // namespace hapbench

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/text.hpp"
 
 namespace hapbench {
 namespace {

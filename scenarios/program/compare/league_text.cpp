@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "scenarios/program/compare/columns.hpp"
 #include "scenarios/program/names.hpp"
-#include "scenarios/program/text.hpp"
 
 namespace hapbench {
 namespace {
@@ -34,19 +34,30 @@ std::vector<Standing> ranked(const League& league) {
   return all;
 }
 
+/// In how many rankings a law has a rank, and in how many of them the first.
+struct RankCount {
+  std::size_t rankings = 0, first = 0;
+};
+
+RankCount rank_count(const League& league, const std::string& algorithm) {
+  RankCount count;
+  for (const Standing& standing : league.standings) {
+    if (standing.algorithm != algorithm || !standing.rank) continue;
+    ++count.rankings;
+    if (*standing.rank == 1) ++count.first;
+  }
+  return count;
+}
+
 std::string firsts_text(const League& league) {
   constexpr std::size_t kMostNamed = 5;
   if (!league.laws.front().mean_rank) return "nothing is ranked: neither less nor more of these metrics is better";
-  std::size_t rankings = 0;  // as many of each law
+  std::size_t rankings = 0;  // the same number for each law
   std::vector<std::string> firsts;
   for (const LawStanding& law : league.laws) {
-    std::size_t first = rankings = 0;
-    for (const Standing& standing : league.standings) {
-      if (standing.algorithm != law.algorithm || !standing.rank) continue;
-      ++rankings;
-      first += *standing.rank == 1;
-    }
-    if (first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, first));
+    const RankCount count = rank_count(league, law.algorithm);
+    rankings = count.rankings;
+    if (count.first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count.first));
   }
   if (firsts.size() == 1)
     return fmt::format("{} alone is first in each of {} rankings", league.laws.front().algorithm, rankings);

@@ -113,11 +113,11 @@ void add_describe(CommandLine& line) {
   auto [command, options] = line.command("describe", "Explain a name; without one, or by a kind: a list", describe);
   command.add(
       "name", options.name,
-      "an algorithm, a depth model, an integrator, an environment, a hand, a device, a scenario, a study; a kind of these "
-      "such as algorithms, or a group of scenarios such as thesis, for a list; a field such as rendering.limits, "
-      "\"scenario\" (all fields), \"schema\", \"choices_schema\", \"stability\", \"diagnosis\"; a metric, \"metrics\" or "
-      "\"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a "
-      "choice such as planar.first_tilt or a place such as \"Fig. A.2\"");
+      "an algorithm, a depth model, an integrator, an environment, a hand, a device, a scenario, a study; a kind of "
+      "these such as algorithms, or a group of scenarios such as thesis, for a list; a field such as "
+      "rendering.limits, \"scenario\" (all fields), \"schema\", \"choices_schema\", \"stability\", \"diagnosis\"; a "
+      "metric, \"metrics\" or \"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as "
+      "trajectory.csv; a claim such as C5, a choice such as planar.first_tilt or a place such as \"Fig. A.2\"");
   command.add("--grep", options.grep, "list only things with this text in their name, description or source");
 }
 

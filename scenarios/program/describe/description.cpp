@@ -25,6 +25,13 @@ std::string line_of(const Json& value) {
 /// Members that say in a sentence what a thing is.
 constexpr std::string_view kProse[] = {"summary", "meaning", "holds", "claim", "what"};
 
+/// The texts of an array of things.
+std::string things_text(const Json& things, const Layout& layout, std::size_t indent) {
+  std::string text;
+  for (const Json& thing : things) text += thing_text(thing, layout, indent);
+  return text;
+}
+
 }  // namespace
 
 Description joined(const std::vector<Description>& meanings) {
@@ -48,14 +55,16 @@ std::string thing_text(const Json& thing, const Layout& layout, std::size_t inde
     if (key == "kind" || key == "name" || key == "unit") continue;
     std::string title = key;
     std::replace(title.begin(), title.end(), '_', ' ');
-    if (value.is_array() && !value.empty() && value.front().is_object()) {
-      lists += fmt::format("\n{:{}}{}\n", "", indent + 2, title);
-      for (const Json& item : value) lists += thing_text(item, layout, indent + 4);
-    } else if (const std::string line = line_of(value); !line.empty()) {
-      if (std::ranges::find(kProse, key) != std::end(kProse))
-        prose += layout.wrapped(line, indent + 2);
-      else
-        facts += layout.entry(title, line, indent + 2, indent + 17);
+    const bool is_list = value.is_array() && !value.empty() && value.front().is_object();
+    const std::string line = is_list ? "" : line_of(value);
+    if (is_list) {
+      lists += fmt::format("\n{:{}}{}\n{}", "", indent + 2, title, things_text(value, layout, indent + 4));
+    } else if (line.empty()) {
+      continue;
+    } else if (std::ranges::find(kProse, key) != std::end(kProse)) {
+      prose += layout.wrapped(line, indent + 2);
+    } else {
+      facts += layout.entry(title, line, indent + 2, indent + 17);
     }
   }
   std::string text;

@@ -41,7 +41,7 @@ Index program_index(const Layout& layout) {
   add_models(index, layout);
   add_presets(index, layout);
   for (const auto& [name, describe] : kSections)
-    index.push_back({"section", name, "", [describe, layout] { return describe(layout); }});
+    index.push_back({"section", name, "", [describe = describe, layout] { return describe(layout); }});
   add_metric_terms(index, layout);
   for (const DescribedTable& table : tables)
     if (!table.file.empty())

@@ -109,19 +109,19 @@ Description describe_stability(const Layout& layout) {
   d.text +=
       "\n" +
       layout.wrapped(
-          "Limits count stable and dying out as stable: the tool comes to rest if the run goes on. A run that goes through "
-          "the surface, loses contact, is stuck or never touches (describe outcomes) has a class of its own and is not "
-          "stable, however calm it is.\n\n"
-          "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is "
-          "given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
-          "velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a "
-          "device in the loop it is where the first eigenvalue of the loop of hand, handle and wall leaves the unit "
-          "circle, as long as nothing saturates and the contact lasts. With --stable bounded the edge by bisection is that of "
-          "\"diverged\".");
+          "Limits count stable and dying out as stable: the tool comes to rest if the run goes on. A run that goes "
+          "through the surface, loses contact, is stuck or never touches (describe outcomes) has a class of its own "
+          "and is not stable, however calm it is.\n\n"
+          "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = "
+          "lambda_max(S), is given where the tool is alone with springs that stay in contact and the force is -K S "
+          "p. Under velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have "
+          "none. With a device in the loop it is where the first eigenvalue of the loop of hand, handle and wall "
+          "leaves the unit circle, as long as nothing saturates and the contact lasts. With --stable bounded the "
+          "edge by bisection is that of \"diverged\".");
   d.text += "\nlimits of the stiffness K of a wall on an impedance device\n";
   d.text += layout.wrapped(
-      "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = d T "
-      "the delay. Each is written beside the edge where it applies.");
+      "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d "
+      "= d T the delay. Each is written beside the edge where it applies.");
   for (const Json& limit : d.json["limits"]) d.text += thing_text(limit, layout, 2);
   return d;
 }

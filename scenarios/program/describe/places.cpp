@@ -34,9 +34,9 @@ std::string place_kind(const std::string& word) {
 
 /// A place, of any kind where none is given, or of a figure's file such as figure_A.4_springs.svg; none of other names.
 std::optional<Place> asked_place(const std::string& name) {
-  static const std::regex kPlace(
-      R"((?:(fig|figs|figure|table|section)[._ ]*)?((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
-      std::regex::icase);
+  static const std::regex kPlace(R"((?:(fig|figs|figure|table|section)[._ ]*)?)"
+                                 R"(((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
+                                 std::regex::icase);
   std::smatch parts;
   if (!std::regex_match(name, parts, kPlace)) return std::nullopt;
   Place place{parts[1].matched ? place_kind(parts[1]) : "", parts[2]};

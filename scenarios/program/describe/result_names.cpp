@@ -46,8 +46,8 @@ constexpr Word kWords[] = {
     {"robustness.json", kResultFile,
      "how many samples have the verdict on record, and which choices decide it, for each claim"},
     {"quantum", "number of import",
-     "the step in which the recorded places come along an axis, seen in their differences (its row resolution, quantum_m of "
-     "--json); K times it is the step of force that the recording alone makes"}};
+     "the step in which the recorded places come along an axis, seen in their differences (its row resolution, "
+     "quantum_m of --json); K times it is the step of force that the recording alone makes"}};
 
 Json all_words() {
   Json all = Json::array();

@@ -8,6 +8,7 @@
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/digits.hpp"
 
 namespace hapbench {
 namespace {

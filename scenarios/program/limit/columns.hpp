@@ -24,7 +24,7 @@ struct LimitRunRow {
 Columns<LimitRow> limit_columns(const LimitTable* table);
 /// The columns of limit_runs.csv.
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table);
-/// For `describe`.
+/// Returns the tables that this command writes and prints, for `describe`.
 std::vector<DescribedTable> limit_tables();
 
 }  // namespace hapbench

@@ -5,7 +5,6 @@
 #include "scenarios/program/limit/columns.hpp"
 #include "scenarios/program/limit/question.hpp"
 #include "scenarios/program/limit/text.hpp"
-#include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -108,17 +107,18 @@ void add_limit(CommandLine& line) {
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
   add_common(command, options, "limit_NAME");
   command.footer(
-      "A run is stable when it comes to rest or dies out; where a script moves the tool, when its handle does not vibrate. \"hapbench describe stability\" "
-      "has all classes. Oscillations slower than a quarter of the run are not seen. "
-      "The range is tried at 17 values. The first edge upwards of the scenario's own value (of the first stable value, "
-      "if that one is not stable; with --smallest downwards, from the high end) is bisected, then the other end of the "
-      "interval of stable values, below which a surface may be too soft; three values are tried "
-      "on either side of the first edge, which may reveal an earlier edge. Of one scene and device the interval is then tried at 48 values between its ends and 8 "
-      "just below its edge, and ends at the first that is not stable; where no 2 % of values are stable, there is no edge. The linear edge, of the loop in contact, is the answer "
-      "where stable runs beyond it are intermittent contact. The column inconsistent counts unstable values in the interval "
-      "and stable ones outside of it. Where the hand is an impedance, a run without environment tells whether "
-      "hand and device alone are unstable beyond the edge. A hand with a mass loses it on ideal and admittance, where the virtual mass stands for it. "
-      "limit_runs.csv has every run.");
+      "A run is stable when it comes to rest or dies out; where a script moves the tool, when its handle does not "
+      "vibrate. \"hapbench describe stability\" has all classes. Oscillations slower than a quarter of the run are "
+      "not seen. The range is tried at 17 values. The first edge upwards of the scenario's own value (of the first "
+      "stable value, if that one is not stable; with --smallest downwards, from the high end) is bisected, then the "
+      "other end of the interval of stable values, below which a surface may be too soft; three values are tried on "
+      "either side of the first edge, which may reveal an earlier edge. Of one scene and device the interval is then "
+      "tried at 48 values between its ends and 8 just below its edge, and ends at the first that is not stable; "
+      "where no 2 % of values are stable, there is no edge. The linear edge, of the loop in contact, is the answer "
+      "where stable runs beyond it are intermittent contact. The column inconsistent counts unstable values in the "
+      "interval and stable ones outside of it. Where the hand is an impedance, a run without environment tells "
+      "whether hand and device alone are unstable beyond the edge. A hand with a mass loses it on ideal and "
+      "admittance, where the virtual mass stands for it. limit_runs.csv has every run.");
 }
 
 }  // namespace hapbench

@@ -17,9 +17,11 @@
 namespace hapbench {
 namespace {
 
-/// The devices, marked where --set changes them, each with what nobody published of it: both ends or other frictions.
-std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
-  const bool none_other = options.friction == std::vector<std::string>{"none"};
+constexpr const char* kNoFriction = "none";
+
+/// True where --set changes fields of the devices. Throws InputError where it would choose a device.
+bool are_devices_changed(const LimitOptions& options) {
+  const bool has_factors = !options.friction.empty() && options.friction != std::vector<std::string>{kNoFriction};
   bool is_changed = false;
   for (const std::string& override : options.overrides) {
     const std::string_view path = overridden_path(override);
@@ -30,9 +32,16 @@ std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
           "of your own goes into --device, as a file NAME.json",
           path));
     }
-    if (path == "device.coulomb_N" && !options.friction.empty() && !none_other)
+    if (path == "device.coulomb_N" && has_factors)
       throw InputError("--friction: cannot be combined with --set device.coulomb_N; allowed: one of the two");
   }
+  return is_changed;
+}
+
+/// The devices, marked where --set changes them, each with what nobody published of it: both ends or other frictions.
+std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
+  const bool none_other = options.friction == std::vector<std::string>{kNoFriction};
+  const bool is_changed = are_devices_changed(options);
   std::vector<ComparedDevice> devices;
   for (ComparedDevice device : chosen_devices(options.devices)) {
     const bool is_end = device.name.ends_with(']');

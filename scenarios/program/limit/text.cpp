@@ -13,7 +13,6 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/digits.hpp"
-#include "scenarios/program/text.hpp"
 
 namespace hapbench {
 namespace {
@@ -29,12 +28,15 @@ std::string damping_text(const RenderingConfig& rendering) {
                      significant(rendering.damping_ratio), significant(rendering.mass));
 }
 
+/// How far the search goes.
+std::string resolution_text(const LimitQuestion& question) {
+  if (question.whole) return "1";
+  return fmt::format("{} %{}", 100.0 * question.resolution, question.range.logarithmic ? "" : " of the range");
+}
+
 /// States the question of one scene; `over`: other fields also vary.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over, const Layout& layout) {
-  const std::string width = question.whole ? "1"
-                            : question.range.logarithmic
-                                ? fmt::format("{} %", 100.0 * question.resolution)
-                                : fmt::format("{} % of the range", 100.0 * question.resolution);
+  const std::string width = resolution_text(question);
   const auto end = [&question](double value) { return significant(question.whole ? std::round(value) : value); };
   std::string text = fmt::format("{}: {} stable {} between {} and {}, to {}", scenario.name, question.side(),
                                  question.path, end(question.range.from), end(question.range.to), width);
@@ -94,8 +96,8 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
       {table.is_grid() && std::ranges::any_of(table.rows, is_beyond_linear),
        fmt::format("linear edge: of the loop of device, hand and surface while they touch; {}", kBeyondLinear)},
       {table.is_grid(),
-       "a table tries no values between those of its searches, as the limit of one scene does. inconsistent: values that "
-       "are unstable before an edge or stable beyond it; limit_runs.csv has what becomes of each value"},
+       "a table tries no values between those of its searches, as the limit of one scene does. inconsistent: values "
+       "that are unstable before an edge or stable beyond it; limit_runs.csv has what becomes of each value"},
       {std::ranges::any_of(table.devices, is_published),
        "published: largest stable stiffness of a wall (\"hapbench describe DEVICE\" names its source)"},
       {is_marked("* "), "*: a preset with numbers of --set, of which nothing is published"},
@@ -105,8 +107,8 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
       {table.first().asked.path == kStiffnessPath && friction.has_value(),
        "which K to quote: device_model/README.md, \"Which K to quote?\""},
       {friction > 0.0,
-       "dry friction, which is ours in every preset, holds a hand that presses slowly: the limit is that of this approach, "
-       "not of a device; --set device.coulomb_N=0 shows what is left without"}};
+       "dry friction, which is ours in every preset, holds a hand that presses slowly: the limit is that of this "
+       "approach, not of a device; --set device.coulomb_N=0 shows what is left without"}};
   std::string text;
   for (const auto& [holds, note] : notes)
     if (holds) text += layout.wrapped(note, 0);
@@ -129,7 +131,8 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
           : fmt::format("stable: comes to rest or dies out{}", rule.bounded ? ", or vibrates without growing" : "");
   if (!rule.most_vibration && is_moved(scenario))
     text +=
-        ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first half of a run, all beyond 1 mm/s from then on";
+        ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first "
+        "half of a run, all beyond 1 mm/s from then on";
   for (const auto& [metric, bound] : rule.bounds) {
     if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);

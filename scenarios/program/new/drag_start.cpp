@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "device_model/hands/drag_hand.hpp"
+#include "scenarios/run/scene_checks.hpp"
 
 namespace hapbench {
 

@@ -118,8 +118,8 @@ class Start {
       const std::string command = fmt::format("hapbench new {} {} {} --extent", options_.kind,
                                               options_.on.empty() ? "--from" : "--on", mesh_file());
       throw InputError(fmt::format(
-          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} {:.7g}mm\" or "
-          "\"{} {:.7g}m\"",
+          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} "
+          "{:.7g}mm\" or \"{} {:.7g}m\"",
           mesh_file(), object, length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
           length_text(kLongestObject), command, longest, command, longest));
     }

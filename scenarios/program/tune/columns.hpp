@@ -12,7 +12,7 @@ namespace hapbench {
 Columns<TunedLaw> tuned_columns();
 /// The columns of tune_trials.csv.
 Columns<TuneTrial> trial_columns();
-/// For `describe`.
+/// Returns the tables that this command writes and prints, for `describe`.
 std::vector<DescribedTable> tune_tables();
 
 }  // namespace hapbench

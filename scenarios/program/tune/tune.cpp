@@ -11,7 +11,6 @@
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/program/text.hpp"
 #include "scenarios/program/tune/columns.hpp"
 #include "scenarios/program/tune/json.hpp"
 #include "scenarios/program/tune/question.hpp"
@@ -93,14 +92,17 @@ void add_tune(CommandLine& line) {
   command.flag("--filters", options.question.filters, "on an impedance device also choose the velocity filter");
   add_common(command, options, "tune_NAME");
   command.footer(fmt::format(
-      "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "
-      "family is settled (\"hapbench describe stability\"; where a script moves the tool, no more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of "
-      "device, hand and surface while they touch is stable as far by its eigenvalues, and all limits are kept at K; without limits of yours the own run is quiet, by the rules of "
-      "\"hapbench describe diagnosis\": buzz, pop, chatter, energy. Hands are "
-      "springs of 100 and 1000 N/m, on an impedance device's handle with 0.1 and 0.5 kg; the loop's, also none. Recommended is the law "
-      "that settles least deep; on springs, the one that renders most stiffness. At most {} runs a law search. The choice is verified by {} runs of full length between K and margin x K, and by longer ones; it keeps your limits by as "
-      "much as half the step, half the spacing and a look at the depth in every row move a number. "
-      "Where nothing is feasible, it says which limit to relax. Files: tune.csv, tune_trials.csv, NAME_tuned.json, which run takes.",
+      "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own "
+      "run and each of the family is settled (\"hapbench describe stability\"; where a script moves the tool, no "
+      "more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of device, hand and surface "
+      "while they touch is stable as far by its eigenvalues, and all limits are kept at K; without limits of yours "
+      "the own run is quiet, by the rules of \"hapbench describe diagnosis\": buzz, pop, chatter, energy. Hands are "
+      "springs of 100 and 1000 N/m, on an impedance device's handle with 0.1 and 0.5 kg; the loop's, also none. "
+      "Recommended is the law that settles least deep; on springs, the one that renders most stiffness. At most {} "
+      "runs a law search. The choice is verified by {} runs of full length between K and margin x K, and by longer "
+      "ones; it keeps your limits by as much as half the step, half the spacing and a look at the depth in every row "
+      "move a number. Where nothing is feasible, it says which limit to relax. Files: tune.csv, tune_trials.csv, "
+      "NAME_tuned.json, which run takes.",
       kMostTuneRuns, kTriedBetween + kTriedNear));
 }
 
