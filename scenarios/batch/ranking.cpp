@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "scenarios/batch/statistics.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {

@@ -9,6 +9,7 @@
 
 #include "scenarios/batch/csv_cells.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/random.hpp"
 

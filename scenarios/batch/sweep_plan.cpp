@@ -12,6 +12,7 @@
 #include "scenarios/input/writer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/describe_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/named_files.hpp"

@@ -9,6 +9,7 @@
 #include "scenarios/batch/csv_cells.hpp"
 #include "scenarios/batch/table_description.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {

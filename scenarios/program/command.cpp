@@ -1,251 +1,43 @@
 #include "scenarios/program/command.hpp"
 
-#include <fmt/ranges.h>
-#include <unistd.h>
+#include <fmt/format.h>
 
-#include <cstdio>
-#include <iterator>
+#include <CLI/CLI.hpp>
+#include <algorithm>
 
-#include "results/io/columns.hpp"
-#include "scenarios/batch/comparison.hpp"
-#include "scenarios/batch/ranking.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/installed_folder.hpp"
-#include "scenarios/input/json_file.hpp"
 #include "scenarios/input/nearest_name.hpp"
-#include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/input/writer.hpp"
-#include "scenarios/program/report.hpp"
-#include "scenarios/run/new_directories.hpp"
-#include "scenarios/run/run_scenario.hpp"
-#include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench {
 
-namespace fs = std::filesystem;
-
-namespace {
-
-/// Prints a line on standard error, or adds it to what the host collects of that kind.
-void tell(std::vector<std::string> CapturedOutput::*kind, std::string_view head, std::string_view text) {
-  if (CapturedOutput* host = captured_output()) {
-    (host->*kind).emplace_back(text);
-    return;
-  }
-  std::fflush(stdout);  // keeps the order of printing where both streams go to one pipe
-  fmt::print(stderr, "{} {}\n", head, text);
+void Command::add(const std::string& name, Variable variable, const std::string& help, const Takes& takes) {
+  CLI::Option* option = std::visit([&](auto value) { return app_->add_option(name, value.get(), help); }, variable);
+  option->required(takes.required);
+  if (takes.several) option->allow_extra_args(false)->take_all();
+  if (takes.comma_separated)
+    option->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
+  // CLI11's own checks word the errors differently, and show in the help.
+  const auto problem = [range = takes.range, words = takes.one_of](const std::string& word) -> std::string {
+    std::int64_t number = 0;
+    if (range && !(CLI::detail::lexical_cast(word, number) && number >= range->first && number <= range->second))
+      return fmt::format("got {}; allowed: {} ... {}", word, range->first, range->second);
+    if (words.empty() || std::ranges::find(words, word) != words.end()) return "";
+    return fmt::format("got \"{}\"{}; allowed: {}", word, nearest_name_hint(word, words), quoted_list(words));
+  };
+  option->check(CLI::Validator(problem, ""));
 }
 
-// ---- Studies
-
-constexpr const char* kAsk = "ask";
-/// What is said of a study, and is not an option of its command.
-constexpr const char* kNoOptions[] = {kAsk, "scenarios", "summary", "source", "alone", "$schema"};
-
-fs::path studies_folder() {
-  return installed_folder("scenarios/library") / "studies";
+void Command::flag(const std::string& name, bool& value, const std::string& help) {
+  app_->add_flag(name, value, help);
 }
 
-/// The file and the text of the study that a word names; none for others, and for what a command refuses to read.
-std::optional<std::pair<fs::path, std::string>> find_study(const std::string& word) {
-  std::error_code error;
-  try {
-    const bool is_file = word.ends_with(".json") && fs::is_regular_file(word, error);
-    if (!is_file && (word.find('/') != std::string::npos || fs::exists(word, error))) return std::nullopt;
-    const fs::path file = is_file ? fs::path(word) : studies_folder() / (word + ".json");
-    const std::string text = read_text_file(file, kLargestJsonFile);
-    if (text.find("\"ask\"") != std::string::npos) return std::pair(file, text);
-  } catch (const InputError&) {  // no such file
-  }
-  return std::nullopt;
+void Command::needs(const std::string& option, const std::string& other) {
+  app_->get_option(option)->needs(app_->get_option(other));
 }
 
-std::string text_of(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return cell_text(value.get<double>());
-  return value.dump();
-}
-
-std::string values_text(const Json& values) {
-  if (values.is_object() && values.contains("from")) {
-    const std::string count = values.contains("count") ? ":" + text_of(values["count"]) : "";
-    return fmt::format("{}:{}{}{}", text_of(values.at("from")), text_of(values.value("to", Json())), count,
-                       values.value("log", false) ? ":log" : "");
-  }
-  return values.is_array() ? fmt::format("{}", fmt::join(names_of(values, text_of), ",")) : text_of(values);
-}
-
-ProgramWords option_words(const std::string& option, const Json& value) {
-  if (value.is_boolean()) return ProgramWords(value.get<bool>() ? 1 : 0, option);
-  ProgramWords words;
-  const auto add = [&](const std::string& text) { words.insert(words.end(), {option, text}); };
-  if (value.is_object()) {
-    for (const auto& [path, values] : value.items())
-      add(path + "=" + (option == "--set" ? text_of(values) : values_text(values)));
-  } else if (value.is_array() && option == "--between" && value.size() == 2) {
-    add(text_of(value[0]) + ":" + text_of(value[1]));
-  } else if (value.is_array() && option == "--bound") {
-    for (const Json& bound : value) add(text_of(bound));
-  } else {
-    add(values_text(value));
-  }
-  return words;
-}
-
-/// A scenario's file is looked for next to the study's first, and then as other words of a command are.
-std::string scenario_beside(const fs::path& study, const std::string& name) {
-  const fs::path file = study.parent_path() / name;
-  std::error_code error;
-  return name.ends_with(".json") && fs::exists(file, error) ? file.lexically_normal().string() : name;
-}
-
-std::size_t line_of(const std::string& text, const std::string& key) {
-  const std::size_t at = text.find("\"" + key + "\"");
-  return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-}
-
-Json study_json(const fs::path& file, const std::string& text) {
-  try {
-    Json study = parse_json(text);
-    if (study.is_object() && study.contains(kAsk) && study[kAsk].is_string() && study.contains("scenarios") &&
-        study["scenarios"].is_array())
-      return study;
-  } catch (const InputError& error) {
-    fail_in_file(file, error.what());
-  }
-  fail_in_file(
-      file,
-      R"(is not a study; allowed: {"ask": COMMAND, "scenarios": [...], and the command's options by their names})");
-}
-
-}  // namespace
-
-CapturedOutput*& captured_output() noexcept {
-  thread_local CapturedOutput* captured = nullptr;
-  return captured;
-}
-
-std::vector<BundledStudy> bundled_studies() {
-  std::vector<BundledStudy> found;
-  for (const auto& entry : fs::directory_iterator(studies_folder())) {
-    if (entry.path().extension() != ".json") continue;
-    const Json study = study_json(entry.path(), read_text_file(entry.path(), kLargestJsonFile));
-    found.push_back(
-        {entry.path().stem().string(), study.at(kAsk).get<std::string>(), study.value("summary", ""), entry.path()});
-  }
-  std::ranges::sort(found, {}, &BundledStudy::name);
-  return found;
-}
-
-std::optional<StudyWords> StudyWords::in(const ProgramWords& words) {
-  if (words.size() < 2 || words[0].starts_with("-") || words[0] == "describe") return std::nullopt;
-  // The value of an option is none: a file of a device has no "ask".
-  std::optional<std::pair<fs::path, std::string>> named;
-  std::size_t place = 0;
-  while (!named && ++place < words.size())
-    if (!words[place].starts_with("-")) named = find_study(words[place]);
-  if (!named) return std::nullopt;
-  const auto& [file, text] = *named;
-  const Json study = study_json(file, text);
-  if (study[kAsk] != words[0])
-    fail_in_line(file, line_of(text, kAsk),
-                 fmt::format("is a question for \"hapbench {} {}\"", study[kAsk].get<std::string>(), words[place]));
-  StudyWords found{file, {words[0]}, {}};
-  for (const Json& scenario : study["scenarios"]) found.words.push_back(scenario_beside(file, text_of(scenario)));
-  for (const auto& [key, value] : study.items()) {
-    if (std::ranges::find(kNoOptions, key) != std::end(kNoOptions)) continue;
-    const std::string option = "--" + key;
-    const auto is_given = [&](const std::string& word) { return word == option || word.starts_with(option + "="); };
-    // What may be given several times adds up.
-    if (!value.is_object() && std::ranges::any_of(words, is_given)) continue;
-    found.lines[option] = line_of(text, key);
-    std::ranges::move(option_words(option, value), std::back_inserter(found.words));
-  }
-  for (std::size_t i = 1; i < words.size(); ++i)
-    if (i != place) found.words.push_back(words[i]);
-  return found;
-}
-
-InputError StudyWords::located(const InputError& error) const {
-  const std::string text = error.what();
-  for (const auto& [option, line] : lines) {
-    const std::size_t at = text.find(option);
-    if (at == std::string::npos || text.substr(at + option.size(), 1).find_first_of("abcdefghijklmnopqrstuvwxyz-") == 0)
-      continue;
-    return InputError(fmt::format("{}:{}: {}", file.string(), line, text));
-  }
-  return error;
-}
-
-void print(const OutputOptions& options, const std::string& text, const Json& json) {
-  if (options.quiet) return;
-  const std::string output = options.json ? json_text(json) : fitted(text);
-  if (CapturedOutput* host = captured_output()) {
-    host->text += output;
-    return;
-  }
-  std::fwrite(output.data(), 1, output.size(), stdout);
-}
-
-void print_warnings(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) tell(&CapturedOutput::warnings, "hapbench: warning:", warning);
-}
-
-void print_warnings(const LoadedScenario& loaded) {
-  for (const auto& warnings : {loaded.warnings, loaded.file_warnings}) print_warnings(with_files(loaded, warnings));
-}
-
-void print_note(std::string_view text) {
-  tell(&CapturedOutput::warnings, "hapbench:", text);
-}
-
-void print_error(std::string_view text) {
-  tell(&CapturedOutput::errors, bold(stderr, "hapbench: error:"), text);
-}
-
-void print_errors(const InputError& error) {
-  const std::vector<InputError> faults = error.faults();
-  for (const InputError& fault : faults) print_error(fault.what());
-  if (faults.size() == kMostFaults) print_error(fmt::format("no more than {} are shown", kMostFaults));
-}
-
-std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for) {
-  if (!asked_for.empty()) {
-    require_valid_name("--metric: got", asked_for, metrics, "hapbench describe metrics");
-    return asked_for;
-  }
-  const auto has = [&](std::string_view name) { return std::ranges::find(metrics, name) != metrics.end(); };
-  return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
-}
-
-void require_writable_directory(const fs::path& directory, std::string_view option) {
-  static NewDirectories directories;  // lives until the program ends, which removes empty ones
-  if (const auto error = directories.create(directory))
-    throw InputError(fmt::format("{} {}: cannot be created: {}", option, directory.string(), error.message()));
-  if (!fs::is_directory(directory))
-    throw InputError(fmt::format("{} {}: is not a directory", option, directory.string()));
-  if (access(directory.c_str(), W_OK | X_OK) != 0)
-    throw InputError(fmt::format("{} {}: cannot be written to", option, directory.string()));
-}
-
-std::string shell_line(const ProgramWords& words) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,+@%";
-  std::string line;
-  for (const std::string& word : words) {
-    if (!line.empty()) line += ' ';
-    const bool is_plain = !word.empty() && word.find_first_not_of(kPlain) == std::string::npos;
-    if (!is_plain) line += '\'';
-    for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    if (!is_plain) line += '\'';
-  }
-  return line;
-}
-
-fs::path& this_program() {
-  std::error_code ignored;
-  static fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  return program;
+void Command::footer(const std::string& text) {
+  app_->footer(text);
 }
 
 }  // namespace hapbench

@@ -1,3 +1,5 @@
+#include "scenarios/program/converge.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,9 @@
 #include "scenarios/analysis/convergence/levels.hpp"
 #include "scenarios/analysis/convergence/observed_order.hpp"
 #include "scenarios/analysis/current_value.hpp"
+#include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/jobs.hpp"
 #include "scenarios/batch/ranking.hpp"
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/batch/sweep_plan.hpp"
@@ -16,8 +20,13 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
+#include "scenarios/program/digits.hpp"
+#include "scenarios/program/names.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/math.hpp"
@@ -133,22 +142,24 @@ Json study_json(const ConvergeStudy& study) {
   return json;
 }
 
-std::string verdict_text(const ConvergeStudy& c) {
-  if (c.order) {
-    const bool three = std::ranges::count_if(c.errors, [](const auto& e) { return e.has_value(); }) == 3;
-    return fmt::format("order {:.2f}, {}: tends to {}{}", *c.order,
-                       three          ? "of three levels alone"
-                       : c.asymptotic ? "asymptotic"
-                                      : "not yet asymptotic",
-                       with_error_text(*c.extrapolated, c.errors.back()),
-                       c.gci ? fmt::format(", GCI {:.2g} %", 100.0 * *c.gci) : "");
+/// How far an observed order can be believed.
+std::string order_text(const ConvergeStudy& study) {
+  const auto is_known = [](const auto& error) { return error.has_value(); };
+  if (std::ranges::count_if(study.errors, is_known) == 3) return "of three levels alone";
+  return study.asymptotic ? "asymptotic" : "not yet asymptotic";
+}
+
+std::string verdict_text(const ConvergeStudy& study) {
+  if (study.order) {
+    const std::string gci = study.gci ? fmt::format(", GCI {:.2g} %", 100.0 * *study.gci) : "";
+    return fmt::format("order {:.2f}, {}: tends to {}{}", *study.order, order_text(study),
+                       with_error_text(*study.extrapolated, study.errors.back()), gci);
   }
-  if (!c.band) return fmt::format("no order: {}", c.reason);
-  const auto [low, high] = *c.band;
-  return fmt::format("no order: {}; last levels {}", c.reason,
-                     low == high
-                         ? significant(low, 6)
-                         : fmt::format("{} ... {}", number_text(low, high - low), number_text(high, high - low)));
+  if (!study.band) return fmt::format("no order: {}", study.reason);
+  const auto [low, high] = *study.band;
+  if (low == high) return fmt::format("no order: {}; last levels {}", study.reason, significant(low, 6));
+  return fmt::format("no order: {}; last levels {} ... {}", study.reason, number_text(low, high - low),
+                     number_text(high, high - low));
 }
 
 /// The coarsest level whose error and those of all finer ones are below, and what it costs.
@@ -208,7 +219,8 @@ LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenari
   });
 }
 
-int converge(const ConvergeOptions& options) {
+int converge(const ConvergeOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
   // All input is checked before anything runs or is written.
   if (!(options.ratio > 1.0 && options.ratio <= kLargestRatio))
     throw InputError(fmt::format("--ratio: got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
@@ -221,8 +233,8 @@ int converge(const ConvergeOptions& options) {
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
   require_names("--metric: got", metrics, plan.metrics, "hapbench describe metrics");
-  print_warnings(plan.warnings);
-  Report report(options, "converge_" + file.stem().string());
+  print_warnings(context, plan.warnings);
+  Report report(options, "converge_" + file.stem().string(), context);
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(plan.cases.load(i)); });
   report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().result.name,
@@ -232,8 +244,8 @@ int converge(const ConvergeOptions& options) {
   for (const std::string& metric : metrics) {
     const ConvergeStudy& study = studies.emplace_back(studied(levels, runs, metric));
     rows.insert(rows.end(), study.levels.begin(), study.levels.end());
-    report.say(level_columns(study).table(study.levels).text() + "\n" + wrapped(verdict_text(study), 0));
-    if (most) report.say(wrapped(enough_text(study, *most), 0));
+    report.say(level_columns(study).text(study.levels, layout) + "\n" + layout.wrapped(verdict_text(study), 0));
+    if (most) report.say(layout.wrapped(enough_text(study, *most), 0));
     report.say("\n");
     report.json().push_back(study_json(study));
   }
@@ -272,12 +284,13 @@ void add_converge(CommandLine& line) {
   command.add("--to", options.to, "also name the coarsest level with a smaller relative error, as 1%, and its cost");
   add_common(command, options, "converge_NAME");
   command.footer(
-      "Observed order p, Richardson's value and grid convergence index of the three finest levels (Roache; ASME V&V 20; "
-      "\"hapbench describe converge.csv\"). No order is stated, and the reason said, where contacts switch between them, "
-      "where differences change their sign, grow or are rounding, where the order is more than twice the formal one, or "
-      "where fewer than three levels end as the finest; the last levels are the answer then. Runs of shorter steps last as "
-      "long, delays of devices keep their length, and metrics of motion, force and contact are taken at the times of the "
-      "coarsest rows: a peak between these rows is not seen. Files: converge.csv, converge_levels.csv, converge_levels_timing.csv.");
+      "Observed order p, Richardson's value and grid convergence index of the three finest levels (Roache; ASME V&V "
+      "20; \"hapbench describe converge.csv\"). No order is stated, and the reason said, where contacts switch "
+      "between them, where differences change their sign, grow or are rounding, where the order is more than twice "
+      "the formal one, or where fewer than three levels end as the finest; the last levels are the answer then. Runs "
+      "of shorter steps last as long, delays of devices keep their length, and metrics of motion, force and contact "
+      "are taken at the times of the coarsest rows: a peak between these rows is not seen. Files: converge.csv, "
+      "converge_levels.csv, converge_levels_timing.csv.");
 }
 
 }  // namespace hapbench

@@ -13,7 +13,9 @@
 #include <string>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/program_context.hpp"
+#include "scenarios/program/run_program.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace {
@@ -29,7 +31,7 @@ namespace {
     what = error.what();
   } catch (...) {
   }
-  hapbench::print_error(
+  hapbench::write_error(
       hapbench::one_line(fmt::format("internal fault: {}; if threads or memory ran short: fewer --jobs", what)));
   std::quick_exit(hapbench::kInternalFault);
 }
@@ -39,7 +41,7 @@ std::atomic<bool> main_has_returned{false};
 /// A module that calls exit does not end the program with success.
 void refuse_exit() {
   if (main_has_returned) return;
-  hapbench::print_error("internal fault: a module or a library called exit");
+  hapbench::write_error("internal fault: a module or a library called exit");
   std::_Exit(hapbench::kInternalFault);
 }
 
@@ -74,7 +76,8 @@ int main(int argc, char** argv) {
   limit_memory();
   keep_freed_memory();
   const hapbench::StopSignal signals;
-  const int status = hapbench::run_program_to_exit({argv + std::min(argc, 1), argv + argc});
+  hapbench::ProgramContext context{.program = hapbench::file_of_this_process()};
+  const int status = hapbench::run_program_to_exit({argv + std::min(argc, 1), argv + argc}, context);
   main_has_returned = true;
   return status;
 }

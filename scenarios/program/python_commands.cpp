@@ -1,3 +1,5 @@
+#include "scenarios/program/python_commands.hpp"
+
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,11 +15,13 @@
 #include "results/io/atomic_file.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/old_words.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/program_context.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
-/// Commands whose work packages in Python do.
 namespace hapbench {
 namespace {
 
@@ -30,12 +34,12 @@ const ImportKind kImportKinds[] = {
     {"device", "Make a device's file from its log: mass, friction, delay, encoder", "hapbench_identify"}};
 
 /// The line of a shell that becomes the launcher, which finds a Python for the package: its name and its first words.
-std::string launch_line(const ProgramWords& package, const ProgramWords& given) {
+std::string launch_line(const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
   ProgramWords words = {"exec", (installed_folder("scripts/python") / "launch").string()};
   words.insert(words.end(), package.begin(), package.end());
   words.insert(words.end(), given.begin(), given.end());
   // The packages ask this very program, for the points of a scene.
-  setenv("HAPBENCH_PROGRAM", this_program().c_str(), 1);
+  setenv("HAPBENCH_PROGRAM", context.program.c_str(), 1);
   return shell_line(words);
 }
 
@@ -99,24 +103,25 @@ int simulate_log_for_pipe() {
 }
 
 /// At a terminal this process becomes the launcher.
-int run(const std::string& command, const ProgramWords& package, const ProgramWords& given) {
+int run(const std::string& command, const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
   for (const std::string& word : given) refuse_old_word(command, word);
-  const std::string line = launch_line(package, given);
-  if (CapturedOutput* host = captured_output()) return run_for(*host, line);
+  const std::string line = launch_line(package, given, context);
+  if (context.captured != nullptr) return run_for(*context.captured, line);
   ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
   fail_to_launch();
 }
 
-int run_import(const ProgramWords& given) {
+int run_import(const ProgramWords& given, ProgramContext& context) {
+  const Layout layout = context.layout();
   const std::string kind = given.empty() ? "" : given[0];
   std::string kinds;
   if (given == ProgramWords{"device", kSimulateLog}) return simulate_log_for_pipe();
   for (const auto& [name, sentence, package] : kImportKinds) {
-    if (name == kind) return run("import " + name, {package}, {given.begin() + 1, given.end()});
-    kinds += entry(fmt::format("hapbench import {} --help", name), sentence, 2, 34);
+    if (name == kind) return run("import " + name, {package}, {given.begin() + 1, given.end()}, context);
+    kinds += layout.entry(fmt::format("hapbench import {} --help", name), sentence, 2, 34);
   }
   if (kind == "-h" || kind == "--help") {
-    print({}, "Usage: hapbench import stroke FILE | hapbench import device LOG\n\n" + kinds, {});
+    print(context, {}, "Usage: hapbench import stroke FILE | hapbench import device LOG\n\n" + kinds, {});
     return kSuccess;
   }
   throw InputError(fmt::format("import: {}; allowed: hapbench import stroke FILE, hapbench import device LOG",
@@ -125,18 +130,20 @@ int run_import(const ProgramWords& given) {
 
 }  // namespace
 
-void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet) {
-  const std::string line = launch_line({"hapbench_pictures", "plot"},
-                                       {"--quiet", "--y=path", "--out=" + file.string(), "--", folder.string()});
+void write_way(ProgramContext& context, const std::filesystem::path& folder, const std::filesystem::path& file,
+               bool quiet) {
+  const std::string line = launch_line(
+      {"hapbench_pictures", "plot"}, {"--quiet", "--y=path", "--out=" + file.string(), "--", folder.string()}, context);
   const WaitNotice notice("drawing", !quiet);
   const int status = run_beside(line).first;
   throw_if_stopped();
   if (status != 0) throw IoError("draw what is in", folder, std::make_error_code(std::errc::io_error));
 }
 
-int run_python_command(const ProgramWords& words) {
+int run_python_command(const ProgramWords& words, ProgramContext& context) {
   const ProgramWords given(words.begin() + 1, words.end());
-  return words[0] == "import" ? run_import(given) : run(words[0], {"hapbench_pictures", words[0]}, given);
+  return words[0] == "import" ? run_import(given, context)
+                              : run(words[0], {"hapbench_pictures", words[0]}, given, context);
 }
 
 }  // namespace hapbench

@@ -1,3 +1,5 @@
+#include "scenarios/program/reproduce.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +11,8 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/names.hpp"
+#include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -18,6 +22,7 @@
 #include "scenarios/thesis/evidence.hpp"
 #include "scenarios/thesis/judging.hpp"
 #include "scenarios/thesis/ledger.hpp"
+#include "scenarios/thesis/measurements.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
 #include "scenarios/thesis/robustness.hpp"
 
@@ -104,7 +109,8 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
 }
 
 /// Judges the claims under the readings; robustness.* go next to the ledger, if there is one. Returns that of .json.
-Json judge_readings(const ReproduceOptions& options, const Readings& readings, const fs::path& ledger, FileSet& files) {
+Json judge_readings(const ReproduceOptions& options, const Readings& readings, const fs::path& ledger, FileSet& files,
+                    ProgramContext& context) {
   const fs::path scratch = options.folder() / "robustness";
   std::vector<ReadingVerdicts> judged(readings.values.size());
   for_each_job(judged.size(), job_options(options, "robustness"),
@@ -114,7 +120,7 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings, c
   std::vector<std::string> problems;
   for (const ReadingVerdicts& reading : judged)
     for (const std::string& problem : reading.problems) problems.push_back("not measured: " + one_line(problem));
-  for (const std::string& problem : first_few(problems, 10)) print_error(problem);
+  for (const std::string& problem : first_few(problems, 10)) print_error(context, problem);
   // Readings of single claims leave those of the others as they are.
   const fs::path file = ledger.parent_path() / "robustness.json";
   const bool some = !ledger.empty() && !options.only.empty() && fs::exists(file);
@@ -125,11 +131,11 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings, c
   return record;
 }
 
-std::string claims_text(const std::vector<JudgedClaim>& judged) {
+std::string claims_text(const std::vector<JudgedClaim>& judged, const Layout& layout) {
   std::string text;
   for (const JudgedClaim& j : judged) {
-    text += "\n" + entry(j.claim.id, j.claim.claim, 0, 5);
-    if (!j.finding.why.empty()) text += entry("", "why: " + j.finding.why, 0, 5);
+    text += "\n" + layout.entry(j.claim.id, j.claim.claim, 0, 5);
+    if (!j.finding.why.empty()) text += layout.entry("", "why: " + j.finding.why, 0, 5);
   }
   return text;
 }
@@ -148,7 +154,8 @@ Columns<Json> claim_columns() {
   return columns;
 }
 
-int reproduce(const ReproduceOptions& options) {
+int reproduce(const ReproduceOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
   const fs::path reference = installed_folder("results/reference");
   const std::vector<Claim> claims = chosen_claims(options.only);
   const Choices choices(reference / "choices.json");
@@ -156,7 +163,7 @@ int reproduce(const ReproduceOptions& options) {
       choices.with_numbers(PublishedNumbers(reference / "published.json"), choices.values_on_record());
   Readings readings{choices, published, {}, {}};
   if (!options.readings.empty()) readings.values = read_readings(options.readings, choices);
-  Report report(options, "reproduce");
+  Report report(options, "reproduce", context);
   std::vector<ThesisRun> runs;
   for (const BundledScenario& bundled : bundled_scenarios())
     if (bundled.group == "thesis") runs.push_back({bundled});
@@ -174,14 +181,14 @@ int reproduce(const ReproduceOptions& options) {
   if (!readings.values.empty()) {
     readings.claims = judged;
     std::erase_if(readings.claims, [](const JudgedClaim& j) { return !j.can_be_sampled(); });
-    robustness = judge_readings(options, readings, ledger, report.files());
+    robustness = judge_readings(options, readings, ledger, report.files(), context);
   }
 
   report.json() = ledger_json(judged, published, robustness);
   const Json& json = report.json();
-  if (options.only.empty()) report.say(wrapped(json.at("headline").get<std::string>()) + "\n\n");
-  report.say(claim_columns().table(json.at("claims").get<std::vector<Json>>()).text());
-  if (!options.only.empty()) report.say(claims_text(judged));
+  if (options.only.empty()) report.say(layout.wrapped(json.at("headline").get<std::string>()) + "\n\n");
+  report.say(claim_columns().text(json.at("claims").get<std::vector<Json>>(), layout));
+  if (!options.only.empty()) report.say(claims_text(judged, layout));
   if (!ledger.empty()) {
     report.files().write(ledger, json_text(json));
     report.files().write(fs::path(ledger).replace_extension(".md"), ledger_markdown(json));
@@ -206,8 +213,8 @@ void add_reproduce(CommandLine& line) {
                                          "finished runs are kept, and the same command continues from there");
   command.add(
       "--only", options.only,
-      "ids of claims, separated by commas; \"hapbench describe claims\" shows them, and scripts/reproduce --only draws their "
-      "figures",
+      "ids of claims, separated by commas; \"hapbench describe claims\" shows them, and scripts/reproduce --only "
+      "draws their figures",
       {.comma_separated = true});
   add_out(command, options.out, "reproduce");
   command.add(
@@ -223,7 +230,8 @@ void add_reproduce(CommandLine& line) {
       "claims");
   command.footer(
       "results/reference/choices.json has what the thesis leaves open; scripts/readings.py draws readings of it.\n"
-      "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C.");
+      "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by "
+      "Ctrl-C.");
 }
 
 }  // namespace hapbench

@@ -1,10 +1,22 @@
+#include "scenarios/program/run.hpp"
+
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/writer.hpp"
+#include "scenarios/program/digits.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench {
 namespace {
@@ -75,7 +87,7 @@ Columns<Result> latency_columns() {
 }
 
 /// What is wrong with a run and what to try; of several runs a line each, with the names of the rules. May be empty.
-std::string diagnosis_text(std::span<const Result> reports) {
+std::string diagnosis_text(std::span<const Result> reports, const Layout& layout) {
   std::string text;
   for (const Result& report : reports) {
     std::string rules;
@@ -83,16 +95,18 @@ std::string diagnosis_text(std::span<const Result> reports) {
       rules += fmt::format("{}{} ({:.3g})", rules.empty() ? "" : ", ", found.rule, found.value);
       if (reports.size() > 1) continue;
       const std::string unit = found.unit == "1" ? "" : " " + found.unit;
-      text += wrapped(
+      text += layout.wrapped(
           fmt::format("{} (rule {}: {:.3g} > {:g}{})", found.says, found.rule, found.value, found.threshold, unit), 0);
-      text += wrapped("try: " + found.attempt, 2);
+      text += layout.wrapped("try: " + found.attempt, 2);
     }
-    if (reports.size() > 1 && !rules.empty()) text += wrapped(fmt::format("wrong with {}: {}", report.name, rules), 0);
+    if (reports.size() > 1 && !rules.empty())
+      text += layout.wrapped(fmt::format("wrong with {}: {}", report.name, rules), 0);
   }
   return text.empty() ? "" : "\n" + text;
 }
 
-int run(const RunOptions& options) {
+int run(const RunOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
   // All input is checked before anything runs or is written.
   std::vector<std::string> overrides = options.overrides;
   if (options.latency) overrides.emplace_back("record.timing=true");
@@ -103,12 +117,12 @@ int run(const RunOptions& options) {
   for (LoadedScenario& loaded : scenarios) {
     loaded = checked(std::move(loaded));
     if (options.no_skip) loaded.scenario.rendering.skips = Skips::off;
-    print_warnings(loaded);
+    print_warnings(context, loaded);
   }
-  for (const fs::path& directory : directories) require_writable_directory(directory);
+  for (const fs::path& directory : directories) require_writable_directory(context, directory);
 
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
-  Report report(options.output, where);
+  Report report(options.output, where, context);
   std::vector<Result> results;
   std::string targets;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
@@ -116,12 +130,12 @@ int run(const RunOptions& options) {
         run_scenario(scenarios[i], directories[i], !options.output.quiet, nullptr, /*diagnose=*/true));
     // Users who try values of a field hear that the results of the value before are gone.
     if (result.replaces_other && options.out.empty() && !options.overrides.empty())
-      print_note(
-          fmt::format("replaced the run of other fields in {}; --out DIRECTORY keeps both", directories[i].string()));
+      print_note(context, fmt::format("replaced the run of other fields in {}; --out DIRECTORY keeps both",
+                                      directories[i].string()));
     if (result.sections.contains("targets"))
       targets += fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", result.name,
-                             place_columns().table(place_metrics(result.targets)).text());
-    print_warnings(run_warnings({&result, 1}));
+                             place_columns().text(place_metrics(result.targets), layout));
+    print_warnings(context, run_warnings({&result, 1}));
     Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
     for (const std::string& unmet : result.unmet) {
@@ -130,9 +144,10 @@ int run(const RunOptions& options) {
                    kUnexpectedOutcome);
     }
   }
-  const std::string latency_text = options.latency ? "\n" + latency_columns().table(results).text() : "";
-  report.say(run_table(results, true) + fidelity_text(results) + step_time_text(results) + targets + latency_text +
-             diagnosis_text(results) + fmt::format("\nresults in {}\n", where.string()));
+  const std::string latency_text = options.latency ? "\n" + latency_columns().text(results, layout) : "";
+  report.say(run_table(results, true, layout) + fidelity_text(results, layout) + step_time_text(results, layout) +
+             targets + latency_text + diagnosis_text(results, layout) +
+             fmt::format("\nresults in {}\n", where.string()));
   return report.finish();
 }
 

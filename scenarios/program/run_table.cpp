@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/input/rounding.hpp"
+#include "scenarios/batch/number_with_error.hpp"
+#include "scenarios/program/digits.hpp"
 
 namespace hapbench {
 namespace {
@@ -85,11 +87,11 @@ std::string short_text(std::optional<double> value, const std::optional<double>&
   return value ? cell(factor * *value, deserved_digits(*value, tolerance, 3)) : "-";
 }
 
-std::string run_table(std::span<const Result> reports, bool of_scenes) {
-  return run_columns(of_scenes).table(reports).text();
+std::string run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout) {
+  return run_columns(of_scenes).text(reports, layout);
 }
 
-std::string fidelity_text(std::span<const Result> reports) {
+std::string fidelity_text(std::span<const Result> reports, const Layout& layout) {
   std::vector<std::reference_wrapper<const Result>> with_reference;
   for (const Result& report : reports)
     if (report.sections.contains("fidelity")) with_reference.emplace_back(report);
@@ -98,7 +100,7 @@ std::string fidelity_text(std::span<const Result> reports) {
   Columns<Result> columns = {{name == &Result::algorithm ? "algorithm" : "scenario", "", "", name, only_printed()}};
   add_metrics(columns, kFidelityHeadings);
   return fmt::format("\nrendered force against the reference, measured or ideal\n\n{}",
-                     columns.table(with_reference).text());
+                     columns.text(with_reference, layout));
 }
 
 std::vector<std::string> run_warnings(std::span<const Result> reports) {
@@ -119,7 +121,7 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
   return texts;
 }
 
-std::string step_time_text(std::span<const Result> reports) {
+std::string step_time_text(std::span<const Result> reports, const Layout& layout) {
   const auto p99 = [](const Result& report) { return report.timing.step_p99.value_or(0.0); };
   const Result& slowest = *std::ranges::max_element(reports, {}, p99);
   if (p99(slowest) == 0.0) return "";
@@ -129,7 +131,16 @@ std::string step_time_text(std::span<const Result> reports) {
   if (p99(slowest) > step)
     text += fmt::format(", longer than a step of {} us: fewer points, rendering.reduction or a cheaper law",
                         cell(1e6 * step, 2));
-  return "\n" + wrapped(text, 0);
+  return "\n" + layout.wrapped(text, 0);
+}
+
+std::string number_text(double value, const std::optional<double>& error) {
+  if (error && *error == 0.0) return significant(value, 6);
+  return error && *error >= std::abs(value) ? significant(value, 1) : deserved(value, error);
+}
+
+std::string with_error_text(double value, const std::optional<double>& error) {
+  return number_text(value, error) + " +- " + (error ? significant(*error, 1) : "?");
 }
 
 std::vector<DescribedTable> run_tables() {

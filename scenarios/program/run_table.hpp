@@ -1,13 +1,13 @@
 #pragma once
 
-#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/number_with_error.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/program/columns.hpp"
+#include "scenarios/program/layout.hpp"
 
 /// Tables with a row for each run, as `run` and `compare` print and write them.
 namespace hapbench {
@@ -44,29 +44,27 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
 /// The printed table of runs, of seven columns: names, how they ended and when, kRunHeadings. Of several algorithms in
 /// one scene also the vibration of the tool, which runs without settled contact also have. With --wide also the range
 /// of ratios, and what half of the steps take at most. `of_scenes`: of several, told apart by name.
-std::string run_table(std::span<const Result> reports, bool of_scenes);
+std::string run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
 
 /// Its root is the vibration of the tool.
 inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
 
 /// What 99 % of the steps take at most, in the slowest run, of which there is one; empty where all are too short.
-std::string step_time_text(std::span<const Result> reports);
+std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
 /// A table of the rendered force against the reference, for the reports that have one.
-std::string fidelity_text(std::span<const Result> reports);
+std::string fidelity_text(std::span<const Result> reports, const Layout& layout);
 
 /// The warnings about runs side by side, but for those that were known before: those of one kind once, in the words of
 /// the first run and with the names of the algorithms.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
 /// A number with the digits that its error leaves: one where the error is larger, six where it is 0, four if unknown.
-inline std::string number_text(double value, const std::optional<double>& error) {
-  if (error && *error == 0.0) return significant(value, 6);
-  return error && *error >= std::abs(value) ? significant(value, 1) : deserved(value, error);
-}
+std::string number_text(double value, const std::optional<double>& error);
 /// The same with the error behind: "1.234 +- 0.005".
-inline std::string with_error_text(double value, const std::optional<double>& error) {
-  return number_text(value, error) + " +- " + (error ? significant(*error, 1) : "?");
-}
+std::string with_error_text(double value, const std::optional<double>& error);
+
+/// Returns the tables that this command writes and prints, for `describe`.
+std::vector<DescribedTable> run_tables();
 
 }  // namespace hapbench

@@ -1,3 +1,5 @@
+#include "scenarios/program/stress.hpp"
+
 #include <fmt/format.h>
 
 #include "scenarios/analysis/stress/law_stress.hpp"
@@ -26,12 +28,13 @@ Columns<StressCounts> stress_columns() {
       {"first_bad_set", "1", "number of the first set with a bad answer", &Row::first_bad, kOnlyJson}};
 }
 
-int stress(const StressOptions& options) {
-  Report report(options, "stress");
+int stress(const StressOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
+  Report report(options, "stress", context);
   const std::vector<StressCounts> all = stress_laws(options.count, options.seed, job_options(options, "stress"));
   const Columns<StressCounts> columns = stress_columns();
   report.write("stress.csv", columns, all);
-  report.say(columns.table(all).text());
+  report.say(columns.text(all, layout));
   report.json() = columns.json_list(all);
   for (const StressCounts& c : all) {
     if (!c.first_bad) continue;

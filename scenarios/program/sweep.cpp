@@ -1,3 +1,5 @@
+#include "scenarios/program/sweep.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,6 +21,14 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/largest_sizes.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/columns.hpp"
+#include "scenarios/program/digits.hpp"
+#include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/names.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/program_context.hpp"
+#include "scenarios/program/program_words.hpp"
+#include "scenarios/program/results_folder.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/scene/load_scenario.hpp"
@@ -68,7 +78,7 @@ Columns<OutcomeCount> count_columns() {
 }
 
 /// The runs, of several fields those with the least of the metric, failures last; then the counts of outcomes.
-std::string summary_text(const SweepTable& table, const std::string& metric) {
+std::string summary_text(const SweepTable& table, const std::string& metric, const Layout& layout) {
   constexpr std::size_t kMostShown = 100, kMostListed = 20;
   std::vector<SweepRow> rows = table.rows;
   const bool single = table.fields() == 1;
@@ -83,8 +93,14 @@ std::string summary_text(const SweepTable& table, const std::string& metric) {
   }
   if (shown < rows.size() && single) text = fmt::format("the first {} of {} runs\n\n", shown, rows.size());
   rows.resize(shown);
-  if (shown > 0) text += run_columns(table, metric).table(rows).text() + "\n";
-  return text + count_columns().table(table.kept.outcomes).text();
+  if (shown > 0) text += run_columns(table, metric).text(rows, layout) + "\n";
+  return text + count_columns().text(table.kept.outcomes, layout);
+}
+
+/// A number or another value of JSON where the cell is one; null for an empty cell; else its text.
+Json json_of_cell(const std::string& cell) {
+  if (cell.empty()) return Json();
+  return Json::accept(cell) ? Json::parse(cell) : Json(cell);
 }
 
 Json summary_json(const SweepTable& table) {
@@ -99,8 +115,7 @@ Json summary_json(const SweepTable& table) {
     Json& added = rows.emplace_back(Json::object());
     for (std::size_t c = 0; c < row.size(); ++c) {
       const bool is_hash = c + 1 == row.size();  // which may look like a number
-      const bool is_json = !is_hash && Json::accept(row[c]);
-      added[table.columns[c]] = row[c].empty() ? Json() : is_json ? Json::parse(row[c]) : Json(row[c]);
+      added[table.columns[c]] = is_hash && !row[c].empty() ? Json(row[c]) : json_of_cell(row[c]);
     }
   }
   return json;
@@ -145,40 +160,42 @@ Cases cases_of(const SweepCommand& command) {
 }
 
 /// Reports runs that failed or ended unexpectedly and returns the exit status.
-int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& counts) {
+int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& counts, ProgramContext& context) {
   const std::string scene = cases.scenes().front().file.string();
   const auto run_text = [&cases](std::size_t run) {
     return fmt::format("run {} ({})", run, fmt::join(cases.changes(run), ", "));
   };
   if (report.failed) {
-    print_error(fmt::format("{}: {} of {} runs failed, the first: {}: {}", scene, counts.failed, counts.runs,
-                            run_text(*report.failed), one_line(report.problem)));
+    print_error(context, fmt::format("{}: {} of {} runs failed, the first: {}: {}", scene, counts.failed, counts.runs,
+                                     run_text(*report.failed), one_line(report.problem)));
     return kInternalFault;
   }
   if (counts.unexpected == 0) return kSuccess;
-  print_note(fmt::format("{}: {} of {} runs did not end as expected, the first: {}", scene, counts.unexpected,
-                         counts.runs, run_text(*counts.first_unexpected)));
+  print_note(context, fmt::format("{}: {} of {} runs did not end as expected, the first: {}", scene, counts.unexpected,
+                                  counts.runs, run_text(*counts.first_unexpected)));
   return kUnexpectedOutcome;
 }
 
 /// Prints the command that repeats the run of a row.
-int print_row(const SweepCommand& command, const Cases& cases) {
+int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& context) {
   if (command.row >= cases.size())
     throw InputError(fmt::format("--row: got {}; allowed: 0 ... {}", command.row, cases.size() - 1));
   cases.load(command.row);  // throws if the row's scenario is wrong
   const fs::path scene = fs::absolute(cases.scene(command.row).file).lexically_normal();
-  std::vector<std::string> words = {this_program().string(), "run", scene.string()};
+  std::vector<std::string> words = {context.program.string(), "run", scene.string()};
   for (const std::string& override : cases.overrides(command.row)) words.insert(words.end(), {"--set", override});
   for (const LoadedLaw& law : loaded_laws()) words.insert(words.end(), {"--module", law.file.string()});
-  print(command.output, shell_line(words) + "\n", Json{{"row", command.row}, {"command", words}});
+  print(context, command.output, shell_line(words) + "\n", Json{{"row", command.row}, {"command", words}});
   return kSuccess;
 }
 
 /// Prints the rows of a finished sweep that keep the conditions of --where; `resumed`: how many were there before.
-void print_sweep(const SweepCommand& command, const SweepTable& table, std::size_t resumed = 0) {
+void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramContext& context,
+                 std::size_t resumed = 0) {
+  const Layout layout = context.layout();
   const std::string metric = chosen_metric(table.metrics(), command.metric);
-  if (command.output.json) return print(command.output, "", summary_json(table));
-  std::string text = summary_text(table, metric);
+  if (command.output.json) return print(context, command.output, "", summary_json(table));
+  std::string text = summary_text(table, metric, layout);
   if (resumed > 0) text += fmt::format("\n{} of the runs were done before\n", resumed);
   text += fmt::format("\nresults in {}\n", table.file.string());
   if (!command.where.empty())
@@ -186,10 +203,10 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, std::size
         fmt::format("{} of {} runs have {}\n", table.kept.runs, table.counts.runs, fmt::join(command.where, " and "));
   if (table.fields() > 1)
     text += fmt::format("\"hapbench plot {} --metric {}\" draws it\n", table.file.parent_path().string(), metric);
-  print(command.output, text, {});
+  print(context, command.output, text, {});
 }
 
-int reprint(const SweepCommand& command) {
+int reprint(const SweepCommand& command, ProgramContext& context) {
   const bool runs = !command.vary.empty() || !command.overrides.empty() || !command.sample.empty() ||
                     !command.points.empty() || !command.out.empty() || !command.shard.empty() || command.resume ||
                     command.keep_runs || command.print;
@@ -198,22 +215,22 @@ int reprint(const SweepCommand& command) {
         "{}: holds a finished sweep, which is printed again; allowed with it: --where, --metric, --json, --quiet",
         command.scenario));
   }
-  print_sweep(command, read_sweep(fs::path(command.scenario) / "sweep.csv", command.where));
+  print_sweep(command, read_sweep(fs::path(command.scenario) / "sweep.csv", command.where), context);
   return kSuccess;
 }
 
-int sweep(const SweepCommand& command) {
+int sweep(const SweepCommand& command, ProgramContext& context) {
   std::error_code ignored;
   if (fs::is_directory(command.scenario, ignored))
     if (join_shards(command.scenario) || fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored))
-      return reprint(command);
+      return reprint(command, context);
   if (command.vary.empty() && command.points.empty()) throw InputError(kNothingToSweep);
   if (!command.where.empty() && !command.shard.empty())
     throw InputError(
         "--where: got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");
   // All input is checked before anything runs or is written.
   Cases cases = cases_of(command);
-  if (command.print) return print_row(command, cases);
+  if (command.print) return print_row(command, cases, context);
   SweepOptions options{
       .directory = results_directory(command.out, "sweep_" + cases.scenes().front().file.stem().string()),
       .jobs = job_options(command, "sweep"),
@@ -221,14 +238,14 @@ int sweep(const SweepCommand& command) {
       .keep_runs = command.keep_runs};
   if (!command.shard.empty()) options.shard = parse_shard(command.shard);
   const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking"));
-  chosen_metric(plan.metrics, command.metric);   // throws if there is none of that name
-  print_warnings(first_few(plan.warnings, 20));  // there may be as many as runs
-  require_writable_directory(options.directory);
+  chosen_metric(plan.metrics, command.metric);            // throws if there is none of that name
+  print_warnings(context, first_few(plan.warnings, 20));  // there may be as many as runs
+  require_writable_directory(context, options.directory);
 
   const SweepReport report = run_sweep(plan, options);
   const SweepTable table = read_sweep(options.table(), command.where);
-  print_sweep(command, table, report.resumed);
-  return verdict(plan.cases, report, table.counts);
+  print_sweep(command, table, context, report.resumed);
+  return verdict(plan.cases, report, table.counts, context);
 }
 
 }  // namespace
@@ -287,10 +304,10 @@ void add_sweep(CommandLine& line) {
   command.needs("--print", "--row");
   command.add("--shard", options.shard, "i/n with 0 <= i < n: do only every n-th run, from the i-th on");
   command.footer(
-      "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "
-      "expected, steps, every metric, state_hash. \"hapbench sweep FOLDER\" prints it again, without a run. Shards write "
-      "sweep.I_of_N.csv, and the same joins them. "
-      "Ctrl-C stops after the runs that are under way.\n"
+      "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be "
+      "computed), expected, steps, every metric, state_hash. \"hapbench sweep FOLDER\" prints it again, without a "
+      "run. Shards write sweep.I_of_N.csv, and the same joins them. Ctrl-C stops after the runs that are under "
+      "way.\n"
       "Exit status: 0 success, 1 a run could not be computed, 2 bad input or usage, 3 a run did not end as expected, "
       "130 stopped by Ctrl-C.");
 }

@@ -1,7 +1,8 @@
+#include "scenarios/program/validate.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/analysis/stability/compared_devices.hpp"
@@ -13,7 +14,10 @@
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/point_shell_file.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/program_words.hpp"
+#include "scenarios/program/results_folder.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/quantity_text.hpp"
@@ -121,7 +125,7 @@ bool is_device_file(const std::filesystem::path& file) {
 }
 
 /// Writes the points of the environment. Throws InputError when it has none, and when the file cannot be written.
-void write_points(const LoadedScenario& loaded, const std::filesystem::path& file) {
+void write_points(const LoadedScenario& loaded, const std::filesystem::path& file, ProgramContext& context) {
   if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment))
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
   const auto shell = make_shell(loaded.scenario, loaded.files);
@@ -130,11 +134,11 @@ void write_points(const LoadedScenario& loaded, const std::filesystem::path& fil
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
     throw InputError(fmt::format("--points {}: is a directory", file.string()));
-  require_writable_directory(file.has_parent_path() ? file.parent_path() : ".", "--points");
+  require_writable_directory(context, file.has_parent_path() ? file.parent_path() : ".", "--points");
   write_file_atomically(file, text);
 }
 
-int validate(const ValidateOptions& options) {
+int validate(const ValidateOptions& options, ProgramContext& context) {
   if (!options.points.empty() && options.files.size() > 1)
     throw InputError(fmt::format("--points: got {} scenes; allowed: one", options.files.size()));
   std::string text;
@@ -153,23 +157,23 @@ int validate(const ValidateOptions& options) {
         continue;
       }
       const LoadedScenario loaded = checked(load_scenario(file, options.overrides));
-      print_warnings(loaded);
+      print_warnings(context, loaded);
       const SceneFacts facts = scene_facts(loaded);
-      print_warnings(with_files(loaded, facts.warnings));
-      if (!options.points.empty()) write_points(loaded, options.points);
+      print_warnings(context, with_files(loaded, facts.warnings));
+      if (!options.points.empty()) write_points(loaded, options.points, context);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded, facts));
       verdict.update(facts_json(loaded, facts));
       if (options.points.empty()) continue;
       text += fmt::format("  points       in {}\n", options.points);
       verdict["environment"]["points_file"] = options.points;
     } catch (const InputError& error) {
-      print_errors(error);
+      print_errors(context, error);
       const std::vector<std::string> messages = names_of(error.faults(), &InputError::what);
       verdict = {{"file", argument}, {"valid", false}, {"error", error.what()}, {"errors", messages}};
       status = kBadInput;
     }
   }
-  print(options.output, text, verdicts);
+  print(context, options.output, text, verdicts);
   return status;
 }
 

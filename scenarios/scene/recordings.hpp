@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "results/observe/force_fidelity.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/trace_source.hpp"
 #include "sim/tool/motion.hpp"
 
 /// Files that were recorded: strokes of a tool, and contacts over time.

@@ -227,8 +227,25 @@ static std::vector<SurfacePoint> surface_points(const RidgeEnvironment& ridge) {
         [
             (
                 Tree.write,
+                "scenarios/program/twice.hpp",
+                """#pragma once
+
+#include "scenarios/program/command_line.hpp"
+
+namespace hapbench {
+
+void add_twice(CommandLine& line);
+
+}  // namespace hapbench
+""",
+            ),
+            (
+                Tree.write,
                 "scenarios/program/twice.cpp",
-                """#include "scenarios/program/command.hpp"
+                """#include "scenarios/program/twice.hpp"
+
+#include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/output.hpp"
 
 namespace hapbench {
 
@@ -237,8 +254,8 @@ struct TwiceOptions {
   OutputOptions output;
 };
 
-static int twice(const TwiceOptions& options) {
-  print(options.output, options.word + " " + options.word + "\\n", Json(options.word));
+static int twice(const TwiceOptions& options, ProgramContext& context) {
+  print(context, options.output, options.word + " " + options.word + "\\n", Json(options.word));
   return kSuccess;
 }
 
@@ -250,7 +267,10 @@ void add_twice(CommandLine& line) {
 }  // namespace hapbench
 """,
             ),
-            before("add_validate;", "add_twice, "),
+            before(
+                '#include "scenarios/program/validate.hpp"\n\nnamespace hapbench {',
+                '#include "scenarios/program/twice.hpp"\n',
+            ),
             behind(
                 "constexpr CommandGuide kCommands[] = {",
                 '\n    {"look", "twice", "what is a word two times?", add_twice, "twice this"},',

@@ -10,6 +10,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/reader.hpp"
 #include "scenarios/input/writer.hpp"
+#include "scenarios/scene/devices.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
 

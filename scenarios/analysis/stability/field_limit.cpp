@@ -12,6 +12,7 @@
 #include "scenarios/analysis/stability/limit_theory.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 namespace {

@@ -2,6 +2,7 @@
 
 #include "results/observe/metrics.hpp"
 #include "scenarios/run/scene_checks.hpp"
+#include "scenarios/run/scripted_motion.hpp"
 #include "sim/contact/contact_buffer.hpp"
 
 namespace hapbench {

@@ -13,6 +13,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/scene_loop.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 namespace {

@@ -12,6 +12,7 @@
 #include "scenarios/batch/run_all.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
+#include "scenarios/run/scripted_motion.hpp"
 
 namespace hapbench {
 namespace {

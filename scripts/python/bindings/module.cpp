@@ -22,7 +22,8 @@
 #include "results/io/columns.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/program_context.hpp"
+#include "scenarios/program/run_program.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/load_module.hpp"
@@ -187,19 +188,28 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   return result;
 }
 
+/// The file that commands name as the program, which the package sets; else the interpreter's.
+std::filesystem::path& program_file() {
+  static std::filesystem::path file = file_of_this_process();
+  return file;
+}
+
 py::tuple command(const std::vector<std::string>& words, const py::object& progress) {
   CapturedOutput output;
   int status = 0;
   supervise(progress, [&] {
-    captured_output() = &output;
-    status = run_program(words);
+    ProgramContext context{.program = program_file(), .captured = &output};
+    status = run_program(words, context);
   });
   return py::make_tuple(status, output.text, output.warnings, output.errors);
 }
 
 int be_program(const std::vector<std::string>& words) {
   int status = 0;
-  supervise(py::none(), [&] { status = run_program_to_exit(words); });
+  supervise(py::none(), [&] {
+    ProgramContext context{.program = program_file()};
+    status = run_program_to_exit(words, context);
+  });
   return status;
 }
 
@@ -357,7 +367,7 @@ PYBIND11_MODULE(_hapbench, module) {
   guard_law_loading();
   py::module_::import("atexit").attr("register")(py::cpp_function(end_work));
   module.def(
-      "set_program", [](const std::string& program) { this_program() = program; }, py::arg("program"),
+      "set_program", [](const std::string& program) { program_file() = program; }, py::arg("program"),
       "Say which file is the program, for commands that name it.");
   module.def("run", run, py::arg("scenario"), py::arg("overrides"), py::arg("progress"),
              "Run a scenario and keep what it records in memory.");

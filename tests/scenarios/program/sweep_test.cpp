@@ -9,7 +9,7 @@
 
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/studies.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
@@ -248,13 +248,15 @@ class Study : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
+constexpr std::size_t kFirst[] = {1}, kSecond[] = {2};  // places of arguments
+
 TEST_F(Study, IsTheWordsOfItsCommand) {
   const std::string mine = file(R"({
     "ask": "limit", "scenarios": ["a", "b.json"], "summary": "s", "between": [1e2, 1e5], "smallest": true, "resolution": 0.01,
     "algorithms": ["mean", "proxy"], "bound": ["x=1", "y=2"], "set": {"hand": {"mass_kg": 1}, "seed": 3},
     "over": {"device.delay_samples": {"from": 0, "to": 8, "count": 5, "log": true}, "integrator.type": ["rk4", "event"],
              "device": [{"type": "ideal"}]}})");
-  const auto words = StudyWords::in({"limit", "--quiet", mine, "--resolution=0.5"});
+  const auto words = StudyWords::in({"limit", "--quiet", mine, "--resolution=0.5"}, kSecond);
   ASSERT_TRUE(words);
   EXPECT_EQ(fmt::format("{}", fmt::join(words->words, " ")),
             "limit a b.json --between 100:1e+05 --smallest --algorithms mean,proxy --bound x=1 --bound y=2 "
@@ -262,9 +264,9 @@ TEST_F(Study, IsTheWordsOfItsCommand) {
             R"(--over integrator.type=rk4,event --over device={"type":"ideal"} --quiet --resolution=0.5)")
       << "an option that is given goes before the study's";
   test::write_plainly(directory_ / "b.json", "{}");
-  EXPECT_EQ(StudyWords::in({"limit", mine})->words[2], (directory_ / "b.json").string()) << "beside the study";
-  EXPECT_FALSE(StudyWords::in({"limit", "single_spring"}));
-  EXPECT_FALSE(StudyWords::in({"describe", "stability_z_width"}));
+  EXPECT_EQ(StudyWords::in({"limit", mine}, kFirst)->words[2], (directory_ / "b.json").string()) << "beside the study";
+  EXPECT_FALSE(StudyWords::in({"limit", "single_spring"}, kFirst));
+  EXPECT_FALSE(StudyWords::in({"describe", "stability_z_width"}, kFirst));
 }
 
 TEST_F(Study, IsRefusedByAnotherCommandAndAtTheLineOfItsFault) {
@@ -275,6 +277,23 @@ TEST_F(Study, IsRefusedByAnotherCommandAndAtTheLineOfItsFault) {
   const test::ProgramRun wrong = test::hapbench({"limit", mine, "--out", (directory_ / "out").string()});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_NE(wrong.err.find(mine + ":4: limit: --stable: "), std::string::npos) << wrong.err;
+}
+
+TEST_F(Study, IsNotNamedByTheValueOfAnOption) {
+  const auto expect_folder = [this](Words words, const std::string& study) {
+    test::ProgramOptions options;
+    options.directory = directory_.path();
+    words.insert(words.end(), {"--quiet", "--set", "time.steps=20", "--set", "expect={}", "--out", study});
+    const test::ProgramRun run = hapbench(words, options);
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_TRUE(fs::is_directory(directory_ / study)) << study;
+  };
+  // Folders with the names of bundled studies, of this command and of another one.
+  expect_folder({"run", "single_spring"}, "run_limits");
+  expect_folder({"limit", "single_spring", "--resolution", "0.5"}, "stability_delay");
+  // A study behind options and their values is found all the same.
+  const std::string mine = file(R"({"ask": "run", "scenarios": ["single_spring"], "no-skip": true})");
+  expect_folder({"run", "--set", "seed=3", "--json", mine}, "sweep_out");
 }
 
 /// What makes a question of a command a matter of a second.

@@ -9,13 +9,13 @@
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
-#include "scenarios/analysis/stability/run_verdict.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/json_schema.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/index.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/input/writer.hpp"
+#include "scenarios/program/describe/index.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/profiles.hpp"
@@ -76,6 +76,29 @@ TEST(Terminal, HasEveryHelpInItsWidth) {
     EXPECT_LE(widest(hapbench({command, "--help"}).out), 100u) << command << ", in a pipe";
   }
   EXPECT_LE(widest(in_terminal({"--help"}, 80).out), 80u);
+}
+
+/// The lines behind a heading of a text, up to an empty one.
+std::vector<std::string> lines_below(const std::string& text, const std::string& heading) {
+  const std::vector<std::string> lines = lines_of(text);
+  const auto begin = std::find(lines.begin(), lines.end(), heading);
+  if (begin == lines.end()) return {};
+  return {begin + 1, std::find(begin, lines.end(), "")};
+}
+
+TEST(Terminal, ListsNoOptionOfACommandAsOneOfTheProgram) {
+  const std::string help = hapbench({"--help"}).out;
+  std::size_t options = 0;
+  for (const std::string& line : lines_below(help, "Options without a command:")) {
+    const std::string option = line.substr(2, line.find(' ', 2) - 2);
+    if (!option.starts_with("--")) continue;  // goes on with the meaning of the one above
+    EXPECT_EQ(hapbench({option}).status, 0) << option;
+    ++options;
+  }
+  EXPECT_GE(options, 2u);
+  EXPECT_EQ(hapbench({"--json"}).status, 2);
+  const std::string shared = "Options that mean the same in every command that has them, behind its name:";
+  EXPECT_GE(lines_below(help, shared).size(), 9u);
 }
 
 /// More names than these nobody keeps in mind.

@@ -3,8 +3,9 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/program/index.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/program/digits.hpp"
+#include "scenarios/program/table.hpp"
+#include "scenarios/program/text.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 
 /// Tables, digits and the words for fields. What they look like is in tests/data/golden.
@@ -21,7 +22,7 @@ TEST(Wrapped, BreaksBetweenWordsAndNeverWithinOne) {
 
 TEST(Table, BreaksIntoBlocksThatBeginWithTheFirstColumn) {
   const Table table{{{"name", false}, {"one"}, {"two"}, {"three"}}, {{"a", "1", "2", "3"}}};
-  EXPECT_EQ(table.text(21), table.text());
+  EXPECT_EQ(table.text(21), table.text(std::string::npos));
   EXPECT_EQ(table.text(14),
             "name  one  two\n"
             "----  ---  ---\n"

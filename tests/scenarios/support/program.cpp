@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/run_program.hpp"
 #include "tests/results/files.hpp"
 
 namespace hapbench::test {
@@ -125,11 +125,11 @@ ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOpti
 }
 
 ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
-  this_program() = hapbench_program();
+  ProgramContext context{.program = hapbench_program()};
   ProgramRun run;
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  run.status = run_program_to_exit(arguments);
+  run.status = run_program_to_exit(arguments, context);
   std::fflush(stdout);
   run.out = testing::internal::GetCapturedStdout();
   run.err = without_progress(testing::internal::GetCapturedStderr());

@@ -1,0 +1,55 @@
+#include "scenarios/program/chosen_devices.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "scenarios/analysis/stability/compared_devices.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/names.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr const char *kPresets = "impedance", *kFile = ".json";  ///< the type of all presets, and the end of files
+
+/// The devices of a name, a type or a file; none of an unknown name.
+std::vector<ComparedDevice> devices_named(const std::string& name) {
+  if (name.ends_with(kFile)) return {device_of_file(name)};
+  std::vector<ComparedDevice> found;
+  for (const ComparedDevice& device : compared_devices()) {
+    if (name == "all" || name == device.name || (name == kPresets && device.published_stiffness))
+      found.push_back(device);
+    for (const ComparedDevice& end : with_unpublished_numbers(device))
+      if (name == end.name) found.push_back(end);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given) {
+  std::vector<std::string> plain = given, all = names_of(compared_devices(), &ComparedDevice::name);
+  std::erase_if(plain, [](const std::string& name) { return name.ends_with(kFile) || name.ends_with(']'); });
+  all.insert(all.begin(), {"FILE.json", kPresets});
+  chosen_names("--device: got", plain, all, "hapbench describe presets");
+  std::vector<ComparedDevice> chosen;
+  for (const std::string& name : given) {
+    const std::vector<ComparedDevice> found = devices_named(name);
+    if (found.empty())
+      throw InputError(fmt::format("--device: got \"{}\"; allowed: a preset with [soft] or [stiff] behind it", name));
+    chosen.insert(chosen.end(), found.begin(), found.end());
+  }
+  std::set<std::string> names;
+  for (const ComparedDevice& device : chosen) {
+    if (names.insert(device.name).second) continue;
+    throw InputError(
+        fmt::format("--device: got a second device named \"{}\"; allowed: each name once, and a file is named by what "
+                    "stands before .json",
+                    device.name));
+  }
+  return chosen;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+/// The list of the commands. Each is defined in a source file or folder of its own name.
+namespace hapbench {
+
+class CommandLine;
+
+using AddCommand = void(CommandLine& line);
+
+/// A command in the program's help, and in its own.
+struct CommandGuide {
+  std::string_view group, name, answers;  ///< the question that it answers
+  AddCommand* add;                        ///< null: of a Python package
+  std::string_view examples = {};         ///< a line each
+};
+
+/// Every command, in the order of the help.
+std::span<const CommandGuide> command_guides();
+
+}  // namespace hapbench

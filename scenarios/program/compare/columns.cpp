@@ -1,0 +1,100 @@
+#include "scenarios/program/compare/columns.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "results/summary/summary.hpp"
+#include "scenarios/batch/number_with_error.hpp"
+#include "scenarios/batch/ranking.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/metric_sections.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Programs may read these by their place: append new ones.
+constexpr std::string_view kComparedMetrics =
+    "force_max_N velocity_total_variation_m_per_s force_reversals vibration_power_above_30Hz_m2_per_s2 depth_max_m "
+    "ratio_min ratio_max steps_in_contact contact_share landings landing_force_max_N landing_force_step_max_N "
+    "settled_s force_mean_in_contact_N settled_force_max_N force_step_p99_N settled_force_step_max_N "
+    "force_rms_above_30Hz_N force_reversals_per_s reduction_changes reduction_force_step_max_N inside_max_m "
+    "inside_settled_m centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
+    "fidelity.force_direction_error_rad fidelity.force_artefact_share";
+
+/// By how much the mean may be wrong: as its numbers, or by other seeds; at least what means of one rank differ by.
+std::optional<double> error_of_mean(const Standing& standing) {
+  if (!standing.spread) return standing.tolerance;
+  const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));
+  return std::max(
+      {standing.tolerance, std::optional(of_seeds), std::optional(0.1 * kSameRank * std::abs(*standing.mean))});
+}
+
+}  // namespace
+
+Columns<ComparedRun> comparison_columns(bool seeds) {
+  using Row = ComparedRun;
+  Columns<Row> columns = {
+      {"seed", "1", "number of the repetition", &Row::seed, when(seeds)},
+      {"algorithm", "", "force algorithm", [](const Row& r) { return r.run.algorithm; }},
+      {"outcome", "", "how the run ended", [](const Row& r) { return outcome_name(r.run.end.outcome); }},
+      {"steps", "1", "rows of the run", [](const Row& r) { return r.run.end.rows; }}};
+  for (const std::string_view name : words_of(kComparedMetrics)) {
+    const Metric& metric = *find_metric(all_metrics(), name);
+    columns.add(
+        {{metric.name, metric.unit, metric.meaning, [name](const Row& r) { return value_of(r.run.metrics, name); }}});
+  }
+  return columns;
+}
+
+Columns<Standing> league_columns(bool seeds) {
+  using Row = Standing;
+  const auto better = [](const Row& r) {
+    return r.better == Better::none ? Cell() : Cell(r.better == Better::less ? "less" : "more");
+  };
+  return {
+      {"scenario", "", "name of the scenario", &Row::scenario, under("scenario")},
+      {"algorithm", "", "force algorithm", &Row::algorithm, under("algorithm")},
+      {"metric", "", "name of the metric; its unit is part of the name", &Row::metric, under("metric")},
+      {"seeds", "1", "seeds of the algorithm in the scenario", &Row::seeds},
+      {"failed", "1", "seeds that failed", &Row::failed},
+      {"outcome", "", "how the runs ended; of several ways with their numbers", &Row::outcome, under("how it ended")},
+      {"mean", "by name", "mean of the metric over the common seeds; empty when there is none", &Row::mean,
+       under("mean"), error_of_mean},
+      {"spread", "by name",
+       "standard deviation over these seeds; empty when there is one, or when seeds change nothing", &Row::spread,
+       under(seeds ? "spread" : "", 2)},
+      {"rank", "1",
+       "1 + the number of algorithms that did better in this scenario by this metric, by more than 0.1 % and both "
+       "errors; those with failures are last, by the number of these",
+       &Row::rank, under("rank")},
+      {"common_seeds", "1",
+       "seeds that mean and spread are over: those in which no algorithm failed that has any success in the "
+       "scenario; if there are none, all seeds of the algorithms that never failed",
+       &Row::common_seeds},
+      {"better", "", "less or more, whichever is better of the metric; empty when neither is, and nothing is ranked",
+       better}};
+}
+
+Columns<LawStanding> law_columns() {
+  const auto fails = [](const LawStanding& l) {
+    return l.fails.empty() ? "-" : fmt::format("{}", fmt::join(l.fails, ", "));
+  };
+  return {{"algorithm", "", "", &LawStanding::algorithm, under("algorithm")},
+          {"mean_rank", "1", "mean of the algorithm's ranks over all metrics and scenarios, with those after failures",
+           &LawStanding::mean_rank, under("mean rank", 3)},
+          {"fails in", "", "scenarios in which a run failed", fails, only_printed()}};
+}
+
+std::vector<DescribedTable> league_tables() {
+  return {comparison_columns(false).described("comparison.csv", "of compare: one line per algorithm"),
+          league_columns(true).described(
+              "league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric"),
+          law_columns().described()};
+}
+
+}  // namespace hapbench

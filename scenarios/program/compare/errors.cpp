@@ -1,0 +1,119 @@
+#include "scenarios/program/compare/errors.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include "scenarios/analysis/convergence/held_order.hpp"
+#include "scenarios/program/run_table.hpp"
+
+namespace hapbench {
+namespace {
+
+/// The mean of an algorithm's errors over the common seeds, which bounds the error of their mean.
+KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t scenario, std::size_t algorithm,
+                      const std::string& metric) {
+  const std::vector<std::size_t>& seeds = league.common[scenario];
+  KnownError mean{.step = 0.0, .spacing = 0.0};
+  const auto add = [&seeds](std::optional<double>& sum, const std::optional<double>& error) {
+    sum = sum && error ? std::optional(*sum + *error / static_cast<double>(seeds.size())) : std::nullopt;
+  };
+  for (const std::size_t seed : seeds) {
+    const KnownError known = finer.known_error(league.first_run(scenario, algorithm) + seed, metric);
+    add(mean.step, known.step);
+    add(mean.spacing, known.spacing);
+    mean.has_points = known.has_points;
+    mean.tolerance += known.tolerance / static_cast<double>(seeds.size());
+  }
+  return mean;
+}
+
+/// The means of a metric in a scenario by algorithm, none of laws that failed; adds them and their order to the JSON.
+std::vector<NumberWithError> numbers_of(const League& league, const FinerRuns& finer, std::size_t scenario,
+                                        std::size_t metric, Json& json) {
+  std::vector<NumberWithError> numbers;
+  Json rows = Json::array(), order = Json::array();
+  for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
+    const Standing& standing = league.at(scenario, a, metric);
+    const KnownError known = mean_error(league, finer, scenario, a, standing.metric);
+    const auto& [value, error] =
+        numbers.emplace_back(NumberWithError{standing.failed > 0 ? std::nullopt : standing.mean, known.sum()});
+    rows.push_back({{"algorithm", standing.algorithm},
+                    {"value", cell_json(cell_of(value))},
+                    {"error_estimate", cell_json(cell_of(error))},
+                    {"error_of_step", cell_json(cell_of(known.step))},
+                    {"error_of_spacing", cell_json(cell_of(known.spacing))}});
+  }
+  for (const auto& group : held_order(numbers).groups) {
+    Json& names = order.emplace_back(Json::array());
+    for (const std::size_t a : group) names.push_back(league.algorithms[a]);
+  }
+  json["order"] = std::move(order);
+  json["numbers"] = std::move(rows);
+  return numbers;
+}
+
+}  // namespace
+
+void report_errors(const League& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report,
+                   const Layout& layout) {
+  Table table{{{"algorithm", false}}};
+  for (const std::string& algorithm : league.algorithms) table.rows.push_back({algorithm});
+  std::string sentences;
+  for (std::size_t m = 0; m < league.metrics.size(); ++m) {
+    const std::string& metric = league.metrics[m];
+    Json& json =
+        report.json()["errors"].emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
+    const std::vector<NumberWithError> numbers = numbers_of(league, finer, scenario, m, json);
+    const std::string says = held_text(numbers, league.algorithms);
+    json["says"] = says;
+    const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
+    const bool known = heading != std::end(kRunHeadings);
+    if (!all && (!known || heading->wide)) continue;
+    const double factor = known ? heading->factor : 1.0;
+    table.columns.push_back({known ? heading->title : metric});
+    for (std::size_t a = 0; a < numbers.size(); ++a) {
+      const auto& [value, error] = numbers[a];
+      const auto shown_error = error ? std::optional(factor * *error) : error;
+      table.rows[a].push_back(value ? with_error_text(factor * *value, shown_error) : "-");
+    }
+    sentences += layout.wrapped(fmt::format("{}: {}", metric, says), 0);
+  }
+  report.say(fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario], table.text(layout.prose_width()),
+                         sentences, layout.wrapped(fmt::format("+-: {}", finer.refined(scenario)), 0)));
+}
+
+std::string vibration_text(const League& league, const Layout& layout) {
+  struct VibrationMetric {
+    const char *of, *metric;
+    double unfelt;  ///< [unit of the metric]
+  };
+  constexpr VibrationMetric kVibrations[] = {{"force", "force_rms_above_30Hz_N", 1e-4},
+                                             {"tool", kToolVibrationPower, 1e-10}};
+  if (league.algorithms.size() < 2) return "";
+  std::string says;
+  std::vector<std::string> failing;
+  for (std::size_t a = 0; a < league.algorithms.size(); ++a)
+    if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
+  for (const auto& [of, metric, unfelt] : kVibrations) {
+    const auto place = static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
+    std::vector<NumberWithError> numbers;
+    std::size_t known = 0;
+    for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
+      const Standing& standing = league.at(0, a, place);
+      numbers.push_back(
+          {standing.failed > 0 ? std::nullopt : standing.mean, standing.tolerance.value_or(0.0) + unfelt});
+      known += numbers.back().value.has_value();
+    }
+    says = fmt::format("vibration of the {}: {}", of, held_text(numbers, league.algorithms));
+    if (known + failing.size() == league.algorithms.size()) break;
+  }
+  if (!failing.empty()) says += fmt::format("; failing: {}", fmt::join(failing, ", "));
+  return "\n" + layout.wrapped(says + "; --errors tells whether finer runs agree", 0);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,93 @@
+#include "scenarios/program/compare/league_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "scenarios/program/compare/columns.hpp"
+#include "scenarios/program/names.hpp"
+
+namespace hapbench {
+namespace {
+
+/// True for the row that comes first in a table: by rank, of one rank by mean; those without a rank come last.
+bool comes_first(const Standing& a, const Standing& b) {
+  if (a.rank != b.rank) return a.rank && (!b.rank || *a.rank < *b.rank);
+  if (a.better == Better::none) return false;
+  if (!a.mean || !b.mean) return a.mean && !b.mean;
+  return a.better == Better::more ? *a.mean > *b.mean : *a.mean < *b.mean;
+}
+
+/// The standings by scenario and metric, best first.
+std::vector<Standing> ranked(const League& league) {
+  std::vector<Standing> all;
+  for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
+    for (std::size_t m = 0; m < league.metrics.size(); ++m) {
+      const auto first = static_cast<std::ptrdiff_t>(all.size());
+      for (std::size_t a = 0; a < league.algorithms.size(); ++a) all.push_back(league.at(s, a, m));
+      std::stable_sort(all.begin() + first, all.end(), comes_first);
+    }
+  }
+  return all;
+}
+
+/// In how many rankings a law has a rank, and in how many of them the first.
+struct RankCount {
+  std::size_t rankings = 0, first = 0;
+};
+
+RankCount rank_count(const League& league, const std::string& algorithm) {
+  RankCount count;
+  for (const Standing& standing : league.standings) {
+    if (standing.algorithm != algorithm || !standing.rank) continue;
+    ++count.rankings;
+    if (*standing.rank == 1) ++count.first;
+  }
+  return count;
+}
+
+std::string firsts_text(const League& league) {
+  constexpr std::size_t kMostNamed = 5;
+  if (!league.laws.front().mean_rank) return "nothing is ranked: neither less nor more of these metrics is better";
+  std::size_t rankings = 0;  // the same number for each law
+  std::vector<std::string> firsts;
+  for (const LawStanding& law : league.laws) {
+    const RankCount count = rank_count(league, law.algorithm);
+    rankings = count.rankings;
+    if (count.first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count.first));
+  }
+  if (firsts.size() == 1)
+    return fmt::format("{} alone is first in each of {} rankings", league.laws.front().algorithm, rankings);
+  return fmt::format("no algorithm alone is first in each of {} rankings; first are {}", rankings,
+                     fmt::join(first_few(firsts, kMostNamed), ", "));
+}
+
+std::string verdict(const League& league, const Layout& layout) {
+  const std::string text = layout.wrapped(firsts_text(league), 0);
+  if (league.seeds < 2) return text + "one seed: no spread is known; --seeds K gives one\n";
+  std::vector<std::string> alike;
+  for (std::size_t s = 0; s < league.scenarios.size(); ++s)
+    if (!league.seeds_matter[s]) alike.push_back(league.scenarios[s]);
+  if (alike.empty()) return text + "\"hapbench report\" says what lies between laws, seed by seed\n";
+  return text +
+         layout.wrapped(fmt::format("nothing is random in {}: all seeds are one run, no spread is known; --jitter "
+                                    "METRES shifts the start",
+                                    fmt::join(alike, ", ")),
+                        0);
+}
+
+}  // namespace
+
+std::string league_text(const League& league, const Layout& layout) {
+  constexpr std::size_t kMostPrinted = 60;
+  const std::string table =
+      league.standings.size() <= kMostPrinted || layout.in_full()
+          ? league_columns(league.seeds > 1).text(ranked(league), layout)
+          : fmt::format("{} standings are in league.csv; --wide prints them\n", league.standings.size());
+  return fmt::format("{}\n{}\n{}", table, law_columns().text(league.laws, layout), verdict(league, layout));
+}
+
+}  // namespace hapbench

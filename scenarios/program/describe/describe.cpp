@@ -1,0 +1,126 @@
+#include "scenarios/program/describe/describe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/describe/folders.hpp"
+#include "scenarios/program/describe/index.hpp"
+#include "scenarios/program/describe/lists.hpp"
+#include "scenarios/program/describe/places.hpp"
+#include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/output.hpp"
+
+namespace hapbench {
+namespace {
+
+std::string plain(std::string_view text) {
+  std::string plain = lower_case(text);
+  std::erase_if(plain, [](unsigned char c) { return std::isspace(c); });
+  return plain;
+}
+
+/// A heading is known by all of it, as ">30Hz rms N", and by its first line, ">30Hz".
+bool is_heading(const Named& thing, std::string_view name) {
+  const std::string_view title = thing.name;
+  return thing.kind == "heading" &&
+         (plain(name) == plain(title) || plain(name) == plain(title.substr(0, title.find('\n'))));
+}
+
+std::vector<Description> described(const Index& index, const std::function<bool(const Named&)>& is_meant) {
+  std::vector<Description> found;
+  for (const Named& thing : index)
+    if (is_meant(thing)) found.push_back(thing.describe());
+  return found;
+}
+
+std::vector<Description> described_by_name(const Index& index, std::string_view name) {
+  return described(index, [name](const Named& thing) { return thing.kind != "heading" && thing.name == name; });
+}
+
+/// What the headings of that name mean, each meaning once.
+std::vector<Description> described_headings(const Index& index, const std::string& name) {
+  std::vector<Description> found;
+  for (const Named& heading : index) {
+    if (!is_heading(heading, name)) continue;
+    std::vector<Description> meanings = described_by_name(index, heading.summary);
+    if (meanings.empty()) meanings.push_back(heading.describe());
+    for (Description& meaning : meanings)
+      if (std::ranges::find(found, meaning.text, &Description::text) == found.end())
+        found.push_back(std::move(meaning));
+  }
+  return found;
+}
+
+[[noreturn]] void refuse(const std::string& name, const Index& index, const Index& in_folders) {
+  std::vector<std::string> names = names_of(listed_kinds(), list_name);
+  for (const Index* known : {&index, &in_folders})
+    for (const Named& thing : *known)
+      if (thing.kind != "heading") names.push_back(thing.name);
+  throw InputError(
+      fmt::format("nothing is called \"{}\"{}; \"hapbench describe\" shows the names, \"hapbench describe scenario\" "
+                  "the fields of a scenario file, --grep searches",
+                  name, nearest_name_hint(name, names)));
+}
+
+/// What a name means that the program does not know by itself.
+std::vector<Description> other_meanings(const Index& index, const std::string& name, const Layout& layout) {
+  if (const std::optional<Description> place = describe_place(name, layout)) return {*place};
+  // Fields of that name in any section: "torque" for record.torque.
+  std::vector<Description> found =
+      described(index, [&](const Named& thing) { return thing.kind == "field" && thing.name.ends_with("." + name); });
+  if (!found.empty()) return found;
+  const Index in_folders = folder_index(layout);
+  found = described(in_folders, [&](const Named& thing) {
+    return thing.name == name || (thing.kind == "claim" && lower_case(thing.name) == lower_case(name));
+  });
+  if (!found.empty()) return found;
+  std::error_code ignored;
+  if (!std::filesystem::exists(name, ignored)) refuse(name, index, in_folders);
+  return {describe_scenario(find_scenario(name), layout)};
+}
+
+int describe(const DescribeOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
+  if (options.name.empty() || is_kind(options.name)) return list(options, context);
+  const Index index = program_index(layout);
+  std::vector<Description> meanings = described_by_name(index, options.name);
+  if (meanings.empty()) meanings = described_headings(index, options.name);
+  const bool is_group = std::ranges::find(kScenarioGroups, options.name) != std::end(kScenarioGroups);
+  if (meanings.empty() && is_group) return list(options, context);
+  if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
+  if (meanings.empty()) meanings = other_meanings(index, options.name, layout);
+  const Description d = joined(meanings);
+  OutputOptions output = options.output;
+  output.json |= d.text.empty();
+  print(context, output, d.text, d.json);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_describe(CommandLine& line) {
+  auto [command, options] = line.command("describe", "Explain a name; without one, or by a kind: a list", describe);
+  command.add(
+      "name", options.name,
+      "an algorithm, a depth model, an integrator, an environment, a hand, a device, a scenario, a study; a kind of "
+      "these such as algorithms, or a group of scenarios such as thesis, for a list; a field such as "
+      "rendering.limits, \"scenario\" (all fields), \"schema\", \"choices_schema\", \"stability\", \"diagnosis\"; a "
+      "metric, \"metrics\" or \"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as "
+      "trajectory.csv; a claim such as C5, a choice such as planar.first_tilt or a place such as \"Fig. A.2\"");
+  command.add("--grep", options.grep, "list only things with this text in their name, description or source");
+}
+
+}  // namespace hapbench

@@ -1,0 +1,82 @@
+#include "scenarios/program/describe/description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+#include <string_view>
+
+#include "scenarios/program/text.hpp"
+
+namespace hapbench {
+namespace {
+
+/// A value in a line: the entries of a list between commas, the members of an object behind their names.
+std::string line_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_structured()) return value.is_null() ? "" : value.dump();
+  std::string line;
+  for (const auto& [key, part] : value.items())
+    line += (line.empty() ? "" : ", ") + (value.is_object() ? key + " " : "") + line_of(part);
+  return line;
+}
+
+/// Members that say in a sentence what a thing is.
+constexpr std::string_view kProse[] = {"summary", "meaning", "holds", "claim", "what"};
+
+/// The texts of an array of things.
+std::string things_text(const Json& things, const Layout& layout, std::size_t indent) {
+  std::string text;
+  for (const Json& thing : things) text += thing_text(thing, layout, indent);
+  return text;
+}
+
+}  // namespace
+
+Description joined(const std::vector<Description>& meanings) {
+  if (meanings.size() == 1) return meanings.front();
+  Description all{"", Json::array()};
+  for (const Description& meaning : meanings) {
+    all.text += (all.text.empty() ? "" : "\n") + meaning.text;
+    // A meaning that has several itself adds each.
+    const Json list = meaning.json.is_array() ? meaning.json : Json::array({meaning.json});
+    all.json.insert(all.json.end(), list.begin(), list.end());
+  }
+  return all;
+}
+
+std::string thing_text(const Json& thing, const Layout& layout, std::size_t indent) {
+  std::string name = thing.value("name", "");
+  std::replace(name.begin(), name.end(), '\n', ' ');
+  const std::string kind = thing.value("kind", ""), unit = thing.value("unit", "");
+  std::string prose, facts, lists;
+  for (const auto& [key, value] : thing.items()) {
+    if (key == "kind" || key == "name" || key == "unit") continue;
+    std::string title = key;
+    std::replace(title.begin(), title.end(), '_', ' ');
+    const bool is_list = value.is_array() && !value.empty() && value.front().is_object();
+    const std::string line = is_list ? "" : line_of(value);
+    if (is_list) {
+      lists += fmt::format("\n{:{}}{}\n{}", "", indent + 2, title, things_text(value, layout, indent + 4));
+    } else if (line.empty()) {
+      continue;
+    } else if (std::ranges::find(kProse, key) != std::end(kProse)) {
+      prose += layout.wrapped(line, indent + 2);
+    } else {
+      facts += layout.entry(title, line, indent + 2, indent + 17);
+    }
+  }
+  std::string text;
+  if (!name.empty()) {
+    if (!unit.empty()) name += fmt::format(" [{}]", unit);
+    text = fmt::format("{:{}}{}{}{}\n", "", indent, bold(stdout, name), kind.empty() ? "" : ": ", kind);
+  }
+  return text + prose + (facts.empty() || indent > 0 ? "" : "\n") + facts + lists;
+}
+
+Description thing_description(const Json& thing, const Layout& layout) {
+  return {thing_text(thing, layout), thing};
+}
+
+}  // namespace hapbench

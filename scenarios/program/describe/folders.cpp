@@ -1,0 +1,104 @@
+#include "scenarios/program/describe/folders.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/text_file.hpp"
+#include "scenarios/input/writer.hpp"
+#include "scenarios/program/studies.hpp"
+#include "scenarios/program/text.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/scenario.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Appends a line "time.steps=2000" for each value in a scenario's text.
+void add_assignments(std::string& text, const std::string& path, const Json& value, const Layout& layout) {
+  if (!value.is_object()) {
+    text += layout.wrapped(fmt::format("{}={}", path, shown(value)), 6).erase(4, 2);
+    return;
+  }
+  for (const auto& field : value.items()) {
+    if (field.key() == "$schema" || field.key() == "description" || field.key() == "source") continue;
+    add_assignments(text, path.empty() ? field.key() : path + "." + field.key(), field.value(), layout);
+  }
+}
+
+/// A fault of the file becomes its summary.
+Named named_scenario(const BundledScenario& bundled, const Layout& layout) {
+  Json json;
+  try {
+    json = read_scenario_text(bundled.file).json;
+  } catch (const InputError& error) {
+    json = {{"description", error.what()}};
+  }
+  return {"scenario",
+          bundled.name,
+          json.value("description", ""),
+          [file = bundled.file, layout] { return describe_scenario(file, layout); },
+          {{"group", bundled.group}, {"source", json.value("source", "")}}};
+}
+
+Description describe_study(const BundledStudy& study, const Layout& layout) {
+  const std::string text = read_text_file(study.file, kLargestJsonFile);
+  return {fmt::format("study {}\n{}\n{}\n{}\n  asked by: hapbench {} {}\n", bold(stdout, study.name),
+                      layout.wrapped(study.summary), study.file.string(), text, study.ask, study.name),
+          {{"kind", "study"}, {"name", study.name}, {"file", study.file.string()}, {"study", parse_json(text)}}};
+}
+
+Json list_on_record(const std::string& list) {
+  const std::filesystem::path file = installed_folder("results/reference") / (list + ".json");
+  return with_file(file, [&] { return read_json(file).at(list); });
+}
+
+/// What is on record of a claim or a choice.
+Named on_record(const char* kind, const Json& thing, const Layout& layout) {
+  const auto describe = [=] {
+    Json titled = {{"kind", fmt::format("{}, on record", kind)}, {"name", thing.at("id")}};
+    titled.update(thing);
+    if (const Json& counts = thing.value("robustness", Json()); !counts.is_null())
+      titled["sureness"] =
+          fmt::format("{}: {} of {} readings give this verdict", thing.at("sureness").get<std::string>(),
+                      counts.at("holds").dump(), counts.at("judged").dump());
+    // The name has the id, and people are told what was measured in a sentence.
+    for (const char* member : {"id", "cases", "choices_reach_it", "ours", "robustness", "timing"}) titled.erase(member);
+    return Description{thing_text(titled, layout), thing};
+  };
+  Json more = Json::object();
+  if (thing.contains("claim")) more = {{"verdict", thing.at("verdict")}, {"source", thing.at("place")}};
+  return {kind, thing.at("id").get<std::string>(), thing.value("claim", ""), describe, more};
+}
+
+}  // namespace
+
+Description describe_scenario(const std::filesystem::path& file, const Layout& layout) {
+  const ScenarioText given = read_scenario_text(file);
+  const LoadedScenario loaded = load_scenario(given, {});
+  const Scenario& scenario = loaded.scenario;
+  std::string text = fmt::format("scenario {}\n", bold(stdout, scenario.name));
+  if (!scenario.description.empty()) text += layout.wrapped(scenario.description);
+  text += fmt::format("\n  file    {}\n", file.string());  // whole, to be copied
+  if (!scenario.source.empty()) text += layout.entry("source", scenario.source, 2, 10);
+  text += "\n  set (\"hapbench describe scenario\" explains the fields, --json has all with their defaults)\n";
+  add_assignments(text, "", given.json, layout);
+  return {text, effective_scenario(scenario, scenario.directory)};
+}
+
+Index folder_index(const Layout& layout) {
+  Index index;
+  for (const BundledScenario& bundled : bundled_scenarios()) index.push_back(named_scenario(bundled, layout));
+  for (const BundledStudy& study : bundled_studies())
+    index.push_back({"study", study.name, study.summary, [study, layout] { return describe_study(study, layout); }});
+  for (const Json& claim : list_on_record("claims")) index.push_back(on_record("claim", claim, layout));
+  for (const Json& choice : list_on_record("choices")) index.push_back(on_record("choice", choice, layout));
+  return index;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,58 @@
+#include "scenarios/program/describe/index.hpp"
+
+#include <utility>
+
+#include "scenarios/program/describe/fields.hpp"
+#include "scenarios/program/describe/models.hpp"
+#include "scenarios/program/describe/result_names.hpp"
+#include "scenarios/program/result_tables.hpp"
+#include "scenarios/scene/scenario_schema.hpp"
+#include "scenarios/thesis/choices.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Names that stand for no single thing of a list.
+constexpr std::pair<const char*, Description (*)(const Layout&)> kSections[] = {
+    {"metrics", describe_metrics},
+    {"summary.json", describe_metrics},
+    {"columns", describe_tables},
+    {"columns.json", describe_tables},
+    {"algorithm", describe_algorithms},
+    {"profile", describe_profile},
+    {"scenario", describe_scenario_fields},
+    {"choices_schema",
+     [](const Layout&) {
+       return Description{"", choices_schema()};
+     }},
+    {"diagnosis", describe_diagnosis},
+    {"schema",
+     [](const Layout&) {
+       return Description{"", scenario_schema()};
+     }},
+    {"stability", describe_stability},
+    {"words", describe_words}};
+
+}  // namespace
+
+Index program_index(const Layout& layout) {
+  const std::vector<DescribedTable> tables = result_tables();
+  Index index;
+  add_models(index, layout);
+  add_presets(index, layout);
+  for (const auto& [name, describe] : kSections)
+    index.push_back({"section", name, "", [describe = describe, layout] { return describe(layout); }});
+  add_metric_terms(index, layout);
+  for (const DescribedTable& table : tables)
+    if (!table.file.empty())
+      index.push_back({"file", table.file, "", [table, layout] { return describe_table(table, layout); }});
+  add_columns(index, tables, layout);
+  for (const std::string& path : scenario_field_paths())
+    index.push_back({"field", path, "", [path, layout] { return describe_field(path, layout); }});
+  add_types(index, layout);
+  add_words(index, layout);
+  add_headings(index, tables, layout);
+  return index;
+}
+
+}  // namespace hapbench

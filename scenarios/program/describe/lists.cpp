@@ -1,0 +1,111 @@
+#include "scenarios/program/describe/lists.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/describe/folders.hpp"
+#include "scenarios/program/describe/index.hpp"
+#include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/output.hpp"
+#include "scenarios/program/text.hpp"
+
+namespace hapbench {
+namespace {
+
+/// The kinds that lists have, in their order.
+constexpr const char* kListed[] = {"algorithm", "depth model", "stage",    "integrator", "environment", "tool", "hand",
+                                   "device",    "preset",      "scenario", "study",      "metric",      "claim"};
+
+std::string group_of(const Named& thing) {
+  return thing.more.value("group", "");
+}
+
+constexpr std::size_t kColumn = 34;  // of the summaries
+
+/// The first sentence, up to a semicolon or a colon that is not near its beginning, cut to what the line holds.
+std::string short_summary(const std::string& text, const Layout& layout) {
+  std::size_t end = std::min(text.find("; "), text.find(": ", 20));
+  for (std::size_t dot = text.find('.'); dot < end; dot = text.find('.', dot + 1)) {
+    const bool is_last = dot + 1 == text.size();
+    if (is_last || (text[dot + 1] == ' ' && !text.substr(0, dot).ends_with("Fig"))) end = dot;
+  }
+  const std::string sentence = text.substr(0, end);
+  const std::size_t room = std::max<std::size_t>(layout.width(), kColumn + 10) - kColumn;
+  if (sentence.size() <= room) return sentence;
+  return sentence.substr(0, sentence.rfind(' ', room - 4)) + " ...";
+}
+
+std::string list_text(const Index& all, bool names_alone, const Layout& layout) {
+  std::vector<std::pair<std::string, std::string>> lists;  // title, entries
+  for (const Named& thing : all) {
+    const std::string group = group_of(thing), title = list_name(thing.kind) + (group.empty() ? "" : " of " + group);
+    if (lists.empty() || lists.back().first != title) lists.emplace_back(title, "");
+    std::string& entries = lists.back().second;
+    const std::string verdict = thing.more.value("verdict", "");  // of a claim, which is told in full
+    if (names_alone)
+      entries += (entries.empty() ? "" : ", ") + thing.name;
+    else if (verdict.empty())
+      entries += entry(thing.name, short_summary(thing.summary, layout), 2, kColumn, layout.width());
+    else
+      entries += entry(fmt::format("{:<5}{}", thing.name, verdict), thing.summary, 2, kColumn, layout.width());
+  }
+  std::string text;
+  for (const auto& [title, entries] : lists)
+    text += (text.empty() ? "" : "\n") + bold(stdout, title) + "\n" + (names_alone ? layout.wrapped(entries) : entries);
+  return text;
+}
+
+}  // namespace
+
+std::span<const char* const> listed_kinds() {
+  return kListed;
+}
+
+std::string list_name(const std::string& kind) {
+  std::string name = kind == "study" ? "studies" : kind + "s";
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
+bool is_kind(const std::string& name) {
+  return name != "metrics" && std::ranges::find(kListed, name, list_name) != std::end(kListed);
+}
+
+int list(const DescribeOptions& options, ProgramContext& context) {
+  const Layout layout = context.layout();
+  const bool of_everything = options.name.empty() && options.grep.empty();
+  const std::string pattern = lower_case(options.grep);
+  const auto is_asked = [&](const Named& thing) {
+    if (of_everything) return thing.kind != "metric" && thing.kind != "claim";
+    const std::string text = thing.name + " " + thing.summary + " " + thing.more.value("source", "");
+    return (options.name.empty() || list_name(thing.kind) == options.name || group_of(thing) == options.name) &&
+           lower_case(text).find(pattern) != std::string::npos;
+  };
+  Index index = program_index(layout), all;
+  std::ranges::move(folder_index(layout), std::back_inserter(index));
+  for (const std::string_view kind : kListed)
+    for (const Named& thing : index)
+      if (thing.kind == kind && is_asked(thing)) all.push_back(thing);
+  if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
+  Json json = Json::array();
+  for (const Named& thing : all) {
+    Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});
+    entry.update(thing.more);
+  }
+  const char* more =
+      of_everything ? ", \"hapbench describe KIND\" lists a kind with what each is; more kinds: metrics, claims" : "";
+  print(context, options.output,
+        list_text(all, of_everything, layout) + "\n" +
+            layout.wrapped(fmt::format("\"hapbench describe NAME\" explains each{}.", more), 0),
+        json);
+  return kSuccess;
+}
+
+}  // namespace hapbench

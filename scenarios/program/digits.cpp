@@ -1,0 +1,31 @@
+#include "scenarios/program/digits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/core/math.hpp"
+
+namespace hapbench {
+
+std::string significant(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
+}
+
+int deserved_digits(double value, const std::optional<double>& tolerance, int most) {
+  if (!tolerance || !(*tolerance > 0.0) || value == 0.0 || !std::isfinite(value)) return most;
+  const double digits = std::floor(math::log10(std::abs(value))) - std::floor(math::log10(*tolerance)) + 1.0;
+  return static_cast<int>(std::clamp(digits, 1.0, static_cast<double>(most)));
+}
+
+std::string deserved(double value, const std::optional<double>& tolerance, int digits) {
+  const double size = std::abs(value);
+  if (!tolerance || !(*tolerance > 0.0 && *tolerance < size) || !std::isfinite(size)) return significant(value, digits);
+  const int last = static_cast<int>(std::floor(math::log10(*tolerance)));
+  if (size < 1e-4 || last < -12) return significant(value, deserved_digits(value, tolerance, 12));
+  const double unit = math::pow(10.0, last);
+  return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
+}
+
+}  // namespace hapbench

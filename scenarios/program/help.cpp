@@ -1,0 +1,107 @@
+#include "scenarios/program/help.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/commands.hpp"
+#include "scenarios/program/options.hpp"
+#include "scenarios/program/text.hpp"
+
+namespace hapbench {
+
+namespace {
+
+std::string name_of(const CLI::Option& option) {
+  return option.get_name(option.get_positional(), true);
+}
+
+/// The kind of value, as in "TEXT ..."; empty for a flag.
+std::string kind_of_value(const CLI::Option& option) {
+  if (option.get_type_size() == 0 || option.get_type_name().empty()) return "";
+  std::string kind = option.get_type_name();
+  if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
+    kind += option.get_delimiter() == ',' ? ",..." : " ...";
+  return kind;
+}
+
+std::string usage(const CLI::App& app) {
+  std::string words = fmt::format("Usage: hapbench {} [OPTIONS]", app.get_name());
+  for (const CLI::Option* option : app.get_options([](const CLI::Option* o) { return o->get_positional(); })) {
+    const std::string name = name_of(*option) + (kind_of_value(*option).ends_with("...") ? "..." : "");
+    words += option->get_required() ? " " + name : " [" + name + "]";
+  }
+  return words + "\n";
+}
+
+/// The entry of an argument or an option: its name with the kind of its value, what it means and what it needs.
+std::string option_entry(const CLI::Option& option, const std::string& name, const Layout& layout) {
+  if (option.get_positional()) return layout.entry(name, option.get_description());
+  const std::string kind = kind_of_value(option);
+  std::string help = option.get_description();
+  for (const CLI::Option* other : option.get_needs()) help += "; with " + other->get_name();
+  if (option.get_required()) help += "; required";
+  return layout.entry(kind.empty() ? name : name + " " + kind, help);
+}
+
+/// The arguments, or the options; those that say nothing of their own stand in one line.
+std::string options_text(const CLI::App& app, bool arguments, const Layout& layout) {
+  std::string text, shared;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional() != arguments) continue;
+    std::string name = name_of(*option);
+    if (name == "-h,--help") name = "--help";
+    if (!arguments && option->get_description() == shared_option_help(name)) {
+      shared += (shared.empty() ? "" : ", ") + name;
+    } else {
+      text += option_entry(*option, name, layout);
+    }
+  }
+  if (!shared.empty()) text += layout.entry(shared, "as everywhere: hapbench --help");
+  return text.empty() ? "" : fmt::format("\n{}\n{}", bold(stdout, arguments ? "Arguments:" : "Options:"), text);
+}
+
+}  // namespace
+
+std::string front_text(const Layout& layout) {
+  std::string text = fmt::format("hapbench: {}\n\n", kProgramSummary);
+  std::string_view group;
+  for (const CommandGuide& guide : command_guides()) {
+    text +=
+        layout.entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
+    group = guide.group;
+  }
+  return text +
+         "\n"
+         "first   hapbench run drag_molar\n"
+         "        hapbench new drag --from my.stl --extent 12mm\n"
+         "        hapbench describe\n\n"
+         "\"hapbench COMMAND --help\" explains a command, \"hapbench --help\" what all share.\n";
+}
+
+std::string program_help(const Layout& layout) {
+  std::string text = front_text(layout) + "\n" + bold(stdout, "Options without a command:") + "\n";
+  text += layout.entry("--help", "print this text", 2, 14);
+  text += layout.entry("--version", "print the version; with --json also what it was built from and promises", 2, 14);
+  // Indented by more: scripts/completion offers the options of a help that are indented by two.
+  text += "\n" + bold(stdout, "Options that mean the same in every command that has them, behind its name:") + "\n";
+  for (const auto& [name, help] : shared_options()) text += layout.entry(name, help, 4, 16);
+  return text + "\n" +
+         layout.wrapped(
+             "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
+             "expects, 130 stopped by Ctrl-C.",
+             0);
+}
+
+std::string command_help(const CLI::App& app, const Layout& layout) {
+  std::string text = layout.wrapped(app.get_description(), 0) + usage(app) + options_text(app, true, layout) +
+                     options_text(app, false, layout) + "\n";
+  if (!app.get_footer().empty()) text += layout.wrapped(app.get_footer(), 0) + "\n";
+  LineReader examples(std::ranges::find(command_guides(), app.get_name(), &CommandGuide::name)->examples);
+  while (const auto example = examples.next()) text += fmt::format("  hapbench {}\n", *example);
+  return text;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,151 @@
+#include "scenarios/program/limit/question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "scenarios/analysis/stability/compared_devices.hpp"
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/chosen_devices.hpp"
+#include "scenarios/program/names.hpp"
+#include "scenarios/program/option_values.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/vibration_limit.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/scenario.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr const char* kNoFriction = "none";
+
+/// True where --set changes fields of the devices. Throws InputError where it would choose a device.
+bool are_devices_changed(const LimitOptions& options) {
+  const bool has_factors = !options.friction.empty() && options.friction != std::vector<std::string>{kNoFriction};
+  bool is_changed = false;
+  for (const std::string& override : options.overrides) {
+    const std::string_view path = overridden_path(override);
+    is_changed = is_changed || path.starts_with("device.");
+    if (path == "device" || path == "device.type" || path == "device.preset") {
+      throw InputError(fmt::format(
+          "--set: got {} with --device; allowed: fields of the devices, such as device.delay_samples; a device "
+          "of your own goes into --device, as a file NAME.json",
+          path));
+    }
+    if (path == "device.coulomb_N" && has_factors)
+      throw InputError("--friction: cannot be combined with --set device.coulomb_N; allowed: one of the two");
+  }
+  return is_changed;
+}
+
+/// The devices, marked where --set changes them, each with what nobody published of it: both ends or other frictions.
+std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
+  const bool none_other = options.friction == std::vector<std::string>{kNoFriction};
+  const bool is_changed = are_devices_changed(options);
+  std::vector<ComparedDevice> devices;
+  for (ComparedDevice device : chosen_devices(options.devices)) {
+    const bool is_end = device.name.ends_with(']');
+    if (is_changed && device.published_stiffness) {  // nothing is published of this one
+      device.name += '*';
+      device.published_stiffness.reset();
+    }
+    devices.push_back(device);
+    if (none_other) continue;
+    for (const std::string& factor : options.friction)
+      if (const auto other = with_friction_times(device, number_between("--friction", factor, 0.0, 1e3)))
+        devices.push_back(*other);
+    if (options.friction.empty() && !is_end)
+      std::ranges::move(with_unpublished_numbers(device), std::back_inserter(devices));
+  }
+  return devices;
+}
+
+/// The error with the device's name, since the overrides hold for all devices.
+InputError on_device(const ComparedDevice& device, const InputError& error) {
+  std::vector<InputError> faults;
+  for (const InputError& fault : error.faults()) {
+    if (fault.place().empty()) return error;  // of an option
+    ErrorLocation location = fault.location();
+    const bool is_of_type = location.pointer.starts_with("/device/") && !device.has_place_for_mass;
+    location.option = fmt::format("--device {}", device.name);
+    faults.emplace_back(fault.kind(), location,
+                        fault.problem() + (is_of_type ? "; \"--device impedance\" leaves this one out" : ""));
+  }
+  return InputError::all(faults);
+}
+
+/// By default a run is stable by the rule of `tune`.
+LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene, const Scenario& scenario,
+                          const std::vector<std::string>& overrides) {
+  if (options.field.find('=') != std::string::npos)
+    throw InputError(
+        fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
+  LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
+  question.search.smallest = options.smallest;
+  if (!options.resolution.empty())
+    question.search.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
+  question.between = options.devices.empty() && options.over.empty();
+  question.rule.bounded = options.stable == "bounded";
+  if (!options.vibration.empty()) {
+    if (!options.stable.empty() && options.stable != "still")
+      throw InputError(
+          fmt::format("--vibration: cannot be combined with --stable {}; allowed: with still", options.stable));
+    question.rule.most_vibration = number_between("--vibration", options.vibration, 1e-9, 1e3);
+  } else if (options.stable.empty()) {
+    question.rule.most_vibration = rule_of(scenario).most_vibration;
+  } else if (options.stable == "still") {
+    question.rule.most_vibration = kMostVibration;
+  }
+  for (const std::string& bound : options.bounds) add_bound(bound, question.rule.bounds);
+  return question;
+}
+
+}  // namespace
+
+LimitTable asked_table(const LimitOptions& options) {
+  if (options.devices.empty() && !options.friction.empty())
+    throw InputError("--friction: got factors; allowed: with --device");
+  const std::vector<std::filesystem::path> files = find_scenarios(options.scenarios);
+  const Axis scene{.path = kSceneAxis, .values = names_of_scenarios(files)};
+  std::vector<ScenarioText> scenes;
+  std::transform(files.begin(), files.end(), std::back_inserter(scenes), read_scenario_text);
+  std::vector<ComparedDevice> devices;
+  std::vector<Axis> axes = {{.path = "--device", .values = {""}, .named = true}};
+  if (!options.devices.empty()) {
+    devices = asked_devices(options);
+    axes[0].values = names_of(devices, &ComparedDevice::name);
+  }
+  Axis algorithm{.path = "--algorithms", .values = {""}, .named = true};
+  if (!options.algorithms.empty()) algorithm = {"rendering.algorithm", chosen_algorithms(options.algorithms)};
+  for (const std::string& text : options.over) axes.push_back(parse_axis(text));
+  axes.insert(axes.end(), {scene, algorithm});
+  return {std::move(devices), Cases(std::move(scenes), options.overrides, std::move(axes))};
+}
+
+LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
+                   std::vector<std::string>& warnings) {
+  LimitRow row;
+  row.axis_values = table.cases.values(i);
+  if (!table.devices.empty()) row.device = &table.devices[table.cases.place(i, 0)];
+  const ScenarioText& scene = table.cases.scene(i);
+  try {
+    std::vector<std::string> overrides = table.cases.overrides(i);
+    if (row.device != nullptr) overrides = overrides_on(*row.device, scene, overrides);
+    const LoadedScenario loaded = load_scenario(scene, overrides);
+    row.scenario = loaded.scenario;
+    row.asked = question_of(options, scene, row.scenario, overrides);
+    append_new(warnings, row.asked.warnings);
+    append_new(warnings, with_files(loaded, checked(loaded).file_warnings));
+  } catch (const InputError& error) {
+    throw row.device != nullptr ? on_device(*row.device, error) : error;
+  }
+  return row;
+}
+
+}  // namespace hapbench

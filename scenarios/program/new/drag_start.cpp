@@ -1,0 +1,45 @@
+#include "scenarios/program/new/drag_start.hpp"
+
+#include <algorithm>
+
+#include "device_model/hands/drag_hand.hpp"
+#include "scenarios/run/scene_checks.hpp"
+
+namespace hapbench {
+
+Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
+  std::vector<Vec3> high;
+  for (const SurfacePoint& point : points)
+    if (point.position.z() >= top - tolerance) high.push_back(point.position);
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& place : high) middle += place;
+  middle /= static_cast<double>(high.size());
+  return *std::ranges::min_element(high, {}, [&middle](const Vec3& place) { return (place - middle).norm(); });
+}
+
+Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside) {
+  const Vec3 middle = 0.5 * (box.min + box.max);
+  Vec3 top(middle.x(), middle.y(), box.min.z());
+  for (const SurfacePoint& point : points)
+    if ((point.position - middle).head<2>().norm() <= aside && point.position.z() > top.z()) top = point.position;
+  return top.z() > box.min.z() ? top : middle;
+}
+
+DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough) {
+  constexpr double kFurther = 1.1;
+  const double furthest = diagonal(shell.bounds());
+  DragStart best{positions.front(), Vec3::UnitX(), smoothing, 0.0};
+  for (const double radius : {smoothing, 2.0 * smoothing, 4.0 * smoothing}) {
+    const SmoothedSurface surface(shell, radius);
+    for (const Vec3& position : positions) {
+      for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)}) {
+        const double room = SurfacePath::along(surface, position, direction, furthest).length();
+        if (room > kFurther * best.room) best = {position, direction, radius, room};
+      }
+      if (best.room >= enough) return best;
+    }
+  }
+  return best;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,39 @@
+#include "scenarios/program/new/meanings.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "scenarios/scene/scenario_schema.hpp"
+
+namespace hapbench {
+namespace {
+
+/// The object of the value's type; null when the value is not an object with fields.
+const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
+  if (!value.is_object()) return nullptr;
+  if (guide.choices.empty()) return &guide;
+  for (const ValueGuide& choice : guide.choices)
+    if (value.value(kTypeField, choice.may_be_untyped ? choice.type : "") == choice.type) return &choice;
+  return nullptr;
+}
+
+/// Adds the meaning of each field that a value has, by its path, objects before their fields.
+void add_meanings(Json& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
+  for (const auto& entry : value.items()) {
+    const auto field = std::ranges::find(object.fields, entry.key(), &FieldGuide::name);
+    if (field == object.fields.end()) continue;  // the type
+    meanings[prefix + entry.key()] = field->meaning;
+    if (const ValueGuide* nested = object_of(entry.value(), field->value))
+      add_meanings(meanings, prefix + entry.key() + ".", entry.value(), *nested);
+  }
+}
+
+}  // namespace
+
+Json field_meanings(const Json& scenario) {
+  Json meanings = Json::object();
+  add_meanings(meanings, "", scenario, scenario_guide());
+  return meanings;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,61 @@
+#include "scenarios/program/new/options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+
+namespace hapbench {
+
+Vec3 place_in(const char* option, const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string_view part : parts_of(text, ','))
+    if (const auto number = finite_number(part)) numbers.push_back(*number);
+  if (numbers.size() != 3 || std::ranges::count(text, ',') != 2)
+    throw InputError(fmt::format("{}: got \"{}\"; allowed: X,Y,Z in metres", option, text));
+  return Vec3(numbers.data());
+}
+
+double length_in(const char* option, const std::string& text) {
+  constexpr std::pair<std::string_view, double> kUnits[] = {{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}};
+  for (const auto& [unit, metres] : kUnits) {
+    if (!text.ends_with(unit)) continue;
+    const auto number = finite_number(std::string_view(text).substr(0, text.size() - unit.size()));
+    if (number && *number > 0.0) return *number * metres;
+  }
+  throw InputError(
+      fmt::format("{}: got \"{}\"; allowed: a length above 0 with its unit, mm, cm, m or in: 12mm", option, text));
+}
+
+void check_options(const NewOptions& options, const StartKind& kind) {
+  const std::string &name = kind.name, &from = options.from;
+  const bool drags = name == "drag" || name == "bur", lands = drags || name == "mesh" || name == "shell";
+  const bool has_mesh = !options.on.empty() || (kind.source == "mesh" && !from.empty());
+  const auto require = [](bool is_right, const char* option, const char* allowed) {
+    if (!is_right) throw InputError(fmt::format("{}: allowed: {}", option, allowed));
+  };
+  const auto require_file = [](const char* option, const std::string& file) {
+    std::error_code ignored;
+    if (!file.empty() && !std::filesystem::exists(file, ignored))
+      throw InputError(fmt::format("{} {}: cannot be read: no such file", option, file));
+  };
+  if (!kind.source.empty() && !kind.is_source_optional && from.empty())
+    throw InputError(fmt::format("--from: missing; \"{}\" starts from a file", name));
+  if (kind.source.empty() && !from.empty())
+    throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, name));
+  require_file("--from", from);
+  require(options.on.empty() || name == "stroke", "--on", "for stroke");
+  require(options.path.empty() || (drags && options.path.size() > 1 && options.at.empty()), "--path",
+          "for drag and bur, two points or more, and without --at");
+  require(options.at.empty() || lands, "--at", "for mesh, shell, drag and bur");
+  require(options.side == "z" || (lands && !from.empty()), "--side", "for mesh, shell, drag and bur with --from");
+  require(options.extent.empty() || has_mesh, "--extent", "with the file of a mesh");
+  require_file("--on", options.on);
+}
+
+}  // namespace hapbench

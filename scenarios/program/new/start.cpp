@@ -1,0 +1,328 @@
+#include "scenarios/program/new/start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "scenarios/input/fields.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/rounding.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/new/drag_start.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_checks.hpp"
+#include "scenarios/run/scene_warnings.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/named_files.hpp"
+#include "sim/geometry/triangle_tree.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kClearance = 0.001;      ///< between tool and surface at the start [m]
+constexpr double kDragSpeed = 5.0;        ///< in diameters of the tool [1/s]
+constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the surface with the spring of a press [m]
+
+/// Rounds to two significant digits, as people write lengths.
+double rounded(double value) {
+  return rounded_to_digits(value, 2);
+}
+
+Json list_of(const Vec3& v) {
+  return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};  // never -0
+}
+
+/// Rounds to the micrometre, as people write places.
+double to_micrometres(double metres) {
+  return std::round(1e6 * metres) / 1e6;
+}
+
+/// Makes a start for a file in `directory`: its values are determined one after the other. Places are found in the
+/// frame of the side from which the tool comes, in which that is z. Throws InputError when a file cannot be used.
+class Start {
+ public:
+  Start(const StartKind& kind, const NewOptions& options, const std::filesystem::path& directory)
+      : scene_(kind.scene), options_(options), directory_(directory) {
+    if (!options.extent.empty()) extent_ = length_in("--extent", options.extent);
+    for (const std::string& point : options.path) named_.push_back(place_in("--path", point));
+    if (!options.at.empty()) named_.push_back(place_in("--at", options.at));
+    const bool is_on_mesh =
+        !options.on.empty() || (kind.source == "mesh" && kind.is_source_optional && !options.from.empty());
+    if (is_on_mesh) scene_["environment"] = kind_named("mesh").scene.at("environment");
+    turn_to_side();
+    name_files();
+    const bool is_placed = scene_.contains("initial") && scene_["initial"]["position_m"].is_null();
+    if (is_placed) scene_["initial"]["position_m"] = {0, 0, 0};
+    if (has_type("environment", "mesh")) scale_environment();
+    if (has_type("tool", "mesh")) {
+      place_mesh_tool();
+    } else if (is_placed) {
+      place_tool();
+    }
+    if (kind.source == "stroke") choose_stroke_steps();
+    if (!has_type("environment", "mesh")) return;
+    notes_.push_back(fmt::format("{} points, {} apart: a tenth of the tool's diameter", shell()->size(),
+                                 length_text(scene_["environment"]["spacing_m"].get<double>())));
+  }
+
+  StartedScene result() const { return {scene_, notes_, warnings_}; }
+
+ private:
+  bool has_type(const char* part, const char* type) const {
+    return scene_.contains(part) && scene_.at(part).value(kTypeField, "") == type;
+  }
+
+  /// Writes the names of the source and of the mesh below a stroke where they are used.
+  void name_files() {
+    for (const auto& [field, file] : {std::pair{"/environment/file", mesh_file()},
+                                      {"/tool/file", options_.from},
+                                      {"/motion/position/file", options_.from}}) {
+      const Json::json_pointer place(field);
+      if (scene_.contains(place))
+        scene_[place] = std::filesystem::proximate(file, directory_.empty() ? "." : directory_).generic_string();
+    }
+  }
+
+  /// Puts the side's axes in the place of x, y and z.
+  void turn_to_side() {
+    const auto axis = static_cast<Eigen::Index>(options_.side.back() - 'x');
+    const Vec3 up = side_sign() * Vec3::Unit(axis), lean = Vec3::Unit(axis == 0 ? 1 : 0);
+    to_world_ << lean, up.cross(lean), up;
+    if (options_.side != "z" && has_type("hand", "impedance"))
+      scene_["motion"] = {{"orientation", {{"up", list_of(up)}, {"lean", list_of(lean)}}}};
+  }
+
+  /// The file of the environment, or of a tool.
+  const std::string& mesh_file() const { return options_.on.empty() ? options_.from : options_.on; }
+
+  LoadedScenario scenario() const { return read_scenario(scene_, directory_); }
+
+  std::shared_ptr<const PointShell> shell() const {
+    const LoadedScenario loaded = scenario();
+    return make_shell(loaded.scenario, loaded.files);
+  }
+
+  /// The points of the scene in the side's frame.
+  std::vector<SurfacePoint> points() const {
+    std::vector<SurfacePoint> points = shell()->points();
+    for (SurfacePoint& point : points)
+      point = {to_world_.transpose() * point.position, to_world_.transpose() * point.normal};
+    return points;
+  }
+
+  /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
+  /// stated is in metres. Throws InputError when it then is not 1 mm to 1 m long, with its length in either unit.
+  double choose_scale(const Box& box, const char* object) {
+    const double longest = box.size().maxCoeff() / 0.001;
+    if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
+      const std::string command = fmt::format("hapbench new {} {} {} --extent", options_.kind,
+                                              options_.on.empty() ? "--from" : "--on", mesh_file());
+      throw InputError(fmt::format(
+          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} "
+          "{:.7g}mm\" or \"{} {:.7g}m\"",
+          mesh_file(), object, length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
+          length_text(kLongestObject), command, longest, command, longest));
+    }
+    const double scale = extent_ ? rounded_to_digits(*extent_ / longest, 6) : 1.0;
+    notes_.push_back(
+        fmt::format("longest edge of the {}'s box: {}, with scale {}", object, length_text(longest * scale), scale));
+    return scale;
+  }
+
+  /// The tool is sized by the mesh, but for one that a stroke leads.
+  void scale_environment() {
+    const Box box = bounds_of(points());
+    const double scale = choose_scale(box, "mesh");
+    scene_["environment"]["scale"] = scale;
+    if (options_.on.empty()) choose_tool(box.size().maxCoeff() / 0.001 * scale);
+    scene_["environment"]["spacing_m"] = rounded(diameter_ / 10.0);
+    if (!options_.on.empty())
+      notes_.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
+  }
+
+  /// The tool is 1 mm thick, or a fiftieth of a longer object.
+  void choose_tool(double longest) {
+    diameter_ = std::max(0.001, rounded(longest / 50.0));
+    for (const auto& [field, size] : {std::pair{"diameter_m", diameter_}, {"length_m", 10.0 * diameter_}})
+      if (scene_.contains("tool") && scene_["tool"].contains(field)) scene_["tool"][field] = size;
+  }
+
+  /// Turns the normals of an open mesh round that point away from the side, about its highest place.
+  std::vector<SurfacePoint> facing_points() {
+    std::vector<SurfacePoint> shell = points();
+    const Box box = bounds_of(shell);
+    choose_tool(box.size().maxCoeff());
+    const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
+    const bool is_open =
+        !has_type("environment", "mesh") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
+    double facing = 0.0;
+    for (const SurfacePoint& point : shell) {
+      const Vec3 from_top = point.position - top;
+      // Not those of the far side of a thin wall.
+      if (from_top.norm() <= 0.5 * diameter_ && from_top.z() >= -0.1 * diameter_) facing += point.normal.z();
+    }
+    if (facing >= 0.0 || !is_open) return shell;
+    const std::string side = options_.side.front() == '-' ? options_.side.substr(1) : "-" + options_.side;
+    const std::string found = fmt::format("its normals point away from side {}", options_.side);
+    if (!has_type("environment", "mesh")) {
+      throw InputError(fmt::format("--from {}: {}; allowed: normals turned round, or --side={}",
+                                   std::filesystem::path(options_.from).generic_string(), found, side));
+    }
+    scene_["environment"]["flip_normals"] = true;
+    notes_.push_back(fmt::format(
+        "{} and are turned round, environment.flip_normals; or press from the other side: --side={}", found, side));
+    return points();
+  }
+
+  void place_tool() {
+    const std::vector<SurfacePoint> shell = facing_points();
+    const std::string count = has_type("environment", "mesh") ? "" : fmt::format("{} points", shell.size());
+    const Box box = bounds_of(shell);
+    const Vec3 top = top_of(shell, box);
+    pressed_ = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressedBelow));
+    if (has_type("hand", "drag")) {
+      if (!count.empty()) notes_.push_back(count);
+      if (named_.size() > 1) return follow_path(top);
+      const Vec3 middle = named_.empty() ? top_of_the_middle(shell, box, diameter_) : top;
+      return choose_way(PointShell(shell, 0.0), {start_above(top), start_above(middle)});
+    }
+    start_at(start_above(top));
+    const bool is_on_top = options_.side == "z" && named_.empty();
+    notes_.push_back(fmt::format("{}{}the tool starts 1 mm {} {}", count, count.empty() ? "" : "; ",
+                                 is_on_top ? "above the highest, at" : "off the surface at", said(top, !is_on_top)));
+  }
+
+  /// A place in millimetres, with its height where that does not go without saying.
+  std::string said(const Vec3& place, bool with_height) const {
+    const Vec3 world = to_world_ * place;
+    return fmt::format("x = {:.4g}, y = {:.4g}{} mm", 1e3 * world.x(), 1e3 * world.y(),
+                       with_height ? fmt::format(", z = {:.4g}", 1e3 * world.z()) : "");
+  }
+
+  double side_sign() const { return options_.side.front() == '-' ? -1.0 : 1.0; }
+
+  /// The place over which the tool starts: the named one, else the highest.
+  Vec3 top_of(const std::vector<SurfacePoint>& shell, const Box& box) const {
+    if (named_.empty()) return middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
+    const Vec3 named = to_world_.transpose() * named_.front();
+    const auto facing = [&named](const SurfacePoint& point) {
+      return point.normal.z() > 0.0 ? (point.position - named).squaredNorm() : std::numeric_limits<double>::infinity();
+    };
+    return std::ranges::min_element(shell, {}, facing)->position;
+  }
+
+  /// The start of a tool whose round tip is to land at `place`.
+  Vec3 start_above(const Vec3& place) const {
+    return {to_micrometres(place.x()), to_micrometres(place.y()),
+            to_micrometres(place.z() + 0.5 * diameter_ + kClearance)};
+  }
+
+  void start_at(const Vec3& place) {
+    const Json world = list_of(to_world_ * place);
+    scene_["initial"]["position_m"] = world;
+    if (!has_type("hand", "impedance")) return;
+    Json& target = scene_["hand"]["target"];
+    target = {{"x_m", world[0]}, {"y_m", world[1]}, {"z_m", world[2]}};
+    Json& along = target[std::string(1, options_.side.back()) + "_m"];
+    along = {{kTypeField, "waypoints"},
+             {"points", Json::array({Json::array({0, along}), Json::array({0.5, pressed_})})},
+             {"interpolation", "cosine"}};
+  }
+
+  void follow_path(const Vec3& first) {
+    double way = 0.0;
+    Json& hand = scene_["hand"];
+    hand.erase("direction");
+    for (const Vec3& point : named_) hand["path_m"].push_back(list_of(point));
+    for (std::size_t i = 1; i < named_.size(); ++i) way += (named_[i] - named_[i - 1]).norm();
+    start_at(start_above(first));
+    drag_for(way);
+    hand["smoothing_m"] = 0.5 * diameter_;
+    notes_.push_back(fmt::format("dragged over {}", length_text(way)));
+  }
+
+  void drag_for(double way) {
+    const double speed = kDragSpeed * diameter_;
+    scene_["hand"]["speed_m_per_s"] = rounded(speed);
+    scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil(rounded(way / speed) / kStartStep));
+  }
+
+  /// Places the tool above the plane's middle. Its tip is where the format has it without more words.
+  void place_mesh_tool() {
+    const TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
+    Box box = box_of(surface.vertices);
+    const double scale = choose_scale(box, "tool");
+    scene_["tool"]["scale"] = scale;
+    box = {scale / 0.001 * box.min, scale / 0.001 * box.max};
+    notes_.emplace_back(
+        "taken for its tip centre: the file's origin, the tip pointing along -z; tool.tip_m and tool.tip_axis say "
+        "otherwise");
+    if (const std::string odd = odd_frame(box); !odd.empty())
+      warnings_.push_back(fmt::format("the tool {}: set tool.tip_m and tool.tip_axis", odd));
+    pressed_ = to_micrometres(-box.min.z() - kPressedBelow);
+    start_at({0.0, 0.0, to_micrometres(-box.min.z() + kClearance)});
+  }
+
+  /// Drags over four fifths of the way to where the surface ends.
+  void choose_way(const PointShell& shell, const std::vector<Vec3>& starts) {
+    const double enough = 0.25 * shell.bounds().size().maxCoeff();
+    const DragStart drag = choose_drag(shell, starts, 0.5 * diameter_, enough);
+    const double way = 0.8 * drag.room;
+    const bool has_room = way >= diameter_;
+    start_at(drag.position);
+    const Vec3 direction = to_world_ * drag.direction;
+    Json along = Json::array();
+    for (const double part : direction) along.push_back(static_cast<int>(part));
+    scene_["hand"]["direction"] = along;
+    scene_["hand"]["smoothing_m"] = drag.smoothing;
+    drag_for(has_room ? way : enough);
+    if (!has_room) {
+      warnings_.push_back(
+          fmt::format("no way longer than {} was found over the surface along x or y, from its highest place or its "
+                      "middle: set hand.path_m to points on the surface, or initial.position_m and hand.direction",
+                      length_text(drag.room)));
+      return;
+    }
+    notes_.push_back(fmt::format("dragged from {} on along [{}, {}, {}] for {}; the surface ends or turns after {}",
+                                 said(drag.position, options_.side != "z"), along[0].dump(), along[1].dump(),
+                                 along[2].dump(), length_text(way), length_text(drag.room)));
+  }
+
+  void choose_stroke_steps() {
+    const LoadedScenario loaded = scenario();
+    const auto stroke = loaded.files.at(kMotionFile).stroke();
+    const auto samples = stroke->motion.samples();
+    const auto height = [](const auto& sample) { return sample.position.z(); };
+    const double lowest = height(*std::ranges::min_element(samples, {}, height)), last = samples.back().time;
+    scene_["time"]["steps"] = static_cast<std::int64_t>(std::max(1.0, std::ceil(last / kStartStep) + 1.0));
+    notes_.push_back(fmt::format("the stroke lasts from {:.4g} to {:.4g} s; its lowest tip is at z = {:.4g} mm{}",
+                                 samples.front().time, last, 1e3 * lowest,
+                                 options_.on.empty() ? ", the plane at 0" : ""));
+  }
+
+  Json scene_;
+  std::vector<std::string> notes_, warnings_;
+  const NewOptions& options_;
+  std::filesystem::path directory_;
+  std::optional<double> extent_;      ///< of the mesh: longest edge of its box [m]
+  std::vector<Vec3> named_;           ///< the tool starts over the surface's place nearest to it; then a drag's way [m]
+  Mat3 to_world_ = Mat3::Identity();  ///< from the side's frame
+  double diameter_ = 0.001;           ///< [m]
+  double pressed_ = 0.0;              ///< where a hand that presses leads the tool, along the side's axis [m]
+};
+
+}  // namespace
+
+StartedScene started_scene(const StartKind& kind, const NewOptions& options, const std::filesystem::path& directory) {
+  return Start(kind, options, directory).result();
+}
+
+}  // namespace hapbench

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/program/new/kinds.hpp"
+#include "scenarios/program/new/options.hpp"
+
+/// The scenes that `new` makes.
+namespace hapbench {
+
+/// A scenario to start from.
+struct StartedScene {
+  Json scene;                      ///< content of the scenario file
+  std::vector<std::string> notes;  ///< sizes and choices, a line each
+  std::vector<std::string> warnings;
+};
+
+/// The start of that kind for a file in `directory`. Throws InputError when a file of the options cannot be used. Takes
+/// seconds for a large mesh.
+StartedScene started_scene(const StartKind& kind, const NewOptions& options, const std::filesystem::path& directory);
+
+}  // namespace hapbench

@@ -1,0 +1,72 @@
+#include "scenarios/program/output.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "scenarios/input/writer.hpp"
+#include "scenarios/program/text.hpp"
+
+namespace hapbench {
+
+namespace {
+
+void write_line(std::string_view head, std::string_view text) {
+  std::fflush(stdout);  // keeps the order of printing where both streams go to one pipe
+  fmt::print(stderr, "{} {}\n", head, text);
+}
+
+std::string error_head() {
+  return bold(stderr, "hapbench: error:");
+}
+
+/// Prints a line on standard error, or adds it to what the host collects of that kind.
+void tell(const ProgramContext& context, std::vector<std::string> CapturedOutput::*kind, std::string_view head,
+          std::string_view text) {
+  if (context.captured != nullptr) {
+    (context.captured->*kind).emplace_back(text);
+    return;
+  }
+  write_line(head, text);
+}
+
+}  // namespace
+
+void print(const ProgramContext& context, const OutputOptions& options, const std::string& text, const Json& json) {
+  if (options.quiet) return;
+  const std::string output = options.json ? json_text(json) : fitted(text, context.layout().width());
+  if (context.captured != nullptr) {
+    context.captured->text += output;
+    return;
+  }
+  std::fwrite(output.data(), 1, output.size(), stdout);
+}
+
+void print_warnings(const ProgramContext& context, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) tell(context, &CapturedOutput::warnings, "hapbench: warning:", warning);
+}
+
+void print_warnings(const ProgramContext& context, const LoadedScenario& loaded) {
+  for (const auto& warnings : {loaded.warnings, loaded.file_warnings})
+    print_warnings(context, with_files(loaded, warnings));
+}
+
+void print_note(const ProgramContext& context, std::string_view text) {
+  tell(context, &CapturedOutput::warnings, "hapbench:", text);
+}
+
+void print_error(const ProgramContext& context, std::string_view text) {
+  tell(context, &CapturedOutput::errors, error_head(), text);
+}
+
+void write_error(std::string_view text) {
+  write_line(error_head(), text);
+}
+
+void print_errors(const ProgramContext& context, const InputError& error) {
+  const std::vector<InputError> faults = error.faults();
+  for (const InputError& fault : faults) print_error(context, fault.what());
+  if (faults.size() == kMostFaults) print_error(context, fmt::format("no more than {} are shown", kMostFaults));
+}
+
+}  // namespace hapbench

@@ -1,0 +1,158 @@
+#include "scenarios/program/studies.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "results/io/columns.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/text_file.hpp"
+#include "scenarios/input/text_lines.hpp"
+
+namespace hapbench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kAsk = "ask";
+/// What is said of a study, and is not an option of its command.
+constexpr const char* kNoOptions[] = {kAsk, "scenarios", "summary", "source", "alone", "$schema"};
+
+fs::path studies_folder() {
+  return installed_folder("scenarios/library") / "studies";
+}
+
+/// The file and the text of the study that a word names; none for others, and for what a command refuses to read.
+std::optional<std::pair<fs::path, std::string>> find_study(const std::string& word) {
+  std::error_code error;
+  try {
+    const bool is_file = word.ends_with(".json") && fs::is_regular_file(word, error);
+    if (!is_file && (word.find('/') != std::string::npos || fs::exists(word, error))) return std::nullopt;
+    const fs::path file = is_file ? fs::path(word) : studies_folder() / (word + ".json");
+    const std::string text = read_text_file(file, kLargestJsonFile);
+    if (text.find("\"ask\"") != std::string::npos) return std::pair(file, text);
+  } catch (const InputError&) {  // no such file
+  }
+  return std::nullopt;
+}
+
+std::string text_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return cell_text(value.get<double>());
+  return value.dump();
+}
+
+std::string values_text(const Json& values) {
+  if (values.is_object() && values.contains("from")) {
+    const std::string count = values.contains("count") ? ":" + text_of(values["count"]) : "";
+    return fmt::format("{}:{}{}{}", text_of(values.at("from")), text_of(values.value("to", Json())), count,
+                       values.value("log", false) ? ":log" : "");
+  }
+  return values.is_array() ? fmt::format("{}", fmt::join(names_of(values, text_of), ",")) : text_of(values);
+}
+
+ProgramWords option_words(const std::string& option, const Json& value) {
+  if (value.is_boolean()) return ProgramWords(value.get<bool>() ? 1 : 0, option);
+  ProgramWords words;
+  const auto add = [&](const std::string& text) { words.insert(words.end(), {option, text}); };
+  if (value.is_object()) {
+    for (const auto& [path, values] : value.items())
+      add(path + "=" + (option == "--set" ? text_of(values) : values_text(values)));
+  } else if (value.is_array() && option == "--between" && value.size() == 2) {
+    add(text_of(value[0]) + ":" + text_of(value[1]));
+  } else if (value.is_array() && option == "--bound") {
+    for (const Json& bound : value) add(text_of(bound));
+  } else {
+    add(values_text(value));
+  }
+  return words;
+}
+
+/// A scenario's file is looked for next to the study's first, and then as other words of a command are.
+std::string scenario_beside(const fs::path& study, const std::string& name) {
+  const fs::path file = study.parent_path() / name;
+  std::error_code error;
+  return name.ends_with(".json") && fs::exists(file, error) ? file.lexically_normal().string() : name;
+}
+
+std::size_t line_of(const std::string& text, const std::string& key) {
+  const std::size_t at = text.find("\"" + key + "\"");
+  return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+}
+
+Json study_json(const fs::path& file, const std::string& text) {
+  try {
+    Json study = parse_json(text);
+    if (study.is_object() && study.contains(kAsk) && study[kAsk].is_string() && study.contains("scenarios") &&
+        study["scenarios"].is_array())
+      return study;
+  } catch (const InputError& error) {
+    fail_in_file(file, error.what());
+  }
+  fail_in_file(
+      file,
+      R"(is not a study; allowed: {"ask": COMMAND, "scenarios": [...], and the command's options by their names})");
+}
+
+}  // namespace
+
+std::vector<BundledStudy> bundled_studies() {
+  std::vector<BundledStudy> found;
+  for (const auto& entry : fs::directory_iterator(studies_folder())) {
+    if (entry.path().extension() != ".json") continue;
+    const Json study = study_json(entry.path(), read_text_file(entry.path(), kLargestJsonFile));
+    found.push_back(
+        {entry.path().stem().string(), study.at(kAsk).get<std::string>(), study.value("summary", ""), entry.path()});
+  }
+  std::ranges::sort(found, {}, &BundledStudy::name);
+  return found;
+}
+
+std::optional<StudyWords> StudyWords::in(const ProgramWords& words, std::span<const std::size_t> arguments) {
+  if (words.empty() || words[0] == "describe") return std::nullopt;
+  std::optional<std::pair<fs::path, std::string>> named;
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < arguments.size() && !named; ++i) {
+    place = arguments[i];
+    named = find_study(words[place]);
+  }
+  if (!named) return std::nullopt;
+  const auto& [file, text] = *named;
+  const Json study = study_json(file, text);
+  if (study[kAsk] != words[0])
+    fail_in_line(file, line_of(text, kAsk),
+                 fmt::format("is a question for \"hapbench {} {}\"", study[kAsk].get<std::string>(), words[place]));
+  StudyWords found{file, {words[0]}, {}};
+  for (const Json& scenario : study["scenarios"]) found.words.push_back(scenario_beside(file, text_of(scenario)));
+  for (const auto& [key, value] : study.items()) {
+    if (std::ranges::find(kNoOptions, key) != std::end(kNoOptions)) continue;
+    const std::string option = "--" + key;
+    const auto is_given = [&](const std::string& word) { return word == option || word.starts_with(option + "="); };
+    // What may be given several times adds up.
+    if (!value.is_object() && std::ranges::any_of(words, is_given)) continue;
+    found.lines[option] = line_of(text, key);
+    std::ranges::move(option_words(option, value), std::back_inserter(found.words));
+  }
+  for (std::size_t i = 1; i < words.size(); ++i)
+    if (i != place) found.words.push_back(words[i]);
+  return found;
+}
+
+InputError StudyWords::located(const InputError& error) const {
+  const std::string text = error.what();
+  for (const auto& [option, line] : lines) {
+    const std::size_t at = text.find(option);
+    if (at == std::string::npos || text.substr(at + option.size(), 1).find_first_of("abcdefghijklmnopqrstuvwxyz-") == 0)
+      continue;
+    return InputError(fmt::format("{}:{}: {}", file.string(), line, text));
+  }
+  return error;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,94 @@
+#include "scenarios/program/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <sstream>
+
+#include "scenarios/program/text.hpp"
+
+namespace hapbench {
+
+namespace {
+
+constexpr std::size_t kGap = 2;  ///< blanks between columns
+
+/// The upper and the lower line of a title; a single line is the lower one.
+std::array<std::string, 2> title_lines(const std::string& title) {
+  const std::size_t end = title.find('\n');
+  if (end == std::string::npos) return {"", title};
+  return {title.substr(0, end), title.substr(end + 1)};
+}
+
+std::vector<std::size_t> widths_of(const Table& table) {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const auto [upper, lower] = title_lines(table.columns[c].title);
+    std::size_t width = std::max(upper.size(), lower.size());
+    for (const auto& row : table.rows) width = std::max(width, row[c].size());
+    widths.push_back(width);
+  }
+  return widths;
+}
+
+/// The columns of these places side by side, under their header. The last one is wrapped where it is wider.
+std::string block_text(const Table& table, const std::vector<std::size_t>& widths,
+                       const std::vector<std::size_t>& places) {
+  const auto line = [&](auto cell_of) {
+    std::string text;
+    for (const std::size_t c : places) {
+      const std::string cell = cell_of(c);
+      text += table.columns[c].number ? fmt::format("{:>{}}", cell, widths[c]) : fmt::format("{:<{}}", cell, widths[c]);
+      text.append(kGap, ' ');
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+    return text + "\n";
+  };
+  std::string text = line([&](std::size_t c) { return title_lines(table.columns[c].title)[0]; });
+  if (text == "\n") text.clear();
+  text += line([&](std::size_t c) { return title_lines(table.columns[c].title)[1]; });
+  text += line([&](std::size_t c) { return std::string(widths[c], '-'); });
+  for (const auto& row : table.rows) {
+    const std::size_t last = places.back();
+    std::istringstream prose(wrapped(row[last], 0, widths[last]));
+    bool first = true;
+    for (std::string part; std::getline(prose, part); first = false) {
+      text += line([&](std::size_t c) {
+        if (c == last) return part;
+        return first ? row[c] : std::string();
+      });
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string Table::text(std::size_t most_width) const {
+  constexpr std::size_t kNarrowestProse = 24;
+  std::vector<std::size_t> widths = widths_of(*this);
+  const std::size_t others = std::accumulate(widths.begin(), widths.end() - 1, kGap * (widths.size() - 1));
+  if (others + widths.back() > most_width && columns.size() > 1 && !columns.back().number) {
+    // In a block of its own the last column stands beside the first.
+    const std::size_t beside = others + kNarrowestProse <= most_width ? others : widths[0] + kGap;
+    const std::size_t rest = std::max(kNarrowestProse, most_width - std::min(most_width, beside));
+    widths.back() = std::min(widths.back(), rest);
+  }
+  std::string text;
+  std::vector<std::size_t> places = {0};
+  std::size_t width = widths[0];
+  for (std::size_t c = 1; c < columns.size(); ++c) {
+    if (places.size() > 1 && width + kGap + widths[c] > most_width) {
+      text += block_text(*this, widths, places) + "\n";
+      places = {0};
+      width = widths[0];
+    }
+    places.push_back(c);
+    width += kGap + widths[c];
+  }
+  return text + block_text(*this, widths, places);
+}
+
+}  // namespace hapbench

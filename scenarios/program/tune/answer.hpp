@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/analysis/tuning/tune.hpp"
+
+/// The answer of `tune`.
+namespace hapbench {
+
+/// A question and its answer, by law.
+struct Tuning {
+  TuneQuestion question;
+  std::string scene;  ///< name of the scene, with that of the device
+  TuneRanges ranges;  ///< of the first law
+  std::vector<TunedLaw> laws;
+  std::vector<const TunedLaw*> ranking;  ///< those with a choice, best first
+  std::size_t runs = 0;                  ///< simulations in all
+};
+
+/// Best is the least settled depth, where the scene has none the largest K lambda_max.
+std::vector<const TunedLaw*> ranking_of(const std::vector<TunedLaw>& laws);
+
+/// A margin of a choice: its column, its name in JSON and in words, and the largest that is searched.
+struct Margin {
+  const char *column, *unit, *meaning, *heading, *key, *words;
+  std::optional<double> TuneMargins::*of;
+  double most;
+};
+inline constexpr Margin kMargins[] = {
+    {"gain_margin", "1", "largest factor on K, up to 64, at which all runs and the loop in contact are settled", "gain",
+     "gain", "gain {}", &TuneMargins::gain, 0.99 * kMostGain},
+    {"delay_margin_samples", "time steps", "likewise of further delay of the device, up to 64; empty without device",
+     "delay", "delay_samples", "{} samples more delay", &TuneMargins::delay_samples, kMostDelay},
+    {"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one", "",
+     "damping_ratio", "least damped mode {}", &TuneMargins::damping_ratio, 2.0}};
+
+/// With the digits that the search leaves it.
+std::string stiffness_text(const TuneTrial& choice);
+
+}  // namespace hapbench

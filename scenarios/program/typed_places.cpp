@@ -1,0 +1,43 @@
+#include "scenarios/program/typed_places.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenarios/scene/load_scenario.hpp"
+
+namespace hapbench {
+
+namespace {
+
+/// The location with the override in place of its file, if the override gave its field. `pointer` is the override's.
+void name_override(ErrorLocation& location, const std::string& override, const std::string& pointer) {
+  constexpr std::size_t kMostTyped = 60;
+  const bool is_long = override.size() > kMostTyped;
+  const bool has_option = !location.option.empty();  // what else was typed, as --device
+  location.option +=
+      fmt::format("{}--set {}{}", has_option ? ": " : "", override.substr(0, kMostTyped), is_long ? "…" : "");
+  location.file.clear();
+  if (location.pointer == pointer) location.pointer.clear();  // the override says it
+}
+
+}  // namespace
+
+InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides) {
+  std::vector<InputError> faults;
+  for (const InputError& fault : error.faults()) {
+    ErrorLocation location = fault.location();
+    for (const std::string& override : overrides) {
+      std::string pointer = "/" + std::string(overridden_path(override));
+      std::ranges::replace(pointer, '.', '/');
+      const bool is_in_it = location.pointer == pointer || location.pointer.starts_with(pointer + "/");
+      if (!is_in_it || location.file.empty()) continue;
+      name_override(location, override, pointer);
+      break;
+    }
+    faults.emplace_back(fault.kind(), location, fault.problem());
+  }
+  return InputError::all(faults);
+}
+
+}  // namespace hapbench
