@@ -23,7 +23,7 @@ TEST(ErrorLocation, NamesWhatIsThere) {
 }
 
 TEST(InputError, KeepsItsLocationAsDataAmongSeveral) {
-  const InputError first(InputError::Kind::relation, {.file = "a.json", .pointer = "/seed"}, "got -1");
+  const InputError first(InputError::Kind::relation, ErrorLocation{.file = "a.json", .pointer = "/seed"}, "got -1");
   const InputError second(InputError::Kind::shape, "/time", "missing");
   const InputError both = InputError::all({first, second});
   EXPECT_EQ(both.location().pointer, "/time") << "what a schema refuses comes first";
