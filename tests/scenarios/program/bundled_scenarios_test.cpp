@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -29,16 +31,21 @@ using test::ProgramRun;
 using test::read_file;
 
 // The numbers on record, in tests/data/numbers.txt: for each bundled scenario and for some commands a line
-// "name file hash …" for each file with numbers, below the last line "columns file column …" of the file. They show
-// that a change of the code has changed no number; no text is in them. They hold for every processor and compiler.
+// "name file" for each file with numbers, and below it an indented line for each column of the file:
+//
+//     column count last largest hash
+//
+// `count` numbers, the first digits of the last number and of the number with the largest magnitude, and a hash of all
+// numbers. The hash shows that a change of the code has changed no number; the digits show in a diff what has moved. No
+// text is in them. They hold for every processor and compiler.
 //
 // This renews the record after a change that is meant to change numbers, to be committed with it:
 //
 //     HAPBENCH_RENEW_NUMBERS=1 build/release/bin/program_test --gtest_filter='*OnRecord*'
 
-/// By file and column the hash of the numbers of the column, from top to bottom; words are left out. Files of one name
-/// in several folders of a result count as one. summary.json has its groups of metrics in place of columns and, of a
-/// single run, the state_hash.
+/// By file and column the text that is stored of the numbers of the column. Files of one name in several folders of a
+/// result count as one file. summary.json has its groups of metrics in place of columns and, of a single run, the
+/// state_hash.
 using RecordedNumbers = std::map<std::string, std::map<std::string, std::string>>;
 using NumbersByName = std::map<std::string, RecordedNumbers>;
 
@@ -50,18 +57,16 @@ fs::path record_file() {
 
 NumbersByName read_record() {
   NumbersByName record;
-  std::map<std::string, std::vector<std::string>> columns;
+  std::string name, file;
   for (const std::string& text : lines_of(read_file(record_file()))) {
     std::istringstream words(text);
-    std::string name, file, word;
-    words >> name >> file;
-    if (name == "columns") columns[file].clear();
-    for (std::size_t i = 0; words >> word; ++i) {
-      if (name == "columns")
-        columns[file].push_back(word);
-      else
-        record[name][file][columns[file].at(i)] = word;
+    if (!text.starts_with(' ')) {
+      words >> name >> file;
+      continue;
     }
+    std::string column;
+    words >> column >> std::ws;
+    std::getline(words, record[name][file][column]);
   }
   return record;
 }
@@ -75,25 +80,57 @@ void renew(bool of_commands, const NumbersByName& found) {
   std::erase_if(record, [&](const auto& line) { return is_command(line.first) == of_commands; });
   record.insert(found.begin(), found.end());
   std::string text;
-  std::map<std::string, std::string> headings;
   for (const auto& [name, files] : record) {
     for (const auto& [file, columns] : files) {
-      std::string heading = "columns " + file, hashes = name + " " + file;
-      for (const auto& [column, hash] : columns) {
-        heading += " " + column;
-        hashes += " " + hash;
-      }
-      if (heading != headings[file]) text += heading + "\n";
-      headings[file] = heading;
-      text += hashes + "\n";
+      text += name + " " + file + "\n";
+      for (const auto& [column, numbers] : columns) text += "  " + column + " " + numbers + "\n";
     }
   }
   test::write_plainly(record_file(), text);
 }
 
-using Hashes = std::map<std::string, std::map<std::string, Hash64>>;
+/// The first four digits of a number, as in "-1.234e-03". They are cut off its shortest text that reads back as the
+/// same number, and not rounded, so that every compiler prints the same digits.
+std::string first_digits(double number) {
+  std::array<char, 32> buffer{};
+  const auto [end, error] =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::scientific);
+  EXPECT_EQ(error, std::errc());
+  std::string text(buffer.data(), end);
+  const std::size_t point = text.find('.'), exponent = text.find('e');
+  constexpr std::size_t kDecimals = 3;
+  if (point != std::string::npos && exponent > point + 1 + kDecimals)
+    text.erase(point + 1 + kDecimals, exponent - (point + 1 + kDecimals));
+  return text;
+}
 
-void add_table(std::map<std::string, Hash64>& hashes, const std::string& text) {
+/// The numbers of a column, one after the other.
+class ColumnNumbers {
+ public:
+  void add(double number) {
+    hash_.real(number);
+    ++count_;
+    last_ = number;
+    if (count_ == 1 || std::abs(number) > std::abs(largest_)) largest_ = number;
+  }
+  /// The text on record: count, last number, largest number, hash.
+  std::string text() const {
+    // Half of the hash: a change that it does not see has a chance of 2^-32.
+    const std::string hash = hash_text(hash_.value()).substr(0, 8);
+    if (count_ == 0) return "0 - - " + hash;
+    return fmt::format("{} {} {} {}", count_, first_digits(last_), first_digits(largest_), hash);
+  }
+
+ private:
+  Hash64 hash_;
+  std::size_t count_ = 0;
+  double last_ = 0.0;
+  double largest_ = 0.0;
+};
+
+using NumbersByColumn = std::map<std::string, ColumnNumbers>;
+
+void add_table(NumbersByColumn& numbers, const std::string& text) {
   const std::vector<std::string> lines = lines_of(text);
   const std::vector<std::string> columns = lines.empty() ? std::vector<std::string>() : cells_of(lines[0]);
   for (std::size_t i = 1; i < lines.size(); ++i) {
@@ -101,24 +138,24 @@ void add_table(std::map<std::string, Hash64>& hashes, const std::string& text) {
     for (std::size_t j = 0; j < cells.size(); ++j) {
       double number = 0.0;
       const auto [end, error] = std::from_chars(cells[j].data(), cells[j].data() + cells[j].size(), number);
-      if (error == std::errc() && end == cells[j].data() + cells[j].size()) hashes[columns.at(j)].real(number);
+      if (error == std::errc() && end == cells[j].data() + cells[j].size()) numbers[columns.at(j)].add(number);
     }
   }
 }
 
-void add_numbers(Hash64& hash, const Json& json) {
-  if (json.is_number()) hash.real(json.get<double>());
+void add_numbers(ColumnNumbers& numbers, const Json& json) {
+  if (json.is_number()) numbers.add(json.get<double>());
   if (!json.is_structured()) return;
-  for (const Json& value : json) add_numbers(hash, value);
+  for (const Json& value : json) add_numbers(numbers, value);
 }
 
-/// "file column" with the hash, for all of a name.
+/// "file column" with the text on record, for all of a name.
 std::map<std::string, std::string> flat(const NumbersByName& numbers, const std::string& name) {
   std::map<std::string, std::string> all;
   const auto found = numbers.find(name);
   if (found == numbers.end()) return all;
   for (const auto& [file, columns] : found->second)
-    for (const auto& [column, hash] : columns) all[file + " " + column] = hash;
+    for (const auto& [column, text] : columns) all[file + " " + column] = text;
   return all;
 }
 
@@ -129,13 +166,15 @@ std::string differences(const NumbersByName& found, const NumbersByName& record)
   names.insert(record.begin(), record.end());
   for (const auto& [name, unused] : names) {
     const auto now = flat(found, name), before = flat(record, name);
-    for (const auto& [place, hash] : now) {
+    for (const auto& [place, numbers] : now) {
       const auto known = before.find(place);
-      if (known == before.end() || known->second != hash)
-        text += "  " + name + ": " + place + (known == before.end() ? " is not on record\n" : " has OTHER numbers\n");
+      if (known == before.end())
+        text += fmt::format("  {}: {} is not on record\n", name, place);
+      else if (known->second != numbers)
+        text += fmt::format("  {}: {} has OTHER numbers: {}, on record {}\n", name, place, numbers, known->second);
     }
-    for (const auto& [place, hash] : before)
-      if (!now.contains(place)) text += "  " + name + ": " + place + " is on record only\n";
+    for (const auto& [place, numbers] : before)
+      if (!now.contains(place)) text += fmt::format("  {}: {} is on record only\n", name, place);
   }
   return text;
 }
@@ -143,20 +182,20 @@ std::string differences(const NumbersByName& found, const NumbersByName& record)
 /// The numbers of a directory of results: of all CSV files, and of the metrics in files summary.json.
 RecordedNumbers numbers_below(const fs::path& directory) {
   RecordedNumbers numbers;
-  Hashes hashes;
+  std::map<std::string, NumbersByColumn> columns_by_file;
   for (const auto& [name, contents] : test::files_below(directory)) {
     const std::string file = fs::path(name).filename().string();
     if (file.ends_with(".csv")) {
-      add_table(hashes[file], contents);
+      add_table(columns_by_file[file], contents);
     } else if (file == "summary.json") {
       const Json summary = Json::parse(contents);
-      for (const auto& [group, metrics] : summary.at("metrics").items()) add_numbers(hashes[file][group], metrics);
+      for (const auto& [group, metrics] : summary.at("metrics").items())
+        add_numbers(columns_by_file[file][group], metrics);
       if (name == file) numbers[file]["state_hash"] = summary.at("state_hash").get<std::string>();
     }
   }
-  // Half of each hash: a change that it does not see has a chance of 2^-32.
-  for (const auto& [file, columns] : hashes)
-    for (const auto& [column, hash] : columns) numbers[file][column] = hash_text(hash.value()).substr(0, 8);
+  for (const auto& [file, columns] : columns_by_file)
+    for (const auto& [column, found] : columns) numbers[file][column] = found.text();
   return numbers;
 }
 
@@ -344,6 +383,15 @@ TEST(Commands, HaveTheNumbersOnRecord) {
        {"limit", "single_spring", "--over", "integrator.type=leapfrog,rk4,implicit_euler", "--over",
         "rendering.damping_ratio=0,1", "--stable", "bounded"}},
       {"limit:wall", {"limit", "wall_on_handle", "--over", "rendering.damping_N_s_per_m=0.1:150:3:log"}},
+      {"limit:filter",
+       {"limit", "wall_on_handle", "--over", "device.velocity_filter.cutoff_Hz=20:500:3:log", "--stable", "bounded",
+        "--set", R"(device.velocity_filter={"type": "low_pass", "cutoff_Hz": 100})"}},
+      {"limit:servo", {"limit", "device_at_wall", "--vary", "device.servo.delay_samples", "--between", "0:60"}},
+      {"limit:hole",
+       {"limit", "tap_hole", "--vary", "rendering.stiffness_N_per_m", "--algorithms", "mean", "--resolution", "0.5"}},
+      {"limit:mesh",
+       {"limit", "drag_molar", "--vary", "rendering.stiffness_N_per_m", "--algorithms", "shaped_stiffness",
+        "--resolution", "0.5"}},
       {"stress:sets", {"stress", "--count", "3000"}},
   };
   const test::TemporaryDirectory directory;
