@@ -5,6 +5,7 @@
 #include <map>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/analysis/stress/stress_set.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "tests/support/scale.hpp"
 
