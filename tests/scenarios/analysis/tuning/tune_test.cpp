@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "device_model/theory/linear_loops.hpp"
-#include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
