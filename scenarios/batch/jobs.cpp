@@ -16,51 +16,82 @@
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
+namespace {
+
+/// The state that the threads of for_each_job share.
+class JobQueue {
+ public:
+  JobQueue(std::size_t count, const std::string& label, const std::function<void(std::size_t)>& job)
+      : count_(count), job_(job), bar_(label, count) {}
+
+  /// Keeps all threads waiting while the returned lock is held.
+  std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
+
+  /// Does jobs until there are none left, one fails or a signal arrives.
+  void work() {
+    std::unique_lock lock(mutex_);
+    while (begun_ < count_ && errors_.empty() && StopSignal::received() == 0) {
+      const std::size_t i = begun_++;
+      lock.unlock();
+      const std::exception_ptr caught = error_of(i);
+      lock.lock();
+      if (caught)
+        errors_.emplace(i, caught);
+      else
+        bar_.show(++done_, true);
+    }
+  }
+
+  /// Notes an error that kept a thread from starting. Precondition: the lock of hold() is held.
+  void fail_to_start(const std::string& text) { errors_.emplace(0, std::make_exception_ptr(std::runtime_error(text))); }
+
+  /// Throws the error of the lowest job that failed, or Stopped. Precondition: no thread works any more.
+  void rethrow() const {
+    if (!errors_.empty()) std::rethrow_exception(errors_.begin()->second);
+    if (done_ < count_) throw_if_stopped();
+  }
+
+ private:
+  std::exception_ptr error_of(std::size_t i) const noexcept {
+    try {
+      job_(i);
+      return nullptr;
+    } catch (...) {
+      return std::current_exception();
+    }
+  }
+
+  const std::size_t count_;
+  const std::function<void(std::size_t)>& job_;
+  ProgressBar bar_;
+  std::mutex mutex_;  // of all below; unlocked only while a job runs
+  std::size_t begun_ = 0, done_ = 0;
+  std::map<std::size_t, std::exception_ptr> errors_;  // by job
+};
+
+}  // namespace
 
 std::size_t available_threads() {
   return static_cast<std::size_t>(tbb::info::default_concurrency());
 }
 
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job) {
-  ProgressBar bar(options.label, count);
-  std::mutex mutex;  // of all below; unlocked only while a job runs
-  std::size_t begun = 0, done = 0;
-  std::map<std::size_t, std::exception_ptr> errors;  // by job
-  const auto work = [&] {
-    std::unique_lock lock(mutex);
-    while (begun < count && errors.empty() && StopSignal::received() == 0) {
-      const std::size_t i = begun++;
-      std::exception_ptr caught;
-      lock.unlock();
-      try {
-        job(i);
-      } catch (...) {
-        caught = std::current_exception();
-      }
-      lock.lock();
-      if (caught)
-        errors.emplace(i, caught);
-      else
-        bar.show(++done, true);
-    }
-  };
+  JobQueue queue(count, options.label, job);
   const std::size_t threads = std::max(1u, options.threads);
-  // A job may itself use TBB: that gets no more threads than there are jobs at once.
+  // A job may itself use TBB: it gets no more threads than there are jobs at once.
   const tbb::global_control within(tbb::global_control::max_allowed_parallelism,
                                    std::min(threads, available_threads()));
-  std::unique_lock starting(mutex);  // no job begins before all threads are there
   std::vector<std::jthread> others;
+  std::unique_lock starting = queue.hold();  // no job begins before all threads exist
   try {
-    while (others.size() + 1 < std::min(threads, count)) others.emplace_back(work);
+    while (others.size() + 1 < std::min(threads, count)) others.emplace_back([&queue] { queue.work(); });
   } catch (const std::exception& reason) {
-    const std::string text = fmt::format("{}; if threads or memory ran short: fewer --jobs", reason.what());
-    errors.emplace(0, std::make_exception_ptr(std::runtime_error(text)));
+    queue.fail_to_start(fmt::format("{}; if threads or memory ran short: fewer --jobs", reason.what()));
   }
   starting.unlock();
-  work();
+  queue.work();
   others.clear();
-  if (!errors.empty()) std::rethrow_exception(errors.begin()->second);
-  if (done < count) throw_if_stopped();
+  queue.rethrow();
 }
 
 }  // namespace hapbench

@@ -16,11 +16,11 @@ struct JobOptions {
   std::string label;     ///< text before the progress bar; empty for no bar
 };
 
-/// Calls job(0) … job(count - 1), each once, on several threads. Jobs begin in this order and at most `threads` of them
-/// are under way; each writes to its own place, so that the result does not depend on the number of threads. After an
-/// exception no further job starts, and that of the lowest job is rethrown; a signal (stop_signal.hpp) ends the loop
-/// the same way. Throws std::runtime_error before any job begins when there are not so many threads to be had.
-/// Overhead: some microseconds a job, some tens a thread.
+/// Calls job(0) … job(count - 1), each once, on several threads. Jobs begin in this order, and at most `threads` of
+/// them run at once. Each job writes to its own place, so that results do not depend on the number of threads. After an
+/// exception no further job starts, and the exception of the lowest job is thrown again. A signal (stop_signal.hpp)
+/// ends the loop in the same way. Throws std::runtime_error before any job begins if the threads cannot be started.
+/// Overhead: some microseconds for each job, some tens for each thread.
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job);
 
 }  // namespace hapbench

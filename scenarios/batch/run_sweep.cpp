@@ -59,45 +59,70 @@ std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& s
   return line_of(plan, run, cells);
 }
 
+/// Returns true if a row of an earlier sweep, with `columns` cells, may stay. Throws InputError for a row of another
+/// table.
+bool stays(const SweepPlan& plan, const SweepOptions& options, std::size_t columns, std::size_t run,
+           std::string_view row) {
+  const std::vector<std::string> cells = csv_cells(row);
+  if (cells.size() != columns)
+    throw InputError(fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
+  const bool has_failed = cells[1 + plan.cases.axes().size()] == kErrorOutcome;
+  return !has_failed && (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
+}
+
+/// The runs of a shard that have no row yet, in the order of runs.
+std::vector<std::size_t> runs_left(const SweepPlan& plan, const Shard& shard, const TableFile& table) {
+  std::vector<std::size_t> left;
+  for (std::size_t place = shard.index; place < plan.cases.size(); place += shard.count) {
+    const std::size_t run = plan.cases.at(place);
+    if (!table.rows()[run]) left.push_back(run);
+  }
+  return left;
+}
+
+/// The row of a run, or the problem of a run that an exception ended.
+struct RunRow {
+  std::string row, problem;
+};
+
+RunRow row_of_run(const SweepPlan& plan, const SweepOptions& options, std::size_t run) {
+  RunRow result;
+  try {
+    const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
+    result.row = finished_row(plan, run, run_scenario(checked(plan.cases.load(run)), output, false));
+  } catch (const IoError&) {
+    throw;  // further runs could not be kept either; --resume goes on
+  } catch (const std::exception& error) {
+    result.problem = error.what();
+  }
+  return result;
+}
+
 }  // namespace
 
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   const Shard part = options.shard.value_or(Shard{});
-  SweepReport report;
-  const std::vector<std::string> columns = plan.columns();
-  const auto keep = [&](std::size_t run, std::string_view row) {
-    const std::vector<std::string> cells = csv_cells(row);
-    if (cells.size() != columns.size())
-      throw InputError(fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
-    return cells[1 + plan.cases.axes().size()] != kErrorOutcome &&
-           (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
-  };
   Json about = {{"definition", plan.definition}, {"runs", plan.cases.size()}, {"shard", shard_text(part)}};
   about.update(plan.content);
+  const std::vector<std::string> columns = plan.columns();
+  const TableFile::Keep keep = [&](std::size_t run, std::string_view row) {
+    return stays(plan, options, columns.size(), run, row);
+  };
   TableFile table({options.table(), fmt::format("{}", fmt::join(columns, ",")), about, plan.cases.size()},
-                  options.resume ? TableFile::Keep(keep) : nullptr);
+                  options.resume ? keep : nullptr);
+  SweepReport report;
   report.resumed = table.count();
-  std::vector<std::size_t> left;  // in the order of runs
-  for (std::size_t place = part.index; place < plan.cases.size(); place += part.count)
-    if (const std::size_t run = plan.cases.at(place); !table.rows()[run]) left.push_back(run);
+  const std::vector<std::size_t> left = runs_left(plan, part, table);
   std::mutex mutex;  // of table and report
   for_each_job(left.size(), options.jobs, [&](std::size_t k) {
     const std::size_t run = left[k];
-    std::string row, problem;
-    try {
-      const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
-      row = finished_row(plan, run, run_scenario(checked(plan.cases.load(run)), output, false));
-    } catch (const IoError&) {
-      throw;  // further runs could not be kept either; --resume goes on
-    } catch (const std::exception& error) {
-      problem = error.what();
-    }
-    const bool failed = row.empty();
+    const RunRow result = row_of_run(plan, options, run);
+    const bool failed = result.row.empty();
     const std::lock_guard lock(mutex);
-    table.add(run, failed ? error_row(plan, run) : row);
+    table.add(run, failed ? error_row(plan, run) : result.row);
     if (failed && (!report.failed || run < *report.failed)) {
       report.failed = run;
-      report.problem = problem;
+      report.problem = result.problem;
     }
     if (!failed && options.added) options.added();
   });

@@ -20,7 +20,8 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
   const std::string_view name = parts[0];
   if (name == "sobol") {
     throw InputError(
-        "--sample: \"sobol\" is no longer known; instead: lhs:N, or --points FILE.csv with the points of another program");
+        "--sample: \"sobol\" is no longer known; instead: lhs:N, or --points FILE.csv with the points of another "
+        "program");
   }
   const auto count = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
   if ((name != kLatinHypercube && name != kRandomPoints) || !count || *count < 1 || *count > kMostRuns) {

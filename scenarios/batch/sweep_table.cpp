@@ -30,8 +30,8 @@ Condition condition_of(const std::string& text, const SweepTable& table) {
   const auto holds = kSigns.find(sign);
   if (holds == kSigns.end() || value.empty() || (!number && sign != "=" && sign != "!=")) {
     throw InputError(fmt::format(
-        "--where: got \"{}\"; allowed: a column of sweep.csv, one of < <= > >= = !=, and a number (a text with = and !=), "
-        "as inside_max_m<3e-4 or outcome=completes",
+        "--where: got \"{}\"; allowed: a column of sweep.csv, one of < <= > >= = !=, and a number (a text with "
+        "= and !=), as inside_max_m<3e-4 or outcome=completes",
         text));
   }
   require_valid_name("--where: got", name, table.columns, "hapbench describe sweep.csv");

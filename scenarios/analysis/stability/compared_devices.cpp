@@ -21,8 +21,8 @@ namespace {
 DeviceFields read_device(const Json& file) {
   const bool is_scenario = file.contains("device");
   if (!is_scenario && !file.contains("type"))
-    throw InputError(
-        R"(got no device; allowed: an object such as {"type": "impedance", "handle_mass_kg": 0.1}, or a scenario with "device")");
+    throw InputError(R"(got no device; allowed: an object such as {"type": "impedance", "handle_mass_kg": 0.1}, )"
+                     R"(or a scenario with "device")");
   DeviceFields device;
   read_value(is_scenario ? file["device"] : file, is_scenario ? "/device" : "",
              [&device](Fields& f) { describe(f, device); });
@@ -46,8 +46,8 @@ std::string delay_note(const Scenario& scenario) {
   if (device == nullptr || device->delay || device->delay_samples == 0.0) return "";
   const double delay = device->delay_samples, step = 1e3 * scenario.time.step;
   return fmt::format(
-      "delay_samples: {:.4g} ({:.3g} ms in steps of {:.3g} ms); samples are time steps of the scene, not of the log that "
-      "a device was identified from",
+      "delay_samples: {:.4g} ({:.3g} ms in steps of {:.3g} ms); samples are time steps of the scene, not of the log "
+      "that a device was identified from",
       delay, delay * step, step);
 }
 

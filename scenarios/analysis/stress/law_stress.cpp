@@ -1,122 +1,20 @@
 #include "scenarios/analysis/stress/law_stress.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <memory>
 #include <mutex>
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
+#include "scenarios/analysis/stress/stress_set.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
+#include "sim/contact/contact_source.hpp"
 
 namespace hapbench {
 namespace {
-
-/// A number whose logarithm is uniform.
-double log_uniform(Random& random, double low, double high) {
-  return low * math::pow(high / low, random.uniform());
-}
-
-/// A vector in a random direction whose length is log-uniform. Its draws are statements of their own: compilers take
-/// the operands of a product in either order.
-Vec3 log_uniform_vector(Random& random, double low, double high) {
-  const Vec3 direction = random.direction();
-  return log_uniform(random, low, high) * direction;
-}
-
-bool chance(Random& random, double probability) {
-  return random.uniform() < probability;
-}
-
-/// A unit vector that differs from u by 1e-16 (rounding) … 1.
-Vec3 nearly(Random& random, const Vec3& u) {
-  return (u + log_uniform_vector(random, 1e-16, 1.0)).normalized();
-}
-
-Vec3 sign_of(Random& random, const Vec3& u) {
-  return chance(random, 0.5) ? u : Vec3(-u);
-}
-
-/// A point at radius and height along the axis, in a random direction.
-Vec3 at(Random& random, const ContactSet& set, double radius, double height) {
-  const Vec3 e = set.pose.axis.unitOrthogonal(), d = random.direction_in_plane();
-  return set.pose.position + height * set.pose.axis + radius * (d.x() * e + d.y() * set.pose.axis.cross(e));
-}
-
-Vec3 in_tool(Random& random, const ContactSet& set) {
-  const double radius = set.tool.radius() * std::sqrt(random.uniform());
-  return at(random, set, radius, -set.tool.length() * random.uniform());
-}
-
-using Draw = std::function<Vec3()>;
-
-Draw positions(Random& random, const ContactSet& set) {
-  const double radius = set.tool.radius(), length = set.tool.length();
-  switch (random.below(5)) {
-    case 0:  // coincident
-      return [place = in_tool(random, set)] { return place; };
-    case 1: {  // on the axis, where no radial direction exists, or in the tip centre
-      const double height = chance(random, 0.3) ? 0.0 : length;
-      return [&, height] { return Vec3(set.pose.position - height * random.uniform() * set.pose.axis); };
-    }
-    case 2:  // on the side, in the tip plane, on its rim; the depth is 0 up to rounding, and the search drops those
-             // outside
-      return [&, radius, length] {
-        const double away = chance(random, 0.6) ? radius : radius * std::sqrt(random.uniform());
-        return at(random, set, away, chance(random, 0.6) ? 0.0 : -length * random.uniform());
-      };
-    case 3: {  // on both sides of the axis, from where gradients of shortest_distance cancel
-      const Vec3 wall = radius * log_uniform(random, 1e-16, 1.0) * set.pose.axis.unitOrthogonal();
-      return
-          [&, wall, length] { return Vec3(set.pose.position - 0.5 * length * set.pose.axis + sign_of(random, wall)); };
-    }
-    default:
-      return [&] { return in_tool(random, set); };
-  }
-}
-
-Draw normals(Random& random, const ContactSet& set) {
-  const Vec3 u = chance(random, 0.2) ? set.pose.axis : random.direction();
-  switch (random.below(5)) {
-    case 0: {  // some zero, or all
-      const double share = chance(random, 0.3) ? 1.0 : 0.5;
-      return [&, share] { return chance(random, share) ? Vec3(Vec3::Zero()) : random.direction(); };
-    }
-    case 1:
-      return [&, u] { return sign_of(random, u); };
-    case 2:
-      return [&, u] { return sign_of(random, nearly(random, u)); };
-    case 3:
-      return [&, u] { return nearly(random, u); };
-    default:
-      return [&] { return random.direction(); };
-  }
-}
-
-void draw_tool(Random& random, ContactSet& set) {
-  // A fifth of the scenes at each end of the scale, the others in between.
-  const double which = random.uniform();
-  const double scale = which < 0.2 ? 1e-12 : which < 0.4 ? 1e3 : log_uniform(random, 1e-12, 1e3);
-  set.tool = {scale * random.uniform(0.05, 1.0), scale * random.uniform(0.1, 3.0),
-              chance(random, 0.5) ? Tip::round : Tip::flat};
-  set.pose.axis = chance(random, 0.3) ? Vec3(0.0, 0.0, -1.0) : random.direction();
-  if (chance(random, 0.5)) set.pose.position = scale * random.direction();
-  if (chance(random, 0.5)) set.velocity = log_uniform_vector(random, 1e-12, 1e3);
-}
-
-void draw_rendering(Random& random, RenderingConfig& config) {
-  config.depth_model = depth_models()[random.below(depth_models().size())].info->name;
-  config.iterations = static_cast<int>(chance(random, 0.8) ? 3 : 1 + random.below(50));
-  if (chance(random, 0.3)) config.stiffness = log_uniform(random, 1.0, 1e12);
-  // n_ext far below the number of contacts overflows.
-  if (chance(random, 0.5)) config.reduction = ReductionConfig{0.995, chance(random, 0.5) ? 3u : 100u, std::nullopt};
-}
 
 /// Relative rounding error allowed in sums over at most kMostContacts contacts and in exact_shaping's weights, which
 /// its epsilon of 1e-6 makes sensitive.
@@ -130,37 +28,64 @@ bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   return force.rendered.norm() <= (1.0 + kForceRounding) * bound;
 }
 
-void count_set(const ContactSet& set, std::uint64_t number, const PointShell& shell, StressCounts& counts) {
-  RenderingConfig config = set.rendering;
-  config.algorithm = counts.algorithm;
+/// The force of an algorithm for a set, and its bound.
+struct StressedForce {
+  RenderedForce force;
+  double unit = 0.0;            ///< K times the deepest depth [N]
+  std::optional<double> bound;  ///< of |f_spring| [N]; none for algorithms without one
+  bool in_contact = false;
+  std::uint64_t points_dropped = 0;
+};
+
+StressedForce force_on(const ContactSet& set, const PointShell& shell, const RenderingConfig& config) {
   ShellSource source(shell, set.tool, make_contact_query(shell, set.tool, Skips::off), make_depth_model(config));
   ContactBuffer contacts(source.capacity());
   const auto algorithm = make_algorithm(config);
   algorithm->prepare({source.capacity(), &set.tool, &shell});
   algorithm->reset();
   source.contacts_at(set.pose, contacts);
-  ++counts.sets;
-  counts.in_contact += !contacts.empty();
-  RenderedForce force;
-  algorithm->compute({set.pose, set.velocity}, contacts, force);
-  counts.points_dropped += algorithm->work().points_dropped;
+  StressedForce stressed;
+  algorithm->compute({set.pose, set.velocity}, contacts, stressed.force);
+  stressed.in_contact = !contacts.empty();
+  stressed.points_dropped = algorithm->work().points_dropped;
+  const double depth_max = stressed.force.depth_max;
+  stressed.unit = config.stiffness * depth_max;
+  if (const auto bound_of = find_algorithm(config.algorithm)->force_bound; bound_of != nullptr)
+    stressed.bound = config.stiffness * bound_of(config, set.tool, contacts.size(), depth_max);
+  return stressed;
+}
 
-  const auto bound_of = find_algorithm(config.algorithm)->force_bound;
-  const double size = force.spring.norm(), unit = config.stiffness * force.depth_max,
-               bound = bound_of == nullptr
-                           ? std::numeric_limits<double>::infinity()
-                           : config.stiffness * bound_of(config, set.tool, contacts.size(), force.depth_max);
-  const bool is_finite =
-      force.spring.allFinite() && force.rendered.allFinite() && force.S.allFinite() && std::isfinite(force.depth_max);
-  const bool in_bound = is_finite && size <= (1.0 + kForceRounding) * bound && force.depth_max >= 0.0 &&
-                        force.depth_max <= (1.0 + kForceRounding) * set.tool.longest_exit() &&
-                        damping_in_bound(set, force);
-  if (!in_bound && !counts.first_bad) counts.first_bad = number;
+bool all_finite(const RenderedForce& force) {
+  return force.spring.allFinite() && force.rendered.allFinite() && force.S.allFinite() &&
+         std::isfinite(force.depth_max);
+}
+
+/// Precondition: all numbers of the force are finite.
+bool all_in_bound(const ContactSet& set, const StressedForce& stressed) {
+  constexpr double kAllowed = 1.0 + kForceRounding;
+  const RenderedForce& force = stressed.force;
+  if (stressed.bound && !(force.spring.norm() <= kAllowed * *stressed.bound)) return false;
+  if (!(force.depth_max >= 0.0 && force.depth_max <= kAllowed * set.tool.longest_exit())) return false;
+  return damping_in_bound(set, force);
+}
+
+void count_set(const ContactSet& set, std::uint64_t number, const PointShell& shell, StressCounts& counts) {
+  RenderingConfig config = set.rendering;
+  config.algorithm = counts.algorithm;
+  const StressedForce stressed = force_on(set, shell, config);
+  const bool is_finite = all_finite(stressed.force);
+  const bool in_bound = is_finite && all_in_bound(set, stressed);
+  ++counts.sets;
+  counts.in_contact += stressed.in_contact;
+  counts.points_dropped += stressed.points_dropped;
   counts.non_finite += !is_finite;
   counts.out_of_bound += is_finite && !in_bound;
-  if (!(unit > 0.0)) return;
-  counts.largest_force = std::max(counts.largest_force, size / unit);
-  if (bound_of != nullptr && bound > 0.0) counts.largest_share = std::max(*counts.largest_share, size / bound);
+  if (!in_bound && !counts.first_bad) counts.first_bad = number;
+  if (!(stressed.unit > 0.0)) return;
+  const double size = stressed.force.spring.norm();
+  counts.largest_force = std::max(counts.largest_force, size / stressed.unit);
+  if (stressed.bound && *stressed.bound > 0.0)
+    counts.largest_share = std::max(*counts.largest_share, size / *stressed.bound);
 }
 
 std::vector<StressCounts> no_counts() {
@@ -186,22 +111,6 @@ void add(const StressCounts& other, StressCounts& all) {
 }
 
 }  // namespace
-
-ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
-  Random random(Random::derive(seed + 1, i));
-  ContactSet set;
-  draw_tool(random, set);
-  draw_rendering(random, set.rendering);
-  const Draw position = positions(random, set), normal = normals(random, set);
-  // Every fifth set has one point. Other sizes are log-uniform: small ones, degenerate most often, are common.
-  const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMostContacts));
-  set.points.resize(static_cast<std::size_t>(n));
-  for (SurfacePoint& point : set.points) {
-    point.position = position();
-    point.normal = normal();
-  }
-  return set;
-}
 
 std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, const JobOptions& options) {
   std::vector<StressCounts> all = no_counts();

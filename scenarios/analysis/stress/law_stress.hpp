@@ -1,29 +1,15 @@
 #pragma once
 
-#include "algorithms/rendering_config.hpp"
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "scenarios/batch/jobs.hpp"
-#include "sim/geometry/point_shell.hpp"
-#include "sim/tool/cylinder.hpp"
 
-/// Random contact situations, most of them degenerate: where a force may stop being finite. All are about cylinders,
-/// whose axis, side and edges are where directions are lost.
+/// Sends random contact situations (stress_set.hpp) through all algorithms and counts where a force is not finite or
+/// exceeds its bound.
 namespace hapbench {
-
-/// A tool among points that it touches, and how they are rendered.
-struct ContactSet {
-  Cylinder tool;
-  ToolPose pose;
-  Vec3 velocity = Vec3::Zero();      ///< [m/s]
-  std::vector<SurfacePoint> points;  ///< in the tool but for rounding; normals are unit vectors or zero
-  RenderingConfig rendering;         ///< all but the algorithm
-};
-
-/// Most points of a set; the reduction of some keeps fewer (n_ext).
-inline constexpr std::size_t kMostContacts = 200;
-
-/// Set number `i` of the seed, by the numbers that the counts name: points on the axis, on the surface, coincident;
-/// normals that are zero, equal, opposite, nearly so, or more different ones than n_ext; scenes of 1e-12 and 1e3 m.
-ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 
 /// The counts of one algorithm over all sets.
 struct StressCounts {

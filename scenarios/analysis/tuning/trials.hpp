@@ -20,9 +20,6 @@ namespace hapbench {
 
 inline constexpr double kTuneResolution = 5e-3;  ///< relative width at which a search for K stops
 
-/// The search for a law ends at this number of simulations; margins, errors and verification take a few hundred more.
-inline constexpr std::size_t kMostTuneRuns = 6000;
-
 /// A run that is not settled.
 struct Failing {
   std::size_t run;  ///< its number

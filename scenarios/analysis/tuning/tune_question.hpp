@@ -13,6 +13,9 @@
 /// The question of `tune`, and the ranges that it searches.
 namespace hapbench {
 
+/// The search for a law ends at this number of simulations; margins, errors and verification take a few hundred more.
+inline constexpr std::size_t kMostTuneRuns = 6000;
+
 struct TuneQuestion {
   ScenarioText scenario;
   std::vector<std::string> overrides;

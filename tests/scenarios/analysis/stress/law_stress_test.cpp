@@ -6,6 +6,8 @@
 
 #include "algorithms/registry.hpp"
 #include "sim/contact/contact_query.hpp"
+#include "scenarios/analysis/stress/stress_set.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "tests/support/scale.hpp"
 
 namespace hapbench::law_stress_test {

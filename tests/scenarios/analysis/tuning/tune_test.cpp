@@ -12,6 +12,7 @@
 #include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
@@ -39,7 +40,8 @@ TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
   const Words device = {
       R"(device={"type":"impedance","handle_mass_kg":0.3,"viscous_N_s_per_m":0.5,"delay_samples":1.5})",
       "time.steps=4000",
-      R"(hand={"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":300,"damping_N_s_per_m":6,"target":{"x_m":0,"y_m":0,"z_m":0}})"};
+      R"(hand={"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":300,"damping_N_s_per_m":6,)"
+      R"("target":{"x_m":0,"y_m":0,"z_m":0}})"};
   const TuneQuestion asked = question("single_spring", device);
   const TunedLaw law = tuned_law(asked, "summation");
   ASSERT_TRUE(law.choice) << law.why;
