@@ -45,8 +45,8 @@ StressedForce force_on(const ContactSet& set, const PointShell& shell, const Ren
   algorithm->reset();
   source.contacts_at(set.pose, contacts);
   StressedForce stressed;
+  stressed.in_contact = !contacts.empty();  // before the algorithm, which may change the contacts
   algorithm->compute({set.pose, set.velocity}, contacts, stressed.force);
-  stressed.in_contact = !contacts.empty();
   stressed.points_dropped = algorithm->work().points_dropped;
   const double depth_max = stressed.force.depth_max;
   stressed.unit = config.stiffness * depth_max;

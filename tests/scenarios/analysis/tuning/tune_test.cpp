@@ -12,7 +12,6 @@
 #include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/input/bundled_files.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
