@@ -25,12 +25,8 @@ namespace {
 
 void load_modules(const std::vector<std::string>& files) {
   for (const std::string& file : files) load_law(file);
-  constexpr const char *kFolders = "HAPBENCH_MODULE_PATH", *kBefore = "HAPBENCH_PLUGIN_PATH";
-  if (const char* folders = std::getenv(kFolders)) {
-    load_laws_in(kFolders, folders);
-  } else if (std::getenv(kBefore) != nullptr) {
-    throw InputError(fmt::format("{} is no longer read; instead: {}", kBefore, kFolders));
-  }
+  constexpr const char* kFolders = "HAPBENCH_MODULE_PATH";
+  if (const char* folders = std::getenv(kFolders)) load_laws_in(kFolders, folders);
 }
 
 /// Makes a success fail when a module failed: its runs count as diverged, which by itself need not be a failure.

@@ -157,10 +157,6 @@ TEST_F(PluginCommand, SweepsCarryThePluginAlong) {
 }
 
 TEST_F(PluginCommand, RefusesFoldersInOneLine) {
-  const EnvironmentVariable before("HAPBENCH_PLUGIN_PATH", out(""));
-  const ProgramRun old = hapbench({"describe"});
-  EXPECT_EQ(old.status, 2);
-  EXPECT_EQ(old.err, "hapbench: error: HAPBENCH_PLUGIN_PATH is no longer read; instead: HAPBENCH_MODULE_PATH\n");
   const EnvironmentVariable folders("HAPBENCH_MODULE_PATH", "/no/such/folder");
   const ProgramRun run = hapbench({"describe"});
   EXPECT_EQ(run.status, 2);
