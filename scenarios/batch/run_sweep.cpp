@@ -11,6 +11,7 @@
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
 #include "scenarios/batch/csv_cells.hpp"
+#include "scenarios/batch/sweep_columns.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/batch/table_file.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -23,40 +24,6 @@ namespace fs = std::filesystem;
 
 fs::path run_folder(const SweepOptions& options, std::size_t run) {
   return options.directory / "runs" / fmt::format("{:06}", run);
-}
-
-/// The line of a run, without its end: its number and varied fields, and these cells behind them.
-std::string line_of(const SweepPlan& plan, std::size_t run, const std::vector<std::string>& cells) {
-  std::string line = std::to_string(run);
-  for (const std::string& value : plan.cases.values(run)) line += "," + csv_cell(value);
-  for (const std::string& cell : cells) line += "," + cell;
-  return line;
-}
-
-std::string error_row(const SweepPlan& plan, std::size_t run) {
-  std::vector<std::string> cells = {std::string(kErrorOutcome), "false"};
-  cells.resize(plan.columns().size() - plan.cases.axes().size() - 1);
-  return line_of(plan, run, cells);
-}
-
-std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& summary) {
-  std::vector<std::string> cells = {std::string(outcome_name(summary.end.outcome)), summary.expected ? "true" : "false",
-                                    std::to_string(summary.end.rows)};
-  const MetricList& metrics = summary.metrics;
-  for (const Metric& metric : metrics) {
-    if (std::ranges::find(plan.metrics, metric.name) != plan.metrics.end()) continue;
-    throw InputError(
-        fmt::format("has the metric {}, for which no run that was checked before the first one has a column; allowed: "
-                    "sweeps whose first runs record what the others record",
-                    metric.name));
-  }
-  for (const std::string& name : plan.metrics) cells.push_back(cell_text(value_of(metrics, name)));
-  for (const std::string& name : plan.bounded) {
-    const Metric* metric = find_metric(metrics, name);
-    cells.push_back(metric == nullptr ? "" : cell_text(cell_of(metric->tolerance())));
-  }
-  cells.push_back(hash_text(summary.state_hash));
-  return line_of(plan, run, cells);
 }
 
 /// Returns true if a row of an earlier sweep, with `columns` cells, may stay. Throws InputError for a row of another
@@ -104,7 +71,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   const Shard part = options.shard.value_or(Shard{});
   Json about = {{"definition", plan.definition}, {"runs", plan.cases.size()}, {"shard", shard_text(part)}};
   about.update(plan.content);
-  const std::vector<std::string> columns = plan.columns();
+  const std::vector<std::string> columns = sweep_columns(plan);
   const TableFile::Keep keep = [&](std::size_t run, std::string_view row) {
     return stays(plan, options, columns.size(), run, row);
   };

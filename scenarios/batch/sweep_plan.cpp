@@ -123,16 +123,6 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 
 }  // namespace
 
-std::vector<std::string> SweepPlan::columns() const {
-  std::vector<std::string> columns = {"index"};
-  for (const Axis& axis : cases.axes()) columns.push_back(axis.path);
-  columns.insert(columns.end(), {"outcome", "expected", "steps"});
-  columns.insert(columns.end(), metrics.begin(), metrics.end());
-  for (const std::string& metric : bounded) columns.push_back(std::string(kToleranceOf) + metric);
-  columns.emplace_back("state_hash");
-  return columns;
-}
-
 std::vector<std::size_t> runs_to_check(const Cases& cases) {
   if (cases.size() <= kMostChecked || cases.sampling()) {
     std::vector<std::size_t> runs(std::min(cases.size(), kMostChecked));

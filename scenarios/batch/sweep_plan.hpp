@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "scenarios/batch/cases.hpp"
@@ -20,9 +19,6 @@ struct SweepPlan {
   /// Everything that determines the rows: scenes, overrides, points, hashes of the files the scenarios name, program.
   Json content = {};
   std::string definition = {};  ///< FNV-1a of the content, as 16 hexadecimal digits
-
-  /// The names of the columns of the table.
-  std::vector<std::string> columns() const;
 };
 
 /// Maximum number of runs of a sample, and of values of a field of a grid, that are checked before the first run.
@@ -36,8 +32,5 @@ std::vector<std::size_t> runs_to_check(const Cases& cases);
 /// Loads the scenarios of the runs to check and reads the files they name, to find errors before anything is run or
 /// written; some 0.1 ms a run and thread. Throws InputError, that of the run with the lowest number, and Stopped.
 SweepPlan plan_sweep(Cases cases, const JobOptions& jobs);
-
-/// Stands before the name of a metric in the heading of its tolerance, as in summary.json.
-inline constexpr std::string_view kToleranceOf = "tolerances.";
 
 }  // namespace hapbench

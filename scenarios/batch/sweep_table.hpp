@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/batch/sweep_plan.hpp"
+#include "scenarios/batch/sweep_columns.hpp"
 
 /// Reads the table that a sweep leaves, sweep.csv.
 namespace hapbench {

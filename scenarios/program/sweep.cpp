@@ -14,6 +14,7 @@
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/batch/sampling.hpp"
 #include "scenarios/batch/shard.hpp"
+#include "scenarios/batch/sweep_columns.hpp"
 #include "scenarios/batch/sweep_plan.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"

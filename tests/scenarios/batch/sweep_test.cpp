@@ -8,6 +8,7 @@
 
 #include "scenarios/batch/join_shards.hpp"
 #include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/batch/sweep_columns.hpp"
 #include "scenarios/batch/sweep_plan.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -153,10 +154,10 @@ TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   EXPECT_EQ(*report.failed, 4567u);
   EXPECT_NE(report.problem.find("/seed: got -1"), std::string::npos) << report.problem;
   const SweepTable table = read_sweep(options.table());
-  EXPECT_EQ(table.columns, plan.columns());
+  EXPECT_EQ(table.columns, sweep_columns(plan));
   EXPECT_EQ(table.counts.failed, 1u);
   SweepRow row = {"4567", "-1", "error", "false"};
-  row.resize(plan.columns().size());
+  row.resize(sweep_columns(plan).size());
   EXPECT_EQ(table.rows[4567], row);
   EXPECT_EQ(table.outcome(table.rows[4568]), "completes");
 }

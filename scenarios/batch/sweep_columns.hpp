@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "results/summary/summary.hpp"
+#include "scenarios/batch/sweep_plan.hpp"
+
+/// The columns of sweep.csv: their names, and what a row has in them. A new column is one line in each function.
+namespace hapbench {
+
+/// Prefix of the heading of a metric's tolerance, as in summary.json.
+inline constexpr std::string_view kToleranceOf = "tolerances.";
+
+/// Returns the names of the columns: index, varied fields, outcome, expected, steps, metrics, tolerances, state_hash.
+std::vector<std::string> sweep_columns(const SweepPlan& plan);
+
+/// Returns the row of a run that an exception ended, without a newline. Its cells behind "expected" are empty.
+std::string error_row(const SweepPlan& plan, std::size_t run);
+
+/// Returns the row of a run, without a newline. Throws InputError if the run has a metric for which there is no column.
+std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& summary);
+
+}  // namespace hapbench
