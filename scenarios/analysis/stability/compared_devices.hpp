@@ -37,8 +37,8 @@ std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double 
 /// empty for other devices.
 std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& device);
 
-/// Returns the overrides that put the scene on the device, followed by the given overrides. The hand's mass is dropped if
-/// the device has no place for it: the virtual mass represents it.
+/// Returns the overrides that put the scene on the device, followed by the given overrides. The hand's mass is dropped
+/// if the device has no place for it: the virtual mass represents it.
 std::vector<std::string> overrides_on(const ComparedDevice& device, const ScenarioText& scene,
                                       const std::vector<std::string>& overrides);
 

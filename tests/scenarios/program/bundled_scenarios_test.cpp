@@ -223,7 +223,8 @@ std::vector<std::string> shortened(const Scenario& scenario) {
   if (scenario.time.steps <= steps) return {};
   std::vector<std::string> arguments = {
       "--set",
-      R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "not_dragged", "stuck", "no_contact", "lost_contact", "went_through", "diverges"]})",
+      R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "not_dragged", "stuck", "no_contact",
+          "lost_contact", "went_through", "diverges"]})",
       "--set", fmt::format(R"(time={{"step_s": {}, "steps": {}}})", scenario.time.step, steps)};
   if (std::holds_alternative<TrackingHandFields>(scenario.hand))
     arguments.insert(arguments.end(), {"--set", "hand.trials=1", "--set", "hand.subjects=[{}]"});

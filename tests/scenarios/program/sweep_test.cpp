@@ -252,7 +252,8 @@ constexpr std::size_t kFirst[] = {1}, kSecond[] = {2};  // places of arguments
 
 TEST_F(Study, IsTheWordsOfItsCommand) {
   const std::string mine = file(R"({
-    "ask": "limit", "scenarios": ["a", "b.json"], "summary": "s", "between": [1e2, 1e5], "smallest": true, "resolution": 0.01,
+    "ask": "limit", "scenarios": ["a", "b.json"], "summary": "s", "between": [1e2, 1e5],
+    "smallest": true, "resolution": 0.01,
     "algorithms": ["mean", "proxy"], "bound": ["x=1", "y=2"], "set": {"hand": {"mass_kg": 1}, "seed": 3},
     "over": {"device.delay_samples": {"from": 0, "to": 8, "count": 5, "log": true}, "integrator.type": ["rk4", "event"],
              "device": [{"type": "ideal"}]}})");

@@ -33,7 +33,8 @@ Json minimal_scenario(const std::string& environment_type) {
 
 std::vector<NamedScenario> rich_scenarios() {
   return {{"prescribed_slot", Json::parse(R"({
-      "$schema": "anything", "name": "prescribed_slot", "description": "\u00e4", "source": "s", "seed": 9007199254740992,
+      "$schema": "anything", "name": "prescribed_slot", "description": "\u00e4", "source": "s",
+      "seed": 9007199254740992,
       "time": {"step_s": 1, "duration_s": 3.4, "stop_when": ["tool_horizontal"]},
       "environment": {"type": "slot", "gap_m": 0.001, "depth_m": 0.005, "length_m": 0.01, "spacing_m": 0.0005},
       "tool": {"diameter_m": 0.0012, "length_m": 0.02, "tip": "round"},
@@ -43,10 +44,13 @@ std::vector<NamedScenario> rich_scenarios() {
           "roll_rad": {"type": "ramp", "start": 0.1, "rate_per_s": -2}},
         "position": {"type": "prescribed", "x_m": {"type": "ramp", "start": 0, "rate_per_s": 1e-4}, "y_m": 0,
           "z_m": {"type": "waypoints", "points": [[0, 0.001], [1.5, -0.001], [2, 0]], "interpolation": "cosine"}}},
-      "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "contact_source": "own", "local_average": true,
-        "reduction": {"threshold": 0.9, "max_points": 7, "shuffle_seed": 5}, "virtual_coupling_N_per_m": 1000, "regularisation": 0.5,
+      "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "contact_source": "own",
+        "local_average": true,
+        "reduction": {"threshold": 0.9, "max_points": 7, "shuffle_seed": 5}, "virtual_coupling_N_per_m": 1000,
+        "regularisation": 0.5,
         "passivity_controller": true, "damping_N_s_per_m": 3, "angular_damping": true,
-        "parameters": {"mcneely": {"points": 5}, "static_coupling": {"saturation_N": 12}, "proxy": {"damping_time_s": 0.02}},
+        "parameters": {"mcneely": {"points": 5}, "static_coupling": {"saturation_N": 12},
+          "proxy": {"damping_time_s": 0.02}},
         "angular_velocity_cutoff_Hz": 30,
         "limits": {"max_damping_N_s_per_m": 0, "max_force_N": 2.5}},
       "record": {"trajectory": true, "every": 2, "ratio_iterations": [0, 3], "contacts": true,
@@ -80,7 +84,8 @@ std::vector<NamedScenario> rich_scenarios() {
       "record": {"contacts": true}})")},
           {"pushed_springs", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 50},
-      "environment": {"type": "springs", "bilateral": false, "signed": true, "groups": [{"direction": [0, -2, 0], "count": 0},
+      "environment": {"type": "springs", "bilateral": false, "signed": true,
+        "groups": [{"direction": [0, -2, 0], "count": 0},
         {"direction": [1, 1, 1], "count": 3}], "random": {"count": 20, "planar": false}},
       "initial": {"position_m": [0.001, 0, 0], "velocity_m_per_s": [0, 0.1, 0]},
       "hand": {"type": "force", "x_N": 1, "y_N": {"type": "sine", "mean": 0, "amplitude": 3, "period_s": 0.01},
@@ -94,11 +99,13 @@ std::vector<NamedScenario> rich_scenarios() {
       "expect": {"outcome": "completes"}})")},
           {"tracked_block", Json::parse(R"({
       "time": {"step_s": 0.001, "duration_s": 2},
-      "environment": {"type": "block_with_hole", "size_m": [0.006, 0.006, 0.004], "hole_depth_m": 0.002, "grid_m": 0.0002},
+      "environment": {"type": "block_with_hole", "size_m": [0.006, 0.006, 0.004], "hole_depth_m": 0.002,
+        "grid_m": 0.0002},
       "initial": {"position_m": [0, 0, -0.0018]},
       "hand": {"type": "tracking", "trials": 2,
         "task": {"display": "height", "places_m": [[0, 0, -0.001], [0, 0, -0.0015]], "targets_per_place": 1,
-          "tolerance_m": 0.0003, "least_press_N": 0.5, "gauge": {"cutoff_Hz": 20, "grace_s": 0.05}, "threshold": {"low": "pauses"}, "hold_s": 0.1, "time_limit_s": 0.4},
+          "tolerance_m": 0.0003, "least_press_N": 0.5, "gauge": {"cutoff_Hz": 20, "grace_s": 0.05},
+          "threshold": {"low": "pauses"}, "hold_s": 0.1, "time_limit_s": 0.4},
         "subjects": [{"reaction_delay_s": 0.1, "bandwidth_Hz": 1, "stiffness_N_per_m": 200, "damping_N_s_per_m": 5,
           "press_N": 1.2, "press_bandwidth_Hz": 0.5, "motor_noise_N": 0.01, "tilt_noise_rad": 0.001,
           "noise_bandwidth_Hz": 5, "height_per_tilt_m_per_rad": 0.003, "max_speed_m_per_s": 0.03,
@@ -167,11 +174,13 @@ std::vector<NamedScenario> rich_scenarios() {
       "time": {"step_s": 0.0005, "steps": 100},
       "environment": {"type": "plane", "size_m": 0.02, "spacing_m": 0.001},
       "initial": {"position_m": [0, 0, 0.005]},
-      "tool": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "tip_m": [0.0001, 0, 0], "tip_axis": [0, 1, -2], "grid_m": 0.0005},
+      "tool": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "tip_m": [0.0001, 0, 0], "tip_axis": [0, 1, -2],
+        "grid_m": 0.0005},
       "hand": {"type": "force", "z_N": -1}})")},
           {"scanned_cube", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 10},
-      "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "flip_normals": false, "spacing_m": 0.0003, "grid_m": 0.0005},
+      "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "flip_normals": false,
+        "spacing_m": 0.0003, "grid_m": 0.0005},
       "initial": {"position_m": [0, 0, 0.0049]},
       "rendering": {"local_average": true}})")}};
 }

@@ -177,7 +177,8 @@ TEST(Claims, AreJudgedByTheirThresholds) {
        "vibration_power=0.01 | diverges=1 | diverges=0",
        {{"", reproduced},
         {"0.velocity_variation=0.1 0.vibration_power=0.01", in_kind},
-        {"0.velocity_variation=0.1 0.vibration_power=0.01 2.velocity_variation=0.49 2.vibration_power=0.24 2.diverges=0",
+        {"0.velocity_variation=0.1 0.vibration_power=0.01 2.velocity_variation=0.49 2.vibration_power=0.24 "
+         "2.diverges=0",
          not_reproduced}}},
       {"T1",
        "raw_mean=40 raw_deviation=10 reduced_mean=1 reduced_deviation=0 reduced_max=1 outside_taps=1 |",
@@ -325,7 +326,8 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         {"0.x40=0.06 0.x40_reduced=0.06 1.x40=0.05", in_kind},
         {"0.x40=0.06 0.x40_reduced=0.06", not_reproduced}}},
       {"C5",
-       "1 N: force=1 lateral=1e-4 inside=1e-4 | 1 N, averaged: | 3.5 N: force=3.5 lateral=9e-4 | 3.5 N, averaged: lateral=1e-4",
+       "1 N: force=1 lateral=1e-4 inside=1e-4 | 1 N, averaged: | 3.5 N: force=3.5 lateral=9e-4 | "
+       "3.5 N, averaged: lateral=1e-4",
        {{"", reproduced}, {"0.lateral=1.3e-4", in_kind}, {"0.lateral=1.3e-4 0.inside=1.3e-4", not_reproduced}}},
       {"C6",
        "1: count=1 damping_ratio=0.1 | 4: count=4 damping_ratio=0.209",
