@@ -1,6 +1,7 @@
 #include "scenarios/scene/profiles.hpp"
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <type_traits>
 #include <utility>

@@ -1,6 +1,7 @@
 #include "scenarios/scene/scenario_rules.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <string>

@@ -303,7 +303,8 @@ class StillnessObserver final : public MetricObserver {
 """,
             ),
             before(
-                '#include "results/observe/ideal_trajectory.hpp"\n#include "results/observe/target_metrics.hpp"\n',
+                '#include "results/observe/target_metrics.hpp"\n\nnamespace hapbench {\nnamespace {\n\n'
+                "/// A section of the summary.\n",
                 '#include "results/observe/stillness.hpp"\n',
             ),
             behind(

@@ -1,6 +1,7 @@
 #include "scenarios/program/describe/description.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>

@@ -1,6 +1,7 @@
 #include "scenarios/program/new/kinds.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include "scenarios/input/json_file.hpp"
 
 namespace hapbench {
