@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 

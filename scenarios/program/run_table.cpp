@@ -7,6 +7,7 @@
 
 #include "results/summary/summary.hpp"
 #include "scenarios/batch/number_with_error.hpp"
+#include "scenarios/input/rounding.hpp"
 #include "scenarios/program/digits.hpp"
 
 namespace hapbench {

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/statistics.hpp"
 
 namespace hapbench {
 

@@ -8,6 +8,7 @@
 #include "results/io/columns.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {

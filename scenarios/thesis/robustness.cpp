@@ -12,7 +12,9 @@
 
 #include "results/io/columns.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis/evidence.hpp"

@@ -2,6 +2,7 @@
 
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/run/scene_checks.hpp"
+#include "scenarios/run/scripted_motion.hpp"
 #include "scenarios/run/vibration_limit.hpp"
 
 namespace hapbench {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/ranking.hpp"
 #include "scenarios/program/layout.hpp"
 
 /// What `compare` prints of a league.
