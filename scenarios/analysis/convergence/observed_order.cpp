@@ -111,7 +111,7 @@ std::string no_order_reason(const LevelSweep& sweep, std::span<const LevelResult
   const std::vector<double>& f = counted.f;
   if (f.size() < kLeastLevels) return too_few_reason(levels, counted.first);
   if (counted.is_rounding(f[f.size() - 2] - f.back())) return "the last levels differ by rounding only";
-  if (const std::string reason = switching_reason(levels.last(kLeastLevels)); !reason.empty()) return reason;
+  if (std::string reason = switching_reason(levels.last(kLeastLevels)); !reason.empty()) return reason;
   return incredible_reason(f, orders.subspan(counted.first), 2.0 * sweep.formal_order);
 }
 

@@ -46,8 +46,8 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
         "rendering.algorithm=" + std::string(algorithm.info->name),
         // The exit along the normal: other depths of points at the rim do not follow the tool.
         "rendering.depth_model=normal_projection", R"(hand={"type":"none"})", "time.duration_s=0.05",
-        R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,"z_m":{"type":"ramp","start":1e-6,)"
-        R"("rate_per_s":-4e-4}})"};
+        R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,
+           "z_m":{"type":"ramp","start":1e-6,"rate_per_s":-4e-4}})"};
     auto overrides = late(7, 4, "linear");
     overrides.insert(overrides.end(), pressed.begin(), pressed.end());
     const auto fresh = rows_of(bundled("poke_plane", pressed)), linear = rows_of(bundled("poke_plane", overrides));
