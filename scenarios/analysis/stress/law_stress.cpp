@@ -9,9 +9,9 @@
 #include "scenarios/analysis/stress/stress_set.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
-#include "sim/contact/contact_source.hpp"
 
 namespace hapbench {
 namespace {

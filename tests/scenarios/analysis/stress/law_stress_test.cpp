@@ -5,8 +5,8 @@
 #include <map>
 
 #include "algorithms/registry.hpp"
-#include "sim/contact/contact_query.hpp"
 #include "scenarios/analysis/stress/stress_set.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "tests/support/scale.hpp"
 
