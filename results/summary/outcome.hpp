@@ -8,8 +8,8 @@
 
 namespace hapbench {
 
-/// The outcome of a run, from the best to the worst; the outcome of several trials is that of the worst. It is how the
-/// stepping ended, or, where all steps are done, what scenarios/run/outcome.hpp judges from the rows.
+/// Outcomes of a run, ordered from best to worst. Several trials have the outcome of the worst trial. The engine
+/// reports why stepping ended early; after all steps, scenarios/run/outcome.hpp judges the outcome from the rows.
 enum class Outcome {
   completes,        ///< all steps done, or the hand has finished its task
   leaves_hole,      ///< by a StopRule

@@ -11,13 +11,13 @@
 namespace hapbench {
 
 /// Values that take long to make, for all runs of a process: parsed files, point shells, distance grids. Thread-safe.
-/// Those used last are kept, up to 128 of them and 512 MB, but at least two for each thread of the machine, so that
-/// runs side by side do not take each other's away. A dropped value lives on while a run holds it.
+/// Keeps the values used last, up to 128 values and 512 MB, but at least two values for each thread of the machine, so
+/// that parallel runs do not drop each other's values. A dropped value lives on while a run holds it.
 class SharedCache {
  public:
-  /// The value of that key, which says all that the value depends on. Unless it is there, `make` makes it, a
-  /// std::shared_ptr<const T>; `bytes` of the value says about how large it is. Waits while another thread makes it.
-  /// What `make` throws is passed on, and the next caller tries again.
+  /// Returns the value of a key. The key must contain everything that the value depends on. If the value is missing,
+  /// calls `make`, which returns a std::shared_ptr<const T>; `bytes` returns the value's approximate size. Waits while
+  /// another thread makes the value. Passes on exceptions of `make`; the next caller then calls `make` again.
   template <class T, class Make, class Bytes>
   std::shared_ptr<const T> get(const std::string& key, const Make& make, const Bytes& bytes) {
     return std::static_pointer_cast<const T>(get_untyped(key, [&]() -> Made {

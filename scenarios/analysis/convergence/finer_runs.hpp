@@ -33,7 +33,7 @@ class FinerRuns {
   /// Error of a metric of the run with that number in the comparison; metrics are taken at the times of its own rows.
   KnownError known_error(std::size_t run, const std::string& metric) const;
 
-  /// What was refined of a scene, and why something was not, in a clause.
+  /// Returns a clause that names the refinements of a scene, and the reason for each refinement that was left out.
   std::string refined(std::size_t scene) const;
 
  private:

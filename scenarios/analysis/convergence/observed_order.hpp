@@ -14,7 +14,7 @@
 /// convergence index (Roache 1994; ASME V&V 20) at the levels of the field; or why no order can be stated.
 namespace hapbench {
 
-/// What a run at one level gave.
+/// Result of the run at one level.
 struct LevelResult {
   std::string setting;           ///< the field's value, for reasons
   std::string outcome;           ///< how the run ended
@@ -42,7 +42,7 @@ struct Convergence {
   std::vector<std::optional<double>> errors;
 };
 
-/// What the run of a level gave of a metric; no result where it has none or diverges.
+/// Returns the result of a metric at a level. The result is empty if the run has no such metric or diverges.
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary, const std::string& metric);
 
 /// Judges the results of all levels. Those count that follow the last one that ended otherwise than the finest or has
