@@ -29,6 +29,7 @@ endforeach()
 # The files that come with program and libraries. bin and share stay side by side, which is how the program finds them.
 set(share share/hapbench)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/library DESTINATION ${share}/scenarios)
+install(FILES ${PROJECT_SOURCE_DIR}/scenarios/GLOSSARY.md DESTINATION ${share}/scenarios)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python DESTINATION ${share}/scripts USE_SOURCE_PERMISSIONS
   PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/results

@@ -17,6 +17,7 @@
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/describe/folders.hpp"
+#include "scenarios/program/describe/glossary.hpp"
 #include "scenarios/program/describe/index.hpp"
 #include "scenarios/program/describe/lists.hpp"
 #include "scenarios/program/describe/places.hpp"
@@ -87,6 +88,7 @@ std::vector<Description> other_meanings(const Index& index, const std::string& n
     return thing.name == name || (thing.kind == "claim" && lower_case(thing.name) == lower_case(name));
   });
   if (!found.empty()) return found;
+  if (const std::optional<Description> term = find_term(name, layout)) return {*term};
   std::error_code ignored;
   if (!std::filesystem::exists(name, ignored)) refuse(name, index, in_folders);
   return {describe_scenario(find_scenario(name), layout)};
@@ -101,8 +103,12 @@ int describe(const DescribeOptions& options, ProgramContext& context) {
   const bool is_group = std::ranges::find(kScenarioGroups, options.name) != std::end(kScenarioGroups);
   if (meanings.empty() && is_group) return list(options, context);
   if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
-  if (meanings.empty()) meanings = other_meanings(index, options.name, layout);
-  const Description d = joined(meanings);
+  const bool is_known = !meanings.empty();
+  if (!is_known) meanings = other_meanings(index, options.name, layout);
+  Description d = joined(meanings);
+  // A name of the program may also be a term, such as "proxy"; people get both meanings, scripts the program's.
+  if (is_known && !d.text.empty())
+    if (const std::optional<Description> term = find_term(options.name, layout)) d.text += "\n" + term->text;
   OutputOptions output = options.output;
   output.json |= d.text.empty();
   print(context, output, d.text, d.json);
@@ -119,7 +125,8 @@ void add_describe(CommandLine& line) {
       "these such as algorithms, or a group of scenarios such as thesis, for a list; a field such as "
       "rendering.limits, \"scenario\" (all fields), \"schema\", \"choices_schema\", \"stability\", \"diagnosis\"; a "
       "metric, \"metrics\" or \"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as "
-      "trajectory.csv; a claim such as C5, a choice such as planar.first_tilt or a place such as \"Fig. A.2\"");
+      "trajectory.csv; a claim such as C5, a choice such as planar.first_tilt or a place such as \"Fig. A.2\"; a term of the "
+      "glossary such as \"linear limit\", \"terms\" for all of them");
   command.add("--grep", options.grep, "list only things with this text in their name, description or source");
 }
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <string>
 
 #include "scenarios/input/bundled_scenarios.hpp"
@@ -11,6 +13,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_file.hpp"
 #include "scenarios/input/writer.hpp"
+#include "scenarios/program/describe/glossary.hpp"
 #include "scenarios/program/studies.hpp"
 #include "scenarios/program/text.hpp"
 #include "scenarios/scene/load_scenario.hpp"
@@ -98,6 +101,7 @@ Index folder_index(const Layout& layout) {
     index.push_back({"study", study.name, study.summary, [study, layout] { return describe_study(study, layout); }});
   for (const Json& claim : list_on_record("claims")) index.push_back(on_record("claim", claim, layout));
   for (const Json& choice : list_on_record("choices")) index.push_back(on_record("choice", choice, layout));
+  std::ranges::move(glossary_index(layout), std::back_inserter(index));
   return index;
 }
 

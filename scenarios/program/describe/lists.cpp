@@ -20,8 +20,9 @@ namespace hapbench {
 namespace {
 
 /// The kinds that lists have, in their order.
-constexpr const char* kListed[] = {"algorithm", "depth model", "stage",    "integrator", "environment", "tool", "hand",
-                                   "device",    "preset",      "scenario", "study",      "metric",      "claim"};
+constexpr const char* kListed[] = {"algorithm", "depth model", "stage",  "integrator", "environment",
+                                   "tool",      "hand",        "device", "preset",     "scenario",
+                                   "study",     "metric",      "claim",  "term"};
 
 std::string group_of(const Named& thing) {
   return thing.more.value("group", "");
@@ -83,7 +84,7 @@ int list(const DescribeOptions& options, ProgramContext& context) {
   const bool of_everything = options.name.empty() && options.grep.empty();
   const std::string pattern = lower_case(options.grep);
   const auto is_asked = [&](const Named& thing) {
-    if (of_everything) return thing.kind != "metric" && thing.kind != "claim";
+    if (of_everything) return thing.kind != "metric" && thing.kind != "claim" && thing.kind != "term";
     const std::string text = thing.name + " " + thing.summary + " " + thing.more.value("source", "");
     return (options.name.empty() || list_name(thing.kind) == options.name || group_of(thing) == options.name) &&
            lower_case(text).find(pattern) != std::string::npos;
@@ -100,7 +101,8 @@ int list(const DescribeOptions& options, ProgramContext& context) {
     entry.update(thing.more);
   }
   const char* more =
-      of_everything ? ", \"hapbench describe KIND\" lists a kind with what each is; more kinds: metrics, claims" : "";
+      of_everything ? ", \"hapbench describe KIND\" lists a kind with what each is; more kinds: metrics, claims, terms"
+                    : "";
   print(context, options.output,
         list_text(all, of_everything, layout) + "\n" +
             layout.wrapped(fmt::format("\"hapbench describe NAME\" explains each{}.", more), 0),

@@ -1,0 +1,63 @@
+#include "scenarios/program/describe/glossary.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/text_file.hpp"
+#include "scenarios/input/text_lines.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Returns the text without blanks at its ends.
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return "";
+  return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
+}
+
+std::string normalized(std::string_view name) {
+  std::string normal = lower_case(trimmed(name));
+  std::ranges::replace(normal, '_', ' ');
+  return normal;
+}
+
+/// Returns true if `name` is the whole title of an entry, one of its names between commas, or its name without what
+/// stands in parentheses.
+bool is_name_of(std::string_view title, std::string_view name) {
+  const std::string wanted = normalized(name);
+  if (normalized(title) == wanted) return true;
+  return std::ranges::any_of(parts_of(title, ','), [&](std::string_view alias) {
+    return normalized(alias.substr(0, alias.find('('))) == wanted;
+  });
+}
+
+}  // namespace
+
+Index glossary_index(const Layout& layout) {
+  const std::string text = read_text_file(installed_folder("scenarios") / "GLOSSARY.md", kLargestJsonFile);
+  Index index;
+  // Each entry is a row "| term | meaning |" of the table; its first two rows are the heading and the rule below it.
+  bool is_in_table = false;
+  for (const std::string_view line : parts_of(text, '\n')) {
+    const Words cells = parts_of(line, '|');
+    if (line.starts_with("|---")) is_in_table = true;
+    if (!is_in_table || cells.size() != 4 || line.starts_with("|---")) continue;
+    const Json json = {{"kind", "term"}, {"name", trimmed(cells[1])}, {"meaning", trimmed(cells[2])}};
+    index.push_back({"term", json["name"].get<std::string>(), json["meaning"].get<std::string>(),
+                     [json, layout] { return thing_description(json, layout); }});
+  }
+  return index;
+}
+
+std::optional<Description> find_term(std::string_view name, const Layout& layout) {
+  std::vector<Description> found;
+  for (const Named& term : glossary_index(layout))
+    if (is_name_of(term.name, name)) found.push_back(term.describe());
+  if (found.empty()) return std::nullopt;
+  return joined(found);
+}
+
+}  // namespace hapbench

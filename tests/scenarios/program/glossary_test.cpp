@@ -1,0 +1,43 @@
+#include "scenarios/program/describe/glossary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "scenarios/input/text_lines.hpp"
+
+/// The entries of scenarios/GLOSSARY.md, as `hapbench describe` finds them.
+namespace hapbench::glossary_test {
+namespace {
+
+/// The letters and digits of a name in lower case, by which the entries are ordered.
+std::string letters_of(const std::string& name) {
+  std::string letters = lower_case(name);
+  std::erase_if(letters, [](unsigned char c) { return std::isalnum(c) == 0; });
+  return letters;
+}
+
+TEST(Glossary, FindsEachNameOfEachEntry) {
+  const Index terms = glossary_index(Layout());
+  ASSERT_GT(terms.size(), 100u);
+  for (const Named& term : terms) {
+    EXPECT_TRUE(find_term(term.name, Layout())) << term.name;
+    for (const std::string_view alias : parts_of(term.name, ','))
+      EXPECT_TRUE(find_term(alias.substr(0, alias.find('(')), Layout())) << alias;
+  }
+  EXPECT_TRUE(find_term("6-dof", Layout())) << "case is ignored";
+  EXPECT_TRUE(find_term("linear_limit", Layout())) << "an underscore equals a blank";
+  EXPECT_FALSE(find_term("no such term", Layout()));
+  EXPECT_FALSE(find_term("", Layout()));
+}
+
+TEST(Glossary, IsInAlphabeticalOrderWithShortEntries) {
+  const Index terms = glossary_index(Layout());
+  EXPECT_TRUE(std::ranges::is_sorted(terms, {}, [](const Named& term) { return letters_of(term.name); }));
+  for (const Named& term : terms) EXPECT_LE(term.summary.size(), 200u) << term.name << ": at most two lines";
+}
+
+}  // namespace
+}  // namespace hapbench::glossary_test
