@@ -141,7 +141,7 @@ void write_way(ProgramContext& context, const std::filesystem::path& folder, con
 int run_python_command(const ProgramWords& words, ProgramContext& context) {
   const ProgramWords given(words.begin() + 1, words.end());
   return words[0] == "import" ? run_import(given, context)
-                              : run(words[0], {"hapbench_pictures", words[0]}, given, context);
+                              : run({"hapbench_pictures", words[0]}, given, context);
 }
 
 }  // namespace hapbench
