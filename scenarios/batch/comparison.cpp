@@ -8,7 +8,7 @@
 #include "scenarios/batch/seed_axis.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
@@ -41,7 +41,9 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
   const Cases alone({text}, question.overrides, axes);
-  const LoadedScenario first = checked(alone.load(0));  // the files are those of the scenario, whatever the algorithm
+  // The files are those of the scenario, whatever the algorithm.
+  const CheckedScenario checked_first = checked(alone.load(0));
+  const LoadedScenario& first = checked_first.loaded();
   check_seeds_and_jitter(question, first);
   if (question.seeds > 1 || question.jitter != 0.0)
     axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
@@ -50,7 +52,7 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
     const std::vector<Warning> of_this = alone.load(a).warnings;
     std::erase_if(common, [&](const Warning& w) { return std::ranges::find(of_this, w) == of_this.end(); });
   }
-  append_new(warnings, with_files(first, first.file_warnings));
+  append_new(warnings, with_files(first, checked_first.file_warnings()));
   append_new(warnings, with_files(first, common));
   return {{text}, question.overrides, std::move(axes)};
 }

@@ -14,7 +14,7 @@
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis/choices.hpp"
@@ -77,8 +77,8 @@ void provide(ThesisRun& run, const fs::path& directory, bool anew) {
   if (run.seconds) return;
   run.seconds = seconds_of(1, [&] {
     const fs::path results = directory / run.name;
-    const LoadedScenario loaded = checked(load_scenario(run.file));
-    if (anew || !is_current(results, loaded)) run.unmet = run_scenario(loaded, results, false).unmet;
+    const CheckedScenario scene = checked(load_scenario(run.file));
+    if (anew || !is_current(results, scene.loaded())) run.unmet = run_scenario(scene, results, false).unmet;
   });
 }
 

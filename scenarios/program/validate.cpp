@@ -18,7 +18,7 @@
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/program_words.hpp"
 #include "scenarios/program/results_folder.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/recorders.hpp"
@@ -156,8 +156,9 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
         verdict["kind"] = "device";
         continue;
       }
-      const LoadedScenario loaded = checked(load_scenario(file, options.overrides));
-      print_warnings(context, loaded);
+      const CheckedScenario scene = checked(load_scenario(file, options.overrides));
+      const LoadedScenario& loaded = scene.loaded();
+      print_warnings(context, scene);
       const SceneFacts facts = scene_facts(loaded);
       print_warnings(context, with_files(loaded, facts.warnings));
       if (!options.points.empty()) write_points(loaded, options.points, context);

@@ -13,7 +13,7 @@
 #include "results/io/columns.hpp"
 #include "scenarios/analysis/current_value.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/loop/integrators/table.hpp"

@@ -11,7 +11,7 @@
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/analysis/stability/limit_theory.hpp"
 #include "scenarios/batch/jobs.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
@@ -38,11 +38,9 @@ class JudgedRuns {
       if (runs_.try_emplace(value).second) values.push_back(value);
     }
     for_each_job(values.size(), {question_.threads, ""}, [&](std::size_t i) {
-      const LoadedScenario loaded = question_.at(values[i]);
-      const auto judged = [&] {
-        return stability_of(loaded, make_shell(loaded.scenario, loaded.files), question_.rule);
-      };
-      runs_.at(values[i]) = with_file(loaded, judged);
+      const CheckedScenario run = checked(question_.at(values[i]));
+      const auto judged = [&] { return stability_of(run, make_shell(run.scenario(), run.files()), question_.rule); };
+      runs_.at(values[i]) = with_file(run.loaded(), judged);
     });
   }
 
@@ -118,7 +116,7 @@ void add_runs(const LimitQuestion& question, const std::map<double, RunStability
 void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   const JudgedValue suspect = limit.end.beyond ? *limit.end.beyond : limit.runs.front();
   limit.unstable_alone = !question.rule.holds(suspect.verdict) &&
-                         unstable_without_contact(question.at(suspect.value), question.rule.most_vibration);
+                         unstable_without_contact(checked(question.at(suspect.value)), question.rule.most_vibration);
 }
 
 /// Adds the limits by formulas, and the linear limit in contact.

@@ -15,7 +15,7 @@
 #include "scenarios/program/chosen_devices.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/option_values.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/vibration_limit.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
@@ -141,7 +141,7 @@ LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::si
     row.scenario = loaded.scenario;
     row.asked = question_of(options, scene, row.scenario, overrides);
     append_new(warnings, row.asked.warnings);
-    append_new(warnings, with_files(loaded, checked(loaded).file_warnings));
+    append_new(warnings, with_files(loaded, checked(loaded).file_warnings()));
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;
   }

@@ -17,7 +17,7 @@
 #include "scenarios/program/tune/json.hpp"
 #include "scenarios/program/tune/question.hpp"
 #include "scenarios/program/tune/text.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
@@ -46,11 +46,12 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   Tuning tuning;
   tuning.question = tune_question(options, file);
   const std::string device = device_text(options.device, tuning.question);
-  const LoadedScenario loaded = checked(load_scenario(tuning.question.scenario, tuning.question.overrides));
+  const CheckedScenario scene = checked(load_scenario(tuning.question.scenario, tuning.question.overrides));
+  const LoadedScenario& loaded = scene.loaded();
   const std::vector<std::string> algorithms = options.algorithms.empty()
                                                   ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
                                                   : chosen_algorithms(options.algorithms);
-  print_warnings(context, loaded);
+  print_warnings(context, scene);
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
   Report report(options, "tune_" + file.stem().string(), context);

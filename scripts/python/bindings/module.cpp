@@ -26,6 +26,7 @@
 #include "scenarios/program/run_program.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -164,10 +165,11 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   std::vector<std::string> warnings;
   const bool shown = progress.ptr() != Py_False;
   supervise(progress, [&] {
-    const LoadedScenario loaded = checked(load_scenario(find_scenario(scenario), overrides));
+    const CheckedScenario scene = checked(load_scenario(find_scenario(scenario), overrides));
+    const LoadedScenario& loaded = scene.loaded();
     warnings = with_files(loaded, loaded.warnings);
-    for (std::string& warning : with_files(loaded, loaded.file_warnings)) warnings.push_back(std::move(warning));
-    report = run_scenario(loaded, std::nullopt, shown, &tables);
+    for (std::string& warning : with_files(loaded, scene.file_warnings())) warnings.push_back(std::move(warning));
+    report = run_scenario(scene, std::nullopt, shown, &tables);
     for (std::string& warning : run_warnings({&report, 1})) warnings.push_back(std::move(warning));
   });
   py::dict result;
