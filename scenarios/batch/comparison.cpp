@@ -29,9 +29,11 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
                                  scenario.seed, most, question.seeds));
   }
   if (question.jitter != 0.0 && !position_is_free(scenario.motion)) {
-    throw InputError(fmt::format(
-        "{}: /motion/position: prescribes the tool's place, which --jitter cannot shift; allowed with it: \"free\"",
-        loaded.file.string()));
+    fail_in(
+        {.about_options = {"--jitter"}},
+        fmt::format(
+            "{}: /motion/position: prescribes the tool's place, which --jitter cannot shift; allowed with it: \"free\"",
+            loaded.file.string()));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "algorithms/module/module.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/program/commands.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/help.hpp"
@@ -146,7 +147,7 @@ int CommandLine::parse_and_run(ProgramWords words) {
     fmt::print("{}\n", version.what());
     return kSuccess;
   } catch (const CLI::ParseError& error) {
-    throw InputError(usage_problem(error, *app_));
+    throw usage_error(error, *app_);
   }
   load_modules(modules_);
   take_module_faults();  // forgets those of an earlier command of this process

@@ -188,7 +188,7 @@ double share_of(const std::string& text) {
   const auto number = finite_number(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
   const double share = number.value_or(0.0) * (percent ? 0.01 : 1.0);
   if (!(share > 0.0 && share < 1.0))
-    throw InputError(fmt::format("--to: got \"{}\"; allowed: a relative error, as 1% or 0.01", text));
+    fail_in_option("--to", fmt::format("got \"{}\"; allowed: a relative error, as 1% or 0.01", text));
   return share;
 }
 
@@ -224,7 +224,7 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   // All input is checked before anything runs or is written.
   if (!(options.ratio > 1.0 && options.ratio <= kLargestRatio))
-    throw InputError(fmt::format("--ratio: got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
+    fail_in_option("--ratio", fmt::format("got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
   const auto most = options.to.empty() ? std::nullopt : std::optional(share_of(options.to));
   const std::filesystem::path file = find_scenario(options.scenario);
   const ScenarioText scenario = read_scenario_text(file);
@@ -233,7 +233,7 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   const SweepPlan plan = plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), jobs);
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
-  require_names("--metric: got", metrics, plan.metrics, "hapbench describe metrics");
+  require_names("--metric", metrics, plan.metrics, "hapbench describe metrics");
   print_warnings(context, plan.warnings);
   Report report(options, "converge_" + file.stem().string(), context);
   std::vector<LevelRun> runs(plan.cases.size());

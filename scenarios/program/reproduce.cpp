@@ -48,7 +48,7 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   std::set<std::string> chosen;
   for (const std::string& id : ids) {
     const auto found = std::ranges::find(valid, lower_case(id), lower_case);
-    if (found == valid.end()) require_valid_name("--only: got", id, valid, "hapbench describe claims");
+    if (found == valid.end()) require_valid_option("--only", id, valid, "hapbench describe claims");
     chosen.insert(*found);
   }
   std::erase_if(claims, [&chosen](const Claim& claim) { return !chosen.contains(claim.id); });

@@ -133,14 +133,14 @@ void write_points(const LoadedScenario& loaded, const std::filesystem::path& fil
   const std::string text = point_shell_text(shell->points(), file);
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
-    throw InputError(fmt::format("--points {}: is a directory", file.string()));
+    fail_in({.about_options = {"--points"}}, fmt::format("--points {}: is a directory", file.string()));
   require_writable_directory(context, file.has_parent_path() ? file.parent_path() : ".", "--points");
   write_file_atomically(file, text);
 }
 
 int validate(const ValidateOptions& options, ProgramContext& context) {
   if (!options.points.empty() && options.files.size() > 1)
-    throw InputError(fmt::format("--points: got {} scenes; allowed: one", options.files.size()));
+    fail_in_option("--points", fmt::format("got {} scenes; allowed: one", options.files.size()));
   std::string text;
   Json verdicts = Json::array();
   int status = kSuccess;

@@ -11,6 +11,7 @@
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/analysis/stability/limit_theory.hpp"
 #include "scenarios/batch/jobs.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 
@@ -20,7 +21,7 @@ namespace {
 void check_sampling(const LoadedScenario& loaded) {
   const double step = loaded.scenario.time.step;
   if (kVibrationCutoff * step < 0.5) return;
-  fail_in({.file = loaded.file, .pointer = "/time/step_s"},
+  fail_in({.file = loaded.file, .pointer = "/time/step_s", .about_options = {"--vibration"}},
           fmt::format("got {}; allowed for --vibration, which is what is above {} Hz: below {:.4g}", step,
                       kVibrationCutoff, 0.5 / kVibrationCutoff));
 }

@@ -42,11 +42,11 @@ struct CompareOptions : CommonOptions {
 };
 
 Comparison planned(const CompareOptions& options) {
-  require_names("--by: got", options.metrics, names_of(all_metrics(), &Metric::name), "hapbench describe metrics");
+  require_names("--by", options.metrics, names_of(all_metrics(), &Metric::name), "hapbench describe metrics");
   constexpr double kMostJitter = 1.0;
   ComparisonQuestion question = options.question;
   if (!(question.jitter >= 0.0 && question.jitter <= kMostJitter))
-    throw InputError(fmt::format("--jitter: got {}; allowed: 0 ... {} m", question.jitter, kMostJitter));
+    fail_in_option("--jitter", fmt::format("got {}; allowed: 0 ... {} m", question.jitter, kMostJitter));
   question.scenarios = find_scenarios(options.scenarios);
   question.overrides = options.overrides;
   question.algorithms = question.algorithms.empty() ? algorithm_names() : chosen_algorithms(question.algorithms);

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <thread>
 #include <tuple>
+#include <utility>
 
 #include "algorithms/registry.hpp"
 #include "bindings/bindings.hpp"
@@ -143,7 +144,11 @@ void translate_errors() {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const InputError& error) {
       py::list faults;
-      for (const InputError& fault : error.faults()) faults.append(py::make_tuple(fault.place(), fault.problem()));
+      for (const InputError& fault : error.faults()) {
+        ErrorLocation file = fault.location();
+        const std::string field = std::exchange(file.pointer, "");
+        faults.append(py::make_tuple(file.text(), field, fault.problem()));
+      }
       const py::object type = py::module_::import("hapbench.errors").attr("ScenarioError");
       PyErr_SetObject(type.ptr(), type(faults).ptr());
     } catch (const IoError& error) {
