@@ -229,7 +229,7 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   const std::filesystem::path file = find_scenario(options.scenario);
   const ScenarioText scenario = read_scenario_text(file);
   const LevelSweep levels = levels_of(options, scenario);
-  const JobOptions jobs = job_options(options, "converge");
+  const JobOptions jobs = job_options(options, "converge", context);
   const SweepPlan plan = plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), jobs);
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};

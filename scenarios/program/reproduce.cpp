@@ -84,9 +84,10 @@ void provide(ThesisRun& run, const fs::path& directory, bool anew) {
 
 /// Judges the claims by the thesis's runs, those of which are made that are missing.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
-                               const Choices& choices, std::vector<ThesisRun>& runs, const ReproduceOptions& options) {
+                               const Choices& choices, std::vector<ThesisRun>& runs, const ReproduceOptions& options,
+                               const ProgramContext& context) {
   std::vector<JudgedClaim> judged;
-  ProgressBar bar(options.output.quiet ? "" : "claims", claims.size());
+  ProgressBar bar(options.output.quiet ? "" : "claims", claims.size(), context.progress);
   for (const Claim& claim : claims) {
     bar.show(judged.size());
     std::set<std::string> used, provided;   // scenarios
@@ -113,7 +114,7 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings, c
                     ProgramContext& context) {
   const fs::path scratch = options.folder() / "robustness";
   std::vector<ReadingVerdicts> judged(readings.values.size());
-  for_each_job(judged.size(), job_options(options, "robustness"),
+  for_each_job(judged.size(), job_options(options, "robustness", context),
                [&](std::size_t i) { judged[i] = judge_reading(readings, i, scratch / std::to_string(i)); });
   std::error_code ignored;
   fs::remove(scratch, ignored);
@@ -169,10 +170,10 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
     if (bundled.group == "thesis") runs.push_back({bundled});
   // Single claims run only the scenarios they need.
   if (options.only.empty())
-    for_each_job(runs.size(), job_options(options, "thesis"),
+    for_each_job(runs.size(), job_options(options, "thesis", context),
                  [&](std::size_t i) { provide(runs[i], options.runs(), options.anew); });
 
-  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options);
+  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options, context);
   // None of single claims unless --ledger is given: they would replace the ledger of all claims.
   const fs::path ledger =
       options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);

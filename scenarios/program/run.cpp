@@ -128,8 +128,8 @@ int run(const RunOptions& options, ProgramContext& context) {
   std::vector<Result> results;
   std::string targets;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const Result& result = results.emplace_back(
-        run_scenario(scenarios[i], directories[i], !options.output.quiet, nullptr, /*diagnose=*/true));
+    const Result& result = results.emplace_back(run_scenario(
+        scenarios[i], directories[i], {!options.output.quiet, context.progress}, nullptr, /*diagnose=*/true));
     // Users who try values of a field hear that the results of the value before are gone.
     if (result.replaces_other && options.out.empty() && !options.overrides.empty())
       print_note(context, fmt::format("replaced the run of other fields in {}; --out DIRECTORY keeps both",

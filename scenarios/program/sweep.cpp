@@ -235,11 +235,11 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
   if (command.print) return print_row(command, cases, context);
   SweepOptions options{
       .directory = results_directory(command.out, "sweep_" + cases.scenes().front().file.stem().string()),
-      .jobs = job_options(command, "sweep"),
+      .jobs = job_options(command, "sweep", context),
       .resume = command.resume,
       .keep_runs = command.keep_runs};
   if (!command.shard.empty()) options.shard = parse_shard(command.shard);
-  const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking"));
+  const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking", context));
   chosen_metric(plan.metrics, command.metric);            // throws if there is none of that name
   print_warnings(context, first_few(plan.warnings, 20));  // there may be as many as runs
   require_writable_directory(context, options.directory);

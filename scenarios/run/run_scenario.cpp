@@ -83,7 +83,8 @@ class Run {
   }
 
   /// Makes a trial, which records to `target`, if that is given. `label` is that of the progress bar; empty for none.
-  void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label) {
+  void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label,
+            const ProgressListener* listener) {
     SimulationParts parts = assemble(scenario_, checked_.files(), shell_, trial);
     const SimulationConfig config = simulation_config(scenario_);
     const TrialParts begun{config, parts, reference_.get(), trial.subject, trial.number};
@@ -95,7 +96,7 @@ class Run {
 
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
     const auto seen = outcome_observer(scenario_, checked_.files(), parts, &*metrics_);
-    ProgressBar bar(label, static_cast<std::uint64_t>(time.steps));
+    ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), listener);
     std::vector<Observer*> observers = {&sampler, &*metrics_};
     for (const auto& observer : sections_.all()) observers.push_back(observer.get());
     observers.push_back(seen.get());
@@ -219,12 +220,12 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
 
 }  // namespace
 
-Result run_scenario(const CheckedScenario& checked, const std::optional<fs::path>& output, bool progress,
+Result run_scenario(const CheckedScenario& checked, const std::optional<fs::path>& output, Progress progress,
                     RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell) {
   const Scenario& scenario = checked.scenario();
   const auto start = Clock::now();
   if (!shell) {
-    const WaitNotice notice(scenario.name + ": building the shell", progress);
+    const WaitNotice notice(scenario.name + ": building the shell", progress.is_shown);
     shell = make_shell(scenario, checked.files());
   }
   const std::chrono::duration<double> shell_time = Clock::now() - start;
@@ -238,9 +239,9 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<fs::path
     std::optional<RecordTarget> target;
     if (folder && records_rows(scenario.record)) target = folder->of_trial(trials[i], trials.size());
     if (tables != nullptr) target = &tables->trials.emplace_back();
-    std::string label = progress ? scenario.name : "";
-    if (progress && trials.size() > 1) label += fmt::format(" {}/{}", i + 1, trials.size());
-    run.make(trials[i], target, label);
+    std::string label = progress.is_shown ? scenario.name : "";
+    if (progress.is_shown && trials.size() > 1) label += fmt::format(" {}/{}", i + 1, trials.size());
+    run.make(trials[i], target, label, progress.listener);
   }
   Result result = run.result();
   result.timing.shell = shell_time.count();

@@ -130,7 +130,7 @@ int compare(const CompareOptions& options, ProgramContext& context) {
   remove_earlier_comparison(out, comparison);
   for (std::size_t run = 0; run < comparison.size(); ++run)
     require_writable_directory(context, out / comparison.folder(run));
-  const JobOptions jobs = job_options(options, "compare");
+  const JobOptions jobs = job_options(options, "compare", context);
   JobOptions timed = jobs;
   // The wide table of a single comparison shows times, which concurrent runs would lengthen.
   if (options.jobs == 0 && !ranks && layout.in_full()) timed.threads = 1;

@@ -34,7 +34,7 @@ void draw_preview(const std::filesystem::path& scenario, const std::filesystem::
                   ProgramContext& context) {
   const std::filesystem::path run = results_directory("", scenario.stem().string());
   require_writable_directory(context, run);
-  run_scenario(checked(load_scenario(scenario)), run, !quiet);
+  run_scenario(checked(load_scenario(scenario)), run, {!quiet, context.progress});
   write_way(context, run, picture, quiet);
 }
 

@@ -37,7 +37,7 @@ TuneQuestion tune_question(const TuneOptions& options, const std::filesystem::pa
     question.families = chosen_names("--family", options.family, {std::begin(kFamilies), std::end(kFamilies)});
   if (const auto range = ratios_of("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
   question.mass = ratios_of("--mass", options.mass);
-  question.threads = job_options(options, "").threads;
+  question.threads = threads_of(options);
   return question;
 }
 
