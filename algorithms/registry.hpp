@@ -17,6 +17,10 @@
 
 /// The table of algorithms. An algorithm of this tree is a source file that defines its AlgorithmEntry and a row in
 /// registry.cpp; `add_algorithm` adds one from outside while the program runs.
+///
+/// The table belongs to the process. It decides which scenarios can be read: reader, schema, help and the factories
+/// look names up in it, and modules, whose code a process loads once, add to it. Several tables would have to pass
+/// through every visitor of fields and would all hold the same.
 namespace hapbench {
 
 /// A parameter that belongs to one algorithm alone and is not a member of RenderingConfig: a number, the field

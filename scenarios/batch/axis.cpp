@@ -129,7 +129,7 @@ Axis parse_axis(const std::string& text, bool sampled) {
   } catch (const InputError& error) {
     constexpr std::size_t kLongest = 200;
     const std::string shown = text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
-    throw InputError(fmt::format("--vary \"{}\": {}", shown, error.problem()));
+    fail_in({.about_options = {"--vary"}}, fmt::format("--vary \"{}\": {}", shown, error.problem()));
   }
   const std::vector<PlacedField> fields = placed_fields();
   const auto place = std::ranges::find(fields, axis.path, &PlacedField::path);

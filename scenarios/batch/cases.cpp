@@ -22,7 +22,7 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, st
   std::set<std::string> paths;
   for (const Axis& axis : axes_)
     if (!paths.insert(axis.path).second)
-      throw InputError(fmt::format("--vary: got \"{}\" twice; allowed: each field once", axis.path));
+      fail_in_option("--vary", fmt::format("got \"{}\" twice; allowed: each field once", axis.path));
   strides_.resize(axes_.size());
   if (sampling_) {
     size_ = sampling_->count;
@@ -32,7 +32,7 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, st
     double size = 1.0;  // a double, because the product may overflow integers
     for (const Axis& axis : axes_) size *= static_cast<double>(axis.size());
     if (size > static_cast<double>(kMostRuns))
-      throw InputError(fmt::format("--vary: got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
+      fail_in_option("--vary", fmt::format("got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
     for (std::size_t a = axes_.size(); a-- > 0; size_ *= axes_[a].size()) strides_[a] = size_;
   }
   sort_runs();

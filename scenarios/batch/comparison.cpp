@@ -8,7 +8,7 @@
 #include "scenarios/batch/seed_axis.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
@@ -29,9 +29,11 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
                                  scenario.seed, most, question.seeds));
   }
   if (question.jitter != 0.0 && !position_is_free(scenario.motion)) {
-    throw InputError(fmt::format(
-        "{}: /motion/position: prescribes the tool's place, which --jitter cannot shift; allowed with it: \"free\"",
-        loaded.file.string()));
+    fail_in(
+        {.about_options = {"--jitter"}},
+        fmt::format(
+            "{}: /motion/position: prescribes the tool's place, which --jitter cannot shift; allowed with it: \"free\"",
+            loaded.file.string()));
   }
 }
 
@@ -41,7 +43,9 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
   const Cases alone({text}, question.overrides, axes);
-  const LoadedScenario first = checked(alone.load(0));  // the files are those of the scenario, whatever the algorithm
+  // The files are those of the scenario, whatever the algorithm.
+  const CheckedScenario checked_first = checked(alone.load(0));
+  const LoadedScenario& first = checked_first.loaded();
   check_seeds_and_jitter(question, first);
   if (question.seeds > 1 || question.jitter != 0.0)
     axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
@@ -50,7 +54,7 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
     const std::vector<Warning> of_this = alone.load(a).warnings;
     std::erase_if(common, [&](const Warning& w) { return std::ranges::find(of_this, w) == of_this.end(); });
   }
-  append_new(warnings, with_files(first, first.file_warnings));
+  append_new(warnings, with_files(first, checked_first.file_warnings()));
   append_new(warnings, with_files(first, common));
   return {{text}, question.overrides, std::move(axes)};
 }

@@ -21,8 +21,8 @@ namespace {
 /// The state that the threads of for_each_job share.
 class JobQueue {
  public:
-  JobQueue(std::size_t count, const std::string& label, const std::function<void(std::size_t)>& job)
-      : count_(count), job_(job), bar_(label, count) {}
+  JobQueue(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job)
+      : count_(count), job_(job), bar_(options.label, count, options.listener) {}
 
   /// Keeps all threads waiting while the returned lock is held.
   std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
@@ -76,7 +76,7 @@ std::size_t available_threads() {
 }
 
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job) {
-  JobQueue queue(count, options.label, job);
+  JobQueue queue(count, options, job);
   const std::size_t threads = std::max(1u, options.threads);
   // A job may itself use TBB: it gets no more threads than there are jobs at once.
   const tbb::global_control within(tbb::global_control::max_allowed_parallelism,

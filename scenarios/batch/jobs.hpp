@@ -4,6 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "scenarios/run/progress_bar.hpp"
+
 /// A pool of threads that runs a list of jobs in order, with a progress bar.
 namespace hapbench {
 
@@ -12,8 +14,9 @@ std::size_t available_threads();
 
 /// How for_each_job processes a list of jobs.
 struct JobOptions {
-  unsigned threads = 1;  ///< jobs at once; at least 1
-  std::string label;     ///< text before the progress bar; empty for no bar
+  unsigned threads = 1;                        ///< jobs at once; at least 1
+  std::string label;                           ///< text before the progress bar; empty for no bar
+  const ProgressListener* listener = nullptr;  ///< hears of the bar in place of the terminal; null: it is drawn
 };
 
 /// Calls job(0) … job(count - 1), each once, on several threads. Jobs begin in this order, and at most `threads` of

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 
 namespace hapbench {
 namespace {

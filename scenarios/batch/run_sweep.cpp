@@ -14,7 +14,7 @@
 #include "scenarios/batch/sweep_columns.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/batch/table_file.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {

@@ -19,14 +19,14 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
   const Words parts = parts_of(text, ':');
   const std::string_view name = parts[0];
   if (name == "sobol") {
-    throw InputError(
-        "--sample: \"sobol\" is no longer known; instead: lhs:N, or --points FILE.csv with the points of another "
-        "program");
+    fail_in_option("--sample",
+                   "\"sobol\" is no longer known; instead: lhs:N, or --points FILE.csv with the points of another "
+                   "program");
   }
   const auto count = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
   if ((name != kLatinHypercube && name != kRandomPoints) || !count || *count < 1 || *count > kMostRuns) {
-    throw InputError(
-        fmt::format("--sample: got \"{}\"; allowed: lhs:N or random:N with 1 <= N <= {}", text, kMostRuns));
+    fail_in_option("--sample",
+                   fmt::format("got \"{}\"; allowed: lhs:N or random:N with 1 <= N <= {}", text, kMostRuns));
   }
   return {name == kLatinHypercube ? kLatinHypercube : kRandomPoints, *count, seed, {}};
 }

@@ -10,7 +10,7 @@
 #include "results/io/columns.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/writer.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/describe_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
@@ -57,15 +57,16 @@ void add_names(Names& names, const MetricList& metrics) {
 Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& metrics) {
   Json hashes = Json::array();
   for (const std::size_t run : runs) {
-    LoadedScenario loaded = checked(plan.cases.load(run));
-    append_new(plan.warnings, with_files(loaded, loaded.file_warnings));
+    const CheckedScenario scene = checked(plan.cases.load(run));
+    const LoadedScenario& loaded = scene.loaded();
+    append_new(plan.warnings, with_files(loaded, scene.file_warnings()));
     if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position)) {
       const bool has_force = loaded.files.at(kMotionFile).stroke()->force.has_value();
       add_names(metrics, metrics_without_values(loaded.scenario, has_force));
     }
-    loaded.scenario.name.clear();  // may be that of the scenario's file
-    hashes.push_back(
-        with_file(loaded, [&] { return scenario_hash(effective_scenario(loaded.scenario, {}), loaded.files); }));
+    Scenario unnamed = loaded.scenario;
+    unnamed.name.clear();  // may be that of the scenario's file
+    hashes.push_back(with_file(loaded, [&] { return scenario_hash(effective_scenario(unnamed, {}), loaded.files); }));
   }
   return hashes;
 }

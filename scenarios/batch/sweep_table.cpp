@@ -29,12 +29,13 @@ Condition condition_of(const std::string& text, const SweepTable& table) {
   const auto number = finite_number(value);
   const auto holds = kSigns.find(sign);
   if (holds == kSigns.end() || value.empty() || (!number && sign != "=" && sign != "!=")) {
-    throw InputError(fmt::format(
-        "--where: got \"{}\"; allowed: a column of sweep.csv, one of < <= > >= = !=, and a number (a text with "
-        "= and !=), as inside_max_m<3e-4 or outcome=completes",
-        text));
+    fail_in_option(
+        "--where",
+        fmt::format("got \"{}\"; allowed: a column of sweep.csv, one of < <= > >= = !=, and a number (a text with "
+                    "= and !=), as inside_max_m<3e-4 or outcome=completes",
+                    text));
   }
-  require_valid_name("--where: got", name, table.columns, "hapbench describe sweep.csv");
+  require_valid_option("--where", name, table.columns, "hapbench describe sweep.csv");
   return [=, compare = holds->second, column = table.place(name)](const SweepRow& row) {
     if (!number) return (row[column] == value) == (sign == "=");
     const auto found = finite_number(row[column]);

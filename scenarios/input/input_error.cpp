@@ -72,6 +72,10 @@ void fail_in_line(const std::filesystem::path& file, std::size_t line, const std
   fail_in({.file = file, .line = line}, problem);
 }
 
+void fail_in_option(const std::string& option, const std::string& problem) {
+  fail_in({.about_options = {option}}, fmt::format("{}: {}", option, problem));
+}
+
 void fail_in(ErrorLocation location, const std::string& problem) {
   throw InputError(InputError::Kind::relation, std::move(location), problem);
 }

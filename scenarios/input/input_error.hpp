@@ -22,6 +22,9 @@ struct ErrorLocation {
   std::size_t line = 0;      ///< in the file, from 1; 0: none
   std::string entry = {};    ///< of the file, as "sample 3"
   std::string pointer = {};  ///< JSON pointer of the field
+  /// Names of the options that the problem is about, the option at fault first: "--between". They are no part of the
+  /// text, which the problem words; a study finds the line by them that gave an option.
+  std::vector<std::string> about_options = {};
 
   /// The parts that are there, as a message begins with them: "scene.json: /time/step_s" or "mesh.obj, line 3".
   std::string text() const;
@@ -67,5 +70,7 @@ class InputError : public std::runtime_error {
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
 [[noreturn]] void fail_in(ErrorLocation location, const std::string& problem);
+/// Throws an InputError about the value of an option, whose name begins the message: "--between: got …".
+[[noreturn]] void fail_in_option(const std::string& option, const std::string& problem);
 
 }  // namespace hapbench

@@ -71,11 +71,26 @@ std::string nearest_name_hint(std::string_view given, std::span<const std::strin
   return name.empty() ? "" : fmt::format("; nearest valid name: \"{}\"", name);
 }
 
+namespace {
+
+std::string refusal_of(std::string_view got, const std::string& name, std::span<const std::string> valid,
+                       std::string_view shown_by) {
+  return fmt::format("{} \"{}\"{}; allowed: {}", got, name, nearest_name_hint(name, valid),
+                     quoted_list(valid, shown_by));
+}
+
+}  // namespace
+
+void require_valid_option(const std::string& option, const std::string& name, std::span<const std::string> valid,
+                          std::string_view shown_by) {
+  if (std::ranges::find(valid, name) != valid.end()) return;
+  fail_in_option(option, refusal_of("got", name, valid, shown_by));
+}
+
 void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
                         std::string_view shown_by) {
-  if (std::find(valid.begin(), valid.end(), name) != valid.end()) return;
-  throw InputError(
-      fmt::format("{} \"{}\"{}; allowed: {}", got, name, nearest_name_hint(name, valid), quoted_list(valid, shown_by)));
+  if (std::ranges::find(valid, name) != valid.end()) return;
+  throw InputError(refusal_of(got, name, valid, shown_by));
 }
 
 std::string quoted_list(std::span<const std::string> names, std::string_view shown_by) {

@@ -15,6 +15,10 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
 /// Returns `; nearest valid name: "x"`, or `; version 0.4.0 renamed it to "x"`, or an empty text.
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
 
+/// Throws an InputError about the value of an option when that is not among the valid names.
+void require_valid_option(const std::string& option, const std::string& name, std::span<const std::string> valid,
+                          std::string_view shown_by = {});
+
 /// Throws an InputError, `got` before the name, when the name is not among the valid ones. `shown_by`: see below.
 void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
                         std::string_view shown_by = {});

@@ -33,21 +33,21 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
   std::vector<std::string> plain = given, all = names_of(compared_devices(), &ComparedDevice::name);
   std::erase_if(plain, [](const std::string& name) { return name.ends_with(kFile) || name.ends_with(']'); });
   all.insert(all.begin(), {"FILE.json", kPresets});
-  chosen_names("--device: got", plain, all, "hapbench describe presets");
+  chosen_names("--device", plain, all, "hapbench describe presets");
   std::vector<ComparedDevice> chosen;
   for (const std::string& name : given) {
     const std::vector<ComparedDevice> found = devices_named(name);
     if (found.empty())
-      throw InputError(fmt::format("--device: got \"{}\"; allowed: a preset with [soft] or [stiff] behind it", name));
+      fail_in_option("--device", fmt::format("got \"{}\"; allowed: a preset with [soft] or [stiff] behind it", name));
     chosen.insert(chosen.end(), found.begin(), found.end());
   }
   std::set<std::string> names;
   for (const ComparedDevice& device : chosen) {
     if (names.insert(device.name).second) continue;
-    throw InputError(
-        fmt::format("--device: got a second device named \"{}\"; allowed: each name once, and a file is named by what "
-                    "stands before .json",
-                    device.name));
+    fail_in_option("--device",
+                   fmt::format("got a second device named \"{}\"; allowed: each name once, and a file is named by what "
+                               "stands before .json",
+                               device.name));
   }
   return chosen;
 }

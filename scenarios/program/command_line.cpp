@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "algorithms/module/module.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/program/commands.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/help.hpp"
@@ -23,10 +24,10 @@ namespace hapbench {
 
 namespace {
 
-void load_modules(const std::vector<std::string>& files) {
-  for (const std::string& file : files) load_law(file);
+void load_modules(const std::vector<std::string>& files, const LoadingGuard& guard) {
+  for (const std::string& file : files) load_law(file, guard);
   constexpr const char* kFolders = "HAPBENCH_MODULE_PATH";
-  if (const char* folders = std::getenv(kFolders)) load_laws_in(kFolders, folders);
+  if (const char* folders = std::getenv(kFolders)) load_laws_in(kFolders, folders, guard);
 }
 
 /// Makes a success fail when a module failed: its runs count as diverged, which by itself need not be a failure.
@@ -145,9 +146,9 @@ int CommandLine::parse_and_run(ProgramWords words) {
     fmt::print("{}\n", version.what());
     return kSuccess;
   } catch (const CLI::ParseError& error) {
-    throw InputError(usage_problem(error, *app_));
+    throw usage_error(error, *app_);
   }
-  load_modules(modules_);
+  load_modules(modules_, context_.guard_loading);
   take_module_faults();  // forgets those of an earlier command of this process
   return status_with_faults(action_(), context_);
 }

@@ -25,7 +25,7 @@
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/load_scenario.hpp"
@@ -188,7 +188,7 @@ double share_of(const std::string& text) {
   const auto number = finite_number(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
   const double share = number.value_or(0.0) * (percent ? 0.01 : 1.0);
   if (!(share > 0.0 && share < 1.0))
-    throw InputError(fmt::format("--to: got \"{}\"; allowed: a relative error, as 1% or 0.01", text));
+    fail_in_option("--to", fmt::format("got \"{}\"; allowed: a relative error, as 1% or 0.01", text));
   return share;
 }
 
@@ -199,16 +199,17 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-LevelRun run_of(const LoadedScenario& loaded) {
-  const auto shell = make_shell(loaded.scenario, loaded.files);
+LevelRun run_of(const CheckedScenario& scene) {
+  const auto shell = make_shell(scene.scenario(), scene.files());
   const double before = processor_seconds();
-  Result result = run_with_shell(loaded, shell);
+  Result result = run_with_shell(scene, shell);
   return {std::move(result), processor_seconds() - before};
 }
 
 /// The levels of a scene's field. Throws InputError where it has none.
 LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenario) {
-  const LoadedScenario loaded = checked(load_scenario(scenario, options.overrides));  // the plan tells its warnings
+  const CheckedScenario scene = checked(load_scenario(scenario, options.overrides));  // the plan tells its warnings
+  const LoadedScenario& loaded = scene.loaded();
   if (current_value(loaded.scenario, options.field).is_null()) {
     std::vector<std::string> given = options.overrides;
     given.push_back(options.field + "=1");
@@ -223,20 +224,20 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   // All input is checked before anything runs or is written.
   if (!(options.ratio > 1.0 && options.ratio <= kLargestRatio))
-    throw InputError(fmt::format("--ratio: got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
+    fail_in_option("--ratio", fmt::format("got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
   const auto most = options.to.empty() ? std::nullopt : std::optional(share_of(options.to));
   const std::filesystem::path file = find_scenario(options.scenario);
   const ScenarioText scenario = read_scenario_text(file);
   const LevelSweep levels = levels_of(options, scenario);
-  const JobOptions jobs = job_options(options, "converge");
+  const JobOptions jobs = job_options(options, "converge", context);
   const SweepPlan plan = plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), jobs);
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
-  require_names("--metric: got", metrics, plan.metrics, "hapbench describe metrics");
+  require_names("--metric", metrics, plan.metrics, "hapbench describe metrics");
   print_warnings(context, plan.warnings);
   Report report(options, "converge_" + file.stem().string(), context);
   std::vector<LevelRun> runs(plan.cases.size());
-  for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(plan.cases.load(i)); });
+  for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(checked(plan.cases.load(i))); });
   report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().result.name,
                          levels.axis.path, levels.axis.values.front(), levels.ratio, levels.formal_order));
   std::vector<ConvergeStudy> studies;

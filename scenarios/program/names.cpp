@@ -17,35 +17,35 @@ namespace hapbench {
 
 std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for) {
   if (!asked_for.empty()) {
-    require_valid_name("--metric: got", asked_for, metrics, "hapbench describe metrics");
+    require_valid_option("--metric", asked_for, metrics, "hapbench describe metrics");
     return asked_for;
   }
   const auto has = [&](std::string_view name) { return std::ranges::find(metrics, name) != metrics.end(); };
   return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
 }
 
-void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid,
-                   std::string_view shown_by) {
+void require_names(const std::string& option, const std::vector<std::string>& names,
+                   const std::vector<std::string>& valid, std::string_view shown_by) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    require_valid_name(got, name, valid, shown_by);
-    if (!seen.insert(name).second) throw InputError(fmt::format("{} \"{}\" twice; allowed: once", got, name));
+    require_valid_option(option, name, valid, shown_by);
+    if (!seen.insert(name).second) fail_in_option(option, fmt::format("got \"{}\" twice; allowed: once", name));
   }
 }
 
-std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
+std::vector<std::string> chosen_names(const std::string& option, const std::vector<std::string>& given,
                                       const std::vector<std::string>& all, std::string_view shown_by) {
   if (given == std::vector<std::string>{"all"}) return all;
   if (std::find(given.begin(), given.end(), "all") != given.end())
-    throw InputError(fmt::format("{} \"all\" together with other names; allowed: \"all\" alone", got));
+    fail_in_option(option, "got \"all\" together with other names; allowed: \"all\" alone");
   std::vector<std::string> valid = all;
   valid.insert(valid.begin(), "all");
-  require_names(got, given, valid, shown_by);
+  require_names(option, given, valid, shown_by);
   return given;
 }
 
 std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given) {
-  return chosen_names("--algorithms: got", given, algorithm_names(), "hapbench describe algorithms");
+  return chosen_names("--algorithms", given, algorithm_names(), "hapbench describe algorithms");
 }
 
 std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most) {

@@ -7,12 +7,12 @@
 
 namespace hapbench {
 
-/// Throws InputError unless each name is among the valid ones and given once; `got` stands before the name in its
-/// message, as in "--only: got". `shown_by`: a command that shows the valid ones, see quoted_list.
-void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid,
-                   std::string_view shown_by = {});
+/// Throws InputError about an option unless each of its names is among the valid ones and given once. `shown_by`: a
+/// command that shows the valid ones, see quoted_list.
+void require_names(const std::string& option, const std::vector<std::string>& names,
+                   const std::vector<std::string>& valid, std::string_view shown_by = {});
 /// Checks the same way and returns the names, where "all" alone stands for all of them.
-std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
+std::vector<std::string> chosen_names(const std::string& option, const std::vector<std::string>& given,
                                       const std::vector<std::string>& all, std::string_view shown_by = {});
 
 /// The algorithms of --algorithms.

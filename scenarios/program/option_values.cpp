@@ -12,7 +12,7 @@ namespace hapbench {
 double number_between(const char* option, const std::string& text, double least, double most) {
   const auto number = finite_number(text);
   if (number && *number >= least && *number <= most) return *number;
-  throw InputError(fmt::format("{}: got \"{}\"; allowed: {} ... {}", option, text, least, most));
+  fail_in_option(option, fmt::format("got \"{}\"; allowed: {} ... {}", text, least, most));
 }
 
 std::optional<Range> range_of(const char* option, const std::string& text) {
@@ -20,15 +20,15 @@ std::optional<Range> range_of(const char* option, const std::string& text) {
   const Words ends = parts_of(text, ':');
   const auto from = finite_number(ends.front()), to = finite_number(ends.back());
   if (ends.size() != 2 || !from || !to || !(*from < *to))
-    throw InputError(fmt::format("{}: got \"{}\"; allowed: a:b with numbers a < b", option, text));
+    fail_in_option(option, fmt::format("got \"{}\"; allowed: a:b with numbers a < b", text));
   return Range{*from, *to};
 }
 
 void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds) {
   const Words parts = parts_of(text, '=');
   if (parts.size() == 2) {
-    require_valid_name("--bound: got", std::string(parts[0]), names_of(all_metrics(), &Metric::name),
-                       "hapbench describe metrics");
+    require_valid_option("--bound", std::string(parts[0]), names_of(all_metrics(), &Metric::name),
+                         "hapbench describe metrics");
     const Words ends = parts_of(parts[1], ':');
     const auto least = finite_number(ends.front()), most = finite_number(ends.back());
     if (ends.size() <= 2 && least && most && *least <= *most) {
@@ -38,8 +38,8 @@ void add_bound(const std::string& text, std::map<std::string, MetricBound>& boun
       return;
     }
   }
-  throw InputError(
-      fmt::format("--bound: got \"{}\"; allowed: metric=most or metric=least:most, as inside_settled_m=3e-4", text));
+  fail_in_option("--bound",
+                 fmt::format("got \"{}\"; allowed: metric=most or metric=least:most, as inside_settled_m=3e-4", text));
 }
 
 }  // namespace hapbench

@@ -51,9 +51,12 @@ void add_common(Command& command, CommonOptions& options, const std::string& nam
   add_overrides(command, options.overrides);
 }
 
-JobOptions job_options(const CommonOptions& options, const std::string& label) {
-  return {options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
-          options.output.quiet ? "" : label};
+unsigned threads_of(const CommonOptions& options) {
+  return options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs;
+}
+
+JobOptions job_options(const CommonOptions& options, const std::string& label, const ProgramContext& context) {
+  return {threads_of(options), options.output.quiet ? "" : label, context.progress};
 }
 
 }  // namespace hapbench

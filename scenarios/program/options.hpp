@@ -8,6 +8,7 @@
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/program_context.hpp"
 
 namespace hapbench {
 
@@ -43,7 +44,9 @@ void add_out(Command& command, std::string& out, const std::string& name);
 void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise);
 void add_common(Command& command, CommonOptions& options, const std::string& name);
 
+/// The threads of --jobs.
+unsigned threads_of(const CommonOptions& options);
 /// The threads of --jobs, and a progress bar behind `label` unless quiet.
-JobOptions job_options(const CommonOptions& options, const std::string& label);
+JobOptions job_options(const CommonOptions& options, const std::string& label, const ProgramContext& context);
 
 }  // namespace hapbench

@@ -46,9 +46,9 @@ void print_warnings(const ProgramContext& context, const std::vector<std::string
   for (const std::string& warning : warnings) tell(context, &CapturedOutput::warnings, "hapbench: warning:", warning);
 }
 
-void print_warnings(const ProgramContext& context, const LoadedScenario& loaded) {
-  for (const auto& warnings : {loaded.warnings, loaded.file_warnings})
-    print_warnings(context, with_files(loaded, warnings));
+void print_warnings(const ProgramContext& context, const CheckedScenario& checked) {
+  for (const auto& warnings : {checked.loaded().warnings, checked.file_warnings()})
+    print_warnings(context, with_files(checked.loaded(), warnings));
 }
 
 void print_note(const ProgramContext& context, std::string_view text) {

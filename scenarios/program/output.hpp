@@ -8,7 +8,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/options.hpp"
 #include "scenarios/program/program_context.hpp"
-#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 
 /// What commands print: on standard output and standard error, or for the host that the context names.
 namespace hapbench {
@@ -18,7 +18,7 @@ void print(const ProgramContext& context, const OutputOptions& options, const st
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const ProgramContext& context, const std::vector<std::string>& warnings);
 /// Prints those about a scenario, given values first, then files, with the file of each in front.
-void print_warnings(const ProgramContext& context, const LoadedScenario& loaded);
+void print_warnings(const ProgramContext& context, const CheckedScenario& checked);
 /// Prints "hapbench: TEXT" on standard error.
 void print_note(const ProgramContext& context, std::string_view text);
 /// Prints "hapbench: error: TEXT" on standard error.

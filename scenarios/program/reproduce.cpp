@@ -14,7 +14,7 @@
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis/choices.hpp"
@@ -48,7 +48,7 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   std::set<std::string> chosen;
   for (const std::string& id : ids) {
     const auto found = std::ranges::find(valid, lower_case(id), lower_case);
-    if (found == valid.end()) require_valid_name("--only: got", id, valid, "hapbench describe claims");
+    if (found == valid.end()) require_valid_option("--only", id, valid, "hapbench describe claims");
     chosen.insert(*found);
   }
   std::erase_if(claims, [&chosen](const Claim& claim) { return !chosen.contains(claim.id); });
@@ -77,16 +77,17 @@ void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
   if (run.seconds) return;
   run.seconds = seconds_of(1, [&] {
     const fs::path results = directory / run.name;
-    const LoadedScenario loaded = checked(load_scenario(run.file));
-    if (rerun || !is_current(results, loaded)) run.unmet = run_scenario(loaded, results, false).unmet;
+    const CheckedScenario scene = checked(load_scenario(run.file));
+    if (rerun || !is_current(results, scene.loaded())) run.unmet = run_scenario(scene, results, false).unmet;
   });
 }
 
 /// Judges the claims by the thesis's runs, those of which are made that are missing.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
-                               const Choices& choices, std::vector<ThesisRun>& runs, const ReproduceOptions& options) {
+                               const Choices& choices, std::vector<ThesisRun>& runs, const ReproduceOptions& options,
+                               const ProgramContext& context) {
   std::vector<JudgedClaim> judged;
-  ProgressBar bar(options.output.quiet ? "" : "claims", claims.size());
+  ProgressBar bar(options.output.quiet ? "" : "claims", claims.size(), context.progress);
   for (const Claim& claim : claims) {
     bar.show(judged.size());
     std::set<std::string> used, provided;   // scenarios
@@ -113,7 +114,7 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings, c
                     ProgramContext& context) {
   const fs::path scratch = options.folder() / "robustness";
   std::vector<ReadingVerdicts> judged(readings.values.size());
-  for_each_job(judged.size(), job_options(options, "robustness"),
+  for_each_job(judged.size(), job_options(options, "robustness", context),
                [&](std::size_t i) { judged[i] = judge_reading(readings, i, scratch / std::to_string(i)); });
   std::error_code ignored;
   fs::remove(scratch, ignored);
@@ -169,10 +170,10 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
     if (bundled.group == "thesis") runs.push_back({bundled});
   // Single claims run only the scenarios they need.
   if (options.only.empty())
-    for_each_job(runs.size(), job_options(options, "thesis"),
+    for_each_job(runs.size(), job_options(options, "thesis", context),
                  [&](std::size_t i) { provide(runs[i], options.runs(), options.rerun); });
 
-  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options);
+  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options, context);
   // None of single claims unless --ledger is given: they would replace the ledger of all claims.
   const fs::path ledger =
       options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);

@@ -8,13 +8,13 @@
 namespace hapbench {
 
 void require_writable_directory(ProgramContext& context, const std::filesystem::path& directory,
-                                std::string_view option) {
-  if (const auto error = context.directories.create(directory))
-    throw InputError(fmt::format("{} {}: cannot be created: {}", option, directory.string(), error.message()));
-  if (!std::filesystem::is_directory(directory))
-    throw InputError(fmt::format("{} {}: is not a directory", option, directory.string()));
-  if (access(directory.c_str(), W_OK | X_OK) != 0)
-    throw InputError(fmt::format("{} {}: cannot be written to", option, directory.string()));
+                                const std::string& option) {
+  const auto refuse = [&](const std::string& problem) {
+    fail_in({.about_options = {option}}, fmt::format("{} {}: {}", option, directory.string(), problem));
+  };
+  if (const auto error = context.directories.create(directory)) refuse("cannot be created: " + error.message());
+  if (!std::filesystem::is_directory(directory)) refuse("is not a directory");
+  if (access(directory.c_str(), W_OK | X_OK) != 0) refuse("cannot be written to");
 }
 
 std::filesystem::path results_directory(const std::string& out, const std::string& name) {

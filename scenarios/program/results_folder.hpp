@@ -14,6 +14,6 @@ std::filesystem::path results_directory(const std::string& out, const std::strin
 /// Throws InputError, which names the option, unless results can be written to `directory`. Creates it, and removes it
 /// again if it is still empty when the context goes.
 void require_writable_directory(ProgramContext& context, const std::filesystem::path& directory,
-                                std::string_view option = "--out");
+                                const std::string& option = "--out");
 
 }  // namespace hapbench

@@ -1,6 +1,7 @@
 #include "scenarios/program/run.hpp"
 
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
@@ -110,14 +111,15 @@ int run(const RunOptions& options, ProgramContext& context) {
   // All input is checked before anything runs or is written.
   std::vector<std::string> overrides = options.overrides;
   if (options.latency) overrides.emplace_back("record.timing=true");
-  std::vector<LoadedScenario> scenarios;
+  std::vector<LoadedScenario> loaded;
   const std::vector<fs::path> files = find_scenarios(options.scenarios);
-  for (const fs::path& file : files) scenarios.push_back(load_scenario(file, overrides));
+  for (const fs::path& file : files) loaded.push_back(load_scenario(file, overrides));
   const std::vector<fs::path> directories = output_directories(options.out, files);
-  for (LoadedScenario& loaded : scenarios) {
-    loaded = checked(std::move(loaded));
-    if (options.no_skip) loaded.scenario.rendering.skips = Skips::off;
-    print_warnings(context, loaded);
+  std::vector<CheckedScenario> scenarios;
+  for (LoadedScenario& scene : loaded) {
+    if (options.no_skip) scene.scenario.rendering.skips = Skips::off;
+    scenarios.push_back(checked(std::move(scene)));
+    print_warnings(context, scenarios.back());
   }
   for (const fs::path& directory : directories) require_writable_directory(context, directory);
 
@@ -126,8 +128,8 @@ int run(const RunOptions& options, ProgramContext& context) {
   std::vector<Result> results;
   std::string targets;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const Result& result = results.emplace_back(
-        run_scenario(scenarios[i], directories[i], !options.output.quiet, nullptr, /*diagnose=*/true));
+    const Result& result = results.emplace_back(run_scenario(
+        scenarios[i], directories[i], {!options.output.quiet, context.progress}, nullptr, /*diagnose=*/true));
     // Users who try values of a field hear that the results of the value before are gone.
     if (result.replaces_other && options.out.empty() && !options.overrides.empty())
       print_note(context, fmt::format("replaced the run of other fields in {}; --out DIRECTORY keeps both",
@@ -140,7 +142,7 @@ int run(const RunOptions& options, ProgramContext& context) {
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
     for (const std::string& unmet : result.unmet) {
       report.fault(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
-                               scenarios[i].file.string(), unmet, outcome_name(result.end.outcome)),
+                               scenarios[i].loaded().file.string(), unmet, outcome_name(result.end.outcome)),
                    kUnexpectedOutcome);
     }
   }

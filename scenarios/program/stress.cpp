@@ -31,7 +31,8 @@ Columns<StressCounts> stress_columns() {
 int stress(const StressOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   Report report(options, "stress", context);
-  const std::vector<StressCounts> all = stress_laws(options.count, options.seed, job_options(options, "stress"));
+  const std::vector<StressCounts> all =
+      stress_laws(options.count, options.seed, job_options(options, "stress", context));
   const Columns<StressCounts> columns = stress_columns();
   report.write("stress.csv", columns, all);
   report.say(columns.text(all, layout));

@@ -146,12 +146,10 @@ std::optional<StudyWords> StudyWords::in(const ProgramWords& words, std::span<co
 }
 
 InputError StudyWords::located(const InputError& error) const {
-  const std::string text = error.what();
-  for (const auto& [option, line] : lines) {
-    const std::size_t at = text.find(option);
-    if (at == std::string::npos || text.substr(at + option.size(), 1).find_first_of("abcdefghijklmnopqrstuvwxyz-") == 0)
-      continue;
-    return InputError(fmt::format("{}:{}: {}", file.string(), line, text));
+  for (const std::string& option : error.location().about_options) {
+    const auto line = lines.find(option);
+    if (line == lines.end()) continue;
+    return InputError(fmt::format("{}:{}: {}", file.string(), line->second, error.what()));
   }
   return error;
 }

@@ -38,7 +38,8 @@ struct StudyWords {
   /// study, which are neither options nor values of options. Throws InputError for a study of another command.
   static std::optional<StudyWords> in(const ProgramWords& words, std::span<const std::size_t> arguments);
 
-  /// The error, about the line of the study that has the option which it names, if it names one.
+  /// Returns the error with the line of the study in front that has the first of ErrorLocation::about_options; the
+  /// error itself if the study has none of them.
   InputError located(const InputError& error) const;
 
   std::filesystem::path file;

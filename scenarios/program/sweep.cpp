@@ -140,8 +140,8 @@ std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vect
     return {read_scenario_text(find_scenario(command.scenario))};
   }
   if (!command.scenario.empty() || axis->range)
-    throw InputError(fmt::format("--vary: got \"{}\" as a {}; allowed: a list of scenarios, and none before it",
-                                 kSceneAxis, axis->range ? "range" : "field together with a scenario"));
+    fail_in_option("--vary", fmt::format("got \"{}\" as a {}; allowed: a list of scenarios, and none before it",
+                                         kSceneAxis, axis->range ? "range" : "field together with a scenario"));
   std::vector<ScenarioText> scenes;
   for (const std::string& name : axis->values) scenes.push_back(read_scenario_text(find_scenario(name)));
   return scenes;
@@ -151,7 +151,8 @@ Cases cases_of(const SweepCommand& command) {
   std::vector<Axis> axes;
   std::optional<Sampling> sampling;
   if (!command.points.empty() && (!command.vary.empty() || !command.sample.empty()))
-    throw InputError(
+    fail_in(
+        {.about_options = {"--points", "--vary", "--sample"}},
         "--points: cannot be combined with --vary or --sample; allowed: the file alone, which has fields and values");
   for (const std::string& text : command.vary) axes.push_back(parse_axis(text, !command.sample.empty()));
   if (!command.points.empty()) sampling = read_points(command.points, axes);
@@ -180,7 +181,7 @@ int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& co
 /// Prints the command that repeats the run of a row.
 int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& context) {
   if (command.row >= cases.size())
-    throw InputError(fmt::format("--row: got {}; allowed: 0 ... {}", command.row, cases.size() - 1));
+    fail_in_option("--row", fmt::format("got {}; allowed: 0 ... {}", command.row, cases.size() - 1));
   cases.load(command.row);  // throws if the row's scenario is wrong
   const fs::path scene = fs::absolute(cases.scene(command.row).file).lexically_normal();
   std::vector<std::string> words = {context.program.string(), "run", scene.string()};
@@ -227,18 +228,18 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
       return reprint(command, context);
   if (command.vary.empty() && command.points.empty()) throw InputError(kNothingToSweep);
   if (!command.where.empty() && !command.shard.empty())
-    throw InputError(
-        "--where: got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");
+    fail_in_option("--where",
+                   "got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");
   // All input is checked before anything runs or is written.
   Cases cases = cases_of(command);
   if (command.print) return print_row(command, cases, context);
   SweepOptions options{
       .directory = results_directory(command.out, "sweep_" + cases.scenes().front().file.stem().string()),
-      .jobs = job_options(command, "sweep"),
+      .jobs = job_options(command, "sweep", context),
       .resume = command.resume,
       .keep_runs = command.keep_runs};
   if (!command.shard.empty()) options.shard = parse_shard(command.shard);
-  const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking"));
+  const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking", context));
   chosen_metric(plan.metrics, command.metric);            // throws if there is none of that name
   print_warnings(context, first_few(plan.warnings, 20));  // there may be as many as runs
   require_writable_directory(context, options.directory);

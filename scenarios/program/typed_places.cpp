@@ -17,6 +17,7 @@ void name_override(ErrorLocation& location, const std::string& override, const s
   const bool has_option = !location.option.empty();  // what else was typed, as --device
   location.option +=
       fmt::format("{}--set {}{}", has_option ? ": " : "", override.substr(0, kMostTyped), is_long ? "…" : "");
+  location.about_options.emplace_back("--set");
   location.file.clear();
   if (location.pointer == pointer) location.pointer.clear();  // the override says it
 }

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/input/input_error.hpp"
@@ -22,6 +24,20 @@ std::vector<std::string> option_names(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   return names;
+}
+
+/// The options of a command that the text of an error of CLI11 names, in the order of the text. CLI11 gives an option
+/// at fault only in the text.
+std::vector<std::string> options_named(const std::string& text, const CLI::App& command) {
+  const std::vector<std::string> known = option_names(command);
+  std::vector<std::string> named;
+  for (std::size_t begin = text.find("--"); begin != std::string::npos;) {
+    const std::size_t end = std::min(text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", begin), text.size());
+    const std::string name = text.substr(begin, end - begin);
+    if (std::ranges::count(known, name) > 0) named.push_back(name);
+    begin = text.find("--", end);
+  }
+  return named;
 }
 
 /// Tells a user who wrote a field of scenarios as an option how fields are given.
@@ -48,7 +64,7 @@ std::string problem_of(const std::string& word, const CLI::App& program, const C
 
 }  // namespace
 
-std::string usage_problem(const CLI::ParseError& error, const CLI::App& program) {
+InputError usage_error(const CLI::ParseError& error, const CLI::App& program) {
   const std::vector<CLI::App*> chosen = program.get_subcommands();
   const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
   const std::string name = command ? command->get_name() + ": " : "", words = command ? command->get_name() + " " : "";
@@ -57,9 +73,15 @@ std::string usage_problem(const CLI::ParseError& error, const CLI::App& program)
   std::erase(extra, "--");
   // An unknown option leaves its value behind as an extra word; the option is the mistake to report.
   std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
-  if (!extra.empty()) return name + problem_of(extra.front(), program, command) + help;
-  if (command == nullptr && error.get_name() == "RequiredError") return "a command is missing" + help;
-  return one_line(name + error.what()) + help;
+  const auto error_about = [](std::vector<std::string> options, const std::string& problem) {
+    return InputError(InputError::Kind::relation, ErrorLocation{.about_options = std::move(options)}, problem);
+  };
+  if (!extra.empty()) {
+    const std::string& word = extra.front();
+    return error_about({word.substr(0, word.find('='))}, name + problem_of(word, program, command) + help);
+  }
+  if (command == nullptr && error.get_name() == "RequiredError") return InputError("a command is missing" + help);
+  return error_about(options_named(error.what(), command ? *command : program), one_line(name + error.what()) + help);
 }
 
 }  // namespace hapbench

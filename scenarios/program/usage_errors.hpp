@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string>
+#include "scenarios/input/input_error.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
@@ -10,7 +10,8 @@ class ParseError;
 /// What is wrong with words that no command takes.
 namespace hapbench {
 
-/// Returns in one line why CLI11 rejected the command line, with the nearest valid name.
-std::string usage_problem(const CLI::ParseError& error, const CLI::App& program);
+/// Returns an error that explains in one line why CLI11 rejected the command line, with the nearest valid name. Its location
+/// names the options at fault.
+InputError usage_error(const CLI::ParseError& error, const CLI::App& program);
 
 }  // namespace hapbench

@@ -18,7 +18,7 @@
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/program_words.hpp"
 #include "scenarios/program/results_folder.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/recorders.hpp"
@@ -133,14 +133,14 @@ void write_points(const LoadedScenario& loaded, const std::filesystem::path& fil
   const std::string text = point_shell_text(shell->points(), file);
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
-    throw InputError(fmt::format("--points {}: is a directory", file.string()));
+    fail_in({.about_options = {"--points"}}, fmt::format("--points {}: is a directory", file.string()));
   require_writable_directory(context, file.has_parent_path() ? file.parent_path() : ".", "--points");
   write_file_atomically(file, text);
 }
 
 int validate(const ValidateOptions& options, ProgramContext& context) {
   if (!options.points.empty() && options.files.size() > 1)
-    throw InputError(fmt::format("--points: got {} scenes; allowed: one", options.files.size()));
+    fail_in_option("--points", fmt::format("got {} scenes; allowed: one", options.files.size()));
   std::string text;
   Json verdicts = Json::array();
   int status = kSuccess;
@@ -156,8 +156,9 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
         verdict["kind"] = "device";
         continue;
       }
-      const LoadedScenario loaded = checked(load_scenario(file, options.overrides));
-      print_warnings(context, loaded);
+      const CheckedScenario scene = checked(load_scenario(file, options.overrides));
+      const LoadedScenario& loaded = scene.loaded();
+      print_warnings(context, scene);
       const SceneFacts facts = scene_facts(loaded);
       print_warnings(context, with_files(loaded, facts.warnings));
       if (!options.points.empty()) write_points(loaded, options.points, context);

@@ -1,6 +1,5 @@
 #include "scenarios/run/assemble.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "algorithms/registry.hpp"
@@ -23,10 +22,6 @@ namespace {
 /// Room for the contacts of a module, which need not come from triangles.
 constexpr std::size_t kMostModuleContacts = 10'000;
 
-std::filesystem::path contact_library(const Scenario& scenario) {
-  return scenario.directory / scenario.rendering.contact_file;
-}
-
 /// The numbers of all elements, one after the other; null without elements.
 template <class Element>
 const auto* numbers_in(const std::vector<Element>& elements) {
@@ -46,7 +41,7 @@ std::unique_ptr<ContactSource> make_module_contacts(const Scenario& scenario, co
                            .triangle_count = surface.triangles.size(),
                            .tool_radius = make_tool(scenario, files)->half_width(),
                            .tool_length = is_flat ? drill->length : 0.0};
-  return module_contacts(contact_library(scenario), scenario.rendering.contact_config, run);
+  return module_contacts(scenario.directory / scenario.rendering.contact_file, scenario.rendering.contact_config, run);
 }
 
 /// The rules in an order that no scenario changes: the first that holds gives the run its outcome.
@@ -57,17 +52,6 @@ std::vector<StopRule> stop_rules(const Scenario& scenario) {
   if (wants(StopCondition::leaves_hole)) rules.push_back({Ending::left_hole, up});
   if (wants(StopCondition::tool_horizontal)) rules.push_back({Ending::tool_horizontal, up});
   return rules;
-}
-
-std::optional<Warning> clock_warning(const Stroke& stroke, const TimeFields& time) {
-  const double start = stroke.motion.samples().front().time, stop = stroke.motion.samples().back().time;
-  const double end = time.step * static_cast<double>(time.steps - 1);
-  if (start <= end && stop >= 0.0) return std::nullopt;
-  return Warning{
-      "stroke_clock", std::string(kMotionFile),
-      fmt::format("the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool "
-                  "stays at the {} sample; let the stroke begin at 0 or adapt time",
-                  start, stop, end, start > end ? "first" : "last")};
 }
 
 }  // namespace
@@ -85,31 +69,6 @@ TriangleSoup environment_surface(const Scenario& scenario, const NamedFiles& fil
     for (std::size_t i = 0; i < shell->size(); ++i) surface.vertices.push_back(shell->point(i).position);
   }
   return surface;
-}
-
-LoadedScenario checked(LoadedScenario loaded) {
-  const Scenario& scenario = loaded.scenario;
-  if (scenario.rendering.contact_source == kContactPlugin)
-    with_file(loaded, [&] { require_contacts_in(contact_library(scenario)); });
-  for (const auto& file : loaded.files.all()) {
-    try {
-      file->check();
-      if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // it must also be closed
-    } catch (const InputError& error) {
-      fail_in({.file = file_of(loaded, file->pointer()), .pointer = file->pointer()}, error.what());
-    }
-    for (Warning& warning : file->warnings()) loaded.file_warnings.push_back(std::move(warning));
-  }
-  NamedFile* const file = loaded.files.find(kMotionFile);
-  if (file == nullptr) return loaded;
-  if (scenario.record.force_reference && !scenario.reference_force && !file->stroke()->force) {
-    constexpr const char* kReference = "/record/force_reference";
-    fail_in(
-        {.file = file_of(loaded, kReference), .pointer = kReference},
-        fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
-  }
-  if (auto warning = clock_warning(*file->stroke(), scenario.time)) loaded.file_warnings.push_back(std::move(*warning));
-  return loaded;
 }
 
 SimulationConfig simulation_config(const Scenario& scenario) {

@@ -30,8 +30,7 @@ constexpr int kApart = RTLD_NOW | RTLD_LOCAL;
 constexpr int kApart = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #endif
 
-std::vector<LoadedLaw> laws;
-std::function<std::shared_ptr<void>()> guard_of_loading;
+std::vector<LoadedLaw> laws;  ///< of this process, as the header explains
 
 /// Also refuses a directory or a pipe before it would be opened as a library.
 std::string hash_of_file(const fs::path& file) {
@@ -120,10 +119,10 @@ const HapbenchModule& contacts_table(const fs::path& file) {
 
 }  // namespace
 
-void load_law(const fs::path& given) {
+void load_law(const fs::path& given, const LoadingGuard& guard) {
   const fs::path file = found_file(given, HAPBENCH_LAW);
   if (std::ranges::find(laws, file, &LoadedLaw::file) != laws.end()) return;
-  const std::shared_ptr<void> guarded = guard_of_loading ? guard_of_loading() : nullptr;
+  const std::shared_ptr<void> guarded = guard ? guard() : nullptr;
   std::string hash = hash_of_file(file);
   const HapbenchModule& table = opened(file, HAPBENCH_LAW);
   try {
@@ -138,7 +137,7 @@ void load_law(const fs::path& given) {
   }
 }
 
-void load_laws_in(const std::string& what, const std::string& folders) {
+void load_laws_in(const std::string& what, const std::string& folders, const LoadingGuard& guard) {
   for (const fs::path folder : parts_of(folders, ':')) {
     if (folder.empty()) continue;
     std::error_code error;
@@ -147,12 +146,8 @@ void load_laws_in(const std::string& what, const std::string& folders) {
       if (entry->path().extension() == ".so") files.push_back(entry->path());
     if (error) throw InputError(fmt::format("{}: {}: {}", what, folder.string(), error.message()));
     std::sort(files.begin(), files.end());
-    for (const fs::path& file : files) load_law(file);
+    for (const fs::path& file : files) load_law(file, guard);
   }
-}
-
-void guard_loading(std::function<std::shared_ptr<void>()> guard) {
-  guard_of_loading = std::move(guard);
 }
 
 const std::vector<LoadedLaw>& loaded_laws() {

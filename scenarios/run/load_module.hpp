@@ -11,6 +11,10 @@
 
 /// Shared libraries with a module (algorithms/module/hapbench_module.h). A library is loaded once and stays; loading
 /// leaves the floating-point modes of the program as they are.
+///
+/// The lists of loaded libraries belong to the process and not to a ProgramContext. dlopen() gives a process one copy
+/// of a library, whose code and static data all hosts then share, and a law that was loaded is in the one table of
+/// algorithms (algorithms/registry.hpp). A list for each context would forget both and load a law again.
 namespace hapbench {
 
 /// A loaded shared library with a law.
@@ -19,18 +23,18 @@ struct LoadedLaw {
   std::string algorithm;
 };
 
+/// Called before a new law is loaded; its result lives until that is done. If several threads may load laws, it throws
+/// InputError while others read the table of algorithms, and its result keeps them from it. Empty: one thread loads.
+using LoadingGuard = std::function<std::shared_ptr<void>()>;
+
 /// Loads a law and adds it to the algorithms for as long as the program runs, unless it is loaded already. Must not be
 /// called while another thread reads the table of algorithms. Throws InputError.
-void load_law(const std::filesystem::path& file);
+void load_law(const std::filesystem::path& file, const LoadingGuard& guard = {});
 
 /// Loads every *.so in folders separated by colons, by name; `what` names the list in messages. Throws InputError.
-void load_laws_in(const std::string& what, const std::string& folders);
+void load_laws_in(const std::string& what, const std::string& folders, const LoadingGuard& guard = {});
 
-/// Sets the function that is called before a new law is loaded; its result lives until that is done. If several threads
-/// may load laws, it throws InputError while others read the table of algorithms, and its result keeps them from it.
-void guard_loading(std::function<std::shared_ptr<void>()> guard);
-
-/// The loaded laws, in the order of loading.
+/// The loaded laws of this process, in the order of loading.
 const std::vector<LoadedLaw>& loaded_laws();
 
 /// Loads a library of contacts. Thread safe. Throws InputError.

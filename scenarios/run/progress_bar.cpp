@@ -16,8 +16,6 @@ namespace {
 constexpr auto kSilence = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(200);
 
-thread_local const ProgressListener* thread_listener = nullptr;
-
 /// Columns of the terminal behind standard error; 80 when it does not say.
 std::size_t columns() {
   winsize size{};
@@ -62,20 +60,8 @@ void show_seconds(const std::function<std::string()>& what, const std::stop_toke
 
 }  // namespace
 
-void report_progress_to(const ProgressListener* listener) noexcept {
-  thread_listener = listener;
-}
-
-void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept {
-  if (thread_listener != nullptr) (*thread_listener)(label, done, total);
-}
-
-ProgressBar::ProgressBar(std::string label, std::uint64_t total)
-    : listener_(thread_listener),
-      label_(std::move(label)),
-      total_(total),
-      start_(Clock::now()),
-      next_(start_ + kSilence) {}
+ProgressBar::ProgressBar(std::string label, std::uint64_t total, const ProgressListener* listener)
+    : listener_(listener), label_(std::move(label)), total_(total), start_(Clock::now()), next_(start_ + kSilence) {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) hide_status();

@@ -12,18 +12,21 @@ namespace hapbench {
 /// Hears of progress in place of the terminal, from any thread. Throws nothing.
 using ProgressListener = std::function<void(std::string_view label, std::uint64_t done, std::uint64_t total)>;
 
-/// Bars that this thread makes from now on tell the listener and draw nothing; null: they draw. It must outlive them.
-void report_progress_to(const ProgressListener* listener) noexcept;
+/// Whether the progress of work is shown, and to whom.
+struct Progress {
+  /// A bar on the terminal, or none. Not explicit, because most work is shown to nobody.
+  Progress(bool shown = false, const ProgressListener* other = nullptr) : is_shown(shown), listener(other) {}
 
-/// Tells this thread's listener, if there is one.
-void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept;
+  bool is_shown;
+  const ProgressListener* listener;  ///< hears of bars in place of the terminal; null: they are drawn
+};
 
 /// How much is done, as a line on standard error for work that takes longer than two seconds; silent otherwise. Where
 /// standard error is not a terminal, a line after 2 s, 4 s, 8 s and so on. A listener is told of every `show`.
 class ProgressBar {
  public:
-  /// `label` begins the line; an empty one silences it (--quiet).
-  ProgressBar(std::string label, std::uint64_t total);
+  /// `label` begins the line; an empty one silences it (--quiet). `listener`: null to draw; must outlive this.
+  ProgressBar(std::string label, std::uint64_t total, const ProgressListener* listener);
   /// Removes the line.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;

@@ -72,19 +72,20 @@ RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
 /// A run between its trials: the observers that go on from trial to trial, and what the trials gave so far.
 class Run {
  public:
-  Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose)
-      : loaded_(loaded),
-        scenario_(loaded.scenario),
+  Run(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose)
+      : checked_(checked),
+        scenario_(checked.scenario()),
         shell_(shell),
-        reference_(reference_force(scenario_, loaded.files)),
+        reference_(reference_force(scenario_, checked.files())),
         sections_(scenario_, reference_ != nullptr) {
     if (scenario_.record.timing) times_.emplace(static_cast<std::size_t>(scenario_.time.steps) * trials);
     if (diagnose) diagnosis_.emplace(scenario_);
   }
 
   /// Makes a trial, which records to `target`, if that is given. `label` is that of the progress bar; empty for none.
-  void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label) {
-    SimulationParts parts = assemble(scenario_, loaded_.files, shell_, trial);
+  void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label,
+            const ProgressListener* listener) {
+    SimulationParts parts = assemble(scenario_, checked_.files(), shell_, trial);
     const SimulationConfig config = simulation_config(scenario_);
     const TrialParts begun{config, parts, reference_.get(), trial.subject, trial.number};
     const TimeFields& time = scenario_.time;
@@ -94,8 +95,8 @@ class Run {
     tool_ = parts.tool;
 
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
-    const auto seen = outcome_observer(scenario_, loaded_.files, parts, &*metrics_);
-    ProgressBar bar(label, static_cast<std::uint64_t>(time.steps));
+    const auto seen = outcome_observer(scenario_, checked_.files(), parts, &*metrics_);
+    ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), listener);
     std::vector<Observer*> observers = {&sampler, &*metrics_};
     for (const auto& observer : sections_.all()) observers.push_back(observer.get());
     observers.push_back(seen.get());
@@ -123,19 +124,19 @@ class Run {
     result.duration = static_cast<double>(result.end.rows) * scenario_.time.step;
     sections_.tell(*metrics_, inside_ ? &*inside_ : nullptr, result);
     result.state_hash = metrics_->state_hash();
-    result.warnings = loaded_.file_warnings;
+    result.warnings = checked_.file_warnings();
     if (trials_ > 1) {
       for (Warning& warning : warnings_)
         warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
                                    first_with_warnings_, warning.text);
     }
     for (const auto& more : {warnings_, tool_warnings(scenario_.rendering, *tool_),
-                             diagnosis_ ? std::vector<Warning>() : rule_warnings(loaded_, result)})
+                             diagnosis_ ? std::vector<Warning>() : rule_warnings(checked_.loaded(), result)})
       result.warnings.insert(result.warnings.end(), more.begin(), more.end());
     // The fields of a cylinder say all.
     if (!std::holds_alternative<CylinderFields>(scenario_.tool)) result.tool = tool_json(*tool_);
     if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
-    if (diagnosis_) result.diagnosis = diagnosis_findings(loaded_, result, diagnosis_->rows(), *tool_);
+    if (diagnosis_) result.diagnosis = diagnosis_findings(checked_.loaded(), result, diagnosis_->rows(), *tool_);
     const StepLatency alone = step_latency(step_nanoseconds_, 0);
     result.timing.step_p50 = if_any(alone.steps > 0, 1e-9 * static_cast<double>(alone.p50));
     result.timing.step_p99 = if_any(alone.steps >= 100, 1e-9 * static_cast<double>(alone.p99));
@@ -189,7 +190,7 @@ class Run {
     result_.end.rows = rows;
   }
 
-  const LoadedScenario& loaded_;
+  const CheckedScenario& checked_;
   const Scenario& scenario_;
   const std::shared_ptr<const PointShell>& shell_;
   std::shared_ptr<const ReferenceForce> reference_;
@@ -219,13 +220,13 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
 
 }  // namespace
 
-Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
+Result run_scenario(const CheckedScenario& checked, const std::optional<fs::path>& output, Progress progress,
                     RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell) {
-  const Scenario& scenario = loaded.scenario;
+  const Scenario& scenario = checked.scenario();
   const auto start = Clock::now();
   if (!shell) {
-    const WaitNotice notice(scenario.name + ": building the shell", progress);
-    shell = make_shell(scenario, loaded.files);
+    const WaitNotice notice(scenario.name + ": building the shell", progress.is_shown);
+    shell = make_shell(scenario, checked.files());
   }
   const std::chrono::duration<double> shell_time = Clock::now() - start;
   const std::vector<Trial> trials = trials_of(scenario);
@@ -233,14 +234,14 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
   if (output) folder.emplace(*output);
   if (output) tables = nullptr;
   if (tables != nullptr) tables->trials.reserve(trials.size());  // the recorders point into it
-  Run run(loaded, shell, trials.size(), diagnose);
+  Run run(checked, shell, trials.size(), diagnose);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     std::optional<RecordTarget> target;
     if (folder && records_rows(scenario.record)) target = folder->of_trial(trials[i], trials.size());
     if (tables != nullptr) target = &tables->trials.emplace_back();
-    std::string label = progress ? scenario.name : "";
-    if (progress && trials.size() > 1) label += fmt::format(" {}/{}", i + 1, trials.size());
-    run.make(trials[i], target, label);
+    std::string label = progress.is_shown ? scenario.name : "";
+    if (progress.is_shown && trials.size() > 1) label += fmt::format(" {}/{}", i + 1, trials.size());
+    run.make(trials[i], target, label, progress.listener);
   }
   Result result = run.result();
   result.timing.shell = shell_time.count();
@@ -252,7 +253,7 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
   result.provenance.plugin = origin.file;
   result.provenance.plugin_hash = origin.hash;
   const Json effective = effective_scenario(scenario, output ? *output : fs::current_path());
-  result.scenario_hash = scenario_hash(effective, loaded.files);
+  result.scenario_hash = scenario_hash(effective, checked.files());
   if (folder) result.replaces_other = folder->write(scenario.record, effective, result, run.recorders());
   if (tables != nullptr) tables->write(effective, result, run.recorders());
   return result;

@@ -6,6 +6,11 @@
 
 /// Ctrl-C and SIGTERM: the program notes them, work asks for them between steps and ends itself by an exception, and
 /// destructors remove what is unfinished.
+///
+/// The received signal is one flag of the process, which work reads without getting it passed. A signal is sent to a
+/// process, and it stops all work in it: also the work of other threads of Python, where the first error ends all
+/// computing calls. All callers of every loop would pass the same object on, from the command through searches, jobs
+/// and claims to the step loop, and a loop whose caller forgot it could not be stopped.
 namespace hapbench {
 
 /// While it exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly; another one more than

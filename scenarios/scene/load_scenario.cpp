@@ -113,12 +113,12 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
 void apply_override(Json& json, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos)
-    throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+    fail_in_option("--set", "got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
   const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
   const Words keys = parts_of(path, '.');
   constexpr std::size_t kDeepestPath = 64;  // what walks through JSON goes down by a call for each
   if (keys.size() > kDeepestPath)
-    throw InputError(fmt::format("--set: got a path of more than {0} keys; allowed: at most {0}", kDeepestPath));
+    fail_in_option("--set", fmt::format("got a path of more than {0} keys; allowed: at most {0}", kDeepestPath));
   Json* node = &json;
   for (const std::string_view& key : keys) {
     if (node->is_array()) {

@@ -31,13 +31,13 @@ struct ScenarioText {
   std::vector<ScenarioLayer> layers = {};  ///< the file and those it extends; empty when it extends none
 };
 
-/// A checked scenario.
+/// A scenario whose fields are checked. Its files are not read yet (CheckedScenario in
+/// scenarios/run/checked_scenario.hpp).
 struct LoadedScenario {
   Scenario scenario;
   std::filesystem::path file;
-  NamedFiles files;                    ///< that the scenario names
-  std::vector<Warning> warnings;       ///< about given values without effect
-  std::vector<Warning> file_warnings;  ///< about the files, once they are checked (scenarios/run/assemble.hpp)
+  NamedFiles files;               ///< that the scenario names
+  std::vector<Warning> warnings;  ///< about given values without effect
   /// The file and those it extends as they stand, overrides in the first; empty when it extends none.
   std::vector<ScenarioLayer> layers;
 };

@@ -7,6 +7,7 @@
 #include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/batch/axis.hpp"
 #include "scenarios/batch/cases.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
@@ -56,7 +57,7 @@ MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t p
   bool arrives = false;
   double overshoot = 0.0, swings = 0.0;
   Vec3 side = Vec3::Zero();  // where it was last as far away, along each axis
-  for_each_row(loaded, [&](const StepRecord& row) {
+  for_each_row(checked(loaded), [&](const StepRecord& row) {
     const Vec3& p = row.tool.pose.position;
     for (const Eigen::Index axis : {0, 1}) {
       // The start is in the negative quadrant.
@@ -228,7 +229,7 @@ MeasuredValues measure_energy(const Evidence& e) {
   const LoadedScenario loaded = e.load(kSpring, {kUndamped});
   const RenderingConfig& rendering = loaded.scenario.rendering;
   double start = 0.0, most = 0.0;
-  for_each_row(loaded, [&](const StepRecord& row) {
+  for_each_row(checked(loaded), [&](const StepRecord& row) {
     const double energy = 0.5 * (rendering.stiffness * row.tool.pose.position.squaredNorm() +
                                  rendering.mass * row.tool.velocity.squaredNorm());
     if (row.step == 0) start = energy;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 #include "sim/core/math.hpp"
@@ -36,7 +37,7 @@ Finding judge_flipped_gradient(const MeasuredCase& m, const PublishedNumbers&) {
 /// damping_ratio_of_swings along x; NaN for none.
 double damping_ratio_of(const LoadedScenario& loaded) {
   std::vector<double> way;
-  for_each_row(loaded, [&](const StepRecord& row) { way.push_back(row.tool.pose.position.x()); });
+  for_each_row(checked(loaded), [&](const StepRecord& row) { way.push_back(row.tool.pose.position.x()); });
   return damping_ratio_of_swings(way).value_or(std::nan(""));
 }
 
@@ -286,7 +287,7 @@ std::vector<double> outward_boosts(const Evidence& e) {
   const LoadedScenario loaded = e.load("tilt_sweep_tandpasta");
   const double stiffness = loaded.scenario.rendering.stiffness;
   std::vector<double> boosts;
-  for_each_row(loaded, [&](const StepRecord& row) {
+  for_each_row(checked(loaded), [&](const StepRecord& row) {
     if (boosts.size() == std::size(kBoostTilts) || row.rendered->empty()) return;
     const double tilt = math::acos(-row.tool.pose.axis.y());
     if (tilt < kBoostTilts[boosts.size()]) return;

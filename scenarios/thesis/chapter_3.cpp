@@ -14,6 +14,7 @@
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "scenarios/scene/scenario.hpp"
@@ -487,7 +488,7 @@ Measured measure_saturated_motion(const Evidence& e) {
   struct Rows {
     double rows = 0.0, against = 0.0, way = 0.0, uphill = 0.0;
   } all, reached;
-  for_each_row(loaded, [&](const StepRecord& row) {
+  for_each_row(checked(loaded), [&](const StepRecord& row) {
     const Vec3& spring = row.force.spring;
     // The limiter scales the force to the limit, up to rounding.
     if (row.hand.input.norm() < limit * (1.0 - 1e-12) || spring.norm() == 0.0) return;
@@ -536,7 +537,7 @@ Shaking shake(const Evidence& e, double frequency, bool limited) {
   const double start = loaded.scenario.time.step * static_cast<double>(loaded.scenario.time.steps) - 1.0;
   Eigen::Vector2d force = Eigen::Vector2d::Zero(), position = force;
   Shaking shaking;
-  for_each_row(loaded, [&](const StepRecord& row) {
+  for_each_row(checked(loaded), [&](const StepRecord& row) {
     if (row.time < start) return;
     const Eigen::Vector2d phase(math::cos(omega * row.time), -math::sin(omega * row.time));
     force += row.hand_force.x() * phase;

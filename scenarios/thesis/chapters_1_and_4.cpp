@@ -9,6 +9,7 @@
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/statistics.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "scenarios/scene/scenario.hpp"
@@ -41,7 +42,7 @@ MeasuredCase pressed(const Evidence& e, const std::string& name, const std::stri
     IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(loaded.scenario.environment).block,
                                   make_cylinder(loaded.scenario.tool));
     double& deepest = m.values[fmt::format("at_{}", tilt)].emplace_back(0.0);
-    for_each_row(loaded, [&](const StepRecord& row) {
+    for_each_row(checked(loaded), [&](const StepRecord& row) {
       if (row.step % kRowsBetweenLooks != 0 || row.time < kLanded) return;
       ideal.on_step(row);
       if (ideal.error()) deepest = std::max(deepest, ideal.error()->interpenetration);
@@ -187,7 +188,7 @@ MeasuredValues measure_underestimation(const Evidence& e) {
   std::vector<double> error, share;
   std::vector<Vec3> way;
   double apart = 0.0, force = 0.0;
-  for_each_row(loaded, [&](const StepRecord& row) {
+  for_each_row(checked(loaded), [&](const StepRecord& row) {
     if (row.step % kRowsBetweenSamples != 0) return;
     way.push_back(row.tool.pose.position);
     const auto with_depths = [&](const char* model) {
@@ -211,7 +212,7 @@ MeasuredValues measure_underestimation(const Evidence& e) {
   std::sort(error.begin(), error.end());
   double distance = 0.0;
   std::size_t place = 0;
-  for_each_row(e.load("task2_rotate_signed_distance", {"rendering.depth_model=normal_projection"}),
+  for_each_row(checked(e.load("task2_rotate_signed_distance", {"rendering.depth_model=normal_projection"})),
                [&](const StepRecord& row) {
                  if (row.step % kRowsBetweenSamples != 0 || place >= way.size()) return;
                  distance += (row.tool.pose.position - way[place++]).squaredNorm();

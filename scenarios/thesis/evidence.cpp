@@ -57,7 +57,7 @@ LoadedScenario Evidence::load(const std::string& name, const std::vector<std::st
 }
 
 Result Evidence::run(const std::string& name, const std::vector<std::string>& more) const {
-  return run_scenario(load(name, more), std::nullopt, false);
+  return run_scenario(checked(load(name, more)), std::nullopt, false);
 }
 
 }  // namespace hapbench

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "algorithms/depth/depth_model.hpp"
 #include "results/io/columns.hpp"
@@ -13,7 +14,7 @@
 
 namespace hapbench {
 
-void for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row) {
+void for_each_row(const CheckedScenario& checked, const std::function<void(const StepRecord&)>& row) {
   class RowObserver final : public Observer {
    public:
     explicit RowObserver(const std::function<void(const StepRecord&)>& row_of) : row_(row_of) {}
@@ -23,9 +24,9 @@ void for_each_row(const LoadedScenario& loaded, const std::function<void(const S
    private:
     const std::function<void(const StepRecord&)>& row_;
   } observer(row);
-  const auto shell = make_shell(loaded.scenario, loaded.files);
-  Simulation simulation(simulation_config(loaded.scenario), assemble(loaded.scenario, loaded.files, shell, {}),
-                        {&observer});
+  const Scenario& scenario = checked.scenario();
+  const auto shell = make_shell(scenario, checked.files());
+  Simulation simulation(simulation_config(scenario), assemble(scenario, checked.files(), shell, {}), {&observer});
   run_to_end(simulation);
 }
 
@@ -54,7 +55,7 @@ std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t 
     loaded.scenario.rendering.local_average = false;
   }
   std::vector<ContactBuffer> sets;
-  for_each_row(loaded, [&](const StepRecord& row) {
+  for_each_row(checked(std::move(loaded)), [&](const StepRecord& row) {
     if (row.step % stride != 0 || row.rendered->empty()) return;
     sets.emplace_back(row.rendered->size()).assign(*row.rendered);
   });

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "scenarios/thesis/judging.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
@@ -25,7 +25,7 @@ namespace hapbench {
 inline constexpr const char* kProposedLaw = "shaped_stiffness";
 
 /// Runs a scenario in memory and calls `row` for each row, with the contacts as found. Throws InputError.
-void for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row);
+void for_each_row(const CheckedScenario& checked, const std::function<void(const StepRecord&)>& row);
 
 inline const Cylinder kDrill;
 inline const ToolPose kUpright{Vec3::Zero(), {0.0, 0.0, -1.0}};

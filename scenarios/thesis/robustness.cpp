@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A cell of a choice's column.
-std::string checked(const OpenChoice& choice, std::string_view cell, const fs::path& file, std::size_t line) {
+std::string allowed_value(const OpenChoice& choice, std::string_view cell, const fs::path& file, std::size_t line) {
   const auto& range = choice.range;
   const auto number = finite_number(cell);
   const bool is_allowed = range ? number && *number >= range->first && *number <= range->second
@@ -41,12 +41,12 @@ std::string checked(const OpenChoice& choice, std::string_view cell, const fs::p
 /// Runs a scenario for its results. Says what keeps them from being judged by; empty for nothing.
 std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   try {
-    const LoadedScenario loaded = evidence.load(name);
-    const Result run = run_scenario(loaded, evidence.directory / name, false);
+    const CheckedScenario scene = checked(evidence.load(name));
+    const Result run = run_scenario(scene, evidence.directory / name, false);
     // A subject who loses the drill misses the remaining targets, which is a result.
     const bool diverged = run.end.outcome == Outcome::diverges &&
-                          !std::holds_alternative<TrackingHandFields>(loaded.scenario.hand) &&
-                          !outcome_is_expected(loaded.scenario.expect, Outcome::diverges);
+                          !std::holds_alternative<TrackingHandFields>(scene.scenario().hand) &&
+                          !outcome_is_expected(scene.scenario().expect, Outcome::diverges);
     return diverged ? name + ": diverged" : "";
   } catch (const InputError& error) {
     return error.what();
@@ -131,7 +131,7 @@ std::vector<std::vector<std::string>> read_readings(const fs::path& file, const 
   while (csv.next()) {
     std::vector<std::string>& values = readings.emplace_back(choices.values_on_record());
     for (std::size_t i = 0; i < places.size(); ++i)
-      values[places[i]] = checked(choices.all()[places[i]], csv.cells()[i], file, csv.line());
+      values[places[i]] = allowed_value(choices.all()[places[i]], csv.cells()[i], file, csv.line());
   }
   if (readings.empty()) fail_in_file(file, "got no row; allowed: a reading of the choices on record in each");
   return readings;

@@ -13,6 +13,7 @@
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/scene/environments.hpp"
@@ -56,7 +57,7 @@ constexpr std::size_t kRowNumbers = 1 + 5 * 3 + 2;
 class Session final : public Observer {
  public:
   /// If the pointer leads the run, call `aim` before the first row; if not, the scenario's own hand and motion do.
-  Session(LoadedScenario loaded, bool is_led) : loaded_(checked(std::move(loaded))) {
+  Session(LoadedScenario loaded, bool is_led) : scene_(checked(std::move(loaded))) {
     if (is_led)
       put_on_pointer();
     else
@@ -80,8 +81,8 @@ class Session final : public Observer {
   /// The pointer's waypoints from now on end with this one.
   void aim(double t, const std::array<double, Pointer::kLed>& values) {
     const std::uint64_t row = simulation_ ? simulation_->next_row() : 0;
-    pointer_.add(t, values, static_cast<double>(row) * loaded_.scenario.time.step);
-    const Scenario& scenario = loaded_.scenario;
+    const Scenario& scenario = scene_.scenario();
+    pointer_.add(t, values, static_cast<double>(row) * scenario.time.step);
     const auto& hand = std::get<ImpedanceHandFields>(scenario.hand);
     *hand_ = ImpedanceHand(hand.stiffness, hand.damping, pointer_.place());
     Orientation led = make_orientation(*scenario.motion.orientation);
@@ -106,7 +107,7 @@ class Session final : public Observer {
 
   /// The data of the scene that stay the same during the run, as JSON.
   const char* scene() {
-    const Scenario& scenario = loaded_.scenario;
+    const Scenario& scenario = scene_.scenario();
     nlohmann::json outline = nlohmann::json::array();
     if (tool_) {
       for (const ProfilePoint& p : tool_->outline()) outline.push_back({p.s, p.rho});
@@ -151,7 +152,7 @@ class Session final : public Observer {
 
  private:
   void put_on_pointer() {
-    const Scenario& scenario = loaded_.scenario;
+    const Scenario& scenario = scene_.scenario();
     if (!std::holds_alternative<ImpedanceHandFields>(scenario.hand))
       throw InputError("/hand/type: allowed: \"impedance\", whose target the pointer leads");
     if (!scenario.motion.orientation || !position_is_free(scenario.motion))
@@ -162,20 +163,21 @@ class Session final : public Observer {
   }
 
   void begin() {
-    simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts_),
+    simulation_.emplace(simulation_config(scene_.scenario()), std::move(parts_),
                         std::vector<Observer*>{&metrics_, &passivity_, this});
   }
 
-  LoadedScenario loaded_;
-  SimulationParts parts_ = assemble(loaded_.scenario, loaded_.files, make_shell(loaded_.scenario, loaded_.files), {});
+  CheckedScenario scene_;
+  SimulationParts parts_ =
+      assemble(scene_.scenario(), scene_.files(), make_shell(scene_.scenario(), scene_.files()), {});
   std::shared_ptr<const PointShell> shell_ = parts_.shell;
   std::shared_ptr<const ToolShape> tool_ = parts_.tool;
   ImpedanceHand* hand_ = nullptr;     ///< the simulation's
   ScriptedMotion* motion_ = nullptr;  ///< the simulation's
   Pointer pointer_;
-  MetricsObserver metrics_{loaded_.scenario.time.step};
-  PassivityObserver passivity_{loaded_.scenario.time.step};
-  std::optional<HighPass> high_pass_ = vibration_filter(loaded_.scenario.time.step);
+  MetricsObserver metrics_{scene_.scenario().time.step};
+  PassivityObserver passivity_{scene_.scenario().time.step};
+  std::optional<HighPass> high_pass_ = vibration_filter(scene_.scenario().time.step);
   ContactBuffer contacts_{parts_.source->capacity()};
   std::optional<Simulation> simulation_;
   Mat3 last_ = Mat3::Zero();

@@ -24,6 +24,7 @@
 #include "scenarios/input/largest_sizes.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/point_shell_file.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/recordings.hpp"
@@ -91,7 +92,7 @@ void run_scenario_text(std::string_view text) {
   const auto* tool = std::get_if<MeshToolFields>(&loaded.scenario.tool);
   if (points_of(loaded.scenario.environment) > kMostPoints || (tool != nullptr && tool->grid)) return;
   loaded.scenario.time.steps = std::min(loaded.scenario.time.steps, kMostSteps);
-  run_scenario(loaded, std::nullopt, false);
+  run_scenario(checked(loaded), std::nullopt, false);
 }
 
 void require_points(const std::vector<SurfacePoint>& points) {

@@ -13,7 +13,7 @@
 #include "results/io/columns.hpp"
 #include "scenarios/analysis/current_value.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -39,8 +39,9 @@ std::string noise_reason(const Scenario& scenario) {
 
 LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double ratio) {
   if (ratio != std::round(ratio))
-    throw InputError(fmt::format(
-        "--ratio: got {}; allowed for {}: whole numbers, so that the rows of all levels coincide", ratio, kStepPath));
+    fail_in_option("--ratio",
+                   fmt::format("got {}; allowed for {}: whole numbers, so that the rows of all levels coincide", ratio,
+                               kStepPath));
   LevelSweep sweep{{kStepPath}, ratio, order_in_step(scenario), noise_reason(scenario)};
   std::int64_t times = 1;
   for (std::size_t i = 0; i < levels; ++i, times *= static_cast<std::int64_t>(ratio)) {
@@ -60,10 +61,10 @@ double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
     const auto distance = point_distance(loaded);
     if (distance && path == distance->path) return distance->metres;
   }
-  throw InputError(
-      fmt::format("--vary: got {}, which is {} in the scenario; allowed: a field that is a number > 0 and no "
-                  "integer, such as {}, environment.grid_m, environment.spacing_m or tool.grid_m",
-                  path, own.is_null() ? "not given" : own.dump(), kStepPath));
+  fail_in_option("--vary",
+                 fmt::format("got {}, which is {} in the scenario; allowed: a field that is a number > 0 and no "
+                             "integer, such as {}, environment.grid_m, environment.spacing_m or tool.grid_m",
+                             path, own.is_null() ? "not given" : own.dump(), kStepPath));
 }
 
 }  // namespace

@@ -11,7 +11,8 @@
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/analysis/stability/limit_theory.hpp"
 #include "scenarios/batch/jobs.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
@@ -20,7 +21,7 @@ namespace {
 void check_sampling(const LoadedScenario& loaded) {
   const double step = loaded.scenario.time.step;
   if (kVibrationCutoff * step < 0.5) return;
-  fail_in({.file = loaded.file, .pointer = "/time/step_s"},
+  fail_in({.file = loaded.file, .pointer = "/time/step_s", .about_options = {"--vibration"}},
           fmt::format("got {}; allowed for --vibration, which is what is above {} Hz: below {:.4g}", step,
                       kVibrationCutoff, 0.5 / kVibrationCutoff));
 }
@@ -38,11 +39,9 @@ class JudgedRuns {
       if (runs_.try_emplace(value).second) values.push_back(value);
     }
     for_each_job(values.size(), {question_.threads, ""}, [&](std::size_t i) {
-      const LoadedScenario loaded = question_.at(values[i]);
-      const auto judged = [&] {
-        return stability_of(loaded, make_shell(loaded.scenario, loaded.files), question_.rule);
-      };
-      runs_.at(values[i]) = with_file(loaded, judged);
+      const CheckedScenario run = checked(question_.at(values[i]));
+      const auto judged = [&] { return stability_of(run, make_shell(run.scenario(), run.files()), question_.rule); };
+      runs_.at(values[i]) = with_file(run.loaded(), judged);
     });
   }
 
@@ -118,7 +117,7 @@ void add_runs(const LimitQuestion& question, const std::map<double, RunStability
 void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   const JudgedValue suspect = limit.end.beyond ? *limit.end.beyond : limit.runs.front();
   limit.unstable_alone = !question.rule.holds(suspect.verdict) &&
-                         unstable_without_contact(question.at(suspect.value), question.rule.most_vibration);
+                         unstable_without_contact(checked(question.at(suspect.value)), question.rule.most_vibration);
 }
 
 /// Adds the limits by formulas, and the linear limit in contact.

@@ -38,8 +38,9 @@ Range default_range(const LimitQuestion& question, const Json& current) {
   // A field that does not exist or is no number is refused by its own error.
   if (!current.is_number()) question.at(1.0);
   if (!current.is_number() || !(current.get<double>() > 0.0))
-    throw InputError(fmt::format("--vary {}: {} in the scenario; allowed without --between: a number > 0",
-                                 question.path, current.is_null() ? "not given" : current.dump()));
+    fail_in({.about_options = {"--vary"}},
+            fmt::format("--vary {}: {} in the scenario; allowed without --between: a number > 0", question.path,
+                        current.is_null() ? "not given" : current.dump()));
   const double value = current.get<double>();
   return {allowed_end(question, value, -1), allowed_end(question, value, 1)};
 }

@@ -45,14 +45,13 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
   return static_cast<RunVerdict>(found - texts.begin());
 }
 
-RunStability judged_once(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                         const StabilityRule& rule) {
-  const Scenario& scenario = loaded.scenario;
+RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
+                         const std::shared_ptr<const PointShell>& shell, const StabilityRule& rule) {
   MotionClassifier classifier = classifier_of(scenario);
   LastRows last(scenario);
-  SimulationParts parts = assemble(scenario, loaded.files, shell, {});
+  SimulationParts parts = assemble(scenario, files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
-  const auto seen = outcome_observer(scenario, loaded.files, parts);
+  const auto seen = outcome_observer(scenario, files, parts);
   Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, seen.get()});
   const MotionClass motion = classify(simulation, classifier);
   const SettledState settled = last.state(classifier.at_rest());
@@ -75,36 +74,35 @@ RunStability judged_once(const LoadedScenario& loaded, const std::shared_ptr<con
 
 }  // namespace
 
-RunStability stability_of(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
+RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const PointShell> shell,
                           const StabilityRule& rule) {
   constexpr int kLengthenings = 3;
   constexpr std::int64_t kTimes = 4, kMostLengthened = 1'000'000;  // steps
-  RunStability run = judged_once(loaded, shell, rule);
-  LoadedScenario longer = loaded;
-  for (int i = 0; run.undecided && i < kLengthenings && longer.scenario.time.steps * kTimes <= kMostLengthened; ++i) {
-    longer.scenario.time.steps *= kTimes;
+  RunStability run = judged_once(checked.scenario(), checked.files(), shell, rule);
+  Scenario longer = checked.scenario();
+  for (int i = 0; run.undecided && i < kLengthenings && longer.time.steps * kTimes <= kMostLengthened; ++i) {
+    longer.time.steps *= kTimes;
     const std::uint64_t motion_hash = run.motion_hash;
-    run = judged_once(longer, shell, rule);
+    run = judged_once(longer, checked.files(), shell, rule);
     run.motion_hash = motion_hash;  // of the scenario's own length, as in other runs
   }
   if (!is_stable(run.verdict) || rule.bounds.empty()) return run;
-  const Result whole = run_with_shell(loaded, shell);
+  const Result whole = run_with_shell(checked, shell);
   if (!unmet_expectations({{whole.end.outcome}, rule.bounds}, whole).empty()) run.verdict = RunVerdict::beyond_bound;
   return run;
 }
 
-bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double> most_vibration) {
-  if (spring_of(loaded.scenario.hand) == nullptr ||
-      std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment))
+bool unstable_without_contact(const CheckedScenario& checked, std::optional<double> most_vibration) {
+  Scenario scenario = checked.scenario();
+  if (spring_of(scenario.hand) == nullptr || std::holds_alternative<SpringsEnvironment>(scenario.environment))
     return false;
   // Dry friction only takes energy: vibration from sticking and slipping is no instability of the loop.
-  Scenario scenario = loaded.scenario;
   if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) device->coulomb = 0.0;
   MotionClassifier classifier = classifier_of(scenario);
   LastRows last(scenario, true);
   constexpr double kCells = 1.0;  // [m], of the grid that local_average needs
   const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, kCells);
-  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, nothing, {}),
+  Simulation simulation(simulation_config(scenario), assemble(scenario, checked.files(), nothing, {}),
                         {&classifier, &last});
   const MotionClass motion = classify(simulation, classifier);
   return !is_stable(verdict_of(motion, last.state(classifier.at_rest()), most_vibration));

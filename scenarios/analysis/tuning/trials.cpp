@@ -10,7 +10,7 @@
 #include "scenarios/analysis/stability/limit_question.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/batch/jobs.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/scene/environments.hpp"
@@ -132,7 +132,7 @@ void Trials::try_and_measure(const TuneSetting& setting, double stiffness) {
 void Trials::measure(TuneTrial& trial) {
   if (!trial.metrics.empty()) return;
   in_parallel(1, [&](std::size_t) {
-    trial.metrics = metrics_of(run_with_shell(load(trial.setting, trial.stiffness), shell_));
+    trial.metrics = metrics_of(run_with_shell(checked(load(trial.setting, trial.stiffness)), shell_));
   });
 }
 
@@ -142,12 +142,12 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
   std::vector<std::string> why(count);
   in_parallel(count, [&](std::size_t i) {
     const FamilyMember& member = family_[i % family_.size()];
-    const LoadedScenario loaded = load(trial.setting, K, member, more(i));
-    if (unstable_loop(loaded.scenario, lambda, K, loaded.scenario.rendering.stiffness)) {
+    const CheckedScenario scene = checked(load(trial.setting, K, member, more(i)));
+    if (unstable_loop(scene.scenario(), lambda, K, scene.scenario().rendering.stiffness)) {
       why[i] = "unstable in contact" + with(member);
       return;
     }
-    const RunStability run = stability_of(loaded, shell_, rule_of(loaded.scenario));
+    const RunStability run = stability_of(scene, shell_, rule_of(scene.scenario()));
     if (!is_stable(run.verdict)) why[i] = verdict_with(run, member);
   });
   for (std::size_t i = 0; i < count; ++i)
@@ -211,8 +211,8 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
   std::vector<RunStability> judged(2 * (last - first));  // of each member at K and at G K
   in_parallel(judged.size(), [&](std::size_t job) {
     const double gain = job % 2 != 0 ? question_.margin : 1.0;
-    const LoadedScenario loaded = load(trial.setting, gain * trial.stiffness, family_[first + job / 2]);
-    judged[job] = stability_of(loaded, shell_, rule_of(loaded.scenario));
+    const CheckedScenario scene = checked(load(trial.setting, gain * trial.stiffness, family_[first + job / 2]));
+    judged[job] = stability_of(scene, shell_, rule_of(scene.scenario()));
   });
   if (first == 0) trial.lambda_max = judged[0].settled.lambda_max;
   for (std::size_t i = first; i < last; ++i) {
@@ -234,11 +234,11 @@ void Trials::judge_limits(TuneTrial& trial) {
   // Low vibration is judged by the scene's own run, limits of the user by the runs of all members.
   std::vector<TuneMetrics> metrics(is_quiet_ ? 1 : family_.size());
   in_parallel(metrics.size(), [&](std::size_t i) {
-    const LoadedScenario loaded = load(trial.setting, trial.stiffness, family_[i]);
-    const Result run = run_with_shell(loaded, shell_);
+    const CheckedScenario scene = checked(load(trial.setting, trial.stiffness, family_[i]));
+    const Result run = run_with_shell(scene, shell_);
     metrics[i] = metrics_of(run);
     if (!is_quiet_) return;
-    for (const Diagnosed& number : quiet_numbers(loaded, run)) {
+    for (const Diagnosed& number : quiet_numbers(scene.loaded(), run)) {
       trial.worst[number.rule] = number.value;
       trial.worst_text[number.rule] = number.says;
     }

@@ -42,11 +42,11 @@ struct CompareOptions : CommonOptions {
 };
 
 Comparison planned(const CompareOptions& options) {
-  require_names("--by: got", options.metrics, names_of(all_metrics(), &Metric::name), "hapbench describe metrics");
+  require_names("--by", options.metrics, names_of(all_metrics(), &Metric::name), "hapbench describe metrics");
   constexpr double kMostJitter = 1.0;
   ComparisonQuestion question = options.question;
   if (!(question.jitter >= 0.0 && question.jitter <= kMostJitter))
-    throw InputError(fmt::format("--jitter: got {}; allowed: 0 ... {} m", question.jitter, kMostJitter));
+    fail_in_option("--jitter", fmt::format("got {}; allowed: 0 ... {} m", question.jitter, kMostJitter));
   question.scenarios = find_scenarios(options.scenarios);
   question.overrides = options.overrides;
   question.algorithms = question.algorithms.empty() ? algorithm_names() : chosen_algorithms(question.algorithms);
@@ -130,7 +130,7 @@ int compare(const CompareOptions& options, ProgramContext& context) {
   remove_earlier_comparison(out, comparison);
   for (std::size_t run = 0; run < comparison.size(); ++run)
     require_writable_directory(context, out / comparison.folder(run));
-  const JobOptions jobs = job_options(options, "compare");
+  const JobOptions jobs = job_options(options, "compare", context);
   JobOptions timed = jobs;
   // The wide table of a single comparison shows times, which concurrent runs would lengthen.
   if (options.jobs == 0 && !ranks && layout.in_full()) timed.threads = 1;

@@ -14,11 +14,11 @@ namespace hapbench {
 namespace {
 
 /// One search runs on all threads; of several each has one.
-void find_limits(const LimitOptions& options, std::vector<LimitRow>& rows) {
+void find_limits(const LimitOptions& options, std::vector<LimitRow>& rows, const ProgramContext& context) {
   const bool alone = rows.size() == 1;
-  if (alone) rows[0].asked.threads = job_options(options, "").threads;
+  if (alone) rows[0].asked.threads = threads_of(options);
   const WaitNotice notice("limit", !options.output.quiet && alone);
-  for_each_job(rows.size(), job_options(options, alone ? "" : "limit"),
+  for_each_job(rows.size(), job_options(options, alone ? "" : "limit", context),
                [&](std::size_t i) { rows[i].limit = field_limit(rows[i].asked); });
 }
 
@@ -65,7 +65,7 @@ int limit(const LimitOptions& options, ProgramContext& context) {
   for (std::size_t i = 0; i < table.cases.size(); ++i) table.rows.push_back(asked_row(options, table, i, warnings));
   print_warnings(context, warnings);
   Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene(), context);
-  find_limits(options, table.rows);
+  find_limits(options, table.rows, context);
   add_ratios(table);
   tell_limits(table, layout, report);
   report.say(fmt::format("\nresults in {}\n", report.folder().string()));

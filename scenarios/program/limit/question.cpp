@@ -15,7 +15,7 @@
 #include "scenarios/program/chosen_devices.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/option_values.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/vibration_limit.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
@@ -33,13 +33,15 @@ bool are_devices_changed(const LimitOptions& options) {
     const std::string_view path = overridden_path(override);
     is_changed = is_changed || path.starts_with("device.");
     if (path == "device" || path == "device.type" || path == "device.preset") {
-      throw InputError(fmt::format(
-          "--set: got {} with --device; allowed: fields of the devices, such as device.delay_samples; a device "
-          "of your own goes into --device, as a file NAME.json",
-          path));
+      fail_in({.about_options = {"--set", "--device"}},
+              fmt::format(
+                  "--set: got {} with --device; allowed: fields of the devices, such as device.delay_samples; a device "
+                  "of your own goes into --device, as a file NAME.json",
+                  path));
     }
     if (path == "device.coulomb_N" && has_factors)
-      throw InputError("--friction: cannot be combined with --set device.coulomb_N; allowed: one of the two");
+      fail_in({.about_options = {"--friction", "--set"}},
+              "--friction: cannot be combined with --set device.coulomb_N; allowed: one of the two");
   }
   return is_changed;
 }
@@ -74,6 +76,7 @@ InputError on_device(const ComparedDevice& device, const InputError& error) {
     ErrorLocation location = fault.location();
     const bool is_of_type = location.pointer.starts_with("/device/") && !device.has_place_for_mass;
     location.option = fmt::format("--device {}", device.name);
+    location.about_options.emplace_back("--device");
     faults.emplace_back(fault.kind(), location,
                         fault.problem() + (is_of_type ? "; \"--device impedance\" leaves this one out" : ""));
   }
@@ -84,8 +87,8 @@ InputError on_device(const ComparedDevice& device, const InputError& error) {
 LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene, const Scenario& scenario,
                           const std::vector<std::string>& overrides) {
   if (options.field.find('=') != std::string::npos)
-    throw InputError(
-        fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
+    fail_in_option("--vary",
+                   fmt::format("got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
   LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
   question.search.smallest = options.smallest;
   if (!options.resolution.empty())
@@ -94,8 +97,8 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
   question.rule.bounded = options.stable == "bounded";
   if (!options.vibration.empty()) {
     if (!options.stable.empty() && options.stable != "still")
-      throw InputError(
-          fmt::format("--vibration: cannot be combined with --stable {}; allowed: with still", options.stable));
+      fail_in({.about_options = {"--vibration", "--stable"}},
+              fmt::format("--vibration: cannot be combined with --stable {}; allowed: with still", options.stable));
     question.rule.most_vibration = number_between("--vibration", options.vibration, 1e-9, 1e3);
   } else if (options.stable.empty()) {
     question.rule.most_vibration = rule_of(scenario).most_vibration;
@@ -110,7 +113,7 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
 
 LimitTable asked_table(const LimitOptions& options) {
   if (options.devices.empty() && !options.friction.empty())
-    throw InputError("--friction: got factors; allowed: with --device");
+    fail_in_option("--friction", "got factors; allowed: with --device");
   const std::vector<std::filesystem::path> files = find_scenarios(options.scenarios);
   const Axis scene{.path = kSceneAxis, .values = names_of_scenarios(files)};
   std::vector<ScenarioText> scenes;
@@ -141,7 +144,7 @@ LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::si
     row.scenario = loaded.scenario;
     row.asked = question_of(options, scene, row.scenario, overrides);
     append_new(warnings, row.asked.warnings);
-    append_new(warnings, with_files(loaded, checked(loaded).file_warnings));
+    append_new(warnings, with_files(loaded, checked(loaded).file_warnings()));
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;
   }

@@ -14,7 +14,7 @@
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/python_commands.hpp"
 #include "scenarios/program/results_folder.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
@@ -34,7 +34,7 @@ void draw_preview(const std::filesystem::path& scenario, const std::filesystem::
                   ProgramContext& context) {
   const std::filesystem::path run = results_directory("", scenario.stem().string());
   require_writable_directory(context, run);
-  run_scenario(load_scenario(scenario), run, !quiet);
+  run_scenario(checked(load_scenario(scenario)), run, {!quiet, context.progress});
   write_way(context, run, picture, quiet);
 }
 
@@ -59,8 +59,8 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   }();
   LoadedScenario loaded = read_scenario(start.scene, directory);
   loaded.file = out;
-  loaded = checked(std::move(loaded));
-  print_warnings(context, with_files(loaded, loaded.file_warnings));
+  const CheckedScenario scene = checked(std::move(loaded));
+  print_warnings(context, with_files(scene.loaded(), scene.file_warnings()));
   require_writable_directory(context, directory.empty() ? "." : directory);
   write_file_atomically(out, json_text(start.scene));
 

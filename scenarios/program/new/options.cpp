@@ -17,7 +17,7 @@ Vec3 place_in(const char* option, const std::string& text) {
   for (const std::string_view part : parts_of(text, ','))
     if (const auto number = finite_number(part)) numbers.push_back(*number);
   if (numbers.size() != 3 || std::ranges::count(text, ',') != 2)
-    throw InputError(fmt::format("{}: got \"{}\"; allowed: X,Y,Z in metres", option, text));
+    fail_in_option(option, fmt::format("got \"{}\"; allowed: X,Y,Z in metres", text));
   return Vec3(numbers.data());
 }
 
@@ -28,8 +28,8 @@ double length_in(const char* option, const std::string& text) {
     const auto number = finite_number(std::string_view(text).substr(0, text.size() - unit.size()));
     if (number && *number > 0.0) return *number * metres;
   }
-  throw InputError(
-      fmt::format("{}: got \"{}\"; allowed: a length above 0 with its unit, mm, cm, m or in: 12mm", option, text));
+  fail_in_option(option,
+                 fmt::format("got \"{}\"; allowed: a length above 0 with its unit, mm, cm, m or in: 12mm", text));
 }
 
 void check_options(const NewOptions& options, const StartKind& kind) {
@@ -37,17 +37,17 @@ void check_options(const NewOptions& options, const StartKind& kind) {
   const bool drags = name == "drag" || name == "bur", lands = drags || name == "mesh" || name == "shell";
   const bool has_mesh = !options.on.empty() || (kind.source == "mesh" && !from.empty());
   const auto require = [](bool is_right, const char* option, const char* allowed) {
-    if (!is_right) throw InputError(fmt::format("{}: allowed: {}", option, allowed));
+    if (!is_right) fail_in_option(option, fmt::format("allowed: {}", allowed));
   };
   const auto require_file = [](const char* option, const std::string& file) {
     std::error_code ignored;
     if (!file.empty() && !std::filesystem::exists(file, ignored))
-      throw InputError(fmt::format("{} {}: cannot be read: no such file", option, file));
+      fail_in({.about_options = {option}}, fmt::format("{} {}: cannot be read: no such file", option, file));
   };
   if (!kind.source.empty() && !kind.is_source_optional && from.empty())
-    throw InputError(fmt::format("--from: missing; \"{}\" starts from a file", name));
+    fail_in_option("--from", fmt::format("missing; \"{}\" starts from a file", name));
   if (kind.source.empty() && !from.empty())
-    throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, name));
+    fail_in_option("--from", fmt::format("got \"{}\"; \"{}\" starts from no file", from, name));
   require_file("--from", from);
   require(options.on.empty() || name == "stroke", "--on", "for stroke");
   require(options.path.empty() || (drags && options.path.size() > 1 && options.at.empty()), "--path",

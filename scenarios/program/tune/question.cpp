@@ -19,7 +19,7 @@ namespace {
 std::optional<Range> ratios_of(const char* option, const std::string& text) {
   std::optional<Range> range = range_of(option, text);
   if (!range) return range;
-  if (!(range->from > 0.0)) throw InputError(fmt::format("{}: got \"{}\"; allowed: a:b with 0 < a < b", option, text));
+  if (!(range->from > 0.0)) fail_in_option(option, fmt::format("got \"{}\"; allowed: a:b with 0 < a < b", text));
   range->logarithmic = true;
   return range;
 }
@@ -31,13 +31,13 @@ TuneQuestion tune_question(const TuneOptions& options, const std::filesystem::pa
   question.scenario = read_scenario_text(file);
   question.overrides = options.overrides;
   if (!(question.margin > 1.0 && question.margin <= 16.0))
-    throw InputError(fmt::format("--margin: got {}; allowed: more than 1, at most 16", question.margin));
+    fail_in_option("--margin", fmt::format("got {}; allowed: more than 1, at most 16", question.margin));
   for (const std::string& bound : options.bounds) add_bound(bound, question.limits);
   if (!options.family.empty())
-    question.families = chosen_names("--family: got", options.family, {std::begin(kFamilies), std::end(kFamilies)});
+    question.families = chosen_names("--family", options.family, {std::begin(kFamilies), std::end(kFamilies)});
   if (const auto range = ratios_of("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
   question.mass = ratios_of("--mass", options.mass);
-  question.threads = job_options(options, "").threads;
+  question.threads = threads_of(options);
   return question;
 }
 
@@ -45,7 +45,7 @@ std::string device_text(const std::string& name, TuneQuestion& question) {
   if (name.empty()) return "";
   const std::vector<ComparedDevice> devices = chosen_devices({name});
   if (devices.size() != 1)
-    throw InputError(fmt::format("--device: got \"{}\"; allowed: one device, a preset or a file NAME.json", name));
+    fail_in_option("--device", fmt::format("got \"{}\"; allowed: one device, a preset or a file NAME.json", name));
   const ComparedDevice& device = devices.front();
   question.overrides = overrides_on(device, question.scenario, question.overrides);
   return " on " + device.name;

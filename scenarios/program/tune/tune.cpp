@@ -17,14 +17,14 @@
 #include "scenarios/program/tune/json.hpp"
 #include "scenarios/program/tune/question.hpp"
 #include "scenarios/program/tune/text.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench {
 namespace {
 
-void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& tuning) {
+void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& tuning, const ProgramContext& context) {
   std::atomic<std::size_t> law = 0, runs = 0;
   const auto now = [&] {
     const std::size_t i = std::min(law.load(), algorithms.size() - 1);
@@ -34,7 +34,7 @@ void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& t
   tuning.question.on_runs = [&](std::size_t count) { runs = count; };
   for (law = 0; law < algorithms.size(); ++law) {
     tuning.runs += tuning.laws.emplace_back(tuned_law(tuning.question, algorithms[law])).runs;
-    tell_progress("tune", law + 1, algorithms.size());
+    if (context.progress != nullptr) (*context.progress)("tune", law + 1, algorithms.size());
   }
   tuning.question.on_runs = {};
   tuning.ranking = ranking_of(tuning.laws);
@@ -46,16 +46,17 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   Tuning tuning;
   tuning.question = tune_question(options, file);
   const std::string device = device_text(options.device, tuning.question);
-  const LoadedScenario loaded = checked(load_scenario(tuning.question.scenario, tuning.question.overrides));
+  const CheckedScenario scene = checked(load_scenario(tuning.question.scenario, tuning.question.overrides));
+  const LoadedScenario& loaded = scene.loaded();
   const std::vector<std::string> algorithms = options.algorithms.empty()
                                                   ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
                                                   : chosen_algorithms(options.algorithms);
-  print_warnings(context, loaded);
+  print_warnings(context, scene);
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
   Report report(options, "tune_" + file.stem().string(), context);
   const std::filesystem::path& out = report.folder();
-  tune_laws(algorithms, options.output.quiet, tuning);
+  tune_laws(algorithms, options.output.quiet, tuning, context);
   report.write("tune.csv", tuned_columns(), tuning.laws);
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <thread>
 #include <tuple>
+#include <utility>
 
 #include "algorithms/registry.hpp"
 #include "bindings/bindings.hpp"
@@ -26,6 +27,7 @@
 #include "scenarios/program/run_program.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -74,12 +76,12 @@ void raise_python_error() {
   throw py::error_already_set();
 }
 
-/// Calls `work` on a thread of its own, with the interpreter released, and waits for it. Several threads of Python may
-/// call it at once. While it waits, it handles signals and progress twenty times a second. `progress`: None for bars
-/// on a terminal, False for none, or a function of (label, done, total). Throws what `work` throws. An error of a
-/// Python law, of the progress function or of a signal handler, such as KeyboardInterrupt, ends the work and is raised;
-/// it also ends the work of other threads. Precondition: the interpreter is held.
-void supervise(const py::object& progress, const std::function<void()>& work) {
+/// Calls `work` with the listener of its progress on a thread of its own, with the interpreter released, and waits for
+/// it. Several threads of Python may call it at once. While it waits, it handles signals and progress twenty times a
+/// second. `progress`: None for bars on a terminal, False for none, or a function of (label, done, total). Throws what
+/// `work` throws. An error of a Python law, of the progress function or of a signal handler, such as KeyboardInterrupt,
+/// ends the work and is raised; it also ends the work of other threads. Precondition: the interpreter is held.
+void supervise(const py::object& progress, const std::function<void(const ProgressListener*)>& work) {
   const UnderWay counted;
   const bool is_told = PyCallable_Check(progress.ptr()) != 0;
   std::mutex mutex;
@@ -92,10 +94,8 @@ void supervise(const py::object& progress, const std::function<void()>& work) {
     const std::lock_guard lock(mutex);
     reported = {std::string(label), done, total};
   };
-  auto result = std::async(std::launch::async, [&] {
-    report_progress_to(progress.is_none() ? nullptr : &listener);
-    work();
-  });
+  const ProgressListener* const heard_by = progress.is_none() ? nullptr : &listener;
+  auto result = std::async(std::launch::async, [&] { work(heard_by); });
   const auto has_ended = [&result] {
     const py::gil_scoped_release released;
     return result.wait_for(kLookEvery) == std::future_status::ready;
@@ -126,13 +126,11 @@ void end_work() {
   }
 }
 
-/// Makes loading of laws and computing by another thread exclude each other.
-void guard_law_loading() {
-  guard_loading([] {
-    auto held = std::make_shared<py::gil_scoped_acquire>();  // which work needs to begin
-    if (under_way > 1) throw InputError("a law cannot be loaded while another thread computes");
-    return held;
-  });
+/// Makes loading of laws and computing by another thread exclude each other (LoadingGuard).
+std::shared_ptr<void> guard_loading() {
+  auto held = std::make_shared<py::gil_scoped_acquire>();  // which work needs to begin
+  if (under_way > 1) throw InputError("a law cannot be loaded while another thread computes");
+  return held;
 }
 
 /// Raises InputError and IoError as hapbench.ScenarioError and OSError.
@@ -142,7 +140,11 @@ void translate_errors() {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const InputError& error) {
       py::list faults;
-      for (const InputError& fault : error.faults()) faults.append(py::make_tuple(fault.place(), fault.problem()));
+      for (const InputError& fault : error.faults()) {
+        ErrorLocation file = fault.location();
+        const std::string field = std::exchange(file.pointer, "");
+        faults.append(py::make_tuple(file.text(), field, fault.problem()));
+      }
       const py::object type = py::module_::import("hapbench.errors").attr("ScenarioError");
       PyErr_SetObject(type.ptr(), type(faults).ptr());
     } catch (const IoError& error) {
@@ -163,11 +165,12 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   RunTables tables;
   std::vector<std::string> warnings;
   const bool shown = progress.ptr() != Py_False;
-  supervise(progress, [&] {
-    const LoadedScenario loaded = checked(load_scenario(find_scenario(scenario), overrides));
+  supervise(progress, [&](const ProgressListener* listener) {
+    const CheckedScenario scene = checked(load_scenario(find_scenario(scenario), overrides));
+    const LoadedScenario& loaded = scene.loaded();
     warnings = with_files(loaded, loaded.warnings);
-    for (std::string& warning : with_files(loaded, loaded.file_warnings)) warnings.push_back(std::move(warning));
-    report = run_scenario(loaded, std::nullopt, shown, &tables);
+    for (std::string& warning : with_files(loaded, scene.file_warnings())) warnings.push_back(std::move(warning));
+    report = run_scenario(scene, std::nullopt, {shown, listener}, &tables);
     for (std::string& warning : run_warnings({&report, 1})) warnings.push_back(std::move(warning));
   });
   py::dict result;
@@ -197,8 +200,9 @@ std::filesystem::path& program_file() {
 py::tuple command(const std::vector<std::string>& words, const py::object& progress) {
   CapturedOutput output;
   int status = 0;
-  supervise(progress, [&] {
-    ProgramContext context{.program = program_file(), .captured = &output};
+  supervise(progress, [&](const ProgressListener* listener) {
+    ProgramContext context{
+        .program = program_file(), .captured = &output, .progress = listener, .guard_loading = guard_loading};
     status = run_program(words, context);
   });
   return py::make_tuple(status, output.text, output.warnings, output.errors);
@@ -206,8 +210,8 @@ py::tuple command(const std::vector<std::string>& words, const py::object& progr
 
 int be_program(const std::vector<std::string>& words) {
   int status = 0;
-  supervise(py::none(), [&] {
-    ProgramContext context{.program = program_file()};
+  supervise(py::none(), [&](const ProgressListener* listener) {
+    ProgramContext context{.program = program_file(), .progress = listener, .guard_loading = guard_loading};
     status = run_program_to_exit(words, context);
   });
   return status;
@@ -364,7 +368,6 @@ PYBIND11_MODULE(_hapbench, module) {
   using namespace hapbench;
   module.doc() = "The compiled part of hapbench: use the package around it.";
   translate_errors();
-  guard_law_loading();
   py::module_::import("atexit").attr("register")(py::cpp_function(end_work));
   module.def(
       "set_program", [](const std::string& program) { program_file() = program; }, py::arg("program"),

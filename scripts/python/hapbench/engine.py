@@ -278,7 +278,7 @@ class _Scratch:
             if not error.file.startswith(str(self.path)):
                 raise
             raise ScenarioError(
-                [(fault.pointer, fault.problem) for fault in error.faults]
+                [("", fault.pointer, fault.problem) for fault in error.faults]
             ) from None
 
 

@@ -1,6 +1,5 @@
 """Exceptions."""
 import re
-from pathlib import Path
 
 
 class InputError(Exception):
@@ -19,22 +18,12 @@ class ScenarioError(InputError):
     """
 
     def __init__(self, faults):
-        place, problem = faults[0]
-        super().__init__(f"{place}: {problem}" if place else problem)
-        self.file, self.pointer = _split(place)
-        self.problem = problem
-        found = re.search(r'nearest valid names?: "([^"]*)"', problem)
+        self.file, self.pointer, self.problem = faults[0]
+        super().__init__(": ".join(part for part in faults[0] if part))
+        found = re.search(r'nearest valid names?: "([^"]*)"', self.problem)
         self.nearest = found.group(1) if found else None
         self.faults = [self] + [ScenarioError([fault]) for fault in faults[1:]]
 
 
 class ScenarioWarning(UserWarning):
     """A warning: the numbers of a run may mislead, or a field has no effect."""
-
-
-def _split(place):
-    """File and JSON pointer of "file: /pointer", of which either may be missing."""
-    file, _, pointer = place.rpartition(": ")
-    if pointer.startswith("/") and (file or not Path(place).exists()):
-        return file, pointer
-    return place, ""

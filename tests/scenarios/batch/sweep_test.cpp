@@ -12,6 +12,7 @@
 #include "scenarios/batch/sweep_plan.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/scene/environments.hpp"
@@ -80,7 +81,7 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
     const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";  // which take their time
     const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
     std::vector<std::string> names;
-    for (const Metric& metric : run_scenario(plan.cases.load(0), std::nullopt, false).metrics)
+    for (const Metric& metric : run_scenario(checked(plan.cases.load(0)), std::nullopt, false).metrics)
       names.push_back(metric.name);
     EXPECT_EQ(plan.metrics, names) << name;
     for (const std::string& bounded : plan.bounded)
@@ -283,7 +284,7 @@ TEST_F(SlowSweepPromises, LittleMoreTimeThanTheSimulationsInWhicheverOrderTheAxe
       const LoadedScenario loaded = plan.cases.load(run);
       const auto shell = make_shell(loaded.scenario, loaded.files);
       const double before = processor_seconds();
-      run_with_shell(loaded, shell);
+      run_with_shell(checked(loaded), shell);
       simulations += processor_seconds() - before;
     }
     EXPECT_LT(sweep, 1.3 * simulations) << axes.front();

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "scenarios/input/input_error.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::input_error_test {
 namespace {
@@ -20,6 +22,14 @@ TEST(ErrorLocation, NamesWhatIsThere) {
   EXPECT_EQ((ErrorLocation{.file = "stroke.csv", .entry = "sample 2"}.text()), "stroke.csv, sample 2");
   EXPECT_EQ((ErrorLocation{.option = "--device touch", .file = "a.json", .pointer = "/time"}.text()),
             "--device touch: a.json: /time");
+}
+
+TEST(InputError, AboutAnOptionHasItAsDataAndBeginsWithIt) {
+  const auto error = test::input_error_of([] { fail_in_option("--between", "got \"2:1\""); });
+  ASSERT_TRUE(error);
+  EXPECT_STREQ(error->what(), "--between: got \"2:1\"");
+  EXPECT_EQ(error->location().about_options, std::vector<std::string>{"--between"});
+  EXPECT_EQ(error->place(), "") << "a file in front of the error stands before the option";
 }
 
 TEST(InputError, KeepsItsLocationAsDataAmongSeveral) {

@@ -278,6 +278,11 @@ TEST_F(Study, IsRefusedByAnotherCommandAndAtTheLineOfItsFault) {
   const test::ProgramRun wrong = test::hapbench({"limit", mine, "--out", (directory_ / "out").string()});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_NE(wrong.err.find(mine + ":4: limit: --stable: "), std::string::npos) << wrong.err;
+  // The message also mentions --between, which is not at fault.
+  file("{\n\"ask\": \"limit\", \"scenarios\": [\"single_spring\"],\n\"between\": [1, 2],\n\"vary\": \"seed=1\"}");
+  const test::ProgramRun mentioned = test::hapbench({"limit", mine, "--out", (directory_ / "out").string()});
+  EXPECT_EQ(mentioned.status, 2);
+  EXPECT_NE(mentioned.err.find(mine + ":4: --vary: "), std::string::npos) << mentioned.err;
 }
 
 TEST_F(Study, IsNotNamedByTheValueOfAnOption) {

@@ -8,6 +8,7 @@
 
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 #include "sim/contact/contact_query.hpp"
@@ -65,7 +66,7 @@ double steady_response(double K, double B, double M, double dt, const Profile::S
 TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
   const LoadedScenario loaded = load_scenario(find_scenario("ten_minutes_in_contact"));
   const Scenario& scenario = loaded.scenario;
-  const Result report = run_scenario(loaded, std::nullopt, false);
+  const Result report = run_scenario(checked(loaded), std::nullopt, false);
   EXPECT_EQ(report.unmet, std::vector<std::string>{});
   EXPECT_EQ(report.end.rows, 1'200'000u);
 
@@ -286,7 +287,7 @@ TEST(ProxyInATightHole, LeavesSlowly) {
 
 TEST(ProxyInHole, IsFiveTimesNearerToTheIdealTrajectoryThanShapingAndVibratesLess) {
   const auto summary = [](const char* algorithm) {
-    return run_scenario(with_algorithm("rotate_in_hole_proxy", algorithm), std::nullopt, false);
+    return run_scenario(checked(with_algorithm("rotate_in_hole_proxy", algorithm)), std::nullopt, false);
   };
   const Result proxy = summary("proxy"), shaped = summary("shaped_stiffness");
   const char* height_rms = "ideal_trajectory.firm.height_error_rms_m";

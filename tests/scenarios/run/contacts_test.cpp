@@ -4,6 +4,7 @@
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/contact/contact_source.hpp"
@@ -109,7 +110,7 @@ TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
       if (algorithm.may_reduce) overrides.emplace_back("rendering.reduction={}");
       overrides.emplace_back("record.contacts=true");
       const fs::path first = directory_ / "first", again = directory_ / "again";
-      run_scenario(loaded(scene, overrides), first, false);
+      run_scenario(checked(loaded(scene, overrides)), first, false);
       overrides.emplace_back(R"(rendering.contact_source={"type":"trace","file":")" +
                              (first / "contact_trace.csv").string() + "\"}");
       run_scenario(checked(loaded(scene, overrides)), again, false);
@@ -178,9 +179,9 @@ class WithAndWithoutSkips : public testing::Test {
     LoadedScenario loaded = read_scenario(scenario, directory_.path());
     const fs::path taken = directory_ / "taken", off = directory_ / "off";
     for (const fs::path& old : {taken, off}) fs::remove_all(old);
-    run_scenario(loaded, taken, false);
+    run_scenario(checked(loaded), taken, false);
     loaded.scenario.rendering.skips = Skips::off;
-    run_scenario(loaded, off, false);
+    run_scenario(checked(loaded), off, false);
     test::expect_same_files(taken, off, {"summary.json", "timing.json"});
     Json work_taken, work_off;
     EXPECT_EQ(summary_without_work(taken / "summary.json", work_taken),

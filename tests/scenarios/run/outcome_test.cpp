@@ -9,6 +9,7 @@
 #include "results/observe/metrics.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/diagnosis_observer.hpp"
 #include "scenarios/run/expectations.hpp"
@@ -38,7 +39,7 @@ Json above_plane() {
 Result run_of(const char* patch) {
   Json json = above_plane();
   json.merge_patch(Json::parse(patch));
-  return run_scenario(read_scenario(json, HAPBENCH_TEST_DATA), std::nullopt, false);
+  return run_scenario(checked(read_scenario(json, HAPBENCH_TEST_DATA)), std::nullopt, false);
 }
 
 TEST(Outcome, LostContactWhenTheToolEndedFarAway) {
@@ -173,7 +174,7 @@ TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
     const std::vector<Warning> before = scene_facts(loaded).warnings;
     ASSERT_EQ(before.size(), 1u) << remedy;
     EXPECT_NE(before[0].text.find(remedy), std::string::npos) << before[0].text;
-    const Result report = run_scenario(loaded, std::nullopt, false);
+    const Result report = run_scenario(checked(loaded), std::nullopt, false);
     EXPECT_EQ(report.end.outcome, Outcome::not_dragged);
     EXPECT_EQ(report.unmet.size(), 1u);
     EXPECT_NE(warnings_of(report).find(remedy), std::string::npos) << warnings_of(report);
@@ -185,12 +186,12 @@ TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
 /// while the tip centre and the core behind it have always been in the hole.
 TEST(Outcome, OfAShankThatIsInside) {
   const LoadedScenario loaded = load_scenario(find_scenario("pure_rotation"), {});
-  const Result report = run_scenario(loaded, std::nullopt, false);
+  const Result report = run_scenario(checked(loaded), std::nullopt, false);
   EXPECT_EQ(report.end.outcome, Outcome::went_through);
   EXPECT_TRUE(report.unmet.empty());
   // By 0.2 rad the shank only presses on the rim.
   const std::vector<std::string> half = {"motion.orientation.tilt_rad=0.2", "expect={}"};
-  EXPECT_EQ(run_scenario(load_scenario(find_scenario("pure_rotation"), half), std::nullopt, false).end.outcome,
+  EXPECT_EQ(run_scenario(checked(load_scenario(find_scenario("pure_rotation"), half)), std::nullopt, false).end.outcome,
             Outcome::completes);
   EXPECT_NE(warnings_of(report).find("a part of it was 0.86"), std::string::npos) << warnings_of(report);
 }
@@ -207,7 +208,7 @@ struct Scene {
 Result run(const Scene& scene) {
   Words overrides = scene.overrides;
   overrides.insert(overrides.end(), {"expect={}", "record.trajectory=false"});
-  return run_scenario(load_scenario(find_scenario(scene.name), overrides), std::nullopt, false, nullptr, true);
+  return run_scenario(checked(load_scenario(find_scenario(scene.name), overrides)), std::nullopt, false, nullptr, true);
 }
 
 /// What the rule finds; null where it is silent.
@@ -327,7 +328,7 @@ TEST(Diagnosis, OfARunThatNobodyDiagnosesIsAWarning) {
                                        {R"(rendering.reduction={"threshold":0.9})", "reduction"}}) {
     const Words overrides = {override};
     const char* const scene = rule == std::string_view("friction") ? "drag_molar" : "mesh_molar";
-    const Result result = run_scenario(load_scenario(find_scenario(scene), overrides), std::nullopt, false);
+    const Result result = run_scenario(checked(load_scenario(find_scenario(scene), overrides)), std::nullopt, false);
     EXPECT_FALSE(result.diagnosis);
     EXPECT_EQ(std::ranges::count(result.warnings, rule, &Warning::kind), 1) << rule;
   }

@@ -8,6 +8,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/run_tables.hpp"
 #include "scenarios/run/scene_checks.hpp"
@@ -96,7 +97,7 @@ void expect_torques(std::string_view algorithm, const Place& place) {
   const LoadedScenario loaded = read_scenario(pressed_drill(place, algorithm), ".");
   const RenderingConfig& rendering = loaded.scenario.rendering;
   RunTables tables;
-  const Result report = run_scenario(loaded, std::nullopt, false, &tables);
+  const Result report = run_scenario(checked(loaded), std::nullopt, false, &tables);
   const Table rows{tables.trials[0].at("trajectory.csv")}, contacts{tables.trials[0].at("contacts.csv")};
   std::size_t next = 0;
   bool is_known = std::find(std::begin(kWeighted), std::end(kWeighted), algorithm) != std::end(kWeighted);
@@ -173,9 +174,9 @@ TEST(Roll, OfASolidOfRevolutionChangesNoByteButThePose) {
     json["record"] = {{"contacts", true}, {"energy", true}, {"pose", true}};
     json["rendering"]["passivity_controller"] = true;
     const TemporaryDirectory still, rolling;
-    run_scenario(read_scenario(json, "."), still.path(), false);
+    run_scenario(checked(read_scenario(json, ".")), still.path(), false);
     json["motion"]["orientation"]["roll_rad"] = {{"type", "ramp"}, {"start", 0.3}, {"rate_per_s", 50}};
-    run_scenario(read_scenario(json, "."), rolling.path(), false);
+    run_scenario(checked(read_scenario(json, ".")), rolling.path(), false);
     EXPECT_EQ(bytes_without_pose(still.path()), bytes_without_pose(rolling.path()));
     EXPECT_NE(read_file(still / "trajectory.csv"), read_file(rolling / "trajectory.csv"));
   }
@@ -186,7 +187,7 @@ TEST(Pose, IsThatOfTheScript) {
   json["record"] = {{"pose", true}};
   json["motion"]["orientation"]["roll_rad"] = 1.5;
   RunTables tables;
-  run_scenario(read_scenario(json, "."), std::nullopt, false, &tables);
+  run_scenario(checked(read_scenario(json, ".")), std::nullopt, false, &tables);
   const Table rows{tables.trials[0].at("trajectory.csv")};
   for (std::size_t k = 0; k < rows.rows(); ++k) {
     const double t = rows.number(k, "time_s");
@@ -283,15 +284,16 @@ TEST(ScenarioTool, HasAnOutlineFromTheFarEndToTheTipThatIsAsLargeAsItIs) {
 TEST(ScenarioTool, WarnsThatTheProxyHasNoGuaranteeWhereItIsNotConvex) {
   for (const auto& [fields, algorithm, warnings] :
        {std::tuple{kHourglass, "proxy", 1}, std::tuple{kHourglass, "mean", 0}, std::tuple{kCube, "proxy", 0}}) {
-    const Result report = run_scenario(loaded(scene(fields, algorithm)), std::nullopt, false);
+    const Result report = run_scenario(checked(loaded(scene(fields, algorithm))), std::nullopt, false);
     const auto about_that = [](const Warning& w) { return w.text.starts_with("the tool is not convex"); };
     EXPECT_EQ(std::ranges::count_if(report.warnings, about_that), warnings) << fields << " " << algorithm;
   }
 }
 
 TEST(ScenarioTool, IsInTheSummaryUnlessItIsACylinder) {
-  EXPECT_TRUE(run_scenario(loaded(scene("{}")), std::nullopt, false).tool.is_null());
-  EXPECT_EQ(run_scenario(loaded(scene(kHourglass)), std::nullopt, false).tool, tool_json(*tool_of(kHourglass)));
+  EXPECT_TRUE(run_scenario(checked(loaded(scene("{}"))), std::nullopt, false).tool.is_null());
+  EXPECT_EQ(run_scenario(checked(loaded(scene(kHourglass))), std::nullopt, false).tool,
+            tool_json(*tool_of(kHourglass)));
 }
 
 /// A small block, changed by a merge patch.

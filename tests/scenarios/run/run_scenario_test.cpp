@@ -6,6 +6,7 @@
 #include <set>
 
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_loop.hpp"
@@ -36,7 +37,7 @@ LoadedScenario study(const char* record = R"({"trajectory": false})") {
 }
 
 TEST(Trials, EverySubjectDoesEveryTrialOnceAndDifferently) {
-  const Result report = run_scenario(study(R"({"trajectory": false, "timing": true})"), std::nullopt, false);
+  const Result report = run_scenario(checked(study(R"({"trajectory": false, "timing": true})")), std::nullopt, false);
   ASSERT_EQ(report.targets.size(), 8u);
   std::set<std::pair<std::size_t, std::size_t>> trials;
   std::set<double> forces;
@@ -48,12 +49,14 @@ TEST(Trials, EverySubjectDoesEveryTrialOnceAndDifferently) {
   EXPECT_EQ(forces.size(), 8u) << "no two targets were met alike";
   EXPECT_EQ(report.end.outcome, Outcome::completes);
   EXPECT_EQ(report.timing.latency->steps, report.end.rows);
-  EXPECT_EQ(report.state_hash, run_scenario(study(), std::nullopt, false).state_hash) << "another run repeats them";
+  EXPECT_EQ(report.state_hash, run_scenario(checked(study()), std::nullopt, false).state_hash)
+      << "another run repeats them";
 }
 
 TEST(Trials, RecordsOfSeveralTrialsLieInDirectoriesOfTheirOwn) {
   const TemporaryDirectory dir;
-  EXPECT_EQ(run_scenario(study(R"({"trajectory": true, "energy": true})"), dir / "out", false).work.allocations, 0u);
+  EXPECT_EQ(
+      run_scenario(checked(study(R"({"trajectory": true, "energy": true})")), dir / "out", false).work.allocations, 0u);
   for (const char* trial : {"subject_0_trial_0", "subject_0_trial_1", "subject_1_trial_0", "subject_1_trial_1"}) {
     EXPECT_TRUE(fs::exists(dir / "out" / trial / "trajectory.csv")) << trial;
     EXPECT_TRUE(fs::exists(dir / "out" / trial / "energy.csv")) << trial;
@@ -62,7 +65,7 @@ TEST(Trials, RecordsOfSeveralTrialsLieInDirectoriesOfTheirOwn) {
   EXPECT_FALSE(fs::exists(dir / "out" / "trajectory.csv"));
   EXPECT_EQ(test::lines_of(test::read_file(dir / "out" / "targets.csv")).size(), 9u);
 
-  run_scenario(study(), dir / "out", false);
+  run_scenario(checked(study()), dir / "out", false);
   EXPECT_FALSE(fs::exists(dir / "out" / "subject_0_trial_0")) << "of the earlier run";
   EXPECT_TRUE(fs::exists(dir / "out" / "targets.csv"));
 }
@@ -83,7 +86,7 @@ TEST(ExpectedOutput, IsWithinAFactorOfTwoOfWhatIsWritten) {
         R"({"trajectory": false, "ratio_iterations": [0, 1, 3]})"}) {
     const test::TemporaryDirectory directory;
     const LoadedScenario loaded = springs(record);
-    run_scenario(loaded, directory.path(), false);
+    run_scenario(checked(loaded), directory.path(), false);
     double written = 0.0;
     for (const auto& entry : std::filesystem::directory_iterator(directory.path())) {
       if (entry.path().extension() == ".csv") written += static_cast<double>(entry.file_size());
@@ -105,7 +108,7 @@ TEST(Divergence, OfTheHandleEndsTheRun) {
     "hand": {"type": "impedance", "stiffness_N_per_m": 500, "damping_N_s_per_m": 50,
              "target": {"x_m": 0, "y_m": 0, "z_m": -0.001}}
   })");
-  const Result run = run_scenario(read_scenario(scenario, "."), std::nullopt, false);
+  const Result run = run_scenario(checked(read_scenario(scenario, ".")), std::nullopt, false);
   EXPECT_EQ(run.end.outcome, Outcome::diverges);
   const std::string quantity = run.end.divergence.quantity;
   EXPECT_TRUE(quantity == "handle position" || quantity == "handle velocity" || quantity == "measured force")
@@ -130,10 +133,10 @@ TEST_F(StopSignals, EndARunOfWhichNothingIsLeft) {
     loaded.scenario.record.timing = timed;
     const StopSignal signals;
     std::raise(SIGINT);
-    EXPECT_THROW(run_scenario(loaded, directory / "out/below", false), Stopped);
+    EXPECT_THROW(run_scenario(checked(loaded), directory / "out/below", false), Stopped);
     EXPECT_EQ(directory.entries(), std::vector<std::string>{});
   }
-  run_scenario(loaded, directory / "out/below", false);
+  run_scenario(checked(loaded), directory / "out/below", false);
   EXPECT_TRUE(std::filesystem::exists(directory / "out/below/summary.json"));
 }
 

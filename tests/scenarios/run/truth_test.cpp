@@ -14,6 +14,7 @@
 #include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/run_tables.hpp"
 #include "scenarios/scene/environments.hpp"
@@ -357,7 +358,7 @@ TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepthAlsoWithoutARecord) {
     SCOPED_TRACE(c.name);
     const LoadedScenario loaded = scene(c);
     RunTables tables;
-    const Result report = run_scenario(loaded, std::nullopt, false, &tables);
+    const Result report = run_scenario(checked(loaded), std::nullopt, false, &tables);
     const Outcome outcome = report.end.outcome;
     EXPECT_NE(std::find(c.outcomes.begin(), c.outcomes.end(), outcome), c.outcomes.end())
         << outcome_name(outcome) << (report.warnings.empty() ? "" : ": " + report.warnings[0].text);
@@ -394,10 +395,10 @@ TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
     SCOPED_TRACE(c.name);
     c.changes.push_back("record.inside=false");
     const LoadedScenario loaded = scene(c);
-    const Outcome outcome = run_scenario(loaded, std::nullopt, false).end.outcome;
+    const Outcome outcome = run_scenario(checked(loaded), std::nullopt, false).end.outcome;
     EXPECT_EQ(outcome, c.outcomes[0]) << outcome_name(outcome);
     if (position_is_free(loaded.scenario.motion)) {
-      EXPECT_FALSE(is_stable(stability_of(loaded, make_shell(loaded.scenario, loaded.files)).verdict));
+      EXPECT_FALSE(is_stable(stability_of(checked(loaded), make_shell(loaded.scenario, loaded.files)).verdict));
     }
   }
 }
@@ -428,7 +429,7 @@ TEST_F(ScenesMadeToFool, AreNotStable) {
     SCOPED_TRACE(c.name);
     const LoadedScenario loaded = scene(c);
     if (!position_is_free(loaded.scenario.motion)) continue;
-    const RunVerdict verdict = stability_of(loaded, make_shell(loaded.scenario, loaded.files)).verdict;
+    const RunVerdict verdict = stability_of(checked(loaded), make_shell(loaded.scenario, loaded.files)).verdict;
     const bool fine = std::find(c.outcomes.begin(), c.outcomes.end(), Outcome::completes) != c.outcomes.end();
     EXPECT_TRUE(fine || !is_stable(verdict)) << run_verdict_name(verdict);
     EXPECT_TRUE(!fine || is_stable(verdict) || verdict == RunVerdict::vibrating) << run_verdict_name(verdict);

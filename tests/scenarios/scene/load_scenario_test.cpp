@@ -6,7 +6,7 @@
 #include "results/io/columns.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "tests/results/files.hpp"
@@ -87,7 +87,7 @@ TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
   write("between/middle.json", R"({"extends": "../there/base.json", "seed": 2})");
   const LoadedScenario loaded = load_scenario(write("mine.json", R"({"extends": "between/middle.json", "seed": 3})"));
   EXPECT_EQ(loaded.scenario.seed, 3);
-  EXPECT_TRUE(checked(loaded).file_warnings.empty());
+  EXPECT_TRUE(checked(loaded).file_warnings().empty());
   // The effective scenario names it from where it stands, and extends nothing.
   const Json effective = effective_scenario(loaded.scenario, directory_.path());
   EXPECT_EQ(effective["environment"]["file"], "there/data/cube.obj");

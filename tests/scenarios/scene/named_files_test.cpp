@@ -9,6 +9,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/shared_cache.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
@@ -53,14 +54,14 @@ TEST_F(NamedFilesOfAScenario, AreThoseItNames) {
 // Whoever changes a file while a run is under way changes neither the run nor what it says of itself.
 TEST_F(NamedFilesOfAScenario, AreReadOnce) {
   for (const char* environment : {"mesh", "point_shell"}) {
-    const LoadedScenario loaded = checked(load(environment, kStroke));
-    const Result report = run_scenario(loaded, directory_ / "out", false);
+    const CheckedScenario scene = checked(load(environment, kStroke));
+    const Result report = run_scenario(scene, directory_ / "out", false);
     for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
       fs::rename(directory_ / name, directory_ / (std::string(name) + ".gone"));
-    const Result again = run_scenario(loaded, directory_ / "again", false);
+    const Result again = run_scenario(scene, directory_ / "again", false);
     EXPECT_EQ(again.state_hash, report.state_hash);
     EXPECT_EQ(again.scenario_hash, report.scenario_hash);
-    EXPECT_THROW(run_scenario(load(environment, kStroke), {}, false), InputError);
+    EXPECT_THROW(checked(load(environment, kStroke)), InputError);
     for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
       fs::rename(directory_ / (std::string(name) + ".gone"), directory_ / name);
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenarios/input/bundled_scenarios.hpp"
-#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
@@ -26,7 +26,8 @@ TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
                                              "rendering.stiffness_N_per_m=5000",
                                              std::string("rendering.damping_ratio=") + zeta};
     const LoadedScenario loaded = load_scenario(plane, fields);
-    EXPECT_EQ(stability_of(loaded, make_shell(loaded.scenario, loaded.files), any_vibration).verdict, verdict) << zeta;
+    EXPECT_EQ(stability_of(checked(loaded), make_shell(loaded.scenario, loaded.files), any_vibration).verdict, verdict)
+        << zeta;
   }
 }
 

@@ -12,6 +12,7 @@
 #include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
@@ -103,7 +104,7 @@ TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
   EXPECT_LE(quiet.choice->worst.at("force_rms_above_30Hz_N"), 0.7 * buzz);
   EXPECT_LE(quiet.choice->stiffness, 1.01 * free.choice->stiffness);
   // What the choice is said to give is what a run gives.
-  const Result run = run_scenario(load_scenario(asked.scenario, quiet.overrides), std::nullopt, false);
+  const Result run = run_scenario(checked(load_scenario(asked.scenario, quiet.overrides)), std::nullopt, false);
   for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(number_of(run.metrics, name), value) << name;
 }
 
