@@ -66,12 +66,12 @@ class MeshSolid final : public Solid {
       return {out ? distance : -distance};
     }
     const auto [n, is_border] = feature(*nearest);
-    return {std::copysign(distance, (q - nearest->place).dot(n)), !is_border};
+    return {std::copysign(distance, (q - nearest->position).dot(n)), !is_border};
   }
   Vec3 gradient(const Vec3& q, double step) const noexcept override {
     const auto nearest = nearest_triangle(q, nullptr);
     if (!nearest) return Vec3::UnitZ();
-    const Vec3 away = q - nearest->place, n = normal(nearest->triangle);
+    const Vec3 away = q - nearest->position, n = normal(nearest->triangle);
     // Nearer, the direction is rounding.
     if (away.norm() < 1e-6 * step) return n;
     return away.normalized() * (at(q, nullptr).value < 0.0 ? -1.0 : 1.0);
@@ -79,11 +79,11 @@ class MeshSolid final : public Solid {
   std::size_t bytes() const noexcept override { return 300 * surface_.triangles.size(); }
 
  private:
-  const Vec3& place(std::size_t triangle, std::size_t corner) const {
+  const Vec3& vertex(std::size_t triangle, std::size_t corner) const {
     return surface_.vertices[surface_.triangles[triangle][corner]];
   }
   Vec3 normal(std::size_t t) const {
-    return (place(t, 1) - place(t, 0)).cross(place(t, 2) - place(t, 0)).stableNormalized();
+    return (vertex(t, 1) - vertex(t, 0)).cross(vertex(t, 2) - vertex(t, 0)).stableNormalized();
   }
   std::optional<TriangleTree::Nearest> nearest_triangle(const Vec3& q, const LookedUp* near) const {
     return tree_.nearest(q, near == nullptr ? kFar : (1.0 + 1e-9) * (std::abs(near->value) + (q - near->place).norm()));
@@ -108,7 +108,7 @@ class MeshSolid final : public Solid {
     });
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 &a = place(t, k), b = place(t, (k + 1) % 3), c = place(t, (k + 2) % 3);
+        const Vec3 &a = vertex(t, k), b = vertex(t, (k + 1) % 3), c = vertex(t, (k + 2) % 3);
         const double angle = math::atan2((b - a).cross(c - a).norm(), (b - a).dot(c - a));
         vertex_normals_[surface_.triangles[t][k]] += angle * normal(t);
       }
@@ -150,7 +150,7 @@ class PointSolid final : public Solid {
       : Solid({Vec3::Constant(-kFar), Vec3::Constant(kFar)}),
         points_(points),
         tree_(tree_of(points)),
-        spacing_(2.0 * usual_spacing()) {}
+        spacing_(2.0 * median_spacing()) {}
 
   SurfaceDistance at(const Vec3& q, const LookedUp*) const noexcept override {
     const auto nearest = tree_.nearest(q, kFar);
@@ -158,9 +158,10 @@ class PointSolid final : public Solid {
     const auto& [p, n] = points_[nearest->triangle];
     const double h = n.dot(q - p);
     const Vec3 along = q - p - h * n;
-    const double aside = along.norm(), beyond = std::max(0.0, aside * aside - spacing_ * spacing_);
-    const bool goes_on = beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / aside * along, 1.5 * spacing_).has_value();
-    return {std::copysign(std::sqrt(h * h + beyond), h), goes_on};
+    const double tangential = along.norm(), beyond = std::max(0.0, tangential * tangential - spacing_ * spacing_);
+    const bool continues =
+        beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / tangential * along, 1.5 * spacing_).has_value();
+    return {std::copysign(std::sqrt(h * h + beyond), h), continues};
   }
   double error() const noexcept override { return 0.5 * spacing_; }
   std::size_t bytes() const noexcept override { return 300 * points_.size(); }
@@ -175,10 +176,10 @@ class PointSolid final : public Solid {
     return {soup.vertices, soup.triangles};
   }
   /// The median distance of some points from their nearest neighbours.
-  double usual_spacing() const {
-    constexpr std::size_t kSome = 32;
+  double median_spacing() const {
+    constexpr std::size_t kSamples = 32;
     std::vector<double> distances;
-    for (std::size_t i = 0; i < points_.size(); i += points_.size() / kSome + 1) {
+    for (std::size_t i = 0; i < points_.size(); i += points_.size() / kSamples + 1) {
       double nearest = std::numeric_limits<double>::infinity();
       for (std::size_t j = 0; j < points_.size(); ++j) {
         const double d = (points_[j].position - points_[i].position).squaredNorm();
@@ -202,8 +203,8 @@ class PointSolid final : public Solid {
 Vec3 Solid::gradient(const Vec3& point, double step) const noexcept {
   Vec3 gradient;
   for (int k = 0; k < 3; ++k) {
-    const Vec3 aside = step * Vec3::Unit(k);
-    gradient[k] = at(point + aside).value - at(point - aside).value;
+    const Vec3 offset = step * Vec3::Unit(k);
+    gradient[k] = at(point + offset).value - at(point - offset).value;
   }
   return unit_or(gradient, Vec3::UnitZ());
 }

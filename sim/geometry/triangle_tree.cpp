@@ -10,10 +10,10 @@
 namespace hapbench {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;  ///< maximum number of triangles
+constexpr std::uint32_t kMaxLeafTriangles = 4;  ///< maximum number of triangles
 /// Halving 2^32 triangles takes 32 levels, and a search keeps one box per level.
-constexpr std::size_t kStack = 64;
-constexpr double kFarthest = std::numeric_limits<double>::infinity();
+constexpr std::size_t kStackSize = 64;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using simd::Mask, simd::Pack;
 
@@ -40,14 +40,14 @@ Pack squared_distance_to_box(const Vec3& low, const Vec3& high, const Packs& poi
   return dx * dx + dy * dy + dz * dz;
 }
 
-struct PlaceOfTriangle {
+struct ClosestPoint {
   Vec3 from_a;
   unsigned corners;  ///< as in TriangleTree::Nearest
 };
 
 /// The place of a triangle nearest to p, a point relative to its corner a, by the regions of the plane around it
 /// (C. Ericson, Real-Time Collision Detection, 2005, 5.1.5). A triangle without an area is nearest at a corner or side.
-PlaceOfTriangle nearest_place(const Vec3& p, const Vec3& ab, const Vec3& ac, double ab2, double abac, double ac2) {
+ClosestPoint closest_point(const Vec3& p, const Vec3& ab, const Vec3& ac, double ab2, double abac, double ac2) {
   const double along_ab = p.dot(ab), along_ac = p.dot(ac);
   if (along_ab <= 0.0 && along_ac <= 0.0) return {Vec3::Zero(), 1u};
   const double b_ab = along_ab - ab2, b_ac = along_ac - abac;  // the same from corner b
@@ -139,7 +139,7 @@ void TriangleTree::split(std::size_t node, std::vector<Item>& items) {
   });
   nodes_[node].low = low;
   nodes_[node].high = high;
-  if (count <= kLeaf) return;
+  if (count <= kMaxLeafTriangles) return;
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
   std::nth_element(begin, begin + count / 2, end,
@@ -162,7 +162,7 @@ template <class DistanceTo, class IsLess, class MayBeNearer, class Use>
     Distance distance;
     std::uint32_t node;
   };
-  std::array<Waiting, kStack> stack;
+  std::array<Waiting, kStackSize> stack;
   std::size_t size = 0;
   stack[size++] = {distance_to(nodes_[0]), 0};
   while (size > 0) {
@@ -211,9 +211,9 @@ std::optional<TriangleTree::Nearest> TriangleTree::nearest(const Vec3& point, do
       },
       std::less(), [&](double distance2) { return !(distance2 >= best.distance2); },
       [&](const Triangle& t) {
-        const PlaceOfTriangle place = nearest_place(point - t.a, t.ab, t.ac, t.ab2, t.abac, t.ac2);
-        const double distance2 = (point - t.a - place.from_a).squaredNorm();
-        if (distance2 < best.distance2) best = {distance2, t.number, place.corners, t.a + place.from_a};
+        const ClosestPoint closest = closest_point(point - t.a, t.ab, t.ac, t.ab2, t.abac, t.ac2);
+        const double distance2 = (point - t.a - closest.from_a).squaredNorm();
+        if (distance2 < best.distance2) best = {distance2, t.number, closest.corners, t.a + closest.from_a};
       });
   if (best.corners == 0) return std::nullopt;
   return best;
@@ -221,7 +221,7 @@ std::optional<TriangleTree::Nearest> TriangleTree::nearest(const Vec3& point, do
 
 template <class Enters, class Use>
 void TriangleTree::visit(const Enters& enters, const Use& use) const {
-  std::array<std::uint32_t, kStack> stack;
+  std::array<std::uint32_t, kStackSize> stack;
   std::size_t size = 0;
   stack[size++] = 0;
   while (size > 0) {
@@ -251,7 +251,7 @@ int TriangleTree::winding_number(const Vec3& point, std::span<const Vec3> vertic
 }
 
 double TriangleTree::first_hit(const Vec3& origin, const Vec3& direction, double from) const noexcept {
-  double best = kFarthest;
+  double best = kInfinity;
   const auto enters = [&](const Node& node) {
     double enter = from, leave = best;
     for (int k = 0; k < 3; ++k) {

@@ -25,17 +25,17 @@ Vec3 position(const HalfEdgeMesh& mesh, OpenMesh::VertexHandle vertex) {
 }
 
 /// Coordinates of a cube, and axis and sign of the normal's largest component.
-using Place = std::array<double, 5>;
+using CubeKey = std::array<double, 5>;
 
-struct HashOfPlace {
-  std::size_t operator()(const Place& place) const noexcept {
+struct CubeKeyHash {
+  std::size_t operator()(const CubeKey& key) const noexcept {
     Hash64 hash;
-    for (const double number : place) hash.real(number + 0.0);  // 0 and -0 are one coordinate
+    for (const double number : key) hash.real(number + 0.0);  // 0 and -0 are one coordinate
     return static_cast<std::size_t>(hash.value());
   }
 };
 
-Place place_of(const Vec3& cube, const Vec3& normal) {
+CubeKey key_of(const Vec3& cube, const Vec3& normal) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   return {cube.x(), cube.y(), cube.z(), static_cast<double>(axis), normal[axis] < 0.0 ? -1.0 : 1.0};
@@ -52,7 +52,7 @@ struct Hinge {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 /// Maximum number of parts in which each part is searched for; without it a million crumbs would take minutes.
-constexpr std::size_t kMostHolders = 1000;
+constexpr std::size_t kMaxEnclosingParts = 1000;
 
 /// Indices of the hinges of each triangle, by corner.
 std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triangles, const std::vector<Hinge>& hinges) {
@@ -112,8 +112,8 @@ class MeshParts {
   /// Returns a hinge whose triangles cannot agree, in a surface with one side only.
   std::optional<Hinge> contradiction() const {
     for (const Hinge& hinge : hinges_) {
-      const bool alike = turned_[hinge.triangles[0]] == turned_[hinge.triangles[1]];
-      if (alike != hinge.opposed) return hinge;
+      const bool turned_alike = turned_[hinge.triangles[0]] == turned_[hinge.triangles[1]];
+      if (turned_alike != hinge.opposed) return hinge;
     }
     return std::nullopt;
   }
@@ -152,7 +152,7 @@ class MeshParts {
       const auto outer =
           std::find_if(outermost.begin(), outermost.end(), [&](std::uint32_t q) { return shapes[q].holds(shapes[p]); });
       inside_out[p] = outer == outermost.end() ? shapes[p].is_inside_out() : inside_out[*outer];
-      if (outer == outermost.end() && outermost.size() < kMostHolders) outermost.push_back(p);
+      if (outer == outermost.end() && outermost.size() < kMaxEnclosingParts) outermost.push_back(p);
     }
     turn(inside_out);
     return static_cast<std::size_t>(std::count(inside_out.begin(), inside_out.end(), true));
@@ -176,10 +176,10 @@ class MeshParts {
 };
 
 /// More than in any sensible mesh; the time to find an edge is proportional to it.
-constexpr std::size_t kMostTrianglesAtVertex = 10'000;
+constexpr std::size_t kMaxTrianglesAtVertex = 10'000;
 
-std::string text(const Vec3& place) {
-  return "(" + coordinates(place) + ") m";
+std::string text(const Vec3& position) {
+  return "(" + coordinates(position) + ") m";
 }
 
 /// Returns for each vertex the first one at its position.
@@ -264,9 +264,8 @@ std::vector<OpenMesh::VertexHandle> add_vertices(HalfEdgeMesh& mesh, const std::
     const std::uint32_t root = fans.root(corner);
     const Vec3& p = vertices[vertex(corner)];
     if (!handles[root].is_valid()) handles[root] = mesh.add_vertex({p.x(), p.y(), p.z()});
-    if (++count[root] > kMostTrianglesAtVertex) {
-      throw MeshError("more than " + std::to_string(kMostTrianglesAtVertex) + " faces meet in the vertex at " +
-                      text(p));
+    if (++count[root] > kMaxTrianglesAtVertex) {
+      throw MeshError("more than " + std::to_string(kMaxTrianglesAtVertex) + " faces meet in the vertex at " + text(p));
     }
     handles[corner] = handles[root];
   }
@@ -349,19 +348,19 @@ void refine(HalfEdgeMesh& mesh, double longest_edge) {
   subdivider(mesh, 1);
 }
 
-double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double most) {
+double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double max_count) {
   const double largest = longest_edge * longest_edge;
   double area = 0.0, count = 0.0;
   for (const auto face : mesh.faces()) area += mesh.calc_face_area(face);
   // The equilateral triangle is the largest.
-  const double fewest = area / (std::sqrt(3.0) / 4.0 * largest);
-  if (fewest > most) return fewest;
+  const double lower_bound = area / (std::sqrt(3.0) / 4.0 * largest);
+  if (lower_bound > max_count) return lower_bound;
   std::vector<std::array<double, 3>> open;  // squared lengths of the sides of a triangle
   for (const auto face : mesh.faces()) {
     auto edge = mesh.cfe_begin(face);
     for (double& length : open.emplace_back()) length = mesh.calc_edge_sqr_length(*edge++);
     count += 1.0;
-    while (!open.empty() && count <= most) {
+    while (!open.empty() && count <= max_count) {
       auto [a, b, c] = open.back();
       open.pop_back();
       if (b > a) std::swap(a, b);
@@ -374,22 +373,22 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
       open.push_back({a / 4.0, c, median});
       count += 1.0;
     }
-    if (count > most) break;
+    if (count > max_count) break;
   }
   return count;
 }
 
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing) {
   using Nearest = std::pair<double, std::size_t>;  // distance from the centre of the cube [m], and index
-  std::unordered_map<Place, Nearest, HashOfPlace> nearest;
+  std::unordered_map<CubeKey, Nearest, CubeKeyHash> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 cube = (points[i].position / spacing + Vec3::Constant(0.5)).array().floor();
     const Nearest here{(points[i].position - spacing * cube).norm(), i};
-    const auto [entry, is_new] = nearest.try_emplace(place_of(cube, points[i].normal), here);
+    const auto [entry, is_new] = nearest.try_emplace(key_of(cube, points[i].normal), here);
     if (!is_new) entry->second = std::min(entry->second, here);
   }
   std::vector<std::size_t> kept;
-  for (const auto& [place, point] : nearest) kept.push_back(point.second);
+  for (const auto& [key, point] : nearest) kept.push_back(point.second);
   std::sort(kept.begin(), kept.end());
   std::vector<SurfacePoint> thin;
   thin.reserve(kept.size());

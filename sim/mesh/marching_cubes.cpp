@@ -173,7 +173,7 @@ class GridLayer {
 
 /// Maximum number of slabs, whatever the number of threads: the last digits of a normal that is summed in two slabs
 /// depend on where they meet.
-constexpr std::size_t kMostSlabs = 16;
+constexpr std::size_t kMaxSlabs = 16;
 
 /// Calls visit(i) for each set bit of the word that starts with node 64 w.
 template <class Visit>
@@ -213,8 +213,8 @@ struct Slab {
 class SlabBuilder {
  public:
   /// Field and grid must outlive the builder.
-  SlabBuilder(const DensityField& field, const NodeGrid& grid, KeptOfSurface kept)
-      : field_(field), grid_(grid), kept_(kept), low_(field, grid), high_(field, grid) {}
+  SlabBuilder(const DensityField& field, const NodeGrid& grid, IsoSurfaceOptions options)
+      : field_(field), grid_(grid), options_(options), low_(field, grid), high_(field, grid) {}
 
   /// The cells between the layers of nodes first < last.
   Slab build(std::size_t first, std::size_t last) {
@@ -295,7 +295,7 @@ class SlabBuilder {
     for (const std::size_t edge : cut.edges) {
       const std::size_t corner = edge / 3;
       numbers[edge] = (corner < 4 ? low_ : high_).vertex(i + (corner & 1), j + (corner >> 1 & 1), edge % 3);
-      if (kept_.cells) cells.vertices.push_back(numbers[edge]);
+      if (options_.cells) cells.vertices.push_back(numbers[edge]);
     }
     for (const CubeTriangle& edges : cut.triangles) {
       const auto number = [&](std::size_t k) { return numbers[static_cast<std::size_t>(edges[k])]; };
@@ -303,9 +303,9 @@ class SlabBuilder {
       const auto& [a, b, c] = triangle;
       const Vec3 normal = triangle_normal(vertices[a].position, vertices[b].position, vertices[c].position);
       for (const std::uint32_t vertex : triangle) vertices[vertex].normal += normal;
-      if (kept_.triangles) triangles.push_back(triangle);
+      if (options_.triangles) triangles.push_back(triangle);
     }
-    if (kept_.cells) {
+    if (options_.cells) {
       cells.centres.push_back(low_.node(i, j) + Vec3::Constant(0.5 * grid_.spacing()));
       cells.starts.push_back(static_cast<std::uint32_t>(cells.vertices.size()));
     }
@@ -313,7 +313,7 @@ class SlabBuilder {
 
   const DensityField& field_;
   const NodeGrid& grid_;
-  KeptOfSurface kept_;
+  IsoSurfaceOptions options_;
   GridLayer low_, high_;  ///< neighbouring layers
   Slab slab_;
 };
@@ -378,12 +378,12 @@ DensityField density_field(const BlockWithHole& block, double spacing, Density d
           .density = density};
 }
 
-IsoSurface marching_cubes(const DensityField& field, KeptOfSurface kept) {
+IsoSurface marching_cubes(const DensityField& field, IsoSurfaceOptions options) {
   const NodeGrid grid(field);
-  const std::size_t layers = grid.count(2) - 1, thickness = (layers + kMostSlabs - 1) / kMostSlabs;
+  const std::size_t layers = grid.count(2) - 1, thickness = (layers + kMaxSlabs - 1) / kMaxSlabs;
   std::vector<Slab> slabs((layers + thickness - 1) / thickness);
   parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
-    slabs[s] = SlabBuilder(field, grid, kept).build(s * thickness, std::min((s + 1) * thickness, layers));
+    slabs[s] = SlabBuilder(field, grid, options).build(s * thickness, std::min((s + 1) * thickness, layers));
   });
   move_shared_vertices(slabs);
   std::size_t vertices = 0;

@@ -31,7 +31,7 @@ std::pair<std::size_t, std::size_t> nodes_within(const GridNodes& nodes, int axi
 
 TriangleSoup welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
   TriangleSoup surface;
-  std::vector<std::uint32_t> order(vertices.size()), place(vertices.size());
+  std::vector<std::uint32_t> order(vertices.size()), merged(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (!vertices[i].allFinite()) refuse("vertex ", i, " of the mesh is not finite");
@@ -39,12 +39,12 @@ TriangleSoup welded(std::span<const Vec3> vertices, std::span<const TriangleCorn
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return before(vertices[a], vertices[b]); });
   for (const std::uint32_t i : order) {
     if (surface.vertices.empty() || surface.vertices.back() != vertices[i]) surface.vertices.push_back(vertices[i]);
-    place[i] = static_cast<std::uint32_t>(surface.vertices.size() - 1);
+    merged[i] = static_cast<std::uint32_t>(surface.vertices.size() - 1);
   }
   for (const TriangleCorners& t : triangles) {
     if (std::max({t[0], t[1], t[2]}) >= vertices.size())
       refuse("a triangle of the mesh names a vertex that it has not");
-    const TriangleCorners corners{place[t[0]], place[t[1]], place[t[2]]};
+    const TriangleCorners corners{merged[t[0]], merged[t[1]], merged[t[2]]};
     const bool degenerate = corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
     if (!degenerate) surface.triangles.push_back(corners);
   }

@@ -230,9 +230,9 @@ void Cylinder::foremost_places(const ToolPose& pose, const ContactBuffer& contac
     const Mask on_axis = outwards <= zero;
     const Pack scale = select(on_axis, zero, radius / select(on_axis, one, outwards));
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
-    const Pack abreast = simd::max(-length, simd::min(q.s, zero));
+    const Pack beside = simd::max(-length, simd::min(q.s, zero));
     Pack s = select(forward > zero, zero, -length);
-    s = select(simd::abs(forward) < along_side, abreast, s);
+    s = select(simd::abs(forward) < along_side, beside, s);
     const Mask at_ball = forward > ball_from;
     simd::store(px + select(at_ball, -radius * nx, s * ax + scale * x), &places.x[i]);
     simd::store(py + select(at_ball, -radius * ny, s * ay + scale * y), &places.y[i]);

@@ -170,7 +170,7 @@ class GridSpline {
 };
 
 /// Number of times that box_near shrinks its box; further passes hardly shrink it.
-constexpr int kShrinks = 3;
+constexpr int kShrinkIterations = 3;
 
 /// Tests which of eight points lie in the body.
 std::uint8_t inside_bits(const SignedDistanceGrid& grid, const GridFrame& frame, const double* x, const double* y,
@@ -208,9 +208,9 @@ Box turned(const Box& box, const Mat3& rotation, const Vec3& position) {
 /// the nearest places lie on all sides.
 constexpr double kUndefinedBelow = 1e-9;
 /// The shortest step along a ray, in spacings.
-constexpr double kShortestWay = 0.125;
+constexpr double kMinStep = 0.125;
 /// Ten rounds of regula falsi usually shrink a bracket of some spacings to rounding.
-constexpr int kMostRounds = 40;
+constexpr int kMaxIterations = 40;
 
 /// The field at eight points anywhere, evaluated one by one.
 class FieldPack {
@@ -244,7 +244,7 @@ class ExitSearch {
  public:
   ExitSearch() = default;
   explicit ExitSearch(const SignedDistanceGrid& grid)
-      : shortest_(kShortestWay * grid.spacing()), bound_(grid.error_bound()), furthest_(2.0 * grid.reach()) {}
+      : min_step_(kMinStep * grid.spacing()), bound_(grid.error_bound()), max_distance_(2.0 * grid.reach()) {}
 
   bool done() const { return done_; }
   /// The last place in the body.
@@ -253,47 +253,47 @@ class ExitSearch {
   /// Distance along the ray at which to evaluate the field next.
   double next() const {
     if (bracketed_) return std::clamp(inside_ + (outside_ - inside_) * (below_ / (below_ - above_)), inside_, outside_);
-    return inside_ + std::max({shortest_, -below_ / std::numbers::sqrt3, -below_ - 2.0 * bound_});
+    return inside_ + std::max({min_step_, -below_ / std::numbers::sqrt3, -below_ - 2.0 * bound_});
   }
 
   /// Takes the field's value there.
-  void take(double place, double value) {
-    if (!bracketed_) return walk(place, value);
+  void add_sample(double distance, double value) {
+    if (!bracketed_) return march(distance, value);
     // The Illinois rule: an end that stays twice counts half.
     if (value <= 0.0) {
-      inside_ = place;
+      inside_ = distance;
       below_ = value;
       if (last_ < 0) above_ *= 0.5;
       last_ = -1;
     } else {
-      outside_ = place;
+      outside_ = distance;
       above_ = value;
       if (last_ > 0) below_ *= 0.5;
       last_ = 1;
     }
-    done_ = value == 0.0 || ++rounds_ == kMostRounds || outside_ - inside_ <= 1e-12 * shortest_;
+    done_ = value == 0.0 || ++iterations_ == kMaxIterations || outside_ - inside_ <= 1e-12 * min_step_;
   }
 
  private:
-  void walk(double place, double value) {
+  void march(double distance, double value) {
     bracketed_ = value > 0.0;
     if (bracketed_) {
-      outside_ = place;
+      outside_ = distance;
       above_ = value;
       done_ = below_ == 0.0;  // on the surface
       return;
     }
-    inside_ = place;
+    inside_ = distance;
     below_ = value;
-    if (place <= furthest_) return;
+    if (distance <= max_distance_) return;
     // The direction is zero or not finite.
     inside_ = 0.0;
     done_ = true;
   }
 
-  double shortest_ = 0.0, bound_ = 0.0, furthest_ = 0.0;
+  double min_step_ = 0.0, bound_ = 0.0, max_distance_ = 0.0;
   double inside_ = 0.0, below_ = 0.0, outside_ = 0.0, above_ = 0.0;
-  int last_ = 0, rounds_ = 0;
+  int last_ = 0, iterations_ = 0;
   bool bracketed_ = false, done_ = false;
 };
 
@@ -330,8 +330,8 @@ void MeshTool::mark_near(const ToolPose& pose, double margin, const PointArrays&
       const NearestNodes nearest(frame, q);
       alignas(64) double values[simd::lanes];
       for (std::size_t k = 0; k < simd::lanes; ++k) values[k] = grid_->values()[nearest[k]];
-      const Pack least = simd::max(simd::load(values) - slack, Pack(0.0));
-      *marks++ = range.own(simd::bits(out2 * spacing2 + least * least <= margin2), pack);
+      const Pack distance = simd::max(simd::load(values) - slack, Pack(0.0));
+      *marks++ = range.masked(simd::bits(out2 * spacing2 + distance * distance <= margin2), pack);
     }
   }
 }
@@ -344,7 +344,7 @@ Box MeshTool::box_near(const ToolPose& pose, double margin, const Box& bounds) c
   // Covers the rounding of the rotations.
   const double slack = 1e-12 * (reach() + margin + pose.position.cwiseAbs().maxCoeff());
   Box part = body, near = turned(body, rotation, pose.position);
-  for (int k = 0; k < kShrinks; ++k) {
+  for (int k = 0; k < kShrinkIterations; ++k) {
     Box shared = intersection(near, bounds);
     if ((shared.min.array() > shared.max.array()).any()) return {Vec3::Ones(), -Vec3::Ones()};
     shared = {shared.min - Vec3::Constant(slack), shared.max + Vec3::Constant(slack)};
@@ -429,7 +429,7 @@ void MeshTool::exit_distances(const ToolPose& pose, const ContactBuffer& contact
     const std::size_t rays = std::min(contacts.size() - i, simd::lanes);
     std::array<ExitSearch, simd::lanes> searches;
     searches.fill(ExitSearch(*grid_));
-    std::array<double, simd::lanes> places{};
+    std::array<double, simd::lanes> distances{};
     // The first pass evaluates the field at the contacts.
     for (bool first = true, busy = true; busy; first = false) {
       alignas(64) double x[simd::lanes] = {}, y[simd::lanes] = {}, z[simd::lanes] = {};
@@ -437,10 +437,10 @@ void MeshTool::exit_distances(const ToolPose& pose, const ContactBuffer& contact
       for (std::size_t k = 0; k < rays; ++k) {
         if (searches[k].done()) continue;
         busy = true;
-        places[k] = first ? 0.0 : searches[k].next();
-        x[k] = contacts.x[i + k] + places[k] * contacts.ux[i + k];
-        y[k] = contacts.y[i + k] + places[k] * contacts.uy[i + k];
-        z[k] = contacts.z[i + k] + places[k] * contacts.uz[i + k];
+        distances[k] = first ? 0.0 : searches[k].next();
+        x[k] = contacts.x[i + k] + distances[k] * contacts.ux[i + k];
+        y[k] = contacts.y[i + k] + distances[k] * contacts.uy[i + k];
+        z[k] = contacts.z[i + k] + distances[k] * contacts.uz[i + k];
       }
       if (!busy) break;
       const FieldPack field(*grid_, frame, x, y, z);
@@ -448,7 +448,7 @@ void MeshTool::exit_distances(const ToolPose& pose, const ContactBuffer& contact
         if (searches[k].done()) continue;
         // Contacts lie in the body up to rounding.
         const double value = field.value(k);
-        searches[k].take(places[k], first && value > 0.0 ? 0.0 : value);
+        searches[k].add_sample(distances[k], first && value > 0.0 ? 0.0 : value);
       }
     }
     for (std::size_t k = 0; k < rays; ++k) exits[i + k] = searches[k].exit();
@@ -472,11 +472,11 @@ void MeshTool::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
         contacts.depth[k] = grid_->hull().support(local) - local.dot(x);
         if (m.dot(wanted) > -contacts.depth[k]) {
           const Vec3 back = rotation.transpose() * -normal;
-          double most = kFlush;
+          double largest = kFlush;
           for (const SignedDistanceGrid::Face& face : grid_->flat_faces()) {
             const double flush = face.normal.dot(back), depth = face.offset - face.normal.dot(x);
-            if (flush <= most || depth > slack) continue;
-            most = flush;
+            if (flush <= largest || depth > slack) continue;
+            largest = flush;
             contacts.depth[k] = depth;
             m = rotation * face.normal;
           }
@@ -492,12 +492,12 @@ void MeshTool::foremost_places(const ToolPose& pose, const ContactBuffer& contac
                                const PlaceArrays& places) const noexcept {
   const Mat3 rotation = pose.rotation();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vec3 abreast = rotation.transpose() * (contacts.point(i) - pose.position);
-    const Vec3 place =
-        pose.position + rotation * grid_->hull().foremost(rotation.transpose() * -contacts.normal(i), abreast);
-    places.x[i] = place.x();
-    places.y[i] = place.y();
-    places.z[i] = place.z();
+    const Vec3 point = rotation.transpose() * (contacts.point(i) - pose.position);
+    const Vec3 support =
+        pose.position + rotation * grid_->hull().foremost(rotation.transpose() * -contacts.normal(i), point);
+    places.x[i] = support.x();
+    places.y[i] = support.y();
+    places.z[i] = support.z();
   }
 }
 

@@ -35,13 +35,13 @@ Mat3 shortest_turn(const Vec3& axis) noexcept {
 }
 
 /// The straight or curved way from one waypoint to the next.
-struct Leg {
+struct Segment {
   double start, rise, duration;
-  double share;  ///< of the duration that has passed
+  double fraction;  ///< of the duration that has passed
 };
 
 /// Before the first and after the last waypoint nothing rises.
-Leg leg_at(const Profile::Waypoints& w, double t) {
+Segment segment_at(const Profile::Waypoints& w, double t) {
   const auto& p = w.points;
   if (p.empty()) return {0.0, 0.0, 1.0, 0.0};
   if (!(t >= p.front().first)) return {p.front().second, 0.0, 1.0, 0.0};
@@ -53,11 +53,11 @@ Leg leg_at(const Profile::Waypoints& w, double t) {
 }
 
 /// The axis reversed, and the lean, turned as `up` is to it.
-struct Leaning {
+struct TiltedFrame {
   Vec3 up, side;
 };
 
-Leaning leaning(const Orientation& orientation, double tilt, double azimuth) noexcept {
+TiltedFrame tilted_frame(const Orientation& orientation, double tilt, double azimuth) noexcept {
   const auto [around, onward] = math::sine_cosine(azimuth);
   const auto [sine, cosine] = math::sine_cosine(tilt);
   const Vec3 lean = onward * orientation.lean + around * orientation.up.cross(orientation.lean);
@@ -111,17 +111,17 @@ double Profile::Sine::rate(double t) const noexcept {
 }
 
 double Profile::Waypoints::at(double t) const noexcept {
-  const Leg leg = leg_at(*this, t);
-  if (leg.rise == 0.0) return leg.start;
-  if (interpolation == Interpolation::linear) return leg.start + leg.share * leg.rise;
-  return leg.start + (0.5 - 0.5 * math::cos(std::numbers::pi * leg.share)) * leg.rise;
+  const Segment segment = segment_at(*this, t);
+  if (segment.rise == 0.0) return segment.start;
+  if (interpolation == Interpolation::linear) return segment.start + segment.fraction * segment.rise;
+  return segment.start + (0.5 - 0.5 * math::cos(std::numbers::pi * segment.fraction)) * segment.rise;
 }
 
 double Profile::Waypoints::rate(double t) const noexcept {
-  const Leg leg = leg_at(*this, t);
-  if (leg.rise == 0.0) return 0.0;
-  if (interpolation == Interpolation::linear) return leg.rise / leg.duration;
-  return 0.5 * std::numbers::pi * math::sin(std::numbers::pi * leg.share) * leg.rise / leg.duration;
+  const Segment segment = segment_at(*this, t);
+  if (segment.rise == 0.0) return 0.0;
+  if (interpolation == Interpolation::linear) return segment.rise / segment.duration;
+  return 0.5 * std::numbers::pi * math::sin(std::numbers::pi * segment.fraction) * segment.rise / segment.duration;
 }
 
 double Profile::operator()(double t) const noexcept {
@@ -133,23 +133,23 @@ double Profile::rate(double t) const noexcept {
 }
 
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept {
-  return -leaning(orientation, tilt, azimuth).up;
+  return -tilted_frame(orientation, tilt, azimuth).up;
 }
 
 double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept {
-  const auto [up, side] = leaning(orientation, tilt, azimuth);
+  const auto [up, side] = tilted_frame(orientation, tilt, azimuth);
   return roll_towards(-up, side) + roll;
 }
 
 ScriptedMotion::ScriptedMotion(Orientation orientation, std::optional<std::array<Profile, 3>> position)
     : orientation_(std::move(orientation)), position_(std::move(position)) {
   if (orientation_.tilt.is_constant() && orientation_.azimuth.is_constant()) {
-    held_axis_ = tool_axis(orientation_, orientation_.tilt(0.0), orientation_.azimuth(0.0));
+    constant_axis_ = tool_axis(orientation_, orientation_.tilt(0.0), orientation_.azimuth(0.0));
   }
 }
 
 Vec3 ScriptedMotion::axis_at(double t) const noexcept {
-  if (held_axis_) return *held_axis_;
+  if (constant_axis_) return *constant_axis_;
   return tool_axis(orientation_, orientation_.tilt(t), orientation_.azimuth(t));
 }
 
@@ -174,7 +174,7 @@ RecordedMotion::RecordedMotion(std::vector<Sample> samples) : samples_(std::move
   }
 }
 
-RecordedMotion::Leg RecordedMotion::leg_at(double t) const noexcept {
+RecordedMotion::Segment RecordedMotion::segment_at(double t) const noexcept {
   const auto next = std::ranges::upper_bound(samples_, t, {}, &Sample::time);
   if (next == samples_.begin()) return {&samples_.front(), &samples_.front(), 0.0};
   if (next == samples_.end()) return {&samples_.back(), &samples_.back(), 0.0};
@@ -182,31 +182,31 @@ RecordedMotion::Leg RecordedMotion::leg_at(double t) const noexcept {
   return {&from, &*next, (t - from.time) / (next->time - from.time)};
 }
 
-Eigen::Quaterniond RecordedMotion::orientation_in(const Leg& leg) noexcept {
-  const Eigen::Quaterniond turn = leg.from->orientation->conjugate() * *leg.to->orientation;
+Eigen::Quaterniond RecordedMotion::orientation_in(const Segment& segment) noexcept {
+  const Eigen::Quaterniond turn = segment.from->orientation->conjugate() * *segment.to->orientation;
   const double sine = turn.vec().norm();  // of half the angle
-  if (sine == 0.0) return *leg.from->orientation;
-  return *leg.from->orientation * turn_about(turn.vec() / sine, leg.fraction * angle_of(turn, sine));
+  if (sine == 0.0) return *segment.from->orientation;
+  return *segment.from->orientation * turn_about(turn.vec() / sine, segment.fraction * angle_of(turn, sine));
 }
 
 Vec3 RecordedMotion::axis_at(double t) const noexcept {
-  const Leg leg = leg_at(t);
-  if (leg.from->orientation) return axis_of(orientation_in(leg));
-  const Vec3 axis = leg.from->axis + leg.fraction * (leg.to->axis - leg.from->axis);
+  const Segment segment = segment_at(t);
+  if (segment.from->orientation) return axis_of(orientation_in(segment));
+  const Vec3 axis = segment.from->axis + segment.fraction * (segment.to->axis - segment.from->axis);
   // Opposite neighbours pass through zero half-way; keeps the last direction there.
-  return unit_or(axis, leg.from->axis);
+  return unit_or(axis, segment.from->axis);
 }
 
 double RecordedMotion::roll_at(double t) const noexcept {
-  const Leg leg = leg_at(t);
-  if (!leg.from->orientation) return 0.0;
-  const Eigen::Quaterniond q = orientation_in(leg);
+  const Segment segment = segment_at(t);
+  if (!segment.from->orientation) return 0.0;
+  const Eigen::Quaterniond q = orientation_in(segment);
   return roll_towards(axis_of(q), q * Vec3::UnitX());
 }
 
 Vec3 RecordedMotion::position_at(double t) const noexcept {
-  const Leg leg = leg_at(t);
-  return leg.from->position + leg.fraction * (leg.to->position - leg.from->position);
+  const Segment segment = segment_at(t);
+  return segment.from->position + segment.fraction * (segment.to->position - segment.from->position);
 }
 
 }  // namespace hapbench

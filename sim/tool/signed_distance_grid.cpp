@@ -48,7 +48,7 @@ Vec3 direction_in(std::size_t cell, double a, double b) {
   return u.normalized();
 }
 
-std::vector<std::uint32_t> foremost_in_cell(const std::vector<Vec3>& points, std::size_t cell, double tie) {
+std::vector<std::uint32_t> support_candidates(const std::vector<Vec3>& points, std::size_t cell, double tie) {
   const Vec3 middle = direction_in(cell, 0.5, 0.5);
   // Great circles bound a cell, so its corners are furthest from its middle.
   double radius = 0.0;
@@ -66,17 +66,17 @@ std::vector<std::uint32_t> foremost_in_cell(const std::vector<Vec3>& points, std
 }
 
 /// Nodes between the mesh and the border on each side; with three, the 27 nodes around any border point are outside.
-constexpr double kBorder = 3.0;
-constexpr double kMostBytes = 1024.0 * 1024.0 * 1024.0;
+constexpr double kMarginNodes = 3.0;
+constexpr double kMaxBytes = 1024.0 * 1024.0 * 1024.0;
 constexpr double kBytesPerNode = sizeof(double) + sizeof(std::uint8_t);
-constexpr double kMostThin = 0.1;
+constexpr double kMaxThinFraction = 0.1;
 /// A vertex this far in front of a plane, in spacings, does not make a body concave. It exceeds the rounding of files
 /// in single precision.
 constexpr double kConvexWithin = 0.01;
 /// Normals that differ by less count as equal.
 constexpr double kSameNormal = 1e-6;
 /// A flat tool slides on few faces, and the faces of a round one need no special treatment.
-constexpr std::size_t kMostFaces = 64;
+constexpr std::size_t kMaxFaces = 64;
 
 double suggested_for(const Vec3& extent) {
   // Gives a cube 128 nodes along each edge: 121 over its extent and 7 in the margin around it. Each extent counts as at
@@ -88,10 +88,10 @@ double suggested_for(const Vec3& extent) {
 /// nodes than integers can count. Throws std::invalid_argument if they are too many.
 Vec3 node_counts(const Vec3& extent, double spacing) {
   if (!(spacing > 0.0 && std::isfinite(spacing))) refuse("the spacing of a grid must be > 0, not ", spacing, " m");
-  const Vec3 wanted = (extent / spacing).array().ceil() + 2.0 * kBorder + 1.0;
-  if (const double bytes = kBytesPerNode * wanted.prod(); !(bytes <= kMostBytes)) {
+  const Vec3 wanted = (extent / spacing).array().ceil() + 2.0 * kMarginNodes + 1.0;
+  if (const double bytes = kBytesPerNode * wanted.prod(); !(bytes <= kMaxBytes)) {
     refuse("a grid of ", wanted.x(), " x ", wanted.y(), " x ", wanted.z(), " nodes, ", spacing, " m apart, would take ",
-           bytes / kMostBytes, " GiB, more than 1; the mesh is ", extent.x(), " x ", extent.y(), " x ", extent.z(),
+           bytes / kMaxBytes, " GiB, more than 1; the mesh is ", extent.x(), " x ", extent.y(), " x ", extent.z(),
            " m large: is that its scale? If so, set the nodes ", suggested_for(extent), " m apart");
   }
   return wanted;
@@ -136,8 +136,8 @@ void check_winding(const std::vector<std::int8_t>& numbers, const GridNodes& nod
   const auto first = std::find_if(numbers.begin(), numbers.end(), is_wrong);
   if (first == numbers.end()) return;
   const auto i = static_cast<std::size_t>(first - numbers.begin()), column = i / nodes.count[2];
-  const Vec3 place = nodes.place(column / nodes.count[1], column % nodes.count[1], i % nodes.count[2]);
-  refuse("the mesh passes through itself: it encloses [", coordinates(place), "] m ", int{*first}, " times, and so ",
+  const Vec3 position = nodes.place(column / nodes.count[1], column % nodes.count[1], i % nodes.count[2]);
+  refuse("the mesh passes through itself: it encloses [", coordinates(position), "] m ", int{*first}, " times, and so ",
          std::count_if(first, numbers.end(), is_wrong), " of ", nodes.count[0], " x ", nodes.count[1], " x ",
          nodes.count[2], " nodes; unite its parts, all counter-clockwise from outside");
 }
@@ -164,12 +164,12 @@ void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, dou
       where = i;
     }
   }
-  if (too_thin <= kMostThin * all) return;
+  if (too_thin <= kMaxThinFraction * all) return;
   const auto [a, b, c] = surface.corners(surface.triangles()[where]);
-  const Vec3 place = (a + b + c) / 3.0;
+  const Vec3 position = (a + b + c) / 3.0;
   refuse("the mesh is thinner than its grid: ", std::round(100.0 * too_thin / all),
          " % of its surface is less than two spacings (", thickness, " m) thick, the thinnest place ", thinnest,
-         " m at [", coordinates(place), "] m; set the nodes at most ", 0.5 * thinnest,
+         " m at [", coordinates(position), "] m; set the nodes at most ", 0.5 * thinnest,
          " m apart, or take a thicker mesh");
 }
 
@@ -177,23 +177,23 @@ void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, dou
 
 SupportTable::SupportTable(std::vector<Vec3> points) : points_(std::move(points)), cells_(kCells) {
   tie_ = kTie * box_of(points_).size().norm();
-  parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells_[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
+  parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells_[i] = support_candidates(points_, i, 2.0 * tie_); });
 }
 
 double SupportTable::support(const Vec3& direction) const noexcept {
-  double most = -std::numeric_limits<double>::infinity();
-  for (const std::uint32_t i : cells_[cell_of(direction)]) most = std::max(most, direction.dot(points_[i]));
-  return most;
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : cells_[cell_of(direction)]) largest = std::max(largest, direction.dot(points_[i]));
+  return largest;
 }
 
-Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const noexcept {
+Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& near) const noexcept {
   const std::vector<std::uint32_t>& candidates = cells_[cell_of(direction)];
-  const double least = support(direction) - tie_;
+  const double threshold = support(direction) - tie_;
   const Vec3* nearest = nullptr;
   double distance2 = std::numeric_limits<double>::infinity();
   for (const std::uint32_t i : candidates) {
-    if (direction.dot(points_[i]) < least) continue;
-    const double d2 = (points_[i] - abreast).squaredNorm();
+    if (direction.dot(points_[i]) < threshold) continue;
+    const double d2 = (points_[i] - near).squaredNorm();
     if (nearest == nullptr || d2 < distance2) {
       nearest = &points_[i];
       distance2 = d2;
@@ -202,16 +202,16 @@ Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const no
   if (nearest == nullptr) return points_.front();  // a direction that is not finite
   // Approaches the other foremost points as long as that comes nearer to `abreast`, twice for faces. Means of foremost
   // places are foremost as well.
-  Vec3 place = *nearest;
+  Vec3 support = *nearest;
   for (int pass = 0; pass < 2; ++pass) {
     for (const std::uint32_t i : candidates) {
-      if (direction.dot(points_[i]) < least) continue;
-      const Vec3 way = points_[i] - place;
-      const double length2 = way.squaredNorm();
-      if (length2 > 0.0) place += std::clamp((abreast - place).dot(way) / length2, 0.0, 1.0) * way;
+      if (direction.dot(points_[i]) < threshold) continue;
+      const Vec3 line = points_[i] - support;
+      const double length2 = line.squaredNorm();
+      if (length2 > 0.0) support += std::clamp((near - support).dot(line) / length2, 0.0, 1.0) * line;
     }
   }
-  return place;
+  return support;
 }
 
 SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spacing)
@@ -305,7 +305,7 @@ void SignedDistanceGrid::find_faces(const ClosedSurface& surface) {
   }
   std::stable_sort(largest.begin(), largest.end(),
                    [](const Vec3& a, const Vec3& b) { return a.squaredNorm() > b.squaredNorm(); });
-  largest.resize(std::min(largest.size(), kMostFaces));
+  largest.resize(std::min(largest.size(), kMaxFaces));
   for (const Vec3& area : largest) faces_.push_back({area.normalized(), hull_.support(area.normalized())});
 }
 
