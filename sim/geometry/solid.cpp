@@ -12,8 +12,9 @@
 namespace hapbench {
 namespace {
 
-constexpr double kFar = 1e4;  ///< beyond every scene [m]
+constexpr double kFar = 1e4;  ///< longer than any distance in a scene [m]
 
+/// Solid in closed form: one of the shapes of analytic_shells.hpp.
 template <class Shape>
 class ShapeSolid final : public Solid {
  public:
@@ -43,11 +44,13 @@ class ShapeSolid final : public Solid {
   Shape shape_;
 };
 
+/// Solid bounded by a triangle mesh.
 class MeshSolid final : public Solid {
  public:
   MeshSolid(TriangleSoup surface, bool is_closed)
       : Solid(box_of(surface.vertices)), surface_(std::move(surface)), tree_(surface_.vertices, surface_.triangles) {
     if (is_closed) return;
+    // The mesh is closed if equally many triangles run along each edge in both directions.
     const std::vector<TriangleSide> sides = sides_by_edge(surface_.triangles);
     for_each_edge(sides, [this](std::span<const TriangleSide> edge) { closed_ = closed_ && is_balanced(edge); });
     if (closed_) return;
@@ -57,14 +60,16 @@ class MeshSolid final : public Solid {
 
   SurfaceDistance at(const Vec3& q, const LookedUp* near) const noexcept override {
     const auto nearest = nearest_triangle(q, near);
-    if (!nearest) return {kFar, false};  // not finite
+    if (!nearest) return {kFar, false};  // only if q is not finite
     const double distance = std::sqrt(nearest->distance2);
     if (closed_) {
+      // Closed mesh: the sign follows from a known distance nearby, or from the winding number.
       if (near != nullptr && (q - near->place).norm() < std::abs(near->value))
         return {std::copysign(distance, near->value)};
       const bool out = beyond(q) || tree_.winding_number(q, surface_.vertices, surface_.triangles) <= 0;
       return {out ? distance : -distance};
     }
+    // Open mesh: the sign is that of the side of the normal at the closest point.
     const auto [n, is_border] = feature(*nearest);
     return {std::copysign(distance, (q - nearest->position).dot(n)), !is_border};
   }
@@ -72,7 +77,7 @@ class MeshSolid final : public Solid {
     const auto nearest = nearest_triangle(q, nullptr);
     if (!nearest) return Vec3::UnitZ();
     const Vec3 away = q - nearest->position, n = normal(nearest->triangle);
-    // Nearer, the direction is rounding.
+    // Closer to the surface, the direction from the closest point is dominated by rounding.
     if (away.norm() < 1e-6 * step) return n;
     return away.normalized() * (at(q, nullptr).value < 0.0 ? -1.0 : 1.0);
   }
@@ -92,7 +97,7 @@ class MeshSolid final : public Solid {
     return (q.array() < region().min.array()).any() || (q.array() > region().max.array()).any();
   }
 
-  /// Finds the edges that only one triangle has, and the normals of all edges and vertices.
+  /// Finds the border (edges with one triangle only) and the normals of all edges and vertices.
   void find_borders(std::span<const TriangleSide> sides) {
     vertex_normals_.assign(surface_.vertices.size(), Vec3::Zero());
     border_vertices_.assign(surface_.vertices.size(), false);
@@ -106,6 +111,7 @@ class MeshSolid final : public Solid {
       at_border_[edge[0].triangle] |= static_cast<std::uint8_t>(1u << edge[0].corner);
       border_vertices_[edge[0].low] = border_vertices_[edge[0].high] = true;
     });
+    // The normal of a vertex is the sum of its triangles' normals, weighted by their angles at the vertex.
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 &a = vertex(t, k), b = vertex(t, (k + 1) % 3), c = vertex(t, (k + 2) % 3);
@@ -116,11 +122,12 @@ class MeshSolid final : public Solid {
   }
 
   struct Feature {
-    Vec3 normal;  ///< of any length
+    Vec3 normal;  ///< not normalised
     bool is_border;
   };
-  /// The face, edge or vertex on which a place lies. The side of the surface on which a point lies is that of the mean
-  /// normal there, weighted by angles (J. A. Baerentzen and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
+  /// Returns the normal of the face, edge or vertex on which the closest point lies. A query point lies on the side
+  /// of the surface to which this normal points; the normal at a vertex is the mean weighted by angles (J. A.
+  /// Baerentzen and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
   Feature feature(const TriangleTree::Nearest& nearest) const {
     const std::size_t t = nearest.triangle;
     if (nearest.corners == 7u) return {normal(t), false};
@@ -137,13 +144,14 @@ class MeshSolid final : public Solid {
   TriangleSoup surface_;
   TriangleTree tree_;
   bool closed_ = true;
-  // Filled for an open surface only:
+  // Filled for an open mesh only:
   std::vector<Vec3> vertex_normals_;
   std::vector<bool> border_vertices_;
-  std::vector<std::uint8_t> at_border_;            ///< bit k of a triangle: its edge from corner k is the border
-  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< sums over the triangles of each edge
+  std::vector<std::uint8_t> at_border_;            ///< bit k of a triangle: its edge from corner k is on the border
+  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< by triangle and corner: sum of the edge's normals
 };
 
+/// Solid given by points with normals.
 class PointSolid final : public Solid {
  public:
   explicit PointSolid(const std::vector<SurfacePoint>& points)
@@ -154,11 +162,13 @@ class PointSolid final : public Solid {
 
   SurfaceDistance at(const Vec3& q, const LookedUp*) const noexcept override {
     const auto nearest = tree_.nearest(q, kFar);
-    if (!nearest) return {kFar, false};  // not finite
+    if (!nearest) return {kFar, false};  // only if q is not finite
+    // Split q - p into the height h along the normal and the tangential part.
     const auto& [p, n] = points_[nearest->triangle];
     const double h = n.dot(q - p);
     const Vec3 along = q - p - h * n;
     const double tangential = along.norm(), beyond = std::max(0.0, tangential * tangential - spacing_ * spacing_);
+    // Beyond the spacing, the distance is known only if the shell has a point further along.
     const bool continues =
         beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / tangential * along, 1.5 * spacing_).has_value();
     return {std::copysign(std::sqrt(h * h + beyond), h), continues};
@@ -175,7 +185,7 @@ class PointSolid final : public Solid {
     }
     return {soup.vertices, soup.triangles};
   }
-  /// The median distance of some points from their nearest neighbours.
+  /// Returns the median distance between a sample of points and their nearest neighbours [m].
   double median_spacing() const {
     constexpr std::size_t kSamples = 32;
     std::vector<double> distances;

@@ -9,7 +9,7 @@
 namespace hapbench {
 namespace {
 
-/// The turn about a unit axis, right-handed [rad].
+/// Returns the rotation about a unit axis by an angle, right-handed [rad].
 Eigen::Quaterniond turn_about(const Vec3& axis, double angle) noexcept {
   const auto [sine, cosine] = math::sine_cosine(0.5 * angle);
   Eigen::Quaterniond q;
@@ -18,13 +18,14 @@ Eigen::Quaterniond turn_about(const Vec3& axis, double angle) noexcept {
   return q;
 }
 
-/// The angle of the turn of a unit quaternion in (-pi, pi], about q.vec(), whose length is `sine` > 0.
+/// Returns the rotation angle of a unit quaternion in (-pi, pi] about q.vec(). `sine` is the length of q.vec(),
+/// which must be > 0.
 double angle_of(const Eigen::Quaterniond& q, double sine) noexcept {
   return 2.0 * math::atan2(q.w() < 0.0 ? -sine : sine, std::abs(q.w()));
 }
 
-/// The matrix of the shortest turn of -z to a unit vector, by Rodrigues' formula I + [v] + [v]^2 (1 - c) / |v|^2 with
-/// v = -z x axis, the turn's axis times its sine, and its cosine c = <-z, axis>.
+/// Returns the matrix of the shortest rotation from -z to a unit vector, by Rodrigues' formula I + [v] + [v]^2 (1 -
+/// c) / |v|^2. v = -z x axis is the rotation axis times the sine of the angle, c = <-z, axis> the cosine.
 Mat3 shortest_turn(const Vec3& axis) noexcept {
   const Vec3 v(axis.y(), -axis.x(), 0.0);
   const double sine2 = v.squaredNorm(), cosine = -axis.z();
@@ -34,13 +35,13 @@ Mat3 shortest_turn(const Vec3& axis) noexcept {
   return Mat3::Identity() + cross + (1.0 - cosine) / sine2 * cross * cross;
 }
 
-/// The straight or curved way from one waypoint to the next.
+/// Segment between two waypoints: value at its start, change of the value, and duration [s].
 struct Segment {
   double start, rise, duration;
-  double fraction;  ///< of the duration that has passed
+  double fraction;  ///< elapsed part of the duration, 0 to 1
 };
 
-/// Before the first and after the last waypoint nothing rises.
+/// Returns the segment at time t; before the first and after the last waypoint a constant one.
 Segment segment_at(const Profile::Waypoints& w, double t) {
   const auto& p = w.points;
   if (p.empty()) return {0.0, 0.0, 1.0, 0.0};
@@ -52,11 +53,13 @@ Segment segment_at(const Profile::Waypoints& w, double t) {
   return {last->second, next->second - last->second, duration, (t - last->first) / duration};
 }
 
-/// The axis reversed, and the lean, turned as `up` is to it.
+/// Unit vectors of the tilted tool: `up` is the reversed tool axis, and `side` is the lean direction, tilted with
+/// it.
 struct TiltedFrame {
   Vec3 up, side;
 };
 
+/// Returns the frame at the given tilt and azimuth [rad].
 TiltedFrame tilted_frame(const Orientation& orientation, double tilt, double azimuth) noexcept {
   const auto [around, onward] = math::sine_cosine(azimuth);
   const auto [sine, cosine] = math::sine_cosine(tilt);
@@ -64,6 +67,7 @@ TiltedFrame tilted_frame(const Orientation& orientation, double tilt, double azi
   return {cosine * orientation.up + sine * lean, cosine * lean - sine * orientation.up};
 }
 
+/// Returns the tool axis of an orientation: its -z axis.
 Vec3 axis_of(const Eigen::Quaterniond& orientation) noexcept {
   return (orientation * -Vec3::UnitZ()).normalized();
 }
@@ -85,7 +89,7 @@ Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept {
   Mat3 cross;
   cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
   Mat3 turn = Mat3::Identity() + cross + cross * cross / (1.0 + cosine);
-  if (v.squaredNorm() == 0.0 && cosine < 0.0) {  // half a turn, about any axis across
+  if (v.squaredNorm() == 0.0 && cosine < 0.0) {  // opposite axes: 180 degrees about any perpendicular axis
     const Vec3 across = from.axis.unitOrthogonal();
     turn = 2.0 * across * across.transpose() - Mat3::Identity();
   }
@@ -96,7 +100,7 @@ Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept {
 Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept {
   if (from.roll == 0.0 && to.roll == 0.0) return turn(from.axis, to.axis);
   const Eigen::Quaterniond whole(Mat3(to.rotation() * from.rotation().transpose()));
-  const double sine = whole.vec().norm();  // of half the angle
+  const double sine = whole.vec().norm();  // sine of half the angle
   if (sine == 0.0) return Vec3::Zero();
   return whole.vec() * (angle_of(whole, sine) / sine);
 }
@@ -193,7 +197,7 @@ Vec3 RecordedMotion::axis_at(double t) const noexcept {
   const Segment segment = segment_at(t);
   if (segment.from->orientation) return axis_of(orientation_in(segment));
   const Vec3 axis = segment.from->axis + segment.fraction * (segment.to->axis - segment.from->axis);
-  // Opposite neighbours pass through zero half-way; keeps the last direction there.
+  // Between opposite axes the interpolation passes through zero; keep the last direction there.
   return unit_or(axis, segment.from->axis);
 }
 
