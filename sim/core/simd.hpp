@@ -146,8 +146,9 @@ HAPBENCH_INLINE std::uint8_t bits(const Mask& m) {
 #endif
 }
 
-/// Writes those of eight elements whose bit in `selected` is set to `to`, in order and without gaps. Precondition:
-/// `from` is aligned to a whole pack, and `to` has room for eight elements, because all eight may be overwritten.
+/// Copies, of eight elements, the elements whose bit in `selected` is set to `to`, in order and without gaps.
+/// Precondition: `from` is aligned to a whole pack, and `to` has room for eight elements, because all eight may be
+/// overwritten.
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
 inline void store_selected(std::uint8_t selected, const double* from, double* to) {
   _mm512_storeu_pd(to, _mm512_maskz_compress_pd(selected, _mm512_load_pd(from)));

@@ -69,7 +69,7 @@ class MeshSolid final : public Solid {
       const bool out = beyond(q) || tree_.winding_number(q, surface_.vertices, surface_.triangles) <= 0;
       return {out ? distance : -distance};
     }
-    // Open mesh: the sign is that of the side of the normal at the closest point.
+    // Open mesh: phi is positive on the side to which the normal at the closest point points.
     const auto [n, is_border] = feature(*nearest);
     return {std::copysign(distance, (q - nearest->position).dot(n)), !is_border};
   }

@@ -20,9 +20,9 @@ struct SurfaceDistance {
   bool known = true;
 };
 
-/// A signed distance that was computed earlier at a nearby point, used to shorten the next search. The distance
-/// from another point to the surface is at most |value| plus the distance between the two points. Another point
-/// that is closer to `place` than |value| lies on the same side of the surface.
+/// Signed distance computed earlier at a nearby point, used to shorten the next search. The distance from another
+/// point to the surface is at most |value| plus the distance between the two points. A point closer to `place` than
+/// |value| lies on the same side of the surface as `place`.
 struct LookedUp {
   /// Point at which the distance was computed [m].
   Vec3 place;

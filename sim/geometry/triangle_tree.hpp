@@ -64,7 +64,7 @@ class TriangleTree {
   std::optional<Nearest> nearest(const Vec3& point, double at_most) const noexcept;
 
   /// Returns the winding number of a closed surface around a point: 1 inside a valid solid, 0 outside.
-  /// Precondition: `vertices` and `triangles` are those from which the tree was built.
+  /// Precondition: the tree was built from the same `vertices` and `triangles`.
   int winding_number(const Vec3& point, std::span<const Vec3> vertices,
                      std::span<const TriangleCorners> triangles) const noexcept;
 

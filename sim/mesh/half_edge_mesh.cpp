@@ -140,6 +140,7 @@ class MeshParts {
   /// Returns the number of reversed parts. At most kMaxEnclosingParts parts, the largest, are tested for enclosing
   /// others.
   std::size_t orient_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+    // Bounding box and volume of each part.
     std::vector<Shape> shapes(count());
     for (std::size_t t = 0; t < part_.size(); ++t) {
       for (const std::uint32_t corner : triangles[t]) shapes[part_[t]].box.add(vertices[corner]);
@@ -273,6 +274,7 @@ std::vector<OpenMesh::VertexHandle> add_vertices(HalfEdgeMesh& mesh, const std::
   std::iota(order.begin(), order.end(), 0u);
   const auto vertex = [&](std::uint32_t corner) { return triangles[corner / 3][corner % 3]; };
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return vertex(a) < vertex(b); });
+  // Create a mesh vertex for the first corner of each fan; the other corners share it.
   std::vector<OpenMesh::VertexHandle> handles(order.size());
   std::vector<std::size_t> count(order.size(), 0);
   for (const std::uint32_t corner : order) {
@@ -341,6 +343,7 @@ void HalfEdgeMesh::split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middl
 }
 
 std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
+  // Unit normals of the faces.
   std::vector<Vec3> face_normals;
   face_normals.reserve(mesh.n_faces());
   for (const auto face : mesh.faces()) {
@@ -368,12 +371,14 @@ void refine(HalfEdgeMesh& mesh, double longest_edge) {
 }
 
 double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double max_count) {
+  // Reject early by a lower bound from the area.
   const double largest = longest_edge * longest_edge;
   double area = 0.0, count = 0.0;
   for (const auto face : mesh.faces()) area += mesh.calc_face_area(face);
   // The equilateral triangle has the largest area of all triangles without a longer edge; this gives a lower bound.
   const double lower_bound = area / (std::sqrt(3.0) / 4.0 * largest);
   if (lower_bound > max_count) return lower_bound;
+  // Divide every triangle as refine() does, with the lengths of its sides only.
   std::vector<std::array<double, 3>> open;  // squared lengths of the sides of a triangle
   for (const auto face : mesh.faces()) {
     auto edge = mesh.cfe_begin(face);
@@ -399,6 +404,7 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing) {
   using Nearest = std::pair<double, std::size_t>;  // distance from the cube's centre [m], and index of the point
+  // Find the point closest to the centre for each cube and direction.
   std::unordered_map<CubeKey, Nearest, CubeKeyHash> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 cube = (points[i].position / spacing + Vec3::Constant(0.5)).array().floor();

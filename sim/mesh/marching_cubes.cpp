@@ -302,12 +302,14 @@ class SlabBuilder {
   /// Adds the triangles of one cell, and their normals to their vertices.
   void add_cell(std::size_t i, std::size_t j, const CutCase& cut) {
     auto& [vertices, triangles, cells] = slab_.surface;
+    // Numbers of the vertices on the crossed edges.
     std::array<std::uint32_t, kEdgeNumbers> numbers{};
     for (const std::size_t edge : cut.edges) {
       const std::size_t corner = edge / 3;
       numbers[edge] = (corner < 4 ? low_ : high_).vertex(i + (corner & 1), j + (corner >> 1 & 1), edge % 3);
       if (options_.cells) cells.vertices.push_back(numbers[edge]);
     }
+    // Triangles, with their normals added to their vertices.
     for (const CubeTriangle& edges : cut.triangles) {
       const auto number = [&](std::size_t k) { return numbers[static_cast<std::size_t>(edges[k])]; };
       const std::array triangle{number(0), number(1), number(2)};

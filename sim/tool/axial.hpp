@@ -95,9 +95,9 @@ inline PackVector unit_or(const simd::Mask& defined, const PackVector& v, const 
   return select(defined, {v.x * scale, v.y * scale, v.z * scale}, other);
 }
 
-/// Writes one byte of marks for each pack of the ranges, range after range; `test` returns the mask of a pack. Pose
-/// and points are passed by value. Passed by reference, they would be read from memory again after every mark,
-/// because a byte may alias any object.
+/// Writes one byte for each pack of the ranges, range after range: the bits of the mask that `test` returns for the
+/// pack. Pose and points are passed by value. Passed by reference, they would be read from memory again after every
+/// written byte, because a byte may alias any object.
 template <class Test>
 void mark(const ToolPose pose, const PointArrays points, std::span<const PackRange> ranges, std::uint8_t* marks,
           const Test& test) {

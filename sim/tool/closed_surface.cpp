@@ -107,6 +107,7 @@ void ClosedSurface::measure() {
     const auto [a, b, c] = corners(t);
     volume += (a - centre).dot((b - centre).cross(c - centre)) / 6.0;
   }
+  // Reject flat surfaces and surfaces with inward normals.
   const double edge = box_.size().maxCoeff();
   if (!(std::abs(volume) > kFlat * edge * edge * edge))
     refuse("the mesh encloses no volume (", volume, " m^3, ", edge, " m long)");

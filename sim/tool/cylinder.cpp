@@ -177,11 +177,12 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
   const Pack on_axis(kOnAxis * radius_), in_reach(-slack), flush(kFlush);
   const PackVector axis(pose.axis), any(pose.axis.unitOrthogonal()), move(wanted);
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    // Axial coordinates of the contacts, and the unit vector away from the axis.
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack from_axis = simd::sqrt(q.rho2);
     // On the axis any direction perpendicular to it is valid.
     const PackVector out = unit_or(!(from_axis <= on_axis), {q.rho_x, q.rho_y, q.rho_z}, from_axis, any);
-    // Signed distances to the side and to the nearer end.
+    // Signed distances to the side and to the closer end.
     const Pack side = from_axis - radius;
     const Pack bottom = -q.s - length;
     const Mask tip_nearer = q.s >= bottom;
@@ -241,6 +242,7 @@ void Cylinder::foremost_places(const ToolPose& pose, const ContactBuffer& contac
     const Mask on_axis = outwards <= zero;
     const Pack scale = select(on_axis, zero, radius / select(on_axis, one, outwards));
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    // A side parallel to the surface touches along a line: use the point beside the contact.
     const Pack beside = simd::max(-length, simd::min(q.s, zero));
     Pack s = select(forward > zero, zero, -length);
     s = select(simd::abs(forward) < along_side, beside, s);

@@ -32,7 +32,7 @@ class Cylinder final : public ToolShape {
   std::vector<ProfilePoint> outline() const override;
   void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                    ContactBuffer& contacts) const noexcept override;
-  /// Near the edges of a flat tip and of the bottom also marks points up to sqrt(2) margin away, as far as `grown`
+  /// Also marks points up to sqrt(2) margin away from the edges of a flat tip and of the bottom, as far as `grown`
   /// reaches.
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
                  std::uint8_t* marks) const noexcept override;

@@ -177,6 +177,7 @@ constexpr int kShrinkIterations = 3;
 /// Returns the points that lie in the body, one bit for each of eight points.
 std::uint8_t inside_bits(const SignedDistanceGrid& grid, const GridFrame& frame, const double* x, const double* y,
                          const double* z) {
+  // Classify most points by their nearest node.
   const GridPack q(frame, x, y, z);
   if (!simd::any(q.within)) return 0;
   const NearestNodes nearest(frame, q);
@@ -187,6 +188,7 @@ std::uint8_t inside_bits(const SignedDistanceGrid& grid, const GridFrame& frame,
     mixed |= (kind >> 1) << k;
   }
   if (mixed == 0) return static_cast<std::uint8_t>(inside);
+  // Evaluate the field for the remaining points.
   const GridSpline spline(grid, q, nearest);
   for (; mixed != 0; mixed &= mixed - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(mixed));
@@ -334,6 +336,7 @@ void MeshTool::mark_near(const ToolPose& pose, double margin, const PointArrays&
       const NearestNodes nearest(frame, q);
       alignas(64) double values[simd::lanes];
       for (std::size_t k = 0; k < simd::lanes; ++k) values[k] = grid_->values()[nearest[k]];
+      // Lower bound of the distance from the closest point of the grid to the body.
       const Pack distance = simd::max(simd::load(values) - slack, Pack(0.0));
       *marks++ = range.masked(simd::bits(out2 * spacing2 + distance * distance <= margin2), pack);
     }
@@ -362,6 +365,7 @@ Box MeshTool::box_near(const ToolPose& pose, double margin, const Box& bounds) c
 ToolShape::Cover MeshTool::cover(double margin) const {
   // With a, b and e as in mark_near (mesh_tool.hpp): the point of the grid closest to a marked point is within b +
   // 3 e of the mesh, and a + b <= sqrt(2) margin.
+  // Divide the grown box along its longest side into equal slices, with one ball around each.
   const Vec3 extent = grid_->box().size() + Vec3::Constant(3.0 * margin + 4.0 * grid_->error_bound());
   Eigen::Index longest = 0;
   const double length = extent.maxCoeff(&longest);
@@ -400,6 +404,7 @@ std::vector<ProfilePoint> MeshTool::outline() const {
 }
 
 ToolShape::Grown MeshTool::grown(double margin) const {
+  // A cylinder about the axis around the grown vertices.
   const double e = grid_->error_bound();
   double radius2 = 0.0;
   for (const Vec3& v : grid_->vertices()) radius2 = std::max(radius2, v.head<2>().squaredNorm());

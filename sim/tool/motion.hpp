@@ -38,8 +38,8 @@ struct ToolState {
   Vec3 angular_velocity = Vec3::Zero();
 };
 
-/// Returns the roll in (-pi, pi] of the pose with this axis whose own x axis points along `side`. Precondition:
-/// `axis` and `side` are perpendicular unit vectors.
+/// Returns the roll in (-pi, pi] of a pose with this axis that makes the tool's own x axis point along `side`.
+/// Precondition: `axis` and `side` are perpendicular unit vectors.
 double roll_towards(const Vec3& axis, const Vec3& side) noexcept;
 
 /// Returns the rotation vector of the shortest rotation from unit vector a to unit vector b [rad]; zero if they are
@@ -142,9 +142,9 @@ struct Orientation {
   Profile roll = {};            ///< [rad], right-handed about the axis
 };
 
-/// Returns the tool's axis at the given angles [rad], which replace those of the orientation.
+/// Returns the tool's axis at the given angles [rad]; the orientation's own profiles are not evaluated.
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept;
-/// Returns ToolPose::roll at the given angles [rad], which replace those of the orientation.
+/// Returns ToolPose::roll at the given angles [rad]; the orientation's own profiles are not evaluated.
 double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept;
 
 /// Motion with the orientation given by profiles. The position is free, or given by three profiles x, y, z [m].

@@ -176,6 +176,7 @@ double exit_through(const Meridian::Line& line, const AxialRay& ray, double reac
   }
   const ConeCrossing q(line, ray);
   if (!q.meets) return kNever;
+  // Test both roots; a root counts if it lies on the segment and the ray leaves the body there.
   const double sum = -(q.b + std::copysign(q.root, q.b));
   double first = kNever;
   for (const double d : {sum / q.a, q.c / sum}) {
@@ -302,6 +303,7 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack rho = simd::sqrt(q.rho2);
     const NearestPlace nearest = nearest_place(meridian_, q.s, rho);
+    // Unit vector to the closest point, from the half plane to the world frame.
     const Pack scale = one / simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
     const Pack vs = nearest.vs * scale, vr = nearest.vr * scale;
     const Mask on_axis = rho < undefined_rho;
@@ -310,6 +312,7 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
     Mask undefined = on_axis && simd::abs(vr) > sideways;
     if (round) {
       const Pack from_centre = simd::sqrt(q.distance2());
+      // A round tip that is closer replaces the closest point of the outline.
       const Pack to_ball = ball - from_centre;
       const Mask at_ball = q.s > zero && (to_ball <= zero || to_ball * to_ball <= nearest.distance2);
       x = select(at_ball, q.x, x);
@@ -344,9 +347,11 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     const Pack rho = simd::sqrt(q.rho2);
     const PackVector out = away_from_axis(q, axis, rho > on_axis, any);
     const Pack from_centre = simd::sqrt(q.distance2());
+    // Points inside the body.
     const Mask in_tip = q.s > zero && from_centre <= ball;
     const Mask inside = in_section(m, q.s >= low && q.s <= high, q.s, q.rho2) || in_tip;
 
+    // Signed distance and outward normal at the closest point of the outline.
     const NearestPlace nearest = nearest_place(m, q.s, rho);
     // Outside of the body, the vector to a corner is opposite to the normal.
     const Pack length = simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);

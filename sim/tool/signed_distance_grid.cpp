@@ -121,6 +121,7 @@ Vec3 area_vector(const ClosedSurface& surface, const TriangleCorners& t) {
 /// Returns the vertices except those that have only coplanar triangles around them, because such a vertex is never
 /// the only extreme point along a direction.
 std::vector<Vec3> corners_of(const ClosedSurface& surface) {
+  // Sum the unit normals of the triangles at each vertex; they are parallel if the sum is as long as their number.
   std::vector<Vec3> sums(surface.vertices().size(), Vec3::Zero());
   std::vector<double> counts(sums.size(), 0.0);
   for (const TriangleCorners& t : surface.triangles()) {
@@ -199,6 +200,7 @@ double SupportTable::support(const Vec3& direction) const noexcept {
 Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& near) const noexcept {
   const std::vector<std::uint32_t>& candidates = cells_[cell_of(direction)];
   const double threshold = support(direction) - tie_;
+  // Find the extreme point closest to `near`.
   const Vec3* nearest = nullptr;
   double distance2 = std::numeric_limits<double>::infinity();
   for (const std::uint32_t i : candidates) {
@@ -243,10 +245,12 @@ double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
 }
 
 void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& tree) {
+  // The winding numbers give the sign.
   const std::vector<std::int8_t> numbers = winding_numbers(surface, nodes_);
   check_winding(numbers, nodes_);
   // One more number, because kernels read rows of three nodes as four numbers.
   values_.assign(nodes_.size() + 1, 0.0);
+  // Compute the distances column by column, eight nodes at a time.
   parallel_for(std::size_t{0}, nodes_.count[0] * nodes_.count[1], [&](std::size_t column) {
     alignas(64) std::array<double, simd::lanes> x, y, z, distances2;
     x.fill(nodes_.coordinate(0, column / nodes_.count[1]));
@@ -275,6 +279,7 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
 }
 
 void SignedDistanceGrid::classify() {
+  // Nodes on the border of the grid stay `outside`, because the body is at least kMarginNodes away.
   kinds_.assign(nodes_.size(), outside);
   parallel_for(std::size_t{1}, nodes_.count[0] - 1, [&](std::size_t i) {
     for (std::size_t j = 1; j + 1 < nodes_.count[1]; ++j) {

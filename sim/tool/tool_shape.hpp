@@ -27,7 +27,8 @@ struct PackRange {
   std::uint8_t mask_of_first = 0xff;  ///< bit k: point k of the first pack belongs to the range
   std::uint8_t mask_of_last = 0xff;   ///< bit k: point k of the last pack belongs to the range
 
-  /// Returns the marks of pack number `pack` without the points that do not belong to the range (bit k: point k).
+  /// Returns `marks` (bit k: point k) of pack number `pack`, with the bits of all points outside of the range
+  /// cleared.
   std::uint8_t masked(std::uint8_t marks, std::size_t pack) const noexcept {
     if (pack == first) marks &= mask_of_first;
     if (pack + 1 == last) marks &= mask_of_last;
