@@ -170,7 +170,7 @@ class MeshParts {
     return static_cast<std::size_t>(std::count(inside_out.begin(), inside_out.end(), true));
   }
 
-  /// True for each triangle whose winding must be reversed.
+  /// Flags of the triangles: true if the winding must be reversed.
   const std::vector<bool>& reversed() const { return reversed_; }
 
  private:

@@ -338,7 +338,7 @@ void MeshTool::mark_near(const ToolPose& pose, double margin, const PointArrays&
       for (std::size_t k = 0; k < simd::lanes; ++k) values[k] = grid_->values()[nearest[k]];
       // Lower bound of the distance from the closest point of the grid to the body.
       const Pack distance = simd::max(simd::load(values) - slack, Pack(0.0));
-      *marks++ = range.masked(simd::bits(out2 * spacing2 + distance * distance <= margin2), pack);
+      *marks++ = range.own(simd::bits(out2 * spacing2 + distance * distance <= margin2), pack);
     }
   }
 }

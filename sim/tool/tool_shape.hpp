@@ -29,7 +29,7 @@ struct PackRange {
 
   /// Returns `marks` (bit k: point k) of pack number `pack`, with the bits of all points outside of the range
   /// cleared.
-  std::uint8_t masked(std::uint8_t marks, std::size_t pack) const noexcept {
+  std::uint8_t own(std::uint8_t marks, std::size_t pack) const noexcept {
     if (pack == first) marks &= mask_of_first;
     if (pack + 1 == last) marks &= mask_of_last;
     return marks;
