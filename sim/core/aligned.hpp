@@ -5,27 +5,28 @@
 #include <new>
 #include <vector>
 
-/// Memory for loops that take eight doubles at a time. The packs themselves are in simd.hpp, which headers must not
-/// include.
+/// Aligned memory for SIMD loops over packs of eight doubles. The pack type itself is defined in simd.hpp, which
+/// must be included from source files only.
 namespace hapbench {
 namespace simd {
 
-/// Number of doubles in a pack.
+/// Number of doubles in a pack (SIMD lanes).
 inline constexpr std::size_t lanes = 8;
 
-/// n rounded up to whole packs.
+/// Returns n rounded up to the next multiple of `lanes`.
 constexpr std::size_t padded(std::size_t n) {
   return (n + lanes - 1) / lanes * lanes;
 }
 
-/// Zeroes the eight doubles from p on, aligned or not, without the branches of a loop to the end of the last pack.
+/// Sets the eight doubles from p on to zero; p need not be aligned. Faster than a loop that clears only the unused
+/// lanes of the last pack, because it has no branches.
 inline void zero_pack(double* p) {
   std::memset(p, 0, lanes * sizeof(double));
 }
 
 }  // namespace simd
 
-/// Allocates on 64-byte boundaries, so that a pack of eight doubles never straddles a cache line.
+/// Standard allocator that aligns memory to 64 bytes, so that a pack of eight doubles never crosses a cache line.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;

@@ -8,21 +8,22 @@
 
 namespace hapbench {
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv). Identifies contents; not a cryptographic hash. The value
-/// does not depend on the machine's byte order.
+/// 64-bit FNV-1a hash (Fowler, Noll, Vo; draft-eastlake-fnv). Identifies contents; it is not a cryptographic hash.
+/// The value does not depend on the byte order of the machine.
 class Hash64 {
  public:
-  /// Plain FNV-1a, byte by byte.
+  /// Adds a text byte by byte (plain FNV-1a).
   constexpr void bytes(std::string_view text) noexcept {
     for (const char c : text) mix(static_cast<unsigned char>(c));
   }
-  /// Mixes in a whole word in one round, eight times cheaper than byte by byte. Multiplication carries upwards only;
-  /// without folding the upper half into the lower one, two flipped sign bits, as in a mirrored run, would cancel.
+  /// Adds a 64-bit word in one round, eight times cheaper than byte by byte. The multiplication carries only
+  /// towards higher bits, so the upper half is folded into the lower half afterwards. Without folding, two flipped
+  /// sign bits would cancel, for example in a mirrored run.
   constexpr void word(std::uint64_t value) noexcept {
     mix(value);
     state_ ^= state_ >> 32;
   }
-  /// Mixes in the bit pattern, so 0 and -0 differ, and equal hashes mean bit-identical numbers.
+  /// Adds the bit pattern of a number. 0 and -0 differ, and equal hashes mean bit-identical numbers.
   constexpr void real(double value) noexcept { word(std::bit_cast<std::uint64_t>(value)); }
 
   constexpr std::uint64_t value() const noexcept { return state_; }
@@ -33,14 +34,14 @@ class Hash64 {
   std::uint64_t state_ = 0xcbf29ce484222325u;
 };
 
-/// FNV-1a of a text.
+/// Returns the FNV-1a hash of a text.
 constexpr std::uint64_t hash_of(std::string_view text) noexcept {
   Hash64 hash;
   hash.bytes(text);
   return hash.value();
 }
 
-/// Sixteen lower-case hexadecimal digits.
+/// Returns the hash as sixteen lower-case hexadecimal digits.
 inline std::string hash_text(std::uint64_t hash) {
   std::string text(16, '0');
   for (std::size_t i = text.size(); i-- > 0; hash >>= 4) text[i] = "0123456789abcdef"[hash & 0xf];

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Loops over indices on all processors, by oneTBB; one after the other without threads, as in a page's worker.
+/// Parallel loops by oneTBB. In WebAssembly, which has no threads here, they run sequentially.
 #ifndef __wasm__
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -23,7 +23,8 @@ auto isolate(const Work& work) {
 /// Calls body(i) for every index from first to last - 1.
 using oneapi::tbb::parallel_for;
 
-/// Calls work(), whose waiting takes up no work of others.
+/// Returns work(). While the calling thread waits in a nested parallel loop, it runs no tasks from outside of
+/// `work`.
 using oneapi::tbb::this_task_arena::isolate;
 
 #endif

@@ -20,17 +20,19 @@
 #endif
 #endif
 
-/// Eight doubles at a time, the same arithmetic in every build.
+/// SIMD arithmetic on packs of eight doubles, with the same results in every build.
 ///
-/// Sums over contacts always keep eight partial sums (element i goes to partial sum i mod 8) and `sum` adds those in
-/// one fixed order, whatever the register width. Together with -ffp-contract=off this makes the scalar build and every
-/// SIMD build agree bit for bit. Include from source files only: the type of Pack differs between the two builds.
+/// A sum over contacts always keeps eight partial sums: element i is added to partial sum i mod 8. `sum` then adds
+/// the partial sums in one fixed order, whatever the register width. Together with -ffp-contract=off this makes the
+/// scalar build and every SIMD build agree bit for bit. Include this header from source files only, because the
+/// type Pack differs between the builds.
 ///
-/// Intrinsics of single operations come with the mask of all lanes, 0xff, which makes no difference to the code but
-/// avoids a false warning of g++ 12 (GCC bug 105593).
+/// Intrinsics for single operations are called in their masked form with all lanes set (0xff). The mask does not
+/// change the machine code but avoids a false warning of g++ 12 (GCC bug 105593).
 namespace hapbench::simd {
 
-/// In large loops g++ calls these few instructions as functions, with their packs in memory.
+/// Forces inlining. In large loops g++ would otherwise call these short functions and pass their packs through
+/// memory.
 #define HAPBENCH_INLINE [[gnu::always_inline]] inline
 
 #if HAPBENCH_SIMD
@@ -38,15 +40,17 @@ namespace hapbench::simd {
 using Pack = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, lanes>>;
 using Mask = Pack::mask_type;
 
+/// Reads eight doubles. Precondition: p is aligned to 64 bytes.
 HAPBENCH_INLINE Pack load(const double* p) {
   return Pack(p, std::experimental::overaligned<64>);
 }
 HAPBENCH_INLINE void store(const Pack& a, double* p) {
   a.copy_to(p, std::experimental::overaligned<64>);
 }
+/// Returns, lane by lane, `yes` where the mask is set and `no` elsewhere.
 HAPBENCH_INLINE Pack select(const Mask& m, const Pack& yes, const Pack& no) {
 #ifdef __AVX512VL__
-  // Compiled by clang, `where` of libstdc++ 12 selects the wrong lanes here.
+  // With clang, `where` of libstdc++ 12 selects the wrong lanes here.
   const auto mask = static_cast<__mmask8>(m.__to_bitset().to_ulong());
   return Pack(_mm512_mask_blend_pd(mask, static_cast<__m512d>(no), static_cast<__m512d>(yes)));
 #else
@@ -62,13 +66,14 @@ HAPBENCH_INLINE Pack sqrt(const Pack& a) {
   return std::experimental::sqrt(a);
 #endif
 }
+/// Returns true if at least one lane of the mask is set.
 HAPBENCH_INLINE bool any(const Mask& m) {
   return std::experimental::any_of(m);
 }
 
 #else
 
-/// The reference: plain loops over eight lanes.
+/// Scalar reference implementation: applies f to each of the eight lanes in a plain loop.
 template <class Result, class Arg, class F>
 Result lane_by_lane(const Arg& a, const Arg& b, F f) {
   Result r;
@@ -130,7 +135,7 @@ inline bool any(const Mask& m) {
 
 #endif
 
-/// Bit i of the result is lane i of the mask.
+/// Returns the mask as bits: bit i of the result is lane i.
 HAPBENCH_INLINE std::uint8_t bits(const Mask& m) {
 #if HAPBENCH_SIMD
   return static_cast<std::uint8_t>(m.__to_bitset().to_ulong());  // libstdc++'s name for C++26's to_bitset
@@ -141,8 +146,9 @@ HAPBENCH_INLINE std::uint8_t bits(const Mask& m) {
 #endif
 }
 
-/// Writes the elements whose bit is set, of eight aligned ones, to `to`, in their order and without gaps. May write
-/// eight elements, however few are selected.
+/// Copies, of eight elements, the elements whose bit in `selected` is set to `to`, in order and without gaps.
+/// Precondition: `from` is aligned to a whole pack, and `to` has room for eight elements, because all eight may be
+/// overwritten.
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
 inline void store_selected(std::uint8_t selected, const double* from, double* to) {
   _mm512_storeu_pd(to, _mm512_maskz_compress_pd(selected, _mm512_load_pd(from)));
@@ -161,9 +167,10 @@ void store_selected(std::uint8_t selected, const T* from, T* to) {
 }
 #endif
 
-/// The same for points in columns: copies those among the eight from i on to the places from k on, and returns their
-/// number. Copies column by column, because point by point takes longer than the search. Always inline: searches would
-/// otherwise save and restore the packs in their registers around the call. Precondition: i is a multiple of eight.
+/// Copies the selected points among the eight points from index i on to index k on, and returns the number of
+/// copied points. The points are stored as one array per coordinate; copying array by array is faster than copying
+/// point by point, which would take longer than the contact search. Always inline: the search would otherwise save
+/// and restore the packs in its registers around the call. Precondition: i is a multiple of eight.
 template <class From, class To>
 HAPBENCH_INLINE std::size_t copy_selected(std::uint8_t selected, const From& from, std::size_t i, To& to,
                                           std::size_t k) {
@@ -177,7 +184,7 @@ HAPBENCH_INLINE std::size_t copy_selected(std::uint8_t selected, const From& fro
   return static_cast<std::size_t>(std::popcount(selected));
 }
 
-/// The lanes first … last - 1.
+/// Returns the mask with lanes first … last - 1 set.
 HAPBENCH_INLINE Mask lanes_between(std::size_t first, std::size_t last) {
   alignas(64) static constexpr double kNumber[lanes] = {0, 1, 2, 3, 4, 5, 6, 7};
   const Pack number = load(kNumber);
@@ -188,7 +195,8 @@ HAPBENCH_INLINE Pack abs(const Pack& a) {
   return select(a < Pack(0.0), -a, a);
 }
 
-/// b < a ? b : a, hence a if they are equal or one is NaN, exactly as the instruction does.
+/// Returns b < a ? b : a in each lane. The result is a if both are equal or one of them is NaN, exactly as the
+/// processor's min instruction defines it.
 HAPBENCH_INLINE Pack min(const Pack& a, const Pack& b) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
   return Pack(_mm512_maskz_min_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));
@@ -196,7 +204,7 @@ HAPBENCH_INLINE Pack min(const Pack& a, const Pack& b) {
   return select(b < a, b, a);
 #endif
 }
-/// a < b ? b : a
+/// Returns a < b ? b : a in each lane.
 HAPBENCH_INLINE Pack max(const Pack& a, const Pack& b) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
   return Pack(_mm512_maskz_max_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));
@@ -205,7 +213,7 @@ HAPBENCH_INLINE Pack max(const Pack& a, const Pack& b) {
 #endif
 }
 
-/// The eight partial sums added pairwise in one fixed order.
+/// Returns the sum of the eight lanes, added pairwise in one fixed order.
 HAPBENCH_INLINE double sum(const Pack& a) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
   const auto v = static_cast<__m512d>(a);

@@ -1,4 +1,4 @@
-// Runs while hapbench is built, with the flags of its kernels, before anything that depends on it.
+// Runs during the build, compiled with the flags of the simulation kernels, before every target that depends on it.
 #include "sim/core/simd_check.hpp"
 
 #include <cstdio>

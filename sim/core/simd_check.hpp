@@ -9,9 +9,9 @@
 #include "sim/core/random.hpp"
 #include "sim/core/simd.hpp"
 
-/// Whether the compiler's vector type computes what the lanes would one by one. Compilers have been wrong: compiled by
-/// clang 14, `where` of libstdc++ 12's <experimental/simd> selects the wrong lanes of AVX-512. The build runs this
-/// (simd_check.cpp) and refuses such a compiler.
+/// Self-test of the compiler's vector type: compares every operation of simd.hpp with a scalar loop over the lanes.
+/// Compilers have been wrong: with clang 14, `where` of libstdc++ 12's <experimental/simd> selects the wrong lanes
+/// of AVX-512. The build runs this test (simd_check.cpp) and stops if an operation is wrong.
 namespace hapbench::simd {
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -24,12 +24,14 @@ inline AlignedDoubles values(const Pack& a) {
   return v;
 }
 
-/// Bit for bit, except that a NaN is a NaN: neither sign nor payload of a computed one is defined.
+/// Returns true if x and y have the same bits or are both NaN. The sign and payload of a computed NaN are not
+/// defined, so all NaNs count as equal.
 inline bool same(double x, double y) {
   return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) || (x != x && y != y);
 }
 
-/// Eight numbers of all sizes and signs, every other one special.
+/// Returns eight numbers of random sizes and signs. On average every second number is a special value (zero,
+/// infinity, NaN, subnormal).
 inline AlignedDoubles random_numbers(Random& random) {
   AlignedDoubles numbers(lanes);
   for (double& number : numbers) {
@@ -39,6 +41,7 @@ inline AlignedDoubles random_numbers(Random& random) {
   return numbers;
 }
 
+/// An arithmetic operation on packs and its scalar reference.
 struct Operation {
   const char* name;
   Pack (*packs)(Pack a, const Pack& b);
@@ -61,6 +64,7 @@ inline const Operation kOperations[] = {
      [](double a, double b) { return a < b ? a : b; }},
 };
 
+/// A comparison or logical operation on packs and its scalar reference.
 struct Comparison {
   const char* name;
   Mask (*packs)(const Pack& a, const Pack& b);
@@ -77,7 +81,7 @@ inline const Comparison kComparisons[] = {
      [](double a, double b) { return a < b || a >= 1.0; }},
 };
 
-/// Returns false if a mask of a < b and the like, or what reads it, is wrong.
+/// Returns false if the mask of the comparison, `bits` of it or `any` of it is wrong.
 inline bool masks_are_right(const Comparison& comparison, const AlignedDoubles& a, const AlignedDoubles& b) {
   const Mask mask = comparison.packs(load(a.data()), load(b.data()));
   unsigned expected = 0;
@@ -85,19 +89,19 @@ inline bool masks_are_right(const Comparison& comparison, const AlignedDoubles& 
   return bits(mask) == expected && any(mask) == (expected != 0);
 }
 
-/// Returns false if the least or largest lane or the sum, in its stated order, is wrong.
+/// Returns false if min_lane, max_lane or sum is wrong. The sum must be added in the order that `sum` documents.
 inline bool reductions_are_right(const AlignedDoubles& a) {
-  double least = a[0], most = a[0];
+  double smallest = a[0], largest = a[0];
   for (const double x : a) {
-    least = x < least ? x : least;
-    most = most < x ? x : most;
+    smallest = x < smallest ? x : smallest;
+    largest = largest < x ? x : largest;
   }
   const Pack pack = load(a.data());
-  return same(min_lane(pack), least) && same(max_lane(pack), most) &&
+  return same(min_lane(pack), smallest) && same(max_lane(pack), largest) &&
          same(sum(pack), ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7])));
 }
 
-/// Returns false if store_selected does not close the gaps of this mask.
+/// Returns false if store_selected does not write the elements selected by the mask in order and without gaps.
 inline bool selection_is_right(unsigned mask, const AlignedDoubles& from) {
   alignas(64) static constexpr std::uint32_t kNumbers[lanes] = {10, 11, 12, 13, 14, 15, 16, 17};
   double to[lanes];
@@ -113,7 +117,8 @@ inline bool selection_is_right(unsigned mask, const AlignedDoubles& from) {
   return true;
 }
 
-/// Tries all operations on random and special numbers; returns the name of the first that is wrong, or "".
+/// Evaluates all operations on random and special numbers. Returns the name of the first wrong operation, or an
+/// empty string if all are correct.
 inline std::string wrong_operation(std::span<const Operation> operations) {
   Random random(1);
   for (unsigned i = 0; i < 10'000; ++i) {

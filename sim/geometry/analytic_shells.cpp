@@ -9,17 +9,18 @@
 namespace hapbench {
 namespace {
 
-/// Number of equal intervals, none longer than the spacing; 1e-9 covers the rounding of lengths that are a multiple.
+/// Returns the number of equal intervals of a length, none longer than the spacing. The term 1e-9 covers rounding
+/// if the length is a multiple of the spacing.
 double intervals(double length, double spacing) {
   return std::max(1.0, std::ceil(length / spacing - 1e-9));
 }
 
-/// The k-th of n + 1 points from a to b; exact at both ends.
+/// Returns point number k of n + 1 equally spaced points from a to b; exact at both ends.
 double between(double a, double b, double k, double n) {
   return k == n ? b : a + (b - a) * (k / n);
 }
 
-/// Adds the points strictly between a and b.
+/// Adds the points of an edge strictly between a and b.
 void add_face(std::vector<SurfacePoint>& points, const Vec3& a, const Vec3& b, const Vec3& normal, double spacing) {
   const double n = intervals((b - a).norm(), spacing);
   for (double k = 1; k < n; ++k) {
@@ -31,7 +32,7 @@ double length(double a, double b) {
   return std::sqrt(a * a + b * b);
 }
 
-/// Length of a cone's wall from apex to mouth [m].
+/// Returns the length of the cone's wall from apex to mouth [m].
 double slant(const ConicalHole& cone) {
   return cone.depth / math::cos(cone.half_angle);
 }
@@ -45,7 +46,7 @@ double point_count(const Hole2d& h) {
 std::vector<SurfacePoint> surface_points(const Hole2d& h) {
   const double half = h.width / 2;
   const Vec3 up(0, 1, 0), right(1, 0, 0), left(-1, 0, 0);
-  // Corners of the profile from left to right, and the normal of the face that starts at each.
+  // Corners of the profile from left to right, and the normal of the edge that starts at each corner.
   const std::vector<Vec3> corners = {{-half - h.mouth, 0, 0}, {-half, 0, 0}, {-half, -h.depth, 0},
                                      {half, -h.depth, 0},     {half, 0, 0},  {half + h.mouth, 0, 0}};
   const std::vector<Vec3> faces = {up, right, up, left, up};
@@ -98,7 +99,8 @@ std::vector<SurfacePoint> surface_points(const Slot& slot) {
   return points;
 }
 
-/// Sums the rings' circumferences over the spacing, plus four points for the rounding of each.
+/// Upper bound: the sum of the rings' circumferences divided by the spacing, plus four points a ring for rounding
+/// up to a multiple of four.
 double point_count(const ConicalHole& cone) {
   const double rings = intervals(slant(cone), cone.spacing);
   const double mouth = math::sin(cone.half_angle) * slant(cone);
@@ -114,7 +116,8 @@ std::vector<SurfacePoint> surface_points(const ConicalHole& cone) {
     const double radius = along * sine, z = k == rings ? 0.0 : along * cosine - cone.depth;
     const double quarter = intervals(std::numbers::pi / 2 * radius, cone.spacing);
     for (double i = 0; i < quarter; ++i) {
-      // Quarter turns swap coordinates instead of computing them anew, so that they agree to the bit.
+      // Rotations by 90 degrees swap coordinates instead of computing them again, so that the points agree bit for
+      // bit.
       const double angle = (i + 0.5) / quarter * std::numbers::pi / 2;
       const double c = math::cos(angle), s = math::sin(angle);
       for (const auto& [x, y] : {std::pair(c, s), std::pair(-s, c), std::pair(-c, -s), std::pair(s, -c)}) {
@@ -135,8 +138,11 @@ double signed_distance(const Slot& slot, const Vec3& q) {
 
 double signed_distance(const Hole2d& hole, const Vec3& q) {
   const double out = std::abs(q.x()) - hole.width / 2, below = -hole.depth - q.y();
+  // Above the top: the distance to the flat top or to the closest rim.
   if (q.y() >= 0.0) return out >= 0.0 ? q.y() : length(out, q.y());
+  // In the hole: distance to the closest wall or the bottom.
   if (out < 0.0 && below < 0.0) return -std::max(out, below);
+  // In the material: distance to the hole or to the top.
   const double to_hole = length(std::max(out, 0.0), std::max(below, 0.0));
   return -(out >= 0.0 ? std::min(-q.y(), to_hole) : to_hole);
 }
@@ -151,18 +157,20 @@ double signed_distance(const ConicalHole& cone, const Vec3& q) {
 
 double signed_distance(const BlockWithHole& block, const Vec3& q) {
   const double R = block.hole_diameter / 2, H = block.hole_depth, z = q.z();
-  // Distances beyond the faces; negative between them.
+  // Distances beyond the faces; negative between opposite faces.
   const double x = std::abs(q.x()) - block.size.x() / 2, y = std::abs(q.y()) - block.size.y() / 2;
   const double below = -z - block.size.z();
   const double rho = length(q.x(), q.y());
 
+  // Outside of the cuboid.
   if (std::max({x, y, z, below}) > 0.0) {
-    // Above the mouth the nearest point of the top face is on the rim.
+    // Above the mouth of the hole, the closest point is on the rim of the top face.
     if (rho < R && z > 0.0) return length(z, R - rho);
     const double beyond_sides = length(std::max(x, 0.0), std::max(y, 0.0));
     return length(beyond_sides, std::max({z, below, 0.0}));
   }
-  if (rho < R && z > -H) return std::min(R - rho, z + H);  // in the hole: to its wall or bottom
+  if (rho < R && z > -H) return std::min(R - rho, z + H);  // in the hole: distance to its wall or bottom
+  // In the material: distance to the closest face or to the hole.
   const double to_hole = length(std::max(rho - R, 0.0), std::max(-H - z, 0.0));
   return -std::min({-x, -y, -z, -below, to_hole});
 }

@@ -8,26 +8,27 @@
 
 namespace hapbench {
 
-/// A point of an environment object's surface: position [m] and unit outward normal, world frame.
+/// Point on the surface of an environment object: position [m] and outward unit normal, world frame.
 struct SurfacePoint {
   Vec3 position = Vec3::Zero();
   Vec3 normal = {0.0, 0.0, 1.0};
 };
 
-/// The bounding box of the points; zero at the origin if there are none.
+/// Returns the bounding box of the points; a box of zero size at the origin if there are no points.
 Box bounds_of(const std::vector<SurfacePoint>& points);
 
-/// The points of a shell and the grid cells that list them.
+/// Points of a shell, and the grid cell to which each point belongs.
 struct ShellPoints {
   std::vector<SurfacePoint> points;
-  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance; empty if the cells follow from the
-  /// positions.
+  /// Cell number of each point, 0 … cells - 1 in order of first appearance. Empty if the cells follow from the
+  /// positions (see PointShell::cell_of_points).
   std::vector<std::uint32_t> cells;
 };
 
-/// Coordinates and normals of points, each column padded to whole packs (simd::padded).
+/// Positions [m] and normals of points, one array per coordinate, each padded to whole packs (simd::padded).
 struct ShellColumns {
-  /// Coordinate of points that are not set [m], beyond every tool; finite, because infinities would produce NaN.
+  /// Coordinate of padding points [m], farther away than any tool reaches. Finite, because infinite coordinates
+  /// would produce NaN.
   static constexpr double kFarAway = 1e9;
 
   AlignedDoubles x, y, z, nx, ny, nz;
@@ -44,20 +45,21 @@ struct ShellColumns {
   }
 };
 
-/// The environment object as points with normals, laid out for the contact search: one array per coordinate, 64-byte
-/// aligned and padded to whole packs with points far outside any scene, so that no loop needs a tail.
+/// The environment object as points with normals, in the memory layout of the contact search: one array per
+/// coordinate, aligned to 64 bytes. Each array is padded to whole packs with points far outside any scene, so that
+/// loops need no special case for the last points.
 class PointShell {
  public:
-  static constexpr double kFarAway = ShellColumns::kFarAway;  ///< coordinate of the padding points [m]
+  static constexpr double kFarAway = ShellColumns::kFarAway;  ///< coordinate of padding points [m]
 
-  /// cell_size is the edge [m] of the grid cells in which the local average merges points; 0 without a grid.
-  /// `cells` is as in ShellPoints.
+  /// `cell_size`: edge length [m] of the grid cells in which the local average merges points; 0 if there is no
+  /// grid. `cells`: see ShellPoints::cells.
   PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells = {});
 
   std::size_t size() const { return size_; }
   std::size_t padded_size() const { return columns_.x.size(); }
   double cell_size() const { return cell_size_; }
-  /// The box of all points; zero at the origin if there are none.
+  /// Bounding box of all points; a box of zero size at the origin if there are no points.
   const Box& bounds() const { return bounds_; }
 
   const double* x() const { return columns_.x.data(); }
@@ -70,9 +72,10 @@ class PointShell {
   SurfacePoint point(std::size_t i) const { return {{x()[i], y()[i], z()[i]}, {nx()[i], ny()[i], nz()[i]}}; }
   std::vector<SurfacePoint> points() const;
 
-  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance. The cells are those the shell was
-  /// made with, or else the cubes between half-integer multiples of cell_size: a shell spaced by cell_size from the
-  /// origin has one point in each. O(size log size); call it in preparation, not in a step.
+  /// Returns the cell number of each point, 0 … cells - 1 in order of first appearance. If the shell was created
+  /// with cells, returns these. Otherwise the cells are the cubes between half-integer multiples of cell_size, so
+  /// that points at integer multiples of cell_size have one cell each. O(size log size): call it before a run, not
+  /// in a step.
   std::vector<std::uint32_t> cell_of_points() const;
 
  private:

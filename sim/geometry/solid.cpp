@@ -12,8 +12,9 @@
 namespace hapbench {
 namespace {
 
-constexpr double kFar = 1e4;  ///< beyond every scene [m]
+constexpr double kFar = 1e4;  ///< longer than any distance in a scene [m]
 
+/// Solid in closed form: one of the shapes of analytic_shells.hpp.
 template <class Shape>
 class ShapeSolid final : public Solid {
  public:
@@ -43,11 +44,13 @@ class ShapeSolid final : public Solid {
   Shape shape_;
 };
 
+/// Solid bounded by a triangle mesh.
 class MeshSolid final : public Solid {
  public:
   MeshSolid(TriangleSoup surface, bool is_closed)
       : Solid(box_of(surface.vertices)), surface_(std::move(surface)), tree_(surface_.vertices, surface_.triangles) {
     if (is_closed) return;
+    // The mesh is closed if equally many triangles run along each edge in both directions.
     const std::vector<TriangleSide> sides = sides_by_edge(surface_.triangles);
     for_each_edge(sides, [this](std::span<const TriangleSide> edge) { closed_ = closed_ && is_balanced(edge); });
     if (closed_) return;
@@ -57,33 +60,35 @@ class MeshSolid final : public Solid {
 
   SurfaceDistance at(const Vec3& q, const LookedUp* near) const noexcept override {
     const auto nearest = nearest_triangle(q, near);
-    if (!nearest) return {kFar, false};  // not finite
+    if (!nearest) return {kFar, false};  // only if q is not finite
     const double distance = std::sqrt(nearest->distance2);
     if (closed_) {
+      // Closed mesh: the sign follows from a known distance nearby, or from the winding number.
       if (near != nullptr && (q - near->place).norm() < std::abs(near->value))
         return {std::copysign(distance, near->value)};
       const bool out = beyond(q) || tree_.winding_number(q, surface_.vertices, surface_.triangles) <= 0;
       return {out ? distance : -distance};
     }
+    // Open mesh: phi is positive on the side to which the normal at the closest point points.
     const auto [n, is_border] = feature(*nearest);
-    return {std::copysign(distance, (q - nearest->place).dot(n)), !is_border};
+    return {std::copysign(distance, (q - nearest->position).dot(n)), !is_border};
   }
   Vec3 gradient(const Vec3& q, double step) const noexcept override {
     const auto nearest = nearest_triangle(q, nullptr);
     if (!nearest) return Vec3::UnitZ();
-    const Vec3 away = q - nearest->place, n = normal(nearest->triangle);
-    // Nearer, the direction is rounding.
+    const Vec3 away = q - nearest->position, n = normal(nearest->triangle);
+    // Closer to the surface, the direction from the closest point is dominated by rounding.
     if (away.norm() < 1e-6 * step) return n;
     return away.normalized() * (at(q, nullptr).value < 0.0 ? -1.0 : 1.0);
   }
   std::size_t bytes() const noexcept override { return 300 * surface_.triangles.size(); }
 
  private:
-  const Vec3& place(std::size_t triangle, std::size_t corner) const {
+  const Vec3& vertex(std::size_t triangle, std::size_t corner) const {
     return surface_.vertices[surface_.triangles[triangle][corner]];
   }
   Vec3 normal(std::size_t t) const {
-    return (place(t, 1) - place(t, 0)).cross(place(t, 2) - place(t, 0)).stableNormalized();
+    return (vertex(t, 1) - vertex(t, 0)).cross(vertex(t, 2) - vertex(t, 0)).stableNormalized();
   }
   std::optional<TriangleTree::Nearest> nearest_triangle(const Vec3& q, const LookedUp* near) const {
     return tree_.nearest(q, near == nullptr ? kFar : (1.0 + 1e-9) * (std::abs(near->value) + (q - near->place).norm()));
@@ -92,7 +97,7 @@ class MeshSolid final : public Solid {
     return (q.array() < region().min.array()).any() || (q.array() > region().max.array()).any();
   }
 
-  /// Finds the edges that only one triangle has, and the normals of all edges and vertices.
+  /// Finds the border (edges with one triangle only) and the normals of all edges and vertices.
   void find_borders(std::span<const TriangleSide> sides) {
     vertex_normals_.assign(surface_.vertices.size(), Vec3::Zero());
     border_vertices_.assign(surface_.vertices.size(), false);
@@ -106,9 +111,10 @@ class MeshSolid final : public Solid {
       at_border_[edge[0].triangle] |= static_cast<std::uint8_t>(1u << edge[0].corner);
       border_vertices_[edge[0].low] = border_vertices_[edge[0].high] = true;
     });
+    // The normal of a vertex is the sum of its triangles' normals, weighted by their angles at the vertex.
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 &a = place(t, k), b = place(t, (k + 1) % 3), c = place(t, (k + 2) % 3);
+        const Vec3 &a = vertex(t, k), b = vertex(t, (k + 1) % 3), c = vertex(t, (k + 2) % 3);
         const double angle = math::atan2((b - a).cross(c - a).norm(), (b - a).dot(c - a));
         vertex_normals_[surface_.triangles[t][k]] += angle * normal(t);
       }
@@ -116,11 +122,12 @@ class MeshSolid final : public Solid {
   }
 
   struct Feature {
-    Vec3 normal;  ///< of any length
+    Vec3 normal;  ///< not normalised
     bool is_border;
   };
-  /// The face, edge or vertex on which a place lies. The side of the surface on which a point lies is that of the mean
-  /// normal there, weighted by angles (J. A. Baerentzen and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
+  /// Returns the normal of the face, edge or vertex on which the closest point lies. A query point lies on the side
+  /// of the surface to which this normal points; the normal at a vertex is the mean weighted by angles (J. A.
+  /// Baerentzen and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
   Feature feature(const TriangleTree::Nearest& nearest) const {
     const std::size_t t = nearest.triangle;
     if (nearest.corners == 7u) return {normal(t), false};
@@ -137,30 +144,34 @@ class MeshSolid final : public Solid {
   TriangleSoup surface_;
   TriangleTree tree_;
   bool closed_ = true;
-  // Filled for an open surface only:
+  // Filled for an open mesh only:
   std::vector<Vec3> vertex_normals_;
   std::vector<bool> border_vertices_;
-  std::vector<std::uint8_t> at_border_;            ///< bit k of a triangle: its edge from corner k is the border
-  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< sums over the triangles of each edge
+  std::vector<std::uint8_t> at_border_;            ///< bit k of a triangle: its edge from corner k is on the border
+  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< by triangle and corner: sum of the edge's normals
 };
 
+/// Solid given by points with normals.
 class PointSolid final : public Solid {
  public:
   explicit PointSolid(const std::vector<SurfacePoint>& points)
       : Solid({Vec3::Constant(-kFar), Vec3::Constant(kFar)}),
         points_(points),
         tree_(tree_of(points)),
-        spacing_(2.0 * usual_spacing()) {}
+        spacing_(2.0 * median_spacing()) {}
 
   SurfaceDistance at(const Vec3& q, const LookedUp*) const noexcept override {
     const auto nearest = tree_.nearest(q, kFar);
-    if (!nearest) return {kFar, false};  // not finite
+    if (!nearest) return {kFar, false};  // only if q is not finite
+    // Split q - p into the height h along the normal and the tangential part.
     const auto& [p, n] = points_[nearest->triangle];
     const double h = n.dot(q - p);
     const Vec3 along = q - p - h * n;
-    const double aside = along.norm(), beyond = std::max(0.0, aside * aside - spacing_ * spacing_);
-    const bool goes_on = beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / aside * along, 1.5 * spacing_).has_value();
-    return {std::copysign(std::sqrt(h * h + beyond), h), goes_on};
+    const double tangential = along.norm(), beyond = std::max(0.0, tangential * tangential - spacing_ * spacing_);
+    // Beyond the spacing, the distance is known only if the shell has a point further along.
+    const bool continues =
+        beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / tangential * along, 1.5 * spacing_).has_value();
+    return {std::copysign(std::sqrt(h * h + beyond), h), continues};
   }
   double error() const noexcept override { return 0.5 * spacing_; }
   std::size_t bytes() const noexcept override { return 300 * points_.size(); }
@@ -174,11 +185,11 @@ class PointSolid final : public Solid {
     }
     return {soup.vertices, soup.triangles};
   }
-  /// The median distance of some points from their nearest neighbours.
-  double usual_spacing() const {
-    constexpr std::size_t kSome = 32;
+  /// Returns the median distance between a sample of points and their nearest neighbours [m].
+  double median_spacing() const {
+    constexpr std::size_t kSamples = 32;
     std::vector<double> distances;
-    for (std::size_t i = 0; i < points_.size(); i += points_.size() / kSome + 1) {
+    for (std::size_t i = 0; i < points_.size(); i += points_.size() / kSamples + 1) {
       double nearest = std::numeric_limits<double>::infinity();
       for (std::size_t j = 0; j < points_.size(); ++j) {
         const double d = (points_[j].position - points_[i].position).squaredNorm();
@@ -202,8 +213,8 @@ class PointSolid final : public Solid {
 Vec3 Solid::gradient(const Vec3& point, double step) const noexcept {
   Vec3 gradient;
   for (int k = 0; k < 3; ++k) {
-    const Vec3 aside = step * Vec3::Unit(k);
-    gradient[k] = at(point + aside).value - at(point - aside).value;
+    const Vec3 offset = step * Vec3::Unit(k);
+    gradient[k] = at(point + offset).value - at(point - offset).value;
   }
   return unit_or(gradient, Vec3::UnitZ());
 }

@@ -12,38 +12,44 @@
 
 namespace hapbench {
 
-/// Signed distance of a point from a surface.
+/// Signed distance of a point from a surface, with its validity.
 struct SurfaceDistance {
-  double value = 0.0;  ///< phi [m], negative inside
-  /// False beyond the border of an open surface, where phi is that of the surface's continuation or its sign a guess.
+  double value = 0.0;  ///< signed distance phi [m], negative inside
+  /// False if the point lies beyond the border of an open surface. `value` is then the distance from a continuation
+  /// of the surface, or its sign is a guess.
   bool known = true;
 };
 
-/// A distance that was looked up at a place: the surface is no further from another place than that and the way there,
-/// and another place nearer than the surface is on the same side.
+/// Signed distance computed earlier at a nearby point, used to shorten the next search. The distance from another
+/// point to the surface is at most |value| plus the distance between the two points. A point closer to `place` than
+/// |value| lies on the same side of the surface as `place`.
 struct LookedUp {
+  /// Point at which the distance was computed [m].
   Vec3 place;
+  /// Signed distance at `place` [m].
   double value;
 };
 
-/// The inside of an environment: the signed distance phi of its true surface, of which the shell has only points. Exact
-/// for scenes in closed form and for meshes, about a point's distance to its neighbours wrong for mere points.
-/// Immutable; for several threads.
+/// Solid body of the environment: the signed distance phi from its true surface, which the point shell only
+/// samples. Exact for scenes in closed form and for meshes. For a body that is given by points only, the error is
+/// about the distance between neighbouring points. Immutable and safe for concurrent use by several threads.
 class Solid {
  public:
   virtual ~Solid() = default;
-  /// Allocates nothing. `near`: a look-up not far away, which shortens the search; null for none.
+  /// Returns the signed distance at a point. `near`: a distance known at a nearby point, which shortens the search,
+  /// or null. Allocates nothing.
   virtual SurfaceDistance at(const Vec3& point, const LookedUp* near = nullptr) const noexcept = 0;
-  /// A box that contains all points that are known to be inside [m].
+  /// Box that contains every point known to be inside the body [m].
   const Box& region() const noexcept { return region_; }
-  /// Largest error of a distance [m].
+  /// Upper bound of the error of a distance [m].
   virtual double error() const noexcept { return 0.0; }
-  /// Approximate size in memory.
+  /// Approximate memory use in bytes.
   virtual std::size_t bytes() const noexcept { return 0; }
-  /// No point of the box is deeper than this [m]: what is known without a look.
+  /// Upper bound of the depth of all points in the box [m], without evaluating the distance; infinity if none is
+  /// known.
   virtual double deepest_in(const Box&) const noexcept { return std::numeric_limits<double>::infinity(); }
-  /// The unit gradient of phi, by differences over `step` [m] where nothing else tells: away from the surface where
-  /// phi > 0, towards it inside.
+  /// Returns the unit gradient of phi: it points away from the surface outside of the body and towards the surface
+  /// inside. The default computes it by central differences over `step` [m] and returns +z if they vanish.
   virtual Vec3 gradient(const Vec3& point, double step) const noexcept;
 
  protected:
@@ -54,25 +60,28 @@ class Solid {
   Box region_;
 };
 
-/// The solids of scenes in closed form (signed_distance in analytic_shells.hpp), at any depth below their surfaces.
-/// Known within their borders: above and below the square; past the faces of the slot; between the ends of the planar
-/// hole's top; above and below the cone's mouth.
+/// Solids in closed form (signed_distance in analytic_shells.hpp), valid at any depth below their surfaces. The
+/// distance is known above and below the square, beyond the faces of the slot in x, between the ends of the planar
+/// hole's flat top, and above and below the cone's mouth.
 std::unique_ptr<const Solid> make_solid(const Plane& plane);
 std::unique_ptr<const Solid> make_solid(const Slot& slot);
 std::unique_ptr<const Solid> make_solid(const Hole2d& hole);
 std::unique_ptr<const Solid> make_solid(const ConicalHole& cone);
 std::unique_ptr<const Solid> make_solid(const BlockWithHole& block);
 
-/// The inside of a mesh. `is_closed`: it has no border, and no edge has more than two triangles; false when it is not
-/// known. phi < 0 where a closed mesh winds around a point at least once, or where the nearest place of an open one has
-/// its normal on the other side; known where that place is not on the border. A query takes 0.3 us; made in O(n log n).
+/// Solid bounded by a triangle mesh (vertices in m). `is_closed`: true if the mesh has no border and no edge with
+/// more than two triangles; false if this is not known. For a closed mesh, phi < 0 where the winding number is at
+/// least 1. For an open mesh, phi < 0 where the normal at the closest point of the surface points away from the
+/// query point; phi is known unless that closest point lies on the border. A query takes about 0.3 us; construction
+/// is O(n log n).
 std::unique_ptr<const Solid> make_solid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles,
                                         bool is_closed = false);
 
-/// The inside of points with normals. With q - p = h n + t for the nearest point p and its normal n, phi has the sign
-/// of h and the size sqrt(h^2 + max(0, t^2 - s^2)), s being twice the usual distance of neighbours: t is the gap
-/// between points as far as s explains it. phi is unknown where t is longer than s and no point lies 2 s further along
-/// it.
+/// Solid given by points with normals. Let p be the point of the shell closest to the query point q, n its normal,
+/// and q - p = h n + t with t perpendicular to n. Then phi has the sign of h and the absolute value sqrt(h^2 +
+/// max(0, |t|^2 - s^2)). The constant s is twice the median distance between neighbouring points: a tangential
+/// distance |t| <= s is explained by the gaps between points. phi is unknown if |t| > s and no point lies near p +
+/// 2 s t/|t|.
 std::unique_ptr<const Solid> make_solid(const std::vector<SurfacePoint>& points);
 
 }  // namespace hapbench

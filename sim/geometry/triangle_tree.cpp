@@ -10,10 +10,10 @@
 namespace hapbench {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;  ///< maximum number of triangles
-/// Halving 2^32 triangles takes 32 levels, and a search keeps one box per level.
-constexpr std::size_t kStack = 64;
-constexpr double kFarthest = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kMaxLeafTriangles = 4;  ///< maximum number of triangles in a leaf
+/// Size of the search stack. Halving 2^32 triangles takes 32 levels, and a search stores one box a level.
+constexpr std::size_t kStackSize = 64;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using simd::Mask, simd::Pack;
 
@@ -24,7 +24,8 @@ struct Packs {
   Pack dot(const Vec3& v) const { return x * Pack(v.x()) + y * Pack(v.y()) + z * Pack(v.z()); }
 };
 
-/// `from`: the points relative to an end of the side; `along`: their products with the side.
+/// Returns the squared distances from eight points to an edge. `from`: points relative to one end of the edge;
+/// `along`: dot products of these with the edge vector `side`; `per_length2`: 1 / |side|^2.
 Pack squared_distance_to_side(const Packs& from, const Vec3& side, const Pack& along, double per_length2) {
   const Pack t = simd::min(simd::max(along * Pack(per_length2), Pack(0.0)), Pack(1.0));
   const Pack dx = from.x - t * Pack(side.x()), dy = from.y - t * Pack(side.y()), dz = from.z - t * Pack(side.z());
@@ -40,19 +41,20 @@ Pack squared_distance_to_box(const Vec3& low, const Vec3& high, const Packs& poi
   return dx * dx + dy * dy + dz * dz;
 }
 
-struct PlaceOfTriangle {
+struct ClosestPoint {
   Vec3 from_a;
-  unsigned corners;  ///< as in TriangleTree::Nearest
+  unsigned corners;  ///< see TriangleTree::Nearest
 };
 
-/// The place of a triangle nearest to p, a point relative to its corner a, by the regions of the plane around it
-/// (C. Ericson, Real-Time Collision Detection, 2005, 5.1.5). A triangle without an area is nearest at a corner or side.
-PlaceOfTriangle nearest_place(const Vec3& p, const Vec3& ab, const Vec3& ac, double ab2, double abac, double ac2) {
+/// Returns the point of a triangle closest to p, from the region of the triangle's plane above which p lies (C.
+/// Ericson, Real-Time Collision Detection, 2005, 5.1.5). p is relative to corner a; ab2, abac and ac2 are the dot
+/// products of ab and ac. For a triangle without area the closest point is on a corner or an edge.
+ClosestPoint closest_point(const Vec3& p, const Vec3& ab, const Vec3& ac, double ab2, double abac, double ac2) {
   const double along_ab = p.dot(ab), along_ac = p.dot(ac);
   if (along_ab <= 0.0 && along_ac <= 0.0) return {Vec3::Zero(), 1u};
-  const double b_ab = along_ab - ab2, b_ac = along_ac - abac;  // the same from corner b
+  const double b_ab = along_ab - ab2, b_ac = along_ac - abac;  // dot products relative to corner b
   if (b_ab >= 0.0 && b_ac <= b_ab) return {ab, 2u};
-  const double c_ab = along_ab - abac, c_ac = along_ac - ac2;  // and from corner c
+  const double c_ab = along_ab - abac, c_ac = along_ac - ac2;  // dot products relative to corner c
   if (c_ac >= 0.0 && c_ab <= c_ac) return {ac, 4u};
   const double at_c = along_ab * b_ac - b_ab * along_ac;
   if (at_c <= 0.0 && along_ab >= 0.0 && b_ab <= 0.0) return {along_ab / ab2 * ab, 3u};
@@ -65,8 +67,8 @@ PlaceOfTriangle nearest_place(const Vec3& p, const Vec3& ab, const Vec3& ac, dou
   return {at_b / whole * ab + at_c / whole * ac, 7u};
 }
 
-/// Twice the area of the triangle of the edge from a to b and the line at (x, y), positive to the left of the edge. The
-/// opposite edge gives exactly the negative number.
+/// Returns twice the signed area of the triangle with corners a, b and (x, y) in the xy plane, positive if (x, y)
+/// is to the left of the edge from a to b. The edge from b to a gives exactly the negative number.
 double side_of_edge(const Vec3& a, const Vec3& b, double x, double y) {
   const auto area = [x, y](const Vec3& from, const Vec3& to) {
     return (to.x() - from.x()) * (y - from.y()) - (to.y() - from.y()) * (x - from.x());
@@ -74,8 +76,8 @@ double side_of_edge(const Vec3& a, const Vec3& b, double x, double y) {
   return before(a, b) ? area(a, b) : -area(b, a);
 }
 
-/// Tests whether the line passes to the left of the edge. A line on the edge counts as moved slightly in x, and far
-/// less in y.
+/// Returns true if the vertical line passes to the left of the edge from a to b; `side` is side_of_edge(). A line
+/// through the edge counts as moved slightly in x, and much less in y.
 bool left_of_edge(double side, const Vec3& a, const Vec3& b) {
   if (side != 0.0) return side > 0.0;
   return a.y() != b.y() ? b.y() < a.y() : b.x() > a.x();
@@ -86,11 +88,13 @@ bool left_of_edge(double side, const Vec3& a, const Vec3& b) {
 std::optional<Crossing> vertical_crossing(const std::array<Vec3, 3>& t, double x, double y) {
   const double a = side_of_edge(t[1], t[2], x, y), b = side_of_edge(t[2], t[0], x, y),
                c = side_of_edge(t[0], t[1], x, y);
+  // The line meets the triangle if it is on the same side of all three edges.
   const bool left = left_of_edge(a, t[1], t[2]);
   if (left_of_edge(b, t[2], t[0]) != left || left_of_edge(c, t[0], t[1]) != left) return {};
+  // Interpolate z at the line.
   const double whole = a + b + c;
   const double z = whole != 0.0 ? (a * t[0].z() + b * t[1].z() + c * t[2].z()) / whole : t[0].z();
-  // Seen from above, triangles that face up are counter-clockwise; there an upward line leaves the solid.
+  // Triangles that face up are counter-clockwise seen from above; an upward line leaves the solid there.
   return Crossing{z, left ? -1 : 1};
 }
 
@@ -119,7 +123,7 @@ TriangleTree::TriangleTree(std::span<const Vec3> vertices, std::span<const Trian
         {a + b + c, a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), static_cast<std::uint32_t>(items.size())});
   }
   nodes_.push_back({Vec3::Zero(), Vec3::Zero(), 0, static_cast<std::uint32_t>(items.size())});
-  // Also visits appended children.
+  // The loop also visits the children that split() appends.
   for (std::size_t node = 0; node < nodes_.size(); ++node) split(node, items);
   triangles_.reserve(items.size());
   for (const Item& item : items) {
@@ -128,7 +132,8 @@ TriangleTree::TriangleTree(std::span<const Vec3> vertices, std::span<const Trian
   }
 }
 
-/// Halves the triangles of a node across their longest extent, unless a leaf holds them.
+/// Splits the triangles of a node into two halves across the longest side of their box, unless they fit into a
+/// leaf.
 void TriangleTree::split(std::size_t node, std::vector<Item>& items) {
   const auto [first, count] = std::pair(nodes_[node].first, nodes_[node].count);
   const auto begin = items.begin() + first, end = begin + count;
@@ -139,7 +144,8 @@ void TriangleTree::split(std::size_t node, std::vector<Item>& items) {
   });
   nodes_[node].low = low;
   nodes_[node].high = high;
-  if (count <= kLeaf) return;
+  if (count <= kMaxLeafTriangles) return;
+  // Divide at the median of the centroids.
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
   std::nth_element(begin, begin + count / 2, end,
@@ -150,8 +156,9 @@ void TriangleTree::split(std::size_t node, std::vector<Item>& items) {
   nodes_.push_back({low, high, first + count / 2, count - count / 2});
 }
 
-/// Calls `use` with the triangles of the leaves, nearer boxes first, without the boxes whose distance `may_be_nearer`
-/// refuses when their turn comes. `distance_to(node)` gives the distance of a box, `is_less` compares two.
+/// Calls `use` with the triangles of the leaves, closest boxes first. `distance_to(node)` returns the distance of a
+/// box, `is_less` compares two distances, and `may_be_nearer(distance)` returns false for a box that is not to be
+/// searched; it is called when the search reaches the box.
 template <class DistanceTo, class IsLess, class MayBeNearer, class Use>
 [[gnu::always_inline]] inline void TriangleTree::visit_nearest_first(const DistanceTo& distance_to,
                                                                      const IsLess& is_less,
@@ -162,7 +169,7 @@ template <class DistanceTo, class IsLess, class MayBeNearer, class Use>
     Distance distance;
     std::uint32_t node;
   };
-  std::array<Waiting, kStack> stack;
+  std::array<Waiting, kStackSize> stack;
   std::size_t size = 0;
   stack[size++] = {distance_to(nodes_[0]), 0};
   while (size > 0) {
@@ -180,7 +187,8 @@ template <class DistanceTo, class IsLess, class MayBeNearer, class Use>
 
 void TriangleTree::lower_to_squared_distances(const double* x, const double* y, const double* z,
                                               double* distances2) const noexcept {
-  // The foot of the perpendicular, a + u ab + v ac, is nearest if it is within the triangle, else a place of its sides.
+  // The foot of the perpendicular, a + u ab + v ac, is the closest point if it lies in the triangle. Otherwise the
+  // closest point lies on an edge.
   const auto squared_distance = [](const Triangle& t, const Packs& points) {
     const Packs p = points - t.a;
     const Pack along_ab = p.dot(t.ab), along_ac = p.dot(t.ac), height = p.dot(t.normal);
@@ -211,9 +219,9 @@ std::optional<TriangleTree::Nearest> TriangleTree::nearest(const Vec3& point, do
       },
       std::less(), [&](double distance2) { return !(distance2 >= best.distance2); },
       [&](const Triangle& t) {
-        const PlaceOfTriangle place = nearest_place(point - t.a, t.ab, t.ac, t.ab2, t.abac, t.ac2);
-        const double distance2 = (point - t.a - place.from_a).squaredNorm();
-        if (distance2 < best.distance2) best = {distance2, t.number, place.corners, t.a + place.from_a};
+        const ClosestPoint closest = closest_point(point - t.a, t.ab, t.ac, t.ab2, t.abac, t.ac2);
+        const double distance2 = (point - t.a - closest.from_a).squaredNorm();
+        if (distance2 < best.distance2) best = {distance2, t.number, closest.corners, t.a + closest.from_a};
       });
   if (best.corners == 0) return std::nullopt;
   return best;
@@ -221,7 +229,7 @@ std::optional<TriangleTree::Nearest> TriangleTree::nearest(const Vec3& point, do
 
 template <class Enters, class Use>
 void TriangleTree::visit(const Enters& enters, const Use& use) const {
-  std::array<std::uint32_t, kStack> stack;
+  std::array<std::uint32_t, kStackSize> stack;
   std::size_t size = 0;
   stack[size++] = 0;
   while (size > 0) {
@@ -251,11 +259,12 @@ int TriangleTree::winding_number(const Vec3& point, std::span<const Vec3> vertic
 }
 
 double TriangleTree::first_hit(const Vec3& origin, const Vec3& direction, double from) const noexcept {
-  double best = kFarthest;
+  double best = kInfinity;
   const auto enters = [&](const Node& node) {
     double enter = from, leave = best;
     for (int k = 0; k < 3; ++k) {
-      // A ray along a face of the box divides 0 by 0; the comparisons then leave the interval as it is.
+      // For a ray parallel to a face of the box, 0 / 0 gives NaN; the comparisons then leave the interval
+      // unchanged.
       const double a = (node.low[k] - origin[k]) / direction[k], b = (node.high[k] - origin[k]) / direction[k];
       if (std::min(a, b) > enter) enter = std::min(a, b);
       if (std::max(a, b) < leave) leave = std::max(a, b);
@@ -263,6 +272,7 @@ double TriangleTree::first_hit(const Vec3& origin, const Vec3& direction, double
     return !(enter > leave);
   };
   visit(enters, [&](const Triangle& t) {
+    // Solve origin + distance * direction = a + u ab + v ac.
     const Vec3 normal = t.ab.cross(t.ac), to = t.a - origin;
     const double slope = direction.dot(normal);
     if (slope == 0.0) return;

@@ -24,18 +24,19 @@ Vec3 position(const HalfEdgeMesh& mesh, OpenMesh::VertexHandle vertex) {
   return {p[0], p[1], p[2]};
 }
 
-/// Coordinates of a cube, and axis and sign of the normal's largest component.
-using Place = std::array<double, 5>;
+/// Key of a cube and a direction: the cube's coordinates in cube edges, then the axis and the sign of the largest
+/// component of the normal.
+using CubeKey = std::array<double, 5>;
 
-struct HashOfPlace {
-  std::size_t operator()(const Place& place) const noexcept {
+struct CubeKeyHash {
+  std::size_t operator()(const CubeKey& key) const noexcept {
     Hash64 hash;
-    for (const double number : place) hash.real(number + 0.0);  // 0 and -0 are one coordinate
+    for (const double number : key) hash.real(number + 0.0);  // 0 and -0 are the same coordinate
     return static_cast<std::size_t>(hash.value());
   }
 };
 
-Place place_of(const Vec3& cube, const Vec3& normal) {
+CubeKey key_of(const Vec3& cube, const Vec3& normal) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   return {cube.x(), cube.y(), cube.z(), static_cast<double>(axis), normal[axis] < 0.0 ? -1.0 : 1.0};
@@ -46,15 +47,17 @@ using Triangle = TriangleSoup::Triangle;
 /// Two triangles with a common edge.
 struct Hinge {
   std::array<std::uint32_t, 2> triangles;
-  std::array<std::uint32_t, 2> corners;  ///< where the edge starts in each
-  bool opposed;                          ///< they run along the edge in opposite directions, as neighbours should
+  std::array<std::uint32_t, 2> corners;  ///< corner of each triangle at which the edge starts
+  bool opposed;                          ///< opposite directions along the edge, as in consistently wound neighbours
 };
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-/// Maximum number of parts in which each part is searched for; without it a million crumbs would take minutes.
-constexpr std::size_t kMostHolders = 1000;
+/// Maximum number of outermost parts whose boxes are tested for enclosing another part. Without it a mesh with a
+/// million small parts would take minutes.
+constexpr std::size_t kMaxEnclosingParts = 1000;
 
-/// Indices of the hinges of each triangle, by corner.
+/// Returns for each triangle and corner the index of the hinge at the edge from this corner; kNone if there is
+/// none.
 std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triangles, const std::vector<Hinge>& hinges) {
   std::vector<std::array<std::uint32_t, 3>> at(triangles, {kNone, kNone, kNone});
   for (std::uint32_t h = 0; h < hinges.size(); ++h) {
@@ -63,25 +66,27 @@ std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triang
   return at;
 }
 
-/// The properties of a part that decide whether to turn it.
+/// Properties of a connected part that determine its orientation.
 struct Shape {
   Box box = Box::nothing();
-  double volume = 0.0;  ///< enclosed; negative if normals point inwards
+  double volume = 0.0;  ///< enclosed volume [m^3]; negative if normals point inwards
 
   double size() const { return box.size().norm(); }
   bool holds(const Shape& other) const {
     return (other.box.min.array() >= box.min.array()).all() && (other.box.max.array() <= box.max.array()).all();
   }
-  /// The threshold exceeds rounding, because two sheets back to back enclose nothing.
+  /// The threshold is larger than the rounding error, so that two sheets back to back, which enclose no volume, are
+  /// not inside out.
   bool is_inside_out() const { return volume < -1e-12 * size() * size() * size(); }
 };
 
-/// The connected parts of a surface, and the triangles to turn so that each part is wound consistently.
+/// Connected parts of a surface, and the triangles to reverse so that each part is wound consistently.
 class MeshParts {
  public:
-  /// Turns triangles until neighbours agree, but not the first triangle of each part. O(triangles).
+  /// Finds the parts, and reverses triangles until all neighbours agree with the first triangle of their part.
+  /// O(triangles).
   MeshParts(std::size_t triangles, const std::vector<Hinge>& hinges)
-      : hinges_(hinges), part_(triangles, kNone), turned_(triangles, false) {
+      : hinges_(hinges), part_(triangles, kNone), reversed_(triangles, false) {
     const auto at = hinges_at_triangles(triangles, hinges);
     std::vector<std::uint32_t> open;
     for (std::uint32_t first = 0; first < triangles; ++first) {
@@ -90,6 +95,7 @@ class MeshParts {
       closed_.push_back(true);
       part_[first] = part;
       open.push_back(first);
+      // Visit the part by depth-first search from its first triangle.
       while (!open.empty()) {
         const std::uint32_t t = open.back();
         open.pop_back();
@@ -102,47 +108,53 @@ class MeshParts {
           const std::uint32_t neighbour = hinge.triangles[hinge.triangles[0] == t ? 1 : 0];
           if (part_[neighbour] != kNone) continue;
           part_[neighbour] = part;
-          turned_[neighbour] = hinge.opposed ? turned_[t] : !turned_[t];
+          reversed_[neighbour] = hinge.opposed ? reversed_[t] : !reversed_[t];
           open.push_back(neighbour);
         }
       }
     }
   }
 
-  /// Returns a hinge whose triangles cannot agree, in a surface with one side only.
+  /// Returns a hinge whose triangles cannot be wound consistently, if there is one; the surface then has only one
+  /// side.
   std::optional<Hinge> contradiction() const {
     for (const Hinge& hinge : hinges_) {
-      const bool alike = turned_[hinge.triangles[0]] == turned_[hinge.triangles[1]];
-      if (alike != hinge.opposed) return hinge;
+      const bool same_winding = reversed_[hinge.triangles[0]] == reversed_[hinge.triangles[1]];
+      if (same_winding != hinge.opposed) return hinge;
     }
     return std::nullopt;
   }
 
-  /// Turns the parts in which most triangles were turned, so that most keep their winding. Returns how many do not.
+  /// Reverses all triangles of a part if most of its triangles are reversed, so that the majority keeps its
+  /// original winding. Returns the number of triangles that are still reversed.
   std::size_t follow_majority() {
-    std::vector<std::int64_t> balance(count(), 0);  // turned minus kept
-    for (std::size_t t = 0; t < part_.size(); ++t) balance[part_[t]] += turned_[t] ? 1 : -1;
-    std::vector<bool> mostly_turned(count());
-    std::transform(balance.begin(), balance.end(), mostly_turned.begin(), [](std::int64_t b) { return b > 0; });
-    turn(mostly_turned);
-    return static_cast<std::size_t>(std::count(turned_.begin(), turned_.end(), true));
+    std::vector<std::int64_t> balance(count(), 0);  // per part: number of reversed minus number of other triangles
+    for (std::size_t t = 0; t < part_.size(); ++t) balance[part_[t]] += reversed_[t] ? 1 : -1;
+    std::vector<bool> mostly_reversed(count());
+    std::transform(balance.begin(), balance.end(), mostly_reversed.begin(), [](std::int64_t b) { return b > 0; });
+    reverse(mostly_reversed);
+    return static_cast<std::size_t>(std::count(reversed_.begin(), reversed_.end(), true));
   }
 
-  /// Turns closed parts that enclose a negative volume, along with the parts in their bounding boxes (for the thousand
-  /// largest). Returns the number of turned parts.
-  std::size_t turn_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  /// Reverses closed parts that enclose a negative volume, together with the parts inside their bounding boxes.
+  /// Returns the number of reversed parts. At most kMaxEnclosingParts parts, the largest, are tested for enclosing
+  /// others.
+  std::size_t orient_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+    // Bounding box and volume of each part.
     std::vector<Shape> shapes(count());
     for (std::size_t t = 0; t < part_.size(); ++t) {
       for (const std::uint32_t corner : triangles[t]) shapes[part_[t]].box.add(vertices[corner]);
     }
     for (std::size_t t = 0; t < part_.size(); ++t) {
       Shape& shape = shapes[part_[t]];
-      // The tetrahedra have their tip at the part, because cancellation would spoil a sum about a distant origin.
+      // Sum the volumes of the tetrahedra between the triangles and a corner of the part's box. A distant origin
+      // would lose digits by cancellation.
       const auto& [i, j, k] = triangles[t];
       const Vec3 a = vertices[i] - shape.box.min, b = vertices[j] - shape.box.min, c = vertices[k] - shape.box.min;
-      shape.volume += (turned_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
+      shape.volume += (reversed_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
     }
 
+    // From the largest part to the smallest: a part inside an outermost part is reversed together with it.
     std::vector<std::uint32_t> largest_first(count()), outermost;
     std::iota(largest_first.begin(), largest_first.end(), 0u);
     std::ranges::stable_sort(largest_first, std::greater(), [&](std::uint32_t p) { return shapes[p].size(); });
@@ -152,37 +164,38 @@ class MeshParts {
       const auto outer =
           std::find_if(outermost.begin(), outermost.end(), [&](std::uint32_t q) { return shapes[q].holds(shapes[p]); });
       inside_out[p] = outer == outermost.end() ? shapes[p].is_inside_out() : inside_out[*outer];
-      if (outer == outermost.end() && outermost.size() < kMostHolders) outermost.push_back(p);
+      if (outer == outermost.end() && outermost.size() < kMaxEnclosingParts) outermost.push_back(p);
     }
-    turn(inside_out);
+    reverse(inside_out);
     return static_cast<std::size_t>(std::count(inside_out.begin(), inside_out.end(), true));
   }
 
-  /// True for each triangle whose winding must be reversed.
-  const std::vector<bool>& turned() const { return turned_; }
+  /// Flags of the triangles: true if the winding must be reversed.
+  const std::vector<bool>& reversed() const { return reversed_; }
 
  private:
   std::size_t count() const { return closed_.size(); }
-  void turn(const std::vector<bool>& parts) {
+  void reverse(const std::vector<bool>& parts) {
     for (std::size_t t = 0; t < part_.size(); ++t) {
-      if (parts[part_[t]]) turned_[t] = !turned_[t];
+      if (parts[part_[t]]) reversed_[t] = !reversed_[t];
     }
   }
 
   const std::vector<Hinge>& hinges_;
-  std::vector<std::uint32_t> part_;  ///< of each triangle
-  std::vector<bool> turned_;
-  std::vector<bool> closed_;  ///< whether every edge of each part has two triangles
+  std::vector<std::uint32_t> part_;  ///< part number of each triangle
+  std::vector<bool> reversed_;
+  std::vector<bool> closed_;  ///< for each part: true if every edge has two triangles
 };
 
-/// More than in any sensible mesh; the time to find an edge is proportional to it.
-constexpr std::size_t kMostTrianglesAtVertex = 10'000;
+/// More than in any sensible mesh. The time to find an edge at a vertex is proportional to the number of its
+/// triangles.
+constexpr std::size_t kMaxTrianglesAtVertex = 10'000;
 
-std::string text(const Vec3& place) {
-  return "(" + coordinates(place) + ") m";
+std::string text(const Vec3& position) {
+  return "(" + coordinates(position) + ") m";
 }
 
-/// Returns for each vertex the first one at its position.
+/// Returns for each vertex the index of the first vertex at its position.
 std::vector<std::uint32_t> first_at_position(const std::vector<Vec3>& vertices) {
   std::vector<std::uint32_t> order(vertices.size()), first(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -195,7 +208,7 @@ std::vector<std::uint32_t> first_at_position(const std::vector<Vec3>& vertices) 
   return first;
 }
 
-/// The triangles with vertices at equal positions merged, without those that have two equal corners.
+/// Returns the triangles with vertices at equal positions merged, without triangles that have two equal corners.
 std::vector<Triangle> welded_triangles(const TriangleSoup& soup) {
   const std::vector<std::uint32_t> first = first_at_position(soup.vertices);
   std::vector<Triangle> welded;
@@ -207,7 +220,7 @@ std::vector<Triangle> welded_triangles(const TriangleSoup& soup) {
   return welded;
 }
 
-/// The pairs of triangles at edges with two; adds the other edges to the findings.
+/// Returns the pairs of triangles at edges that have two. Adds the midpoints of all other edges to the findings.
 std::vector<Hinge> hinges_of(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices,
                              MeshFindings& found) {
   std::vector<Hinge> hinges;
@@ -221,18 +234,21 @@ std::vector<Hinge> hinges_of(const std::vector<Triangle>& triangles, const std::
   return hinges;
 }
 
-/// Partition of the triangles' corners into vertices of the surface: corner 3 t + i is corner i of triangle t. Corners
-/// are joined across hinges, so that every vertex is one fan. A half-edge mesh can represent any such surface, because
-/// at most two sides have the same vertices, the ends of an open fan, and they run in opposite directions.
+/// Assigns the triangles' corners to vertices of the surface (union-find). Corner 3 t + i is corner i of triangle
+/// t. Corners are joined across hinges, so that each vertex is one triangle fan. A half-edge mesh can represent
+/// every such surface: at most two sides connect the same two vertices, at the ends of an open fan, and they run in
+/// opposite directions.
 class Fans {
  public:
   explicit Fans(std::size_t triangles) : parent_(3 * triangles) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
+  /// Returns the representative corner of the vertex, and shortens the path to it.
   std::uint32_t root(std::uint32_t corner) {
     while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
     return corner;
   }
 
+  /// Joins the corners at both ends of the common edge.
   void join(const Hinge& hinge) {
     const auto [t, u] = hinge.triangles;
     const auto [i, j] = hinge.corners;
@@ -251,35 +267,36 @@ class Fans {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Adds the vertices, in the order of the soup, and returns the vertex of each corner.
+/// Adds the vertices to the mesh, in the order of the soup. Returns the vertex of each corner.
 std::vector<OpenMesh::VertexHandle> add_vertices(HalfEdgeMesh& mesh, const std::vector<Vec3>& vertices,
                                                  const std::vector<Triangle>& triangles, Fans& fans) {
   std::vector<std::uint32_t> order(3 * triangles.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto vertex = [&](std::uint32_t corner) { return triangles[corner / 3][corner % 3]; };
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return vertex(a) < vertex(b); });
+  // Create a mesh vertex for the first corner of each fan; the other corners share it.
   std::vector<OpenMesh::VertexHandle> handles(order.size());
   std::vector<std::size_t> count(order.size(), 0);
   for (const std::uint32_t corner : order) {
     const std::uint32_t root = fans.root(corner);
     const Vec3& p = vertices[vertex(corner)];
     if (!handles[root].is_valid()) handles[root] = mesh.add_vertex({p.x(), p.y(), p.z()});
-    if (++count[root] > kMostTrianglesAtVertex) {
-      throw MeshError("more than " + std::to_string(kMostTrianglesAtVertex) + " faces meet in the vertex at " +
-                      text(p));
+    if (++count[root] > kMaxTrianglesAtVertex) {
+      throw MeshError("more than " + std::to_string(kMaxTrianglesAtVertex) + " faces meet in the vertex at " + text(p));
     }
     handles[corner] = handles[root];
   }
   return handles;
 }
 
+/// Returns the half-edge mesh of the triangles, with reversed winding where `reversed` is set.
 HalfEdgeMesh connected(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, Fans& fans,
-                       const std::vector<bool>& turned) {
+                       const std::vector<bool>& reversed) {
   HalfEdgeMesh mesh;
   const auto handles = add_vertices(mesh, vertices, triangles, fans);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto &a = handles[3 * t], &b = handles[3 * t + 1], &c = handles[3 * t + 2];
-    const auto face = turned[t] ? mesh.add_face(a, c, b) : mesh.add_face(a, b, c);
+    const auto face = reversed[t] ? mesh.add_face(a, c, b) : mesh.add_face(a, b, c);
     if (!face.is_valid()) throw MeshError("the faces do not fit together at " + text(vertices[triangles[t][0]]));
   }
   return mesh;
@@ -295,11 +312,13 @@ void HalfEdgeMesh::split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middl
       set_next_halfedge_handle(sides[i], sides[(i + 1) % 3]);
     }
   };
+  // Shorten the edge to start at `middle`, and add a new edge from there to the old start.
   const auto forth = halfedge_handle(edge, 0), back = halfedge_handle(edge, 1);
   const auto start = to_vertex_handle(back);
   const auto to_start = new_edge(middle, start), from_start = opposite_halfedge_handle(to_start);
   set_halfedge_handle(middle, forth);
   set_vertex_handle(back, middle);
+  // Divide the triangle on the left of the edge, if there is one.
   if (is_boundary(forth)) {
     set_next_halfedge_handle(prev_halfedge_handle(forth), from_start);
     set_next_halfedge_handle(from_start, forth);
@@ -309,6 +328,7 @@ void HalfEdgeMesh::split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middl
     triangle(face_handle(forth), {forth, second, opposite_halfedge_handle(out)});
     triangle(new_face(), {third, from_start, out});
   }
+  // Divide the triangle on the right of the edge, if there is one.
   if (is_boundary(back)) {
     set_next_halfedge_handle(to_start, next_halfedge_handle(back));
     set_next_halfedge_handle(back, to_start);
@@ -323,6 +343,7 @@ void HalfEdgeMesh::split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middl
 }
 
 std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
+  // Unit normals of the faces.
   std::vector<Vec3> face_normals;
   face_normals.reserve(mesh.n_faces());
   for (const auto face : mesh.faces()) {
@@ -349,47 +370,51 @@ void refine(HalfEdgeMesh& mesh, double longest_edge) {
   subdivider(mesh, 1);
 }
 
-double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double most) {
+double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double max_count) {
+  // Reject early by a lower bound from the area.
   const double largest = longest_edge * longest_edge;
   double area = 0.0, count = 0.0;
   for (const auto face : mesh.faces()) area += mesh.calc_face_area(face);
-  // The equilateral triangle is the largest.
-  const double fewest = area / (std::sqrt(3.0) / 4.0 * largest);
-  if (fewest > most) return fewest;
+  // The equilateral triangle has the largest area of all triangles without a longer edge; this gives a lower bound.
+  const double lower_bound = area / (std::sqrt(3.0) / 4.0 * largest);
+  if (lower_bound > max_count) return lower_bound;
+  // Divide every triangle as refine() does, with the lengths of its sides only.
   std::vector<std::array<double, 3>> open;  // squared lengths of the sides of a triangle
   for (const auto face : mesh.faces()) {
     auto edge = mesh.cfe_begin(face);
     for (double& length : open.emplace_back()) length = mesh.calc_edge_sqr_length(*edge++);
     count += 1.0;
-    while (!open.empty() && count <= most) {
+    while (!open.empty() && count <= max_count) {
       auto [a, b, c] = open.back();
       open.pop_back();
       if (b > a) std::swap(a, b);
       if (c > a) std::swap(a, c);
       if (a <= largest) continue;
-      // The median to the longest edge cuts the triangle, independently of its neighbours: the longest edge of all is
-      // the longest of both its triangles.
+      // The median to the longest side divides the triangle. A triangle is divided independently of its neighbours,
+      // because the longest edge of the mesh is the longest side of both its triangles.
       const double median = (2.0 * b + 2.0 * c - a) / 4.0;
       open.push_back({a / 4.0, b, median});
       open.push_back({a / 4.0, c, median});
       count += 1.0;
     }
-    if (count > most) break;
+    if (count > max_count) break;
   }
   return count;
 }
 
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing) {
-  using Nearest = std::pair<double, std::size_t>;  // distance from the centre of the cube [m], and index
-  std::unordered_map<Place, Nearest, HashOfPlace> nearest;
+  using Nearest = std::pair<double, std::size_t>;  // distance from the cube's centre [m], and index of the point
+  // Find the point closest to the centre for each cube and direction.
+  std::unordered_map<CubeKey, Nearest, CubeKeyHash> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 cube = (points[i].position / spacing + Vec3::Constant(0.5)).array().floor();
     const Nearest here{(points[i].position - spacing * cube).norm(), i};
-    const auto [entry, is_new] = nearest.try_emplace(place_of(cube, points[i].normal), here);
+    const auto [entry, is_new] = nearest.try_emplace(key_of(cube, points[i].normal), here);
     if (!is_new) entry->second = std::min(entry->second, here);
   }
+  // Restore the order of the points.
   std::vector<std::size_t> kept;
-  for (const auto& [place, point] : nearest) kept.push_back(point.second);
+  for (const auto& [key, point] : nearest) kept.push_back(point.second);
   std::sort(kept.begin(), kept.end());
   std::vector<SurfacePoint> thin;
   thin.reserve(kept.size());
@@ -402,10 +427,12 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
     if (!soup.vertices[i].allFinite()) throw MeshError("vertex " + std::to_string(i) + " is not finite");
   }
   CheckedMesh result;
+  // Merge vertices.
   const std::vector<Triangle> triangles = welded_triangles(soup);
   if (triangles.empty()) throw MeshError("has no faces; allowed: at least one, with three different corners");
   result.findings.degenerate_triangles = soup.triangles.size() - triangles.size();
 
+  // Wind each part consistently and outwards.
   const std::vector<Hinge> hinges = hinges_of(triangles, soup.vertices, result.findings);
   MeshParts parts(triangles.size(), hinges);
   if (const auto hinge = parts.contradiction()) {
@@ -414,11 +441,12 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
                     "; allowed: a surface with two sides");
   }
   result.findings.rewound_triangles = parts.follow_majority();
-  result.findings.inside_out_parts = parts.turn_outwards(soup.vertices, triangles);
+  result.findings.inside_out_parts = parts.orient_outwards(soup.vertices, triangles);
 
+  // Build the half-edge mesh with one vertex for each triangle fan.
   Fans fans(triangles.size());
   for (const Hinge& hinge : hinges) fans.join(hinge);
-  result.mesh = connected(soup.vertices, triangles, fans, parts.turned());
+  result.mesh = connected(soup.vertices, triangles, fans, parts.reversed());
   return result;
 }
 

@@ -14,57 +14,68 @@ struct HalfEdgeMeshTraits : OpenMesh::DefaultTraits {
   using Normal = OpenMesh::Vec3d;
 };
 
-/// A triangle mesh that knows its neighbours; double precision, coordinates in m, faces counter-clockwise from outside.
+/// Half-edge triangle mesh in double precision; coordinates in m, faces counter-clockwise seen from outside.
 struct HalfEdgeMesh : OpenMesh::TriMesh_ArrayKernelT<HalfEdgeMeshTraits> {
-  /// As the base does, which is compiled with checks of every handle and takes twice as long.
+  /// Splits an edge at the vertex `middle`, with the same result as the base class. The split of the base class
+  /// checks every handle and takes twice as long.
   void split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middle);
 };
 
-/// The vertices of the mesh in order, with outward normals: the normalised, unweighted mean of the unit normals of the
-/// adjacent faces (thesis C.1). Omits vertices without an adjacent face that has a positive area.
+/// Returns the vertices of the mesh in order, with outward normals. A normal is the normalised, unweighted mean of
+/// the unit normals of the adjacent faces (thesis C.1). Omits vertices without an adjacent face of positive area.
 std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh);
 
-/// Splits the longest edges in two until none is longer than `longest_edge` [m], > 0. Does not change the surface.
+/// Splits the longest edge at its midpoint until no edge is longer than `longest_edge` [m]. Does not change the
+/// surface. Precondition: longest_edge > 0.
 void refine(HalfEdgeMesh& mesh, double longest_edge);
 
-/// Number of faces that `refine` would make. If it exceeds `most`, returns some number above `most` early, so that
-/// absurd numbers can be refused.
-double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double most);
+/// Returns the number of faces that refine() would produce. If this number exceeds `max_count`, returns early with
+/// some number above `max_count`, so that absurdly large numbers can be rejected quickly.
+double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double max_count);
 
-/// Keeps one point for each cube between half-integer multiples of `spacing` [m] and each of six main directions of the
-/// normal, so that both sides of a thin wall remain: the point nearest to the cube's centre, or the first of equals.
-/// Keeps the order. O(n log n).
+/// Returns a subsample of the points. Space is divided into cubes with edges of length `spacing` [m], bounded by
+/// half-integer multiples of it. Keeps one point for each cube and each of the six axis directions closest to the
+/// normals, so that both sides of a thin wall remain. The point kept is the closest to the cube's centre, the first
+/// if several are equally close. Preserves the order of the points. O(n log n).
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing);
 
-/// Repairs and irregularities of triangles that make a surface.
+/// Repairs made by mesh_from_triangles() and irregularities that it found.
 struct MeshFindings {
-  std::size_t degenerate_triangles = 0;  ///< with two equal corners; omitted
-  std::size_t rewound_triangles = 0;     ///< wound against most of their part; turned
-  std::size_t inside_out_parts = 0;      ///< closed parts whose normals pointed inwards; turned
-  /// Midpoints of the edges with more than two triangles, along which the surface is cut.
+  std::size_t degenerate_triangles = 0;  ///< triangles with two equal corners; omitted
+  std::size_t rewound_triangles = 0;     ///< triangles wound against the majority of their part; reversed
+  std::size_t inside_out_parts = 0;      ///< closed parts whose normals pointed inwards; reversed
+  /// Midpoints [m] of the edges with more than two triangles (non-manifold edges). The surface is cut along them.
   std::vector<Vec3> crowded_edges = {};
-  /// Midpoints of the edges with a triangle on one side only, where the surface is open.
+  /// Midpoints [m] of the edges with one triangle only, where the surface is open.
   std::vector<Vec3> open_edges = {};
 };
 
+/// Result of mesh_from_triangles().
 struct CheckedMesh {
   HalfEdgeMesh mesh;
   MeshFindings findings;
 };
 
-/// The triangles make no surface with an inside and an outside; the message says why and where.
+/// Thrown if triangles form no surface with an inside and an outside. The message reports the reason and the
+/// position.
 class MeshError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Makes a surface of the triangles. Merges vertices at the same position, except that each of several fans of
-/// triangles that meet in a point keeps a vertex of its own; omits unused vertices and keeps the order of the others.
-/// An edge with more than two triangles connects none of them, so that each fan at its ends also has its own vertices.
-/// Makes the winding of each connected part consistent with its majority, and outward if the part is closed; a part in
-/// the bounding box of a larger one, which may be a cavity, turns with it. Throws MeshError if there are no triangles,
-/// the sides cannot be distinguished (a Moebius band), a coordinate is not finite, or more than 10,000 triangles meet
-/// in a vertex, which would take quadratic time. O(n log n) otherwise. Precondition: indices are valid.
+/// Connects triangles to a surface.
+///
+/// - Vertices: merges vertices at the same position and omits unused vertices; keeps the order of the others. If
+/// several triangle fans touch in one point only, each fan keeps a vertex of its own.
+/// - Edges: an edge with more than two triangles connects none of them, so the fans at its ends get separate
+/// vertices as well.
+/// - Winding: makes the winding of each connected part consistent, following the majority of its triangles. Orients
+/// closed parts outwards. A part inside the bounding box of a larger part may be a cavity, and is therefore
+/// reversed together with the larger part.
+///
+/// Throws MeshError if there are no triangles, a coordinate is not finite, the surface is not orientable (a Moebius
+/// band), or more than 10,000 triangles meet in one vertex (which would take quadratic time). O(n log n) otherwise.
+/// Precondition: vertex indices are valid.
 CheckedMesh mesh_from_triangles(const TriangleSoup& soup);
 
 }  // namespace hapbench

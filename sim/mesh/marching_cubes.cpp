@@ -13,22 +13,24 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kEdgeNumbers = 24;  ///< values of 3 c + axis, of which 12 are edges
+constexpr std::size_t kEdgeNumbers = 24;  ///< number of values of 3 c + axis, of which 12 are edges of a cell
 
+/// Returns the number of the cell edge between two neighbouring corners (numbering of CubeTriangle).
 int edge_between(int a, int b) {
   const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2;
   return 3 * std::min(a, b) + axis;
 }
 
-/// The corners of a face, counter-clockwise seen from outside.
+/// Returns the corners of a face, counter-clockwise seen from outside. `side`: 0 for the face with the smaller
+/// coordinate along `axis`, 1 for the other.
 std::array<int, 4> face_corners(int axis, int side) {
   const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, base = side << axis;
   return side == 1 ? std::array{base, base | u, base | u | v, base | v}
                    : std::array{base, base | v, base | u | v, base | u};
 }
 
-/// True if both edges lie on one face of the cell: a diagonal between them would lie in that face and might cross the
-/// neighbour's.
+/// Returns true if both edges lie on a common face of the cell. A diagonal between them would lie in that face and
+/// might cross a diagonal of the neighbouring cell.
 bool share_a_face(int first, int second) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto side = [axis](int edge) { return edge % 3 == axis ? -1 : (edge / 3 >> axis) & 1; };
@@ -37,7 +39,8 @@ bool share_a_face(int first, int second) {
   return false;
 }
 
-/// Cuts ears off the polygon with diagonals through the inside of the cell; returns false if that is impossible.
+/// Divides the polygon into triangles by cutting off corners (ears), with diagonals through the inside of the cell
+/// only. Returns false if that is impossible.
 bool triangulate(const std::vector<int>& polygon, std::vector<CubeTriangle>& triangles) {
   const std::size_t n = polygon.size();
   if (n == 3) {
@@ -49,6 +52,7 @@ bool triangulate(const std::vector<int>& polygon, std::vector<CubeTriangle>& tri
     if (share_a_face(before, after)) continue;
     std::vector<int> rest = polygon;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+    // Cut off corner i; undo this if the rest cannot be divided.
     const std::size_t kept = triangles.size();
     triangles.push_back({before, polygon[i], after});
     if (triangulate(rest, triangles)) return true;
@@ -57,13 +61,14 @@ bool triangulate(const std::vector<int>& polygon, std::vector<CubeTriangle>& tri
   return false;
 }
 
-/// The nodes around the box of a density field, numbered from 0 along each axis; cells lie between them. Lengths in m.
+/// Grid nodes around the box of a density field, numbered from 0 along each axis. Cells lie between the nodes.
+/// Lengths in m.
 class NodeGrid {
  public:
   explicit NodeGrid(const DensityField& field) : spacing_(field.spacing) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
-      // One more cell on each side, so that the surface cuts no cell at the border.
+      // Add a cell on each side, so that the surface cuts no cell at the border.
       first_[axis] = static_cast<std::int64_t>(std::floor(field.min[a] / spacing_)) - 1;
       const auto last = static_cast<std::int64_t>(std::ceil(field.max[a] / spacing_)) + 2;
       count_[axis] = static_cast<std::size_t>(last - first_[axis] + 1);
@@ -81,28 +86,29 @@ class NodeGrid {
 
  private:
   double spacing_;
-  std::array<std::int64_t, 3> first_;  ///< first node, in spacings from the node at -1/2
+  std::array<std::int64_t, 3> first_;  ///< number of the first node, in spacings from the node at -spacing / 2
   std::array<std::size_t, 3> count_;
 };
 
-/// Positive inside.
+/// Returns the density at a node minus the iso value; positive inside.
 double density_at(const DensityField& field, const Vec3& node) {
   const double distance = field.signed_distance(node);
   return field.density == Density::signed_distance ? -distance : (distance < 0.0 ? 0.5 : -0.5);
 }
 
-/// One layer of the nodes of a grid, of equal z: the nodes inside, the crossed edges that start in them, and the
-/// numbers of the vertices there. Each node is a bit: word w of row j holds the nodes (64 w …, j).
+/// Layer of grid nodes with equal z: the nodes inside the solid, the crossed edges that start at the nodes, and the
+/// numbers of the vertices on these edges. Each node is one bit: word w of line j holds the nodes (64 w … 64 w +
+/// 63, j).
 class GridLayer {
  public:
-  /// The crossed edges that start in the nodes of a word, one bit each. Their vertices are numbered node by node, those
-  /// along x and y together (x first), those along z separately.
+  /// Crossed edges that start at the nodes of a word, one bit for each node. The vertices on the edges along x and
+  /// y are numbered together, node by node, x before y. The vertices on the edges along z are numbered separately.
   struct Edges {
     std::uint64_t x, y, z;
     std::uint32_t first_in_layer, first_along_z;
   };
 
-  /// Field and grid must outlive the layer.
+  /// Precondition: field and grid outlive the layer.
   GridLayer(const DensityField& field, const NodeGrid& grid)
       : field_(&field),
         grid_(&grid),
@@ -111,8 +117,8 @@ class GridLayer {
         inside_(words_ * grid.count(1)),
         edges_(words_ * grid.count(1)) {}
 
-  /// Becomes layer k and finds the nodes inside. Cost: a few evaluations for each node next to the surface, and a few
-  /// word operations for every 64 nodes.
+  /// Moves to layer k and finds the nodes inside. Cost: a few evaluations of the field for each node near the
+  /// surface, and a few operations for every 64 nodes.
   void evaluate(std::size_t k) {
     k_ = k;
     std::fill(inside_.begin(), inside_.end(), 0);
@@ -125,15 +131,15 @@ class GridLayer {
 
   std::size_t words() const { return words_; }
   std::uint64_t inside(std::size_t w, std::size_t j) const { return inside_[j * words_ + w]; }
-  /// The same for the next nodes along x.
+  /// Returns the bits of the next nodes along x.
   std::uint64_t next_inside(std::size_t w, std::size_t j) const {
     return inside(w, j) >> 1u | (w + 1 < words_ ? inside(w + 1, j) << 63u : 0);
   }
-  /// The nodes of word w at which an edge along x starts: all but the row's last.
+  /// Returns the nodes of word w at which an edge along x starts: all nodes except the last of the line.
   std::uint64_t starting(std::size_t w) const { return w + 1 < words_ ? ~std::uint64_t{0} : starting_in_last_; }
 
   Edges& edges(std::size_t w, std::size_t j) { return edges_[j * words_ + w]; }
-  /// Number of the vertex on the crossed edge that starts at the node and runs along the axis.
+  /// Returns the number of the vertex on the crossed edge that starts at node (i, j) and runs along the axis.
   std::uint32_t vertex(std::size_t i, std::size_t j, std::size_t axis) const {
     const Edges& edges = edges_[j * words_ + i / 64];
     const std::uint64_t below = (std::uint64_t{1} << i % 64) - 1;
@@ -144,12 +150,13 @@ class GridLayer {
   }
 
  private:
-  /// Finds the nodes inside among the square of `size` x `size` nodes from (i, j), which lies in one word of each row.
+  /// Finds the nodes inside the solid among `size` x `size` nodes from (i, j), recursively. The square lies in one
+  /// word of each line.
   void find_inside(std::size_t i, std::size_t j, std::size_t size) {
     const double half = 0.5 * grid_->spacing() * static_cast<double>(size - 1);
     const double distance = field_->signed_distance(node(i, j) + Vec3(half, half, 0.0));
-    // The square is all inside or all outside if the surface is further from its middle than its corners are. The slack
-    // of 1e-9 covers the rounding of the distance.
+    // The whole square is inside or outside if the distance at its middle is larger than the distance of its
+    // corners from there. The factor 1 + 1e-9 covers rounding.
     if (size > 1 && std::abs(distance) <= std::numbers::sqrt2 * half * (1.0 + 1e-9)) {
       for (const std::size_t y : {j, j + size / 2}) {
         for (const std::size_t x : {i, i + size / 2}) {
@@ -171,9 +178,9 @@ class GridLayer {
   std::vector<Edges> edges_;
 };
 
-/// Maximum number of slabs, whatever the number of threads: the last digits of a normal that is summed in two slabs
-/// depend on where they meet.
-constexpr std::size_t kMostSlabs = 16;
+/// Maximum number of slabs, independent of the number of threads. The last digits of a normal that is summed in two
+/// slabs depend on the position of the slab boundary.
+constexpr std::size_t kMaxSlabs = 16;
 
 /// Calls visit(i) for each set bit of the word that starts with node 64 w.
 template <class Visit>
@@ -181,9 +188,9 @@ void for_each_node(std::uint64_t bits, std::size_t w, Visit visit) {
   for (; bits != 0; bits &= bits - 1) visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-/// A case of marching cubes.
+/// One of the 256 cases of marching cubes.
 struct CutCase {
-  std::vector<std::size_t> edges;  ///< the crossed ones, ascending, numbered as in CubeTriangle
+  std::vector<std::size_t> edges;  ///< crossed edges, ascending, numbered as in CubeTriangle
   std::vector<CubeTriangle> triangles;
 
   explicit CutCase(unsigned inside) : triangles(cube_triangles(inside)) {
@@ -194,6 +201,7 @@ struct CutCase {
   }
 };
 
+/// Returns all cases, indexed by the bits of the corners inside.
 const std::vector<CutCase>& cut_cases() {
   static const auto cases = [] {
     std::vector<CutCase> all;
@@ -203,8 +211,8 @@ const std::vector<CutCase>& cut_cases() {
   return cases;
 }
 
-/// The part of a surface in consecutive layers of cells, with sums of normals, numbered from its own first vertex. The
-/// vertices in its last layer of nodes are also the first of the next slab.
+/// Part of the surface in consecutive layers of cells. Its vertex numbers start at 0 and its normals are not yet
+/// normalised. The vertices in its last layer of nodes are also the first vertices of the next slab.
 struct Slab {
   IsoSurface surface;
   std::size_t first_in_last = 0;  ///< number of the first vertex in the last layer of nodes
@@ -212,11 +220,11 @@ struct Slab {
 
 class SlabBuilder {
  public:
-  /// Field and grid must outlive the builder.
-  SlabBuilder(const DensityField& field, const NodeGrid& grid, KeptOfSurface kept)
-      : field_(field), grid_(grid), kept_(kept), low_(field, grid), high_(field, grid) {}
+  /// Precondition: field and grid outlive the builder.
+  SlabBuilder(const DensityField& field, const NodeGrid& grid, IsoSurfaceOptions options)
+      : field_(field), grid_(grid), options_(options), low_(field, grid), high_(field, grid) {}
 
-  /// The cells between the layers of nodes first < last.
+  /// Returns the surface in the cells between the layers of nodes `first` and `last`. Precondition: first < last.
   Slab build(std::size_t first, std::size_t last) {
     low_.evaluate(first);
     add_vertices_in(low_);
@@ -232,6 +240,7 @@ class SlabBuilder {
   }
 
  private:
+  /// Adds the vertex on the edge from p to q, by linear interpolation of the density.
   void add_vertex(const Vec3& p, const Vec3& q) {
     const double a = density_at(field_, p), b = density_at(field_, q);
     slab_.surface.vertices.push_back({p + (q - p) * (a / (a - b)), Vec3::Zero()});
@@ -239,7 +248,7 @@ class SlabBuilder {
 
   std::uint32_t next_vertex() const { return static_cast<std::uint32_t>(slab_.surface.vertices.size()); }
 
-  /// Adds the vertices on the edges of a layer along x and y.
+  /// Adds the vertices on the crossed edges along x and y of a layer.
   void add_vertices_in(GridLayer& layer) {
     for (std::size_t j = 0; j < grid_.count(1); ++j) {
       for (std::size_t w = 0; w < layer.words(); ++w) {
@@ -255,6 +264,7 @@ class SlabBuilder {
     }
   }
 
+  /// Adds the vertices on the crossed edges along z between the two layers.
   void add_vertices_between() {
     for (std::size_t j = 0; j < grid_.count(1); ++j) {
       for (std::size_t w = 0; w < low_.words(); ++w) {
@@ -266,12 +276,12 @@ class SlabBuilder {
     }
   }
 
-  /// Adds the cells that the surface cuts among those between the layers.
+  /// Adds the cells between the two layers that the surface cuts.
   void add_cells() {
     const std::vector<CutCase>& cases = cut_cases();
     for (std::size_t j = 0; j + 1 < grid_.count(1); ++j) {
       for (std::size_t w = 0; w < low_.words(); ++w) {
-        // Element c is the word of corners c, numbered as in CubeTriangle.
+        // Element c holds the bits of the corners c (numbering of CubeTriangle) of 64 cells.
         const std::array<std::uint64_t, 8> corners{
             low_.inside(w, j),  low_.next_inside(w, j),  low_.inside(w, j + 1),  low_.next_inside(w, j + 1),
             high_.inside(w, j), high_.next_inside(w, j), high_.inside(w, j + 1), high_.next_inside(w, j + 1)};
@@ -289,23 +299,26 @@ class SlabBuilder {
     }
   }
 
+  /// Adds the triangles of one cell, and their normals to their vertices.
   void add_cell(std::size_t i, std::size_t j, const CutCase& cut) {
     auto& [vertices, triangles, cells] = slab_.surface;
+    // Numbers of the vertices on the crossed edges.
     std::array<std::uint32_t, kEdgeNumbers> numbers{};
     for (const std::size_t edge : cut.edges) {
       const std::size_t corner = edge / 3;
       numbers[edge] = (corner < 4 ? low_ : high_).vertex(i + (corner & 1), j + (corner >> 1 & 1), edge % 3);
-      if (kept_.cells) cells.vertices.push_back(numbers[edge]);
+      if (options_.cells) cells.vertices.push_back(numbers[edge]);
     }
+    // Triangles, with their normals added to their vertices.
     for (const CubeTriangle& edges : cut.triangles) {
       const auto number = [&](std::size_t k) { return numbers[static_cast<std::size_t>(edges[k])]; };
       const std::array triangle{number(0), number(1), number(2)};
       const auto& [a, b, c] = triangle;
       const Vec3 normal = triangle_normal(vertices[a].position, vertices[b].position, vertices[c].position);
       for (const std::uint32_t vertex : triangle) vertices[vertex].normal += normal;
-      if (kept_.triangles) triangles.push_back(triangle);
+      if (options_.triangles) triangles.push_back(triangle);
     }
-    if (kept_.cells) {
+    if (options_.cells) {
       cells.centres.push_back(low_.node(i, j) + Vec3::Constant(0.5 * grid_.spacing()));
       cells.starts.push_back(static_cast<std::uint32_t>(cells.vertices.size()));
     }
@@ -313,12 +326,12 @@ class SlabBuilder {
 
   const DensityField& field_;
   const NodeGrid& grid_;
-  KeptOfSurface kept_;
-  GridLayer low_, high_;  ///< neighbouring layers
+  IsoSurfaceOptions options_;
+  GridLayer low_, high_;  ///< layers below and above the current cells
   Slab slab_;
 };
 
-/// Moves the vertices that two slabs share to the upper one.
+/// Merges the vertices that two neighbouring slabs share; the upper slab keeps them.
 void move_shared_vertices(std::vector<Slab>& slabs) {
   for (std::size_t s = 0; s + 1 < slabs.size(); ++s) {
     std::vector<SurfacePoint>&below = slabs[s].surface.vertices, &above = slabs[s + 1].surface.vertices;
@@ -328,6 +341,7 @@ void move_shared_vertices(std::vector<Slab>& slabs) {
   }
 }
 
+/// Appends a slab to the surface, with its vertex numbers shifted and its normals normalised.
 void append(const IsoSurface& slab, IsoSurface& all) {
   const auto offset = static_cast<std::uint32_t>(all.vertices.size());
   for (const auto& [position, normal] : slab.vertices) all.vertices.push_back({position, unit_or(normal, normal)});
@@ -340,9 +354,10 @@ void append(const IsoSurface& slab, IsoSurface& all) {
 
 }  // namespace
 
-// On each face, a segment cuts off each run of inside corners: it leads from the edge where a walk around the face
-// enters the run to the edge where it leaves the run. Every crossed edge is entered on one of its two faces and left on
-// the other, so the segments form closed polygons.
+// Each face of the cell contributes directed segments that cut off its inside corners. Walking around the face, a
+// segment leads from the edge at which the walk enters a sequence of inside corners to the edge at which it leaves
+// the sequence. Every crossed edge is entered on one of its two faces and left on the other, so the segments form
+// closed polygons.
 std::vector<CubeTriangle> cube_triangles(unsigned inside) {
   const auto is_inside = [inside](int corner) { return (inside >> corner & 1u) != 0; };
   std::array<int, kEdgeNumbers> next{};
@@ -356,6 +371,7 @@ std::vector<CubeTriangle> cube_triangles(unsigned inside) {
       next[static_cast<std::size_t>(edge_between(c[i], c[(i + 1) % 4]))] = edge_between(c[last % 4], c[(last + 1) % 4]);
     }
   }
+  // Follow the segments to closed polygons, and divide these into triangles.
   std::vector<CubeTriangle> triangles;
   for (std::size_t start = 0; start < next.size(); ++start) {
     std::vector<int> polygon;
@@ -364,7 +380,7 @@ std::vector<CubeTriangle> cube_triangles(unsigned inside) {
       edge = std::exchange(next[static_cast<std::size_t>(edge)], -1);
     }
     if (polygon.empty() || triangulate(polygon, triangles)) continue;
-    // Only a polygon that crosses one face twice has no diagonals through the inside.
+    // Only a polygon that crosses one face twice cannot be divided by diagonals through the inside; use a fan.
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
   }
   return triangles;
@@ -378,21 +394,23 @@ DensityField density_field(const BlockWithHole& block, double spacing, Density d
           .density = density};
 }
 
-IsoSurface marching_cubes(const DensityField& field, KeptOfSurface kept) {
+IsoSurface marching_cubes(const DensityField& field, IsoSurfaceOptions options) {
   const NodeGrid grid(field);
-  const std::size_t layers = grid.count(2) - 1, thickness = (layers + kMostSlabs - 1) / kMostSlabs;
+  const std::size_t layers = grid.count(2) - 1, thickness = (layers + kMaxSlabs - 1) / kMaxSlabs;
   std::vector<Slab> slabs((layers + thickness - 1) / thickness);
+  // Compute the slabs in parallel.
   parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
-    slabs[s] = SlabBuilder(field, grid, kept).build(s * thickness, std::min((s + 1) * thickness, layers));
+    slabs[s] = SlabBuilder(field, grid, options).build(s * thickness, std::min((s + 1) * thickness, layers));
   });
   move_shared_vertices(slabs);
+  // Join the slabs to one surface.
   std::size_t vertices = 0;
   for (const Slab& slab : slabs) vertices += slab.surface.vertices.size();
   IsoSurface surface;
   surface.vertices.reserve(vertices);
   for (Slab& slab : slabs) {
     append(slab.surface, surface);
-    slab = {};  // otherwise memory would hold all vertices twice
+    slab = {};  // release the slab at once, so that not all vertices are stored twice
   }
   return surface;
 }
@@ -414,6 +432,7 @@ ShellPoints points_by_cell(const IsoSurface& surface, double spacing) {
   shell.points.reserve(cells.vertices.size());
   shell.cells.reserve(cells.vertices.size());
   std::uint32_t number = 0;
+  // Repeat the vertices of each cell, in the order of the cells.
   for (const std::uint32_t cell : grid_order(centres, spacing)) {
     for (std::uint32_t i = cells.starts[cell]; i < cells.starts[cell + 1]; ++i) {
       const SurfacePoint& vertex = surface.vertices[cells.vertices[i]];
@@ -421,7 +440,7 @@ ShellPoints points_by_cell(const IsoSurface& surface, double spacing) {
       shell.points.push_back(vertex);
       shell.cells.push_back(number);
     }
-    // A cell without points gets no number.
+    // A cell without points receives no number.
     if (!shell.cells.empty() && shell.cells.back() == number) ++number;
   }
   return shell;

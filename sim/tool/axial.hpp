@@ -13,31 +13,34 @@
 #include "sim/tool/motion.hpp"
 #include "sim/tool/tool_shape.hpp"
 
-/// Solids of revolution in packs of eight points. For source files only (see simd.hpp).
+/// Operations on packs of eight points that solids of revolution share. Include from source files only (see
+/// simd.hpp).
 namespace hapbench {
 
-/// Distance from the axis, relative to the largest radius, below which the direction away from the axis is rounding.
+/// Distance from the axis, relative to the largest radius, below which the radial direction is dominated by
+/// rounding.
 inline constexpr double kOnAxis = 1e-12;
-/// Exit distance along a ray that does not meet a surface [m].
+/// Exit distance [m] of a ray that does not meet a surface.
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// The outline of a body whose profile in the axial half plane is given: closed at its ends, a round tip by a quarter
-/// of a circle about the tip centre, as a polyline within 0.013 % of the radius.
+/// Returns the closed outline of a solid of revolution as a polyline in the axial half plane [m]. Adds the discs
+/// that close the ends and, for a round tip, a quarter of a circle about the tip centre. The circle is a polyline
+/// that deviates by less than 0.013 % of the radius.
 inline std::vector<ProfilePoint> closed_outline(std::vector<ProfilePoint> outline, Tip tip) {
   if (outline.front().rho > 0.0) outline.insert(outline.begin(), {outline.front().s, 0.0});
   const auto [s, radius] = outline.back();
-  constexpr int kLegs = 48;
-  for (int i = 1; tip == Tip::round && i < kLegs; ++i) {
-    const double angle = std::numbers::pi / 2.0 * i / kLegs;
+  constexpr int kSegments = 48;
+  for (int i = 1; tip == Tip::round && i < kSegments; ++i) {
+    const double angle = std::numbers::pi / 2.0 * i / kSegments;
     outline.push_back({radius * math::sin(angle), radius * math::cos(angle)});
   }
   if (radius > 0.0) outline.push_back({tip == Tip::round ? radius : s, 0.0});
   return outline;
 }
 
-/// Eight points in the tool's axial coordinates: x is relative to the tip centre, s its component along the axis,
-/// rho = x - s * axis the radial vector. Search and depths of solids of revolution both start from these numbers, so
-/// that a colliding point never gets a negative depth.
+/// Eight points in the axial coordinates of the tool. x: position relative to the tip centre; s: component of x
+/// along the axis; rho = x - s * axis: radial vector. All lengths in m. The contact search and the depths of solids
+/// of revolution both use these numbers, so a colliding point never gets a negative depth.
 struct AxialPack {
   simd::Pack x, y, z;
   simd::Pack s;
@@ -59,7 +62,7 @@ struct AxialPack {
   simd::Pack distance2() const { return x * x + y * y + z * z; }
 };
 
-/// Eight vectors.
+/// Eight vectors, one pack per component.
 struct PackVector {
   simd::Pack x, y, z;
 
@@ -80,20 +83,21 @@ inline PackVector select(const simd::Mask& mask, const PackVector& yes, const Pa
   return {simd::select(mask, yes.x, no.x), simd::select(mask, yes.y, no.y), simd::select(mask, yes.z, no.z)};
 }
 
-/// a p + b q.
+/// Returns a p + b q.
 inline PackVector combined(const simd::Pack& a, const PackVector& p, const simd::Pack& b, const PackVector& q) {
   return {a * p.x + b * q.x, a * p.y + b * q.y, a * p.z + b * q.z};
 }
 
-/// v / length where `defined`, else `other`.
+/// Returns v / length where `defined` is set, and `other` elsewhere.
 inline PackVector unit_or(const simd::Mask& defined, const PackVector& v, const simd::Pack& length,
                           const PackVector& other) {
   const simd::Pack scale = simd::Pack(1.0) / simd::select(defined, length, simd::Pack(1.0));
   return select(defined, {v.x * scale, v.y * scale, v.z * scale}, other);
 }
 
-/// Writes the marks of the packs of all ranges; `test` returns the mask of one pack. Takes pose and points by value,
-/// because the compiler would otherwise read them again after each mark, whose byte may alias them.
+/// Writes one byte for each pack of the ranges, range after range: the bits of the mask that `test` returns for the
+/// pack. Pose and points are passed by value. Passed by reference, they would be read from memory again after every
+/// written byte, because a byte may alias any object.
 template <class Test>
 void mark(const ToolPose pose, const PointArrays points, std::span<const PackRange> ranges, std::uint8_t* marks,
           const Test& test) {
@@ -103,12 +107,13 @@ void mark(const ToolPose pose, const PointArrays points, std::span<const PackRan
       *marks++ = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
     }
     if (marks == first) continue;
-    *first &= range.own_in_first;
-    *(marks - 1) &= range.own_in_last;
+    *first &= range.mask_of_first;
+    *(marks - 1) &= range.mask_of_last;
   }
 }
 
-/// Appends the points of the packs that pass the test. By value for the same reason.
+/// Appends the points that pass the test to the contacts. `packs`: number of packs. Arguments are passed by value
+/// for the reason given at mark().
 template <class Test>
 void push(const ToolPose pose, const PointColumns points, std::size_t packs, ContactBuffer& contacts, const Test test) {
   std::size_t size = contacts.size();
@@ -119,13 +124,14 @@ void push(const ToolPose pose, const PointColumns points, std::size_t packs, Con
   contacts.extend(size - contacts.size());
 }
 
-/// The part of the axis with low <= s <= high, measured from the tip centre [m]; empty if low > high.
+/// Interval low <= s <= high of the tool's axis, measured from the tip centre [m]. Empty if low > high.
 struct AxisPart {
   double low, high;
 };
 
-/// Restricts the part of a body within `radius` of its axis to what is near `bounds`: projections on the axis of points
-/// in `bounds` lie in `bounds` grown by the radius. Comparisons with NaN leave the part as it is.
+/// Restricts an interval of the axis to the part of the body that may be near `bounds`; the body lies within
+/// `radius` [m] of its axis. A point of the axis whose disc meets `bounds` lies in `bounds` grown by the radius on
+/// all sides. Comparisons with NaN leave the interval unchanged.
 inline AxisPart part_near(AxisPart part, const ToolPose& pose, double radius, const Box& bounds) noexcept {
   for (int k = 0; k < 3; ++k) {
     const double a = pose.axis[k];
@@ -140,7 +146,8 @@ inline AxisPart part_near(AxisPart part, const ToolPose& pose, double radius, co
   return part;
 }
 
-/// The box around discs of this radius along a part of the axis; empty if the part is.
+/// Returns the bounding box of all discs of this radius perpendicular to an interval of the axis [m]; an empty box
+/// if the interval is empty.
 inline Box box_around(const AxisPart& part, const ToolPose& pose, double radius) noexcept {
   if (part.low > part.high) return {Vec3::Ones(), -Vec3::Ones()};
   const Vec3 tip = pose.position + part.high * pose.axis;
@@ -150,7 +157,8 @@ inline Box box_around(const AxisPart& part, const ToolPose& pose, double radius)
   return {tip.cwiseMin(bottom) - disc, tip.cwiseMax(bottom) + disc};
 }
 
-/// A row of balls that contains a cylinder: each ball contains a slice as long as the cylinder is wide.
+/// Returns a row of equal balls along the axis whose union contains a cylinder. Each ball contains a slice of the
+/// cylinder, at most as long as the cylinder is wide.
 inline ToolShape::Cover row_of_balls(double radius, double length) {
   const double balls = std::ceil(length / (2.0 * radius));
   return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * math::hypot(radius, length / balls / 2.0)};

@@ -14,12 +14,12 @@
 namespace hapbench {
 namespace {
 
-/// A closed surface that encloses less than this fraction of its bounding cube is flat up to rounding.
+/// Smallest volume relative to the bounding cube. A surface with a smaller volume is flat up to rounding.
 constexpr double kFlat = 1e-12;
 
-/// The range of nodes of a row within [low, high].
+/// Returns the range of node indices along an axis that lie within [low, high], as first and one past the last.
 std::pair<std::size_t, std::size_t> nodes_within(const GridNodes& nodes, int axis, double low, double high) {
-  // One more on each side covers the rounding of the division.
+  // One more node on each side covers the rounding of the division.
   const double first = std::floor((low - nodes.origin[axis]) / nodes.spacing) - 1.0;
   const double last = std::ceil((high - nodes.origin[axis]) / nodes.spacing) + 1.0;
   const auto count = static_cast<double>(nodes.count[static_cast<std::size_t>(axis)]);
@@ -31,20 +31,22 @@ std::pair<std::size_t, std::size_t> nodes_within(const GridNodes& nodes, int axi
 
 TriangleSoup welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
   TriangleSoup surface;
-  std::vector<std::uint32_t> order(vertices.size()), place(vertices.size());
+  std::vector<std::uint32_t> order(vertices.size()), merged(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (!vertices[i].allFinite()) refuse("vertex ", i, " of the mesh is not finite");
   }
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return before(vertices[a], vertices[b]); });
+  // Merge vertices at the same position, which are neighbours in the sorted order.
   for (const std::uint32_t i : order) {
     if (surface.vertices.empty() || surface.vertices.back() != vertices[i]) surface.vertices.push_back(vertices[i]);
-    place[i] = static_cast<std::uint32_t>(surface.vertices.size() - 1);
+    merged[i] = static_cast<std::uint32_t>(surface.vertices.size() - 1);
   }
+  // Renumber the corners, and omit degenerate triangles.
   for (const TriangleCorners& t : triangles) {
     if (std::max({t[0], t[1], t[2]}) >= vertices.size())
       refuse("a triangle of the mesh names a vertex that it has not");
-    const TriangleCorners corners{place[t[0]], place[t[1]], place[t[2]]};
+    const TriangleCorners corners{merged[t[0]], merged[t[1]], merged[t[2]]};
     const bool degenerate = corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
     if (!degenerate) surface.triangles.push_back(corners);
   }
@@ -78,6 +80,7 @@ ClosedSurface::ClosedSurface(std::span<const Vec3> vertices, std::span<const Tri
 }
 
 void ClosedSurface::check_edges() const {
+  // Count the open edges and the edges with inconsistent winding; keep the midpoint of the first.
   std::size_t open = 0, against = 0;
   Vec3 where = Vec3::Zero();
   for_each_edge(sides_by_edge(triangles()), [&](std::span<const TriangleSide> edge) {
@@ -97,12 +100,14 @@ void ClosedSurface::measure() {
   for (const TriangleCorners& t : triangles()) {
     for (const std::uint32_t v : t) box_.add(vertices()[v]);
   }
+  // Sum the volumes of the tetrahedra between the triangles and the centre.
   double volume = 0.0;
   const Vec3 centre = 0.5 * (box_.min + box_.max);
   for (const TriangleCorners& t : triangles()) {
     const auto [a, b, c] = corners(t);
     volume += (a - centre).dot((b - centre).cross(c - centre)) / 6.0;
   }
+  // Reject flat surfaces and surfaces with inward normals.
   const double edge = box_.size().maxCoeff();
   if (!(std::abs(volume) > kFlat * edge * edge * edge))
     refuse("the mesh encloses no volume (", volume, " m^3, ", edge, " m long)");
@@ -111,7 +116,7 @@ void ClosedSurface::measure() {
 }
 
 std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const GridNodes& nodes) {
-  // The triangles met by each layer of columns.
+  // Sort the triangles into the layers of columns (equal x) that they touch.
   std::vector<std::vector<std::uint32_t>> layers(nodes.count[0]);
   for (std::uint32_t t = 0; t < surface.triangles().size(); ++t) {
     const auto [a, b, c] = surface.corners(surface.triangles()[t]);
@@ -119,6 +124,7 @@ std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const Gri
     for (std::size_t i = first; i < last; ++i) layers[i].push_back(t);
   }
   std::vector<std::int8_t> numbers(nodes.size());
+  // Each layer: intersect its columns with the triangles, then sum the crossings from below.
   parallel_for(std::size_t{0}, nodes.count[0], [&](std::size_t i) {
     std::vector<std::vector<Crossing>> columns(nodes.count[1]);
     const double x = nodes.coordinate(0, i);

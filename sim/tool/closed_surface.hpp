@@ -11,20 +11,21 @@
 
 namespace hapbench {
 
-/// The triangles with vertices at the same place made one, without those that have two equal corners. Throws
-/// std::invalid_argument if an index or a coordinate is invalid. O(n log n).
+/// Returns the triangles with vertices at the same position merged. Omits triangles with two equal corners. Throws
+/// std::invalid_argument if an index is out of range or a coordinate is not finite. O(n log n).
 TriangleSoup welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
 
-/// A side of a triangle, from one corner to the next.
+/// Side of a triangle: the directed edge from one corner to the next.
 struct TriangleSide {
-  std::uint32_t low, high;         ///< its vertices, low < high
-  std::uint32_t triangle, corner;  ///< where it starts
-  bool forward;                    ///< from low to high
+  std::uint32_t low, high;         ///< indices of its vertices, low < high
+  std::uint32_t triangle, corner;  ///< index of the triangle, and the corner (0 to 2) where the side starts
+  bool forward;                    ///< true if the side runs from vertex `low` to vertex `high`
 };
-/// All sides, sorted by edge and, of one edge, by triangle.
+/// Returns all sides of the triangles, sorted by edge (low, high) and then by triangle.
 std::vector<TriangleSide> sides_by_edge(std::span<const TriangleCorners> triangles);
 
-/// Calls `use` with the sides of each edge. Precondition: they are sorted.
+/// Calls `use` once for each edge, with the sides on this edge. Precondition: the sides are sorted as
+/// sides_by_edge() sorts them.
 template <class Use>
 void for_each_edge(std::span<const TriangleSide> sides, const Use& use) {
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
@@ -33,16 +34,18 @@ void for_each_edge(std::span<const TriangleSide> sides, const Use& use) {
   }
 }
 
-/// True if as many triangles run along the edge in one direction as in the other.
+/// Returns true if equally many sides run along the edge in both directions.
 bool is_balanced(std::span<const TriangleSide> edge);
 
-/// A surface that bounds a solid: triangles counter-clockwise from outside, which run along every edge equally often in
-/// either direction.
+/// Surface that bounds a solid. Its triangles are counter-clockwise seen from outside, and equally many run along
+/// each edge in both directions.
 class ClosedSurface {
  public:
-  /// Of the `welded` triangles. Throws std::invalid_argument with the measured values if an index or a coordinate is
-  /// invalid, edges are open or their neighbours wound against each other (their number and the first place), or the
-  /// volume is not positive. O(n log n). The grid that samples surfaces finds those that pass through themselves.
+  /// Builds the surface from welded(vertices, triangles), in O(n log n). Throws std::invalid_argument with the
+  /// measured values if an index or a coordinate is invalid, if edges are open or neighbours are wound against each
+  /// other (with the number of such edges and the position of the first), or if the enclosed volume is not
+  /// positive. Self-intersections are not detected here; SignedDistanceGrid detects them when it samples the
+  /// surface.
   ClosedSurface(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
 
   const std::vector<Vec3>& vertices() const noexcept { return surface_.vertices; }  ///< [m]
@@ -50,7 +53,7 @@ class ClosedSurface {
   std::array<Vec3, 3> corners(const TriangleCorners& t) const {
     return {vertices()[t[0]], vertices()[t[1]], vertices()[t[2]]};
   }
-  const Box& box() const noexcept { return box_; }  ///< around the triangles [m]
+  const Box& box() const noexcept { return box_; }  ///< bounding box of the triangles [m]
 
  private:
   void check_edges() const;
@@ -60,9 +63,9 @@ class ClosedSurface {
   Box box_;
 };
 
-/// The nodes of a regular grid, stored column by column along z.
+/// Nodes of a regular grid. Values at the nodes are stored with z as the fastest index, then y, then x.
 struct GridNodes {
-  Vec3 origin;     ///< node (0, 0, 0) [m]
+  Vec3 origin;     ///< position of node (0, 0, 0) [m]
   double spacing;  ///< [m]
   std::array<std::size_t, 3> count;
 
@@ -76,12 +79,13 @@ struct GridNodes {
   }
 };
 
-/// Winding number of the surface around each node: 0 outside, 1 inside a sound solid, concave or not; other values
-/// where parts overlap or are inside out.
+/// Returns the winding number of the surface around each node: 0 outside and 1 inside a valid solid, convex or not.
+/// Other values occur where parts of the surface overlap or are inside out.
 ///
-/// It is the sum of the signed crossings of any ray, here that from below along z (vertical_crossing), so one pass over
-/// each column of nodes suffices. Runs on oneTBB's threads; the result does not depend on their number. Cost: triangles
-/// times the columns they cover, plus the nodes.
+/// The winding number is the sum of the signed intersections of the surface with any ray from the point. Here the
+/// rays run along z from below (vertical_crossing), so one sweep over each column of nodes suffices. Runs on
+/// oneTBB's threads; the result does not depend on their number. Cost: the number of triangles times the columns
+/// that each covers, plus the number of nodes.
 std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const GridNodes& nodes);
 
 }  // namespace hapbench

@@ -14,17 +14,20 @@ namespace {
 
 using simd::Mask, simd::Pack, simd::select;
 
-/// Cosine to the axis below which a surface runs along the side, so that all of the side is foremost.
+/// Largest |cosine| of the angle between a contact's normal and the axis at which the whole side line is extreme.
 constexpr double kAlongSide = 1e-9;
 
 Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const ContactBuffer& contacts, std::size_t i) {
-  // The operations and their order are those of AxialPack, so that depth and gradient choose the same surface.
+  // The operations and their order are the same as in AxialPack, so that depth and gradient choose the same
+  // surface.
   const Vec3 x = contacts.point(i) - pose.position;
   const double s = x.x() * pose.axis.x() + x.y() * pose.axis.y() + x.z() * pose.axis.z();
+  // In the half ball of a round tip the radial direction starts at the tip centre.
   const bool in_ball = tool.tip() == Tip::round && s > 0.0;
   const Vec3 radial = in_ball ? x : Vec3(x - s * pose.axis);
   const double length = std::sqrt(radial.x() * radial.x() + radial.y() * radial.y() + radial.z() * radial.z());
   const double d_radial = tool.radius() - length;
+  // Choose the closest of side, tip and bottom.
   if (!in_ball) {
     const double d_tip = tool.tip() == Tip::flat ? -s : d_radial;
     const double d_bottom = tool.length() + s;
@@ -34,26 +37,29 @@ Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const Contact
   return length < kOnAxis * tool.radius() ? Vec3(-contacts.normal(i)) : Vec3(radial / length);
 }
 
-/// Only positive exits count, following the thesis ("the minimal positive value"): a point exactly on one surface whose
-/// ray points outwards there takes the next surface, or depth 0 if none is within reach.
+/// Returns d if it is positive, and kNever otherwise. The thesis uses "the minimal positive value". If a point lies
+/// exactly on a surface and its ray points outwards there, the exit is therefore on the next surface, or the depth
+/// is 0 if that is out of reach.
 double if_positive(double d) {
   return d > 0.0 ? d : kNever;
 }
 
-/// The larger root d >= 0 of a d^2 + 2 b d - c = 0 with a > 0, c >= 0, without cancellation for b > 0.
+/// Returns the larger root d >= 0 of a d^2 + 2 b d - c = 0, without cancellation for b > 0. Precondition: a > 0, c
+/// >= 0.
 double exit_root(double a, double b, double c) {
   const double root = std::sqrt(b * b + a * c);
   return b > 0.0 ? c / (b + root) : (root - b) / a;
 }
 
-/// Exit through the side wall (F.7); kNever if the ray runs along the axis.
+/// Returns the exit distance through the side (thesis F.7); kNever if the ray is parallel to the axis.
 double exit_side(double radius, const Vec3& rho, const Vec3& radial_u) {
   const double a = radial_u.squaredNorm();
   const double c = std::max(0.0, radius * radius - rho.squaredNorm());
   return a == 0.0 ? kNever : if_positive(exit_root(a, rho.dot(radial_u), c));
 }
 
-/// Exit through the half ball beyond the tip plane; kNever if the ray misses the ball or leaves it behind the plane.
+/// Returns the exit distance through the half ball beyond the tip plane; kNever if the ray misses the ball or
+/// leaves it behind the plane.
 double exit_half_ball(double radius, const Vec3& x, const Vec3& u, double s, double slope) {
   const double b = x.dot(u);
   const double c = radius * radius - x.squaredNorm();
@@ -63,23 +69,24 @@ double exit_half_ball(double radius, const Vec3& x, const Vec3& u, double s, dou
   return s + d * slope >= 0.0 ? if_positive(d) : kNever;
 }
 
-/// Distance to where the ray from `point` along u first leaves the body: through the side (thesis F.7), the tip (F.9)
-/// or the bottom (F.12).
+/// Returns the distance at which the ray from `point` along u first leaves the body: through the side (thesis F.7),
+/// the tip (F.9) or the bottom (F.12).
 double exit_distance(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& u) {
   const Vec3 x = point - pose.position;
   const double s = x.dot(pose.axis);
   const double slope = u.dot(pose.axis);
   double d = exit_side(tool.radius(), x - s * pose.axis, u - slope * pose.axis);
-  // A ray leaves through the tip only forwards and through the bottom only backwards. For points inside, "positive"
-  // implies that; for a point on such a surface, s is known only up to rounding and its sign is meaningless.
+  // A ray leaves through the tip only if it runs forwards and through the bottom only if it runs backwards. For
+  // points inside, a positive exit implies this. For a point on the tip or the bottom the sign of s is only
+  // rounding, so the direction is tested as well.
   if (tool.tip() == Tip::round) {
     d = std::min(d, exit_half_ball(tool.radius(), x, u, s, slope));
   } else if (slope > 0.0) {
     d = std::min(d, if_positive(-s / slope));
   }
   if (slope < 0.0) d = std::min(d, if_positive(-(tool.length() + s) / slope));
-  // An exit further away than the longest way through the body lies on the continuation of a surface beyond the body:
-  // the point is on another surface, and the ray points almost along it. Such depths would have no bound.
+  // An exit farther away than the longest line through the body lies on the continuation of a surface beyond the
+  // body: the point is on another surface, and the ray is almost tangential to it. Such depths would have no bound.
   return d > tool.longest_exit() ? 0.0 : d;
 }
 
@@ -170,22 +177,25 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
   const Pack on_axis(kOnAxis * radius_), in_reach(-slack), flush(kFlush);
   const PackVector axis(pose.axis), any(pose.axis.unitOrthogonal()), move(wanted);
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    // Axial coordinates of the contacts, and the unit vector away from the axis.
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack from_axis = simd::sqrt(q.rho2);
-    // On the axis any direction away from it will do.
+    // On the axis any direction perpendicular to it is valid.
     const PackVector out = unit_or(!(from_axis <= on_axis), {q.rho_x, q.rho_y, q.rho_z}, from_axis, any);
+    // Signed distances to the side and to the closer end.
     const Pack side = from_axis - radius;
     const Pack bottom = -q.s - length;
     const Mask tip_nearer = q.s >= bottom;
     const Pack end = round ? bottom : simd::max(q.s, bottom);
     const Pack forward = round ? -one : select(tip_nearer, one, -one);
 
+    // Choose the closest face: the largest signed distance.
     const Mask side_wins = side >= end;
     Pack distance = select(side_wins, side, end);
     Pack outwards = select(side_wins, one, zero);
     Pack along = forward * select(side_wins, zero, one);
     if (const Mask at_edge = side > in_reach && end > in_reach; simd::any(at_edge)) {
-      // Beyond side and end the nearest place is the edge between them.
+      // Beyond both side and end, the closest point is on the edge between them.
       const Mask beyond_both = side > zero && end > zero;
       const Pack to_edge = simd::sqrt(side * side + end * end);
       const Pack edge_scale = one / select(beyond_both, to_edge, one);
@@ -193,6 +203,7 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
       outwards = select(beyond_both, side * edge_scale, outwards);
       along = select(beyond_both, forward * (end * edge_scale), along);
 
+      // If the displacement violates the constraint, use a face that is flush with the surface instead.
       const PackVector n(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
       const Pack faces_side = -out.dot(n), faces_end = -forward * axis.dot(n);
       const Mask bumps = at_edge && outwards * out.dot(move) + along * axis.dot(move) > distance;
@@ -204,7 +215,7 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     PackVector normal = combined(outwards, out, along, axis);
     if (round) {
       const Pack from_centre = simd::sqrt(q.distance2());
-      // In a tool shorter than its radius the bottom may be nearer than the ball.
+      // If the tool is shorter than its radius, the bottom may be closer than the ball.
       const Mask at_ball = q.s > zero && from_centre - radius >= bottom;
       distance = select(at_ball, from_centre - radius, distance);
       normal = unit_or(at_ball, {q.x, q.y, q.z}, from_centre, normal);
@@ -218,21 +229,23 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
 void Cylinder::foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
                                const PlaceArrays& places) const noexcept {
   const Pack radius(radius_), length(length_), zero(0.0), one(1.0), along_side(kAlongSide);
-  // `forward` is at most 1, so a flat tip has no ball.
+  // For a flat tip the condition forward > 2 is never true.
   const Pack ball_from(tip_ == Tip::round ? kAlongSide : 2.0);
   const Pack px(pose.position.x()), py(pose.position.y()), pz(pose.position.z());
   const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const Pack nx = simd::load(&contacts.nx[i]), ny = simd::load(&contacts.ny[i]), nz = simd::load(&contacts.nz[i]);
+    // Components of -n along the axis and perpendicular to it.
     const Pack forward = -(nx * ax + ny * ay + nz * az);
     const Pack x = -nx - forward * ax, y = -ny - forward * ay, z = -nz - forward * az;
     const Pack outwards = simd::sqrt(x * x + y * y + z * z);
     const Mask on_axis = outwards <= zero;
     const Pack scale = select(on_axis, zero, radius / select(on_axis, one, outwards));
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
-    const Pack abreast = simd::max(-length, simd::min(q.s, zero));
+    // A side parallel to the surface touches along a line: use the point beside the contact.
+    const Pack beside = simd::max(-length, simd::min(q.s, zero));
     Pack s = select(forward > zero, zero, -length);
-    s = select(simd::abs(forward) < along_side, abreast, s);
+    s = select(simd::abs(forward) < along_side, beside, s);
     const Mask at_ball = forward > ball_from;
     simd::store(px + select(at_ball, -radius * nx, s * ax + scale * x), &places.x[i]);
     simd::store(py + select(at_ball, -radius * ny, s * ay + scale * y), &places.y[i]);

@@ -13,16 +13,18 @@ namespace hapbench {
 ///     |  bottom, s = -L                  p --> axis  the body has -L <= s <= 0 and radial distance <= radius
 ///     +----------------------------------+
 ///
-/// Search and depths use the axial coordinates of sim/tool/axial.hpp. A turn about the axis changes nothing.
+/// Contact search and depths use the axial coordinates of sim/tool/axial.hpp. A rotation about the axis changes
+/// nothing.
 class Cylinder final : public ToolShape {
  public:
-  /// Radius and length [m], both > 0; the length is measured from the tip plane to the bottom.
+  /// Radius and length in m, both > 0. The length is measured from the tip plane to the bottom, without a round
+  /// tip.
   Cylinder(double radius = 0.0005, double length = 0.01, Tip tip = Tip::flat);
 
   double radius() const noexcept { return radius_; }
   double length() const noexcept { return length_; }
   Tip tip() const noexcept { return tip_; }
-  /// Upper bound of the exit distances [m].
+  /// Upper bound of exit_distances() [m].
   double longest_exit() const noexcept { return length_ + 3.0 * radius_; }
 
   bool convex() const noexcept override { return true; }
@@ -30,35 +32,37 @@ class Cylinder final : public ToolShape {
   std::vector<ProfilePoint> outline() const override;
   void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                    ContactBuffer& contacts) const noexcept override;
-  /// Marks up to sqrt(2) margin at the edges of a flat tip and of the bottom, as `grown` does.
+  /// Also marks points up to sqrt(2) margin away from the edges of a flat tip and of the bottom, as far as `grown`
+  /// reaches.
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
                  std::uint8_t* marks) const noexcept override;
   Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept override;
-  /// A row of balls along the axis.
+  /// Returns a row of balls along the axis.
   Cover cover(double margin) const override;
-  /// d = min(r - |rho|, -s, L + s), u = rho / |rho|, axis, -axis (B.1); with a round tip, for s > 0, d = r - |x| and
-  /// u = x / |x|.
+  /// Depth d = min(r - |rho|, -s, L + s), with gradient u = rho / |rho|, axis or -axis for the smallest term
+  /// (thesis B.1). r: radius; rho: radial vector. With a round tip, d = r - |x| and u = x / |x| for s > 0, where x
+  /// is the position relative to the tip centre.
   void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
-  /// Ties prefer the side, then the tip, then the bottom.
+  /// If several surfaces are equally near, prefers the side, then the tip, then the bottom.
   void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
-  /// Ties prefer the side, then the tip, then the bottom.
+  /// If several surfaces are equally near, prefers the side, then the tip, then the bottom.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
   void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
                        const PlaceArrays& places) const noexcept override;
-  /// The grown cylinder extends beyond a flat tip, so its tip centre lies `margin` ahead.
+  /// The grown cylinder extends beyond a flat tip, so its tip centre lies `margin` ahead along the axis.
   Grown grown(double margin) const override;
 
  private:
   double radius_;
   double length_;
   Tip tip_;
-  double radius2_;  ///< largest_square_within(radius)
+  double radius2_;  ///< largest_square_within(radius) [m^2]
 };
 
-/// The largest double whose square root does not exceed r. With it the search compares squares and still agrees with
-/// the depths, which take the root, about every point on the surface.
+/// Returns the largest double whose square root does not exceed r. The contact search compares squares with it,
+/// without a root, and still agrees with the depths, which take the root, about every point on the surface.
 double largest_square_within(double r);
 
 }  // namespace hapbench

@@ -13,24 +13,26 @@
 namespace hapbench {
 namespace {
 
-/// Sine of the angle up to which a corner that turns inwards counts as straight.
+/// Sine of the largest angle by which a corner may turn inwards and still count as straight.
 constexpr double kStraight = 1e-12;
 
+/// Returns the cross product of b - a and c - a; positive if c is to the left of the line from a to b.
 double cross(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
   return (b.s - a.s) * (c.rho - a.rho) - (b.rho - a.rho) * (c.s - a.s);
 }
 
+/// Returns the dot product of b - a and c - b.
 double dot(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
   return (b.s - a.s) * (c.s - b.s) + (b.rho - a.rho) * (c.rho - b.rho);
 }
 
-/// Tests whether c, which is in line with a and b, lies between them.
+/// Returns true if c lies between a and b. Precondition: the three points are collinear.
 bool between(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
   return std::min(a.s, b.s) <= c.s && c.s <= std::max(a.s, b.s) && std::min(a.rho, b.rho) <= c.rho &&
          c.rho <= std::max(a.rho, b.rho);
 }
 
-/// Tests whether the lines a b and c d have a place in common.
+/// Returns true if the segments a b and c d have a point in common.
 bool meet(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c, const ProfilePoint& d) {
   const double abc = cross(a, b, c), abd = cross(a, b, d), cda = cross(c, d, a), cdb = cross(c, d, b);
   const auto apart = [](double x, double y) { return (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0); };
@@ -39,7 +41,7 @@ bool meet(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c, c
          (cdb == 0.0 && between(c, d, b));
 }
 
-/// Checks a profile given by a user.
+/// Validates a profile given by a user, and throws with the first error.
 class Checker {
  public:
   Checker(const std::vector<ProfilePoint>& points, Tip tip) : points_(points), tip_(tip) {}
@@ -62,7 +64,8 @@ class Checker {
   }
 
  private:
-  /// A line of the closed outline between two corners; the corners on the axis are numbered -1 and size().
+  /// Segment of the closed outline between two corners. The corners on the axis have the numbers -1 (shank) and
+  /// size() (tip).
   struct Edge {
     std::ptrdiff_t from, to;
   };
@@ -79,12 +82,14 @@ class Checker {
     if (i > 0 && p == points_[i - 1]) refuse(i, "the same as the point before");
   }
 
+  /// Returns the segments of the closed outline.
   std::vector<Edge> edges() const {
     const auto n = static_cast<std::ptrdiff_t>(points_.size());
     std::vector<Edge> all;
     if (points_.front().rho > 0.0) all.push_back({-1, 0});
     for (std::ptrdiff_t i = 0; i + 1 < n; ++i) all.push_back({i, i + 1});
-    // The half ball of a round tip may be wider than the body behind it.
+    // The half ball of a round tip may be wider than the body behind it. The disc that closes the tip then begins
+    // at the corner before.
     const bool overhangs = tip_ == Tip::round && points_[points_.size() - 2].s == 0.0 &&
                            points_[points_.size() - 2].rho < points_.back().rho;
     if (points_.back().rho > 0.0) all.push_back({overhangs ? n - 2 : n - 1, n});
@@ -97,6 +102,7 @@ class Checker {
     return points_[static_cast<std::size_t>(i)];
   }
 
+  /// Throws if two consecutive segments fold back on each other.
   void check_corners() const {
     const std::vector<Edge> all = edges();
     for (std::size_t k = 0; k + 1 < all.size(); ++k) {
@@ -109,6 +115,7 @@ class Checker {
     }
   }
 
+  /// Throws if two segments that are not neighbours intersect.
   void check_crossings() const {
     const std::vector<Edge> all = edges();
     for (std::size_t k = 0; k < all.size(); ++k) {
@@ -136,6 +143,7 @@ class Checker {
   Tip tip_;
 };
 
+/// Returns the segment from a to b with the body on its right.
 Meridian::Line line_between(const ProfilePoint& a, const ProfilePoint& b) {
   const double length = math::hypot(b.s - a.s, b.rho - a.rho);
   const double ns = -(b.rho - a.rho) / length, nr = (b.s - a.s) / length;
@@ -144,29 +152,29 @@ Meridian::Line line_between(const ProfilePoint& a, const ProfilePoint& b) {
 
 constexpr double kSagittaPerDiameter = 1e-3;
 constexpr double kShankPerDiameter = 10.0;
-constexpr double kNarrowEnd = 0.6;  ///< narrow end of tapered and inverted cones, relative to the diameter
+constexpr double kNarrowEnd = 0.6;  ///< narrow end of tapered and inverted cones, relative to the wide end
 constexpr double kRearOfFlame = 1.0 / 3.0;
 
 [[noreturn]] void refuse_length(const char* what, double is, const char* has_to, double bound) {
   refuse(what, " is ", is, " m and has to be ", has_to, ' ', bound, " m");
 }
 
-/// A profile that grows from the shank's end to the tip.
+/// Profile under construction, from the shank's end to the tip.
 class Outline {
  public:
   Outline(double diameter, double shank_radius, double head_begins) : sagitta_(kSagittaPerDiameter * diameter) {
     points_ = {{head_begins - 2.0 * kShankPerDiameter * shank_radius, shank_radius}, {head_begins, shank_radius}};
   }
 
-  /// Adds a line to this place unless the profile is already there.
+  /// Adds a segment to this point, unless the profile already ends there.
   void line_to(double s, double rho) {
     if (points_.back() != ProfilePoint{s, rho}) points_.push_back({s, rho});
   }
 
-  /// Adds an arc about (centre_s, centre_rho), from the angle `from` to the smaller one `to`, both measured from the
-  /// axis; ends exactly at `end`.
+  /// Adds an arc about (centre_s, centre_rho) from angle `from` to the smaller angle `to`, both measured from the
+  /// axis [rad]. The arc ends exactly at `end`.
   void arc_to(double centre_s, double centre_rho, double radius, double from, double to, const ProfilePoint& end) {
-    // A chord over the angle a has the sagitta r (1 - cos(a / 2)).
+    // A chord over the angle a has the sagitta radius (1 - cos(a / 2)).
     const double widest = 2.0 * math::acos(std::max(0.0, 1.0 - sagitta_ / radius));
     const double count = std::ceil((from - to) / widest);
     for (double k = 1.0; k < count; k += 1.0) {
@@ -183,8 +191,9 @@ class Outline {
   std::vector<ProfilePoint> points_;
 };
 
-constexpr double kAbreast = 0.5 * std::numbers::pi;  ///< angle of the place beside a circle's centre
+constexpr double kAbreast = 0.5 * std::numbers::pi;  ///< angle of the point beside a circle's centre [rad]
 
+/// Returns a ball on a neck of radius `neck`.
 BurProfile ball(double radius, double neck) {
   const double begins = -std::sqrt((radius - neck) * (radius + neck));
   Outline outline(2.0 * radius, neck, begins);
@@ -192,7 +201,7 @@ BurProfile ball(double radius, double neck) {
   return {std::move(outline).points(), Tip::round};
 }
 
-/// A frustum from `begins` to the tip centre with the radii `rear` and `front` at its ends.
+/// Returns a cone frustum from s = `begins` to the tip centre, with the radii `rear` and `front` at its ends.
 BurProfile frustum(double begins, double rear, double front, double shank, Tip tip) {
   Outline outline(2.0 * std::max(rear, front), shank, begins);
   outline.line_to(begins, rear);
@@ -200,8 +209,8 @@ BurProfile frustum(double begins, double rear, double front, double shank, Tip t
   return {std::move(outline).points(), tip};
 }
 
-/// The line from the shank at (begins, neck) touches the ball at the angle `touches` from the axis: the line's unit
-/// normal n = (cos touches, sin touches) has <n, (begins, neck)> = radius.
+/// Returns a cone that widens from the shank at (begins, neck) and touches the ball. It touches at the angle
+/// `touches` from the axis: its unit normal n = (cos touches, sin touches) satisfies <n, (begins, neck)> = radius.
 BurProfile pear(double radius, double length, double neck) {
   const double begins = radius - length;
   const double distance = math::hypot(begins, neck);
@@ -215,7 +224,8 @@ BurProfile pear(double radius, double length, double neck) {
   return {std::move(outline).points(), Tip::round};
 }
 
-/// A circle that is level at its top and drops by h over the length l has the radius (l^2 + h^2) / (2 h).
+/// Returns two arcs: from the shank to the largest radius, and from there to the point. An arc that is parallel to
+/// the axis at its highest point and falls by h over the length l has the radius (l^2 + h^2) / (2 h).
 BurProfile flame(double radius, double length, double neck) {
   const double rear = kRearOfFlame * length, front = length - rear, rise = radius - neck;
   if (rise > rear || radius > front)
@@ -252,15 +262,16 @@ void Meridian::add_lines() {
   if (first.rho > 0.0) lines.push_back(line_between({first.s, 0.0}, first));
 }
 
-/// Cuts the section into the trapezoids between neighbouring corners and joins neighbours that are convex together: a
-/// trapezoid continues a part that ends where it begins if its upper line is the part's last upper line or follows that
-/// line without turning inwards.
+/// Divides the section into convex parts. First cuts it into trapezoids between consecutive values of s at the
+/// corners. Then joins a trapezoid to the part that ends where the trapezoid begins, if both have the same lower
+/// line and the upper line of the trapezoid continues the part's upper line without turning inwards.
 void Meridian::add_parts() {
   struct Built {
     double low, high;
-    std::optional<std::size_t> below;  ///< its lower line; none if it lies on the axis
-    std::vector<std::size_t> above;    ///< its upper lines
+    std::optional<std::size_t> below;  ///< its lower line; none if the part reaches the axis
+    std::vector<std::size_t> above;    ///< its upper lines, in order
   };
+  // Values of s at which trapezoids begin and end.
   std::vector<double> levels;
   for (const ProfilePoint& p : profile) levels.push_back(p.s);
   std::sort(levels.begin(), levels.end());
@@ -274,12 +285,14 @@ void Meridian::add_parts() {
   std::vector<Built> built;
   for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
     const double from = levels[k], to = levels[k + 1], middle = 0.5 * (from + to);
+    // Find the lines across this interval, from the axis outwards.
     std::vector<std::size_t> across;
     for (std::size_t i = 0; i < of_profile; ++i) {
       const auto [least, most] = std::minmax(profile[i].s, profile[i + 1].s);
       if (least <= from && most >= to) across.push_back(i);
     }
     std::ranges::sort(across, {}, [&](std::size_t i) { return height(i, middle); });
+    // Pair each upper line with the lower line below it, and join the trapezoid to a part or begin a new part.
     std::optional<std::size_t> below;
     for (const std::size_t i : across) {
       if (lines[i].nr < 0.0) {
@@ -298,6 +311,7 @@ void Meridian::add_parts() {
       below.reset();
     }
   }
+  // Store the lines of the parts.
   const auto add_height = [this](std::size_t i) {
     const ProfilePoint a = profile[i], b = profile[i + 1];
     const double slope = (b.rho - a.rho) / (b.s - a.s);
@@ -309,13 +323,14 @@ void Meridian::add_parts() {
     if (part.below) add_height(*part.below);
     parts.push_back({part.low, part.high, first, heights.size(), part.below.has_value()});
   }
+  // The body is convex if it is one part above the axis, and a round tip continues it without turning inwards.
   const Line& last = lines[of_profile - 1];
   convex = built.size() == 1 && !built[0].below && (tip == Tip::flat || (last.nr > 0.0 && last.ns <= kStraight));
   if (!convex) return;
   for (const std::size_t i : built[0].above) planes.push_back(lines[i]);
 }
 
-// Here because it is no kernel, unlike the rest of Revolved.
+// Defined here and not in revolved.cpp, because it is not called in the step loop.
 ToolShape::Grown Revolved::grown(double margin) const {
   const bool round = tip() == Tip::round && meridian_.widest <= meridian_.ball;
   std::vector<ProfilePoint> corners;
@@ -324,19 +339,22 @@ ToolShape::Grown Revolved::grown(double margin) const {
     if (!round) corners.push_back({s + margin, rho + margin});
   };
   for (const ProfilePoint& p : profile()) add_square(p.s, p.rho);
-  // Nothing is wider than the ball, so everything behind its centre is below the squares' rear corners.
+  // No part of the body is wider than the ball, so everything behind the centre of the ball is below the rear
+  // corners of the squares.
   if (round) corners.push_back({0.0, meridian_.ball + margin});
   if (!round && tip() == Tip::round) add_square(meridian_.ball, meridian_.ball);
 
   std::sort(corners.begin(), corners.end(),
             [](const ProfilePoint& a, const ProfilePoint& b) { return a.s < b.s || (a.s == b.s && a.rho < b.rho); });
+  // Upper convex hull of the corners.
   std::vector<ProfilePoint> hull;
   for (const ProfilePoint& p : corners) {
-    // Keeps the widest point at each s.
+    // Keep the widest point at each s.
     while (!hull.empty() && hull.back().s == p.s) hull.pop_back();
     while (hull.size() >= 2 && cross(hull[hull.size() - 2], hull.back(), p) >= 0.0) hull.pop_back();
     hull.push_back(p);
   }
+  // Move the tip centre of the hull to s = 0.
   const double forward = hull.back().s;
   for (ProfilePoint& p : hull) p.s -= forward;
   return {std::make_unique<Revolved>(std::move(hull), round ? Tip::round : Tip::flat), forward};

@@ -17,13 +17,14 @@ namespace {
 
 using simd::Mask, simd::Pack;
 
-/// Maps the world to the coordinates of a grid's nodes at one pose: u = turn (x - position) + shift.
+/// Transformation from the world frame to the coordinates u of a grid's nodes for one pose: u = turn (x - position)
+/// + shift. u = (i, j, k) is node (i, j, k).
 struct GridFrame {
   Mat3 turn;
   Vec3 position, shift;
-  Vec3 last;  ///< largest coordinates with 27 nodes around the nearest one; the smallest are 1
+  Vec3 last;  ///< largest coordinates with 27 nodes around the nearest node; the smallest are 1
   double spacing;
-  double row, layer;  ///< difference between the indices of neighbours along y and x
+  double row, layer;  ///< index differences between neighbours along y and along x
 
   GridFrame(const SignedDistanceGrid& grid, const ToolPose& pose)
       : turn(pose.rotation().transpose() / grid.nodes().spacing),
@@ -36,10 +37,10 @@ struct GridFrame {
   }
 };
 
-/// Eight points in the coordinates of the nodes. Always inline: g++ would otherwise keep the packs in memory.
+/// Eight points in the coordinates of the nodes. Always inline: g++ would otherwise store the packs in memory.
 struct GridPack {
   Pack u, v, w;
-  Mask within;  ///< in the grid; false for coordinates that are not finite
+  Mask within;  ///< set if the point is in the grid; not set if coordinates are not finite
 
   [[gnu::always_inline]] GridPack(const GridFrame& f, const double* px, const double* py, const double* pz) {
     const Pack x = simd::load(px) - Pack(f.position.x()), y = simd::load(py) - Pack(f.position.y()),
@@ -55,7 +56,7 @@ struct GridPack {
         u >= one && u <= Pack(f.last.x()) && v >= one && v <= Pack(f.last.y()) && w >= one && w <= Pack(f.last.z());
   }
 
-  /// Moves the points to the nearest places in the grid, NaN to its first corner. Returns the squared distances
+  /// Moves the points to the closest points of the grid, NaN to its first corner. Returns the squared displacements
   /// [spacings^2].
   Pack clamp(const GridFrame& f) {
     Pack out2(0.0);
@@ -72,20 +73,21 @@ struct GridPack {
   }
 };
 
-/// Rounds numbers in [0, 2^51] to the nearest integer, halves to even: adding 1.5 * 2^52 leaves no bit for a fraction.
+/// Returns the nearest integer, halves rounded to even: after adding 1.5 * 2^52, no bit for a fraction remains.
+/// Precondition: 0 <= a <= 2^51.
 Pack nearest_whole(const Pack& a) {
   const Pack big(0x1.8p52);
   return (a + big) - big;
 }
 
-/// The nodes nearest to eight points; the grid's first node for points that are not `within` it.
+/// Indices of the nodes nearest to eight points. A point that is not in the grid (`within`) gets the first node.
 struct NearestNodes {
   Pack i, j, k;
 
   NearestNodes(const GridFrame& f, const GridPack& q)
       : i(nearest_whole(q.u)), j(nearest_whole(q.v)), k(nearest_whole(q.w)) {
     const Pack number = i * Pack(f.layer) + j * Pack(f.row) + k;
-    // The low bits of a double above 2^52 are the integer itself, which saves a conversion.
+    // The low bits of a double above 2^52 are the integer itself, which avoids a conversion.
     simd::store(simd::select(q.within, number, Pack(0.0)) + Pack(0x1p52), numbers_);
   }
   std::size_t operator[](std::size_t lane) const {
@@ -101,9 +103,9 @@ struct FieldValue {
   Vec3 gradient;  ///< with respect to the coordinates of the nodes [m]
 };
 
-/// phi_h at eight points within the grid. Computes the weights of all points at once and the sums point by point: rows
-/// of three nodes are contiguous, so nine loads of four suffice for a point, while a gather would load all 27 nodes of
-/// the eight points one by one.
+/// Evaluates the field phi_h at eight points in the grid. The weights are computed for all points at once, the sums
+/// point by point. Rows of three nodes are contiguous in memory, so a point needs nine loads of four doubles. A
+/// gather instruction would load 27 nodes for each of the eight points.
 class GridSpline {
  public:
   GridSpline(const SignedDistanceGrid& grid, const GridPack& q, const NearestNodes& nearest)
@@ -118,7 +120,7 @@ class GridSpline {
     }
   }
 
-  /// phi_h [m]; `node` is the one nearest to the point.
+  /// Returns phi_h [m] of point number `lane`. `node`: index of the node nearest to the point.
   double value(std::size_t lane, std::size_t node) const {
     const double* const corner = values_ + node - layer_ - row_ - 1;
     Four sum = {};
@@ -165,16 +167,17 @@ class GridSpline {
 
   const double* values_;
   std::size_t row_, layer_;
-  alignas(64) double weights_[3][3][simd::lanes];  ///< by axis, node and point; never negative
-  alignas(64) double t_[3][simd::lanes];           ///< in [-1/2, 1/2] from the nearest node, by axis and point
+  alignas(64) double weights_[3][3][simd::lanes];  ///< weights by axis, node and point; never negative
+  alignas(64) double t_[3][simd::lanes];           ///< offset from the nearest node in [-1/2, 1/2], by axis and point
 };
 
-/// Number of times that box_near shrinks its box; further passes hardly shrink it.
-constexpr int kShrinks = 3;
+/// Number of iterations in which box_near() shrinks its box; further iterations hardly change it.
+constexpr int kShrinkIterations = 3;
 
-/// Tests which of eight points lie in the body.
+/// Returns the points that lie in the body, one bit for each of eight points.
 std::uint8_t inside_bits(const SignedDistanceGrid& grid, const GridFrame& frame, const double* x, const double* y,
                          const double* z) {
+  // Classify most points by their nearest node.
   const GridPack q(frame, x, y, z);
   if (!simd::any(q.within)) return 0;
   const NearestNodes nearest(frame, q);
@@ -185,6 +188,7 @@ std::uint8_t inside_bits(const SignedDistanceGrid& grid, const GridFrame& frame,
     mixed |= (kind >> 1) << k;
   }
   if (mixed == 0) return static_cast<std::uint8_t>(inside);
+  // Evaluate the field for the remaining points.
   const GridSpline spline(grid, q, nearest);
   for (; mixed != 0; mixed &= mixed - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(mixed));
@@ -197,22 +201,22 @@ Box intersection(const Box& a, const Box& b) {
   return {a.min.cwiseMax(b.min), a.max.cwiseMin(b.max)};
 }
 
-/// The box around a box that is turned about the origin and then moved.
+/// Returns the bounding box of a box that is rotated about the origin and then translated.
 Box turned(const Box& box, const Mat3& rotation, const Vec3& position) {
   const Vec3 centre = rotation * (0.5 * (box.min + box.max)) + position;
   const Vec3 half = rotation.cwiseAbs() * (0.5 * (box.max - box.min));
   return {centre - half, centre + half};
 }
 
-/// A gradient of the field with respect to the nodes' coordinates that is shorter than this, in spacings, is rounding:
-/// the nearest places lie on all sides.
+/// Smallest valid length of a gradient with respect to node coordinates, in spacings. A shorter gradient is
+/// rounding: the closest points of the surface lie on all sides.
 constexpr double kUndefinedBelow = 1e-9;
-/// The shortest step along a ray, in spacings.
-constexpr double kShortestWay = 0.125;
-/// Ten rounds of regula falsi usually shrink a bracket of some spacings to rounding.
-constexpr int kMostRounds = 40;
+/// Smallest step along a ray, in spacings.
+constexpr double kMinStep = 0.125;
+/// Ten iterations of regula falsi usually shrink a bracket of some spacings to rounding.
+constexpr int kMaxIterations = 40;
 
-/// The field at eight points anywhere, evaluated one by one.
+/// The field at eight points anywhere, also outside of the grid; evaluated point by point.
 class FieldPack {
  public:
   FieldPack(const SignedDistanceGrid& grid, const GridFrame& frame, const double* x, const double* y, const double* z)
@@ -234,70 +238,72 @@ class FieldPack {
   }
 
   Pack out2_;
-  alignas(64) double out_[simd::lanes];  ///< distance beyond the grid [m]
+  alignas(64) double out_[simd::lanes];  ///< distance from the grid [m]; 0 inside
   NearestNodes nearest_;
   GridSpline spline_;
 };
 
-/// Searches for the place where a ray leaves the body; the caller evaluates the field.
+/// Search for the point where a ray leaves the body. The caller evaluates the field: it reads next() and passes the
+/// value to add_sample() until done().
 class ExitSearch {
  public:
   ExitSearch() = default;
   explicit ExitSearch(const SignedDistanceGrid& grid)
-      : shortest_(kShortestWay * grid.spacing()), bound_(grid.error_bound()), furthest_(2.0 * grid.reach()) {}
+      : min_step_(kMinStep * grid.spacing()), bound_(grid.error_bound()), max_distance_(2.0 * grid.reach()) {}
 
   bool done() const { return done_; }
-  /// The last place in the body.
+  /// Returns the largest distance along the ray [m] known to be in the body.
   double exit() const { return inside_; }
 
   /// Distance along the ray at which to evaluate the field next.
   double next() const {
     if (bracketed_) return std::clamp(inside_ + (outside_ - inside_) * (below_ / (below_ - above_)), inside_, outside_);
-    return inside_ + std::max({shortest_, -below_ / std::numbers::sqrt3, -below_ - 2.0 * bound_});
+    return inside_ + std::max({min_step_, -below_ / std::numbers::sqrt3, -below_ - 2.0 * bound_});
   }
 
-  /// Takes the field's value there.
-  void take(double place, double value) {
-    if (!bracketed_) return walk(place, value);
-    // The Illinois rule: an end that stays twice counts half.
+  /// Adds the field's value at a distance along the ray. Before a point outside is found this continues the march,
+  /// then it shrinks the bracket.
+  void add_sample(double distance, double value) {
+    if (!bracketed_) return march(distance, value);
+    // Illinois variant of regula falsi: halves the value of an end that stays twice.
     if (value <= 0.0) {
-      inside_ = place;
+      inside_ = distance;
       below_ = value;
       if (last_ < 0) above_ *= 0.5;
       last_ = -1;
     } else {
-      outside_ = place;
+      outside_ = distance;
       above_ = value;
       if (last_ > 0) below_ *= 0.5;
       last_ = 1;
     }
-    done_ = value == 0.0 || ++rounds_ == kMostRounds || outside_ - inside_ <= 1e-12 * shortest_;
+    done_ = value == 0.0 || ++iterations_ == kMaxIterations || outside_ - inside_ <= 1e-12 * min_step_;
   }
 
  private:
-  void walk(double place, double value) {
+  void march(double distance, double value) {
     bracketed_ = value > 0.0;
     if (bracketed_) {
-      outside_ = place;
+      outside_ = distance;
       above_ = value;
-      done_ = below_ == 0.0;  // on the surface
+      done_ = below_ == 0.0;  // the start is on the surface
       return;
     }
-    inside_ = place;
+    inside_ = distance;
     below_ = value;
-    if (place <= furthest_) return;
+    if (distance <= max_distance_) return;
     // The direction is zero or not finite.
     inside_ = 0.0;
     done_ = true;
   }
 
-  double shortest_ = 0.0, bound_ = 0.0, furthest_ = 0.0;
+  double min_step_ = 0.0, bound_ = 0.0, max_distance_ = 0.0;
   double inside_ = 0.0, below_ = 0.0, outside_ = 0.0, above_ = 0.0;
-  int last_ = 0, rounds_ = 0;
+  int last_ = 0, iterations_ = 0;
   bool bracketed_ = false, done_ = false;
 };
 
-/// The gradient as a unit vector of the world; `otherwise` if it is rounding.
+/// Returns the unit gradient in the world frame, or `otherwise` if the gradient is only rounding.
 Vec3 outwards(const GridFrame& frame, const Vec3& by_nodes, const Vec3& otherwise) {
   const double length = by_nodes.norm();
   if (!(length > kUndefinedBelow * frame.spacing)) return otherwise;
@@ -330,21 +336,22 @@ void MeshTool::mark_near(const ToolPose& pose, double margin, const PointArrays&
       const NearestNodes nearest(frame, q);
       alignas(64) double values[simd::lanes];
       for (std::size_t k = 0; k < simd::lanes; ++k) values[k] = grid_->values()[nearest[k]];
-      const Pack least = simd::max(simd::load(values) - slack, Pack(0.0));
-      *marks++ = range.own(simd::bits(out2 * spacing2 + least * least <= margin2), pack);
+      // Lower bound of the distance from the closest point of the grid to the body.
+      const Pack distance = simd::max(simd::load(values) - slack, Pack(0.0));
+      *marks++ = range.own(simd::bits(out2 * spacing2 + distance * distance <= margin2), pack);
     }
   }
 }
 
-// Restricts the bounds to what is near the tool's box and the tool's box to what is near that, alternately.
+// Alternately shrinks `bounds` to the part near the tool's box, and the tool's box to the part near these bounds.
 Box MeshTool::box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept {
   const Mat3 rotation = pose.rotation();
   const Mat3 back = rotation.transpose();
   const Box body{grid_->box().min - Vec3::Constant(margin), grid_->box().max + Vec3::Constant(margin)};
-  // Covers the rounding of the rotations.
+  // Covers rounding in the rotations.
   const double slack = 1e-12 * (reach() + margin + pose.position.cwiseAbs().maxCoeff());
   Box part = body, near = turned(body, rotation, pose.position);
-  for (int k = 0; k < kShrinks; ++k) {
+  for (int k = 0; k < kShrinkIterations; ++k) {
     Box shared = intersection(near, bounds);
     if ((shared.min.array() > shared.max.array()).any()) return {Vec3::Ones(), -Vec3::Ones()};
     shared = {shared.min - Vec3::Constant(slack), shared.max + Vec3::Constant(slack)};
@@ -356,8 +363,9 @@ Box MeshTool::box_near(const ToolPose& pose, double margin, const Box& bounds) c
 }
 
 ToolShape::Cover MeshTool::cover(double margin) const {
-  // With a, b and e as in mark_near, the place in the grid nearest to a marked point is within b + 3 e of the mesh, and
-  // a + b <= sqrt(2) margin.
+  // With a, b and e as in mark_near (mesh_tool.hpp): the point of the grid closest to a marked point is within b +
+  // 3 e of the mesh, and a + b <= sqrt(2) margin.
+  // Divide the grown box along its longest side into equal slices, with one ball around each.
   const Vec3 extent = grid_->box().size() + Vec3::Constant(3.0 * margin + 4.0 * grid_->error_bound());
   Eigen::Index longest = 0;
   const double length = extent.maxCoeff(&longest);
@@ -368,13 +376,14 @@ ToolShape::Cover MeshTool::cover(double margin) const {
 
 double MeshTool::moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept {
   const double moved = (to.position - from.position).norm();
-  // Most steps of most scenes do not turn the tool.
+  // In most steps the tool does not rotate.
   if (to.axis == from.axis && to.roll == from.roll) return moved;
   return moved + (to.rotation() - from.rotation()).norm() / std::numbers::sqrt2 * reach();
 }
 
 std::vector<ProfilePoint> MeshTool::outline() const {
   const GridNodes& nodes = grid_->nodes();
+  // Largest distance from the axis in each layer of nodes.
   std::vector<double> widest(nodes.count[2], -1.0);
   for (std::size_t i = 0; i < nodes.count[0]; ++i) {
     for (std::size_t j = 0; j < nodes.count[1]; ++j) {
@@ -385,7 +394,7 @@ std::vector<ProfilePoint> MeshTool::outline() const {
       }
     }
   }
-  // The far end is the body's highest place in its own frame.
+  // The rear end is the highest point of the body in the tool frame.
   std::vector<ProfilePoint> outline = {{-grid_->box().max.z(), 0.0}};
   for (std::size_t k = nodes.count[2]; k-- > 0;) {
     if (widest[k] >= 0.0) outline.push_back({-nodes.coordinate(2, k), widest[k]});
@@ -395,6 +404,7 @@ std::vector<ProfilePoint> MeshTool::outline() const {
 }
 
 ToolShape::Grown MeshTool::grown(double margin) const {
+  // A cylinder about the axis around the grown vertices.
   const double e = grid_->error_bound();
   double radius2 = 0.0;
   for (const Vec3& v : grid_->vertices()) radius2 = std::max(radius2, v.head<2>().squaredNorm());
@@ -422,33 +432,33 @@ void MeshTool::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
   }
 }
 
-// Marches along eight rays at once, which share the computation of the weights.
+// Marches along eight rays at once, which share the computation of the spline weights.
 void MeshTool::exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept {
   const GridFrame frame(*grid_, pose);
   for (std::size_t i = 0; i < contacts.size(); i += simd::lanes) {
     const std::size_t rays = std::min(contacts.size() - i, simd::lanes);
     std::array<ExitSearch, simd::lanes> searches;
     searches.fill(ExitSearch(*grid_));
-    std::array<double, simd::lanes> places{};
-    // The first pass evaluates the field at the contacts.
+    std::array<double, simd::lanes> distances{};
+    // The first iteration evaluates the field at the contacts.
     for (bool first = true, busy = true; busy; first = false) {
       alignas(64) double x[simd::lanes] = {}, y[simd::lanes] = {}, z[simd::lanes] = {};
       busy = false;
       for (std::size_t k = 0; k < rays; ++k) {
         if (searches[k].done()) continue;
         busy = true;
-        places[k] = first ? 0.0 : searches[k].next();
-        x[k] = contacts.x[i + k] + places[k] * contacts.ux[i + k];
-        y[k] = contacts.y[i + k] + places[k] * contacts.uy[i + k];
-        z[k] = contacts.z[i + k] + places[k] * contacts.uz[i + k];
+        distances[k] = first ? 0.0 : searches[k].next();
+        x[k] = contacts.x[i + k] + distances[k] * contacts.ux[i + k];
+        y[k] = contacts.y[i + k] + distances[k] * contacts.uy[i + k];
+        z[k] = contacts.z[i + k] + distances[k] * contacts.uz[i + k];
       }
       if (!busy) break;
       const FieldPack field(*grid_, frame, x, y, z);
       for (std::size_t k = 0; k < rays; ++k) {
         if (searches[k].done()) continue;
-        // Contacts lie in the body up to rounding.
+        // Contacts lie in the body up to rounding, so the first value counts as at most 0.
         const double value = field.value(k);
-        searches[k].take(places[k], first && value > 0.0 ? 0.0 : value);
+        searches[k].add_sample(distances[k], first && value > 0.0 ? 0.0 : value);
       }
     }
     for (std::size_t k = 0; k < rays; ++k) exits[i + k] = searches[k].exit();
@@ -466,17 +476,19 @@ void MeshTool::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
       const Vec3 normal = contacts.normal(k);
       Vec3 m = outwards(frame, gradient, -normal);
       contacts.depth[k] = -value;
+      // Convex body: use the plane with this normal that touches the convex hull.
       if (grid_->convex()) {
         const Vec3 x = rotation.transpose() * (contacts.point(k) - pose.position);
         const Vec3 local = rotation.transpose() * m;
         contacts.depth[k] = grid_->hull().support(local) - local.dot(x);
         if (m.dot(wanted) > -contacts.depth[k]) {
+          // If the displacement violates the constraint, use the face most flush with the surface.
           const Vec3 back = rotation.transpose() * -normal;
-          double most = kFlush;
+          double largest = kFlush;
           for (const SignedDistanceGrid::Face& face : grid_->flat_faces()) {
             const double flush = face.normal.dot(back), depth = face.offset - face.normal.dot(x);
-            if (flush <= most || depth > slack) continue;
-            most = flush;
+            if (flush <= largest || depth > slack) continue;
+            largest = flush;
             contacts.depth[k] = depth;
             m = rotation * face.normal;
           }
@@ -492,12 +504,12 @@ void MeshTool::foremost_places(const ToolPose& pose, const ContactBuffer& contac
                                const PlaceArrays& places) const noexcept {
   const Mat3 rotation = pose.rotation();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vec3 abreast = rotation.transpose() * (contacts.point(i) - pose.position);
-    const Vec3 place =
-        pose.position + rotation * grid_->hull().foremost(rotation.transpose() * -contacts.normal(i), abreast);
-    places.x[i] = place.x();
-    places.y[i] = place.y();
-    places.z[i] = place.z();
+    const Vec3 point = rotation.transpose() * (contacts.point(i) - pose.position);
+    const Vec3 support =
+        pose.position + rotation * grid_->hull().foremost(rotation.transpose() * -contacts.normal(i), point);
+    places.x[i] = support.x();
+    places.y[i] = support.y();
+    places.z[i] = support.z();
   }
 }
 

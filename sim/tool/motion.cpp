@@ -9,7 +9,7 @@
 namespace hapbench {
 namespace {
 
-/// The turn about a unit axis, right-handed [rad].
+/// Returns the rotation about a unit axis by an angle, right-handed [rad].
 Eigen::Quaterniond turn_about(const Vec3& axis, double angle) noexcept {
   const auto [sine, cosine] = math::sine_cosine(0.5 * angle);
   Eigen::Quaterniond q;
@@ -18,13 +18,14 @@ Eigen::Quaterniond turn_about(const Vec3& axis, double angle) noexcept {
   return q;
 }
 
-/// The angle of the turn of a unit quaternion in (-pi, pi], about q.vec(), whose length is `sine` > 0.
+/// Returns the rotation angle of a unit quaternion in (-pi, pi] about q.vec(). `sine` is the length of q.vec(),
+/// which must be > 0.
 double angle_of(const Eigen::Quaterniond& q, double sine) noexcept {
   return 2.0 * math::atan2(q.w() < 0.0 ? -sine : sine, std::abs(q.w()));
 }
 
-/// The matrix of the shortest turn of -z to a unit vector, by Rodrigues' formula I + [v] + [v]^2 (1 - c) / |v|^2 with
-/// v = -z x axis, the turn's axis times its sine, and its cosine c = <-z, axis>.
+/// Returns the matrix of the shortest rotation from -z to a unit vector, by Rodrigues' formula I + [v] + [v]^2 (1 -
+/// c) / |v|^2. v = -z x axis is the rotation axis times the sine of the angle, c = <-z, axis> the cosine.
 Mat3 shortest_turn(const Vec3& axis) noexcept {
   const Vec3 v(axis.y(), -axis.x(), 0.0);
   const double sine2 = v.squaredNorm(), cosine = -axis.z();
@@ -34,14 +35,14 @@ Mat3 shortest_turn(const Vec3& axis) noexcept {
   return Mat3::Identity() + cross + (1.0 - cosine) / sine2 * cross * cross;
 }
 
-/// The straight or curved way from one waypoint to the next.
-struct Leg {
+/// Segment between two waypoints: value at its start, change of the value, and duration [s].
+struct Segment {
   double start, rise, duration;
-  double share;  ///< of the duration that has passed
+  double fraction;  ///< elapsed part of the duration, 0 to 1
 };
 
-/// Before the first and after the last waypoint nothing rises.
-Leg leg_at(const Profile::Waypoints& w, double t) {
+/// Returns the segment at time t; before the first and after the last waypoint a constant one.
+Segment segment_at(const Profile::Waypoints& w, double t) {
   const auto& p = w.points;
   if (p.empty()) return {0.0, 0.0, 1.0, 0.0};
   if (!(t >= p.front().first)) return {p.front().second, 0.0, 1.0, 0.0};
@@ -52,18 +53,21 @@ Leg leg_at(const Profile::Waypoints& w, double t) {
   return {last->second, next->second - last->second, duration, (t - last->first) / duration};
 }
 
-/// The axis reversed, and the lean, turned as `up` is to it.
-struct Leaning {
+/// Unit vectors of the tilted tool: `up` is the reversed tool axis, and `side` is the lean direction, tilted with
+/// it.
+struct TiltedFrame {
   Vec3 up, side;
 };
 
-Leaning leaning(const Orientation& orientation, double tilt, double azimuth) noexcept {
+/// Returns the frame at the given tilt and azimuth [rad].
+TiltedFrame tilted_frame(const Orientation& orientation, double tilt, double azimuth) noexcept {
   const auto [around, onward] = math::sine_cosine(azimuth);
   const auto [sine, cosine] = math::sine_cosine(tilt);
   const Vec3 lean = onward * orientation.lean + around * orientation.up.cross(orientation.lean);
   return {cosine * orientation.up + sine * lean, cosine * lean - sine * orientation.up};
 }
 
+/// Returns the tool axis of an orientation: its -z axis.
 Vec3 axis_of(const Eigen::Quaterniond& orientation) noexcept {
   return (orientation * -Vec3::UnitZ()).normalized();
 }
@@ -85,7 +89,7 @@ Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept {
   Mat3 cross;
   cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
   Mat3 turn = Mat3::Identity() + cross + cross * cross / (1.0 + cosine);
-  if (v.squaredNorm() == 0.0 && cosine < 0.0) {  // half a turn, about any axis across
+  if (v.squaredNorm() == 0.0 && cosine < 0.0) {  // opposite axes: 180 degrees about any perpendicular axis
     const Vec3 across = from.axis.unitOrthogonal();
     turn = 2.0 * across * across.transpose() - Mat3::Identity();
   }
@@ -96,7 +100,7 @@ Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept {
 Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept {
   if (from.roll == 0.0 && to.roll == 0.0) return turn(from.axis, to.axis);
   const Eigen::Quaterniond whole(Mat3(to.rotation() * from.rotation().transpose()));
-  const double sine = whole.vec().norm();  // of half the angle
+  const double sine = whole.vec().norm();  // sine of half the angle
   if (sine == 0.0) return Vec3::Zero();
   return whole.vec() * (angle_of(whole, sine) / sine);
 }
@@ -111,17 +115,17 @@ double Profile::Sine::rate(double t) const noexcept {
 }
 
 double Profile::Waypoints::at(double t) const noexcept {
-  const Leg leg = leg_at(*this, t);
-  if (leg.rise == 0.0) return leg.start;
-  if (interpolation == Interpolation::linear) return leg.start + leg.share * leg.rise;
-  return leg.start + (0.5 - 0.5 * math::cos(std::numbers::pi * leg.share)) * leg.rise;
+  const Segment segment = segment_at(*this, t);
+  if (segment.rise == 0.0) return segment.start;
+  if (interpolation == Interpolation::linear) return segment.start + segment.fraction * segment.rise;
+  return segment.start + (0.5 - 0.5 * math::cos(std::numbers::pi * segment.fraction)) * segment.rise;
 }
 
 double Profile::Waypoints::rate(double t) const noexcept {
-  const Leg leg = leg_at(*this, t);
-  if (leg.rise == 0.0) return 0.0;
-  if (interpolation == Interpolation::linear) return leg.rise / leg.duration;
-  return 0.5 * std::numbers::pi * math::sin(std::numbers::pi * leg.share) * leg.rise / leg.duration;
+  const Segment segment = segment_at(*this, t);
+  if (segment.rise == 0.0) return 0.0;
+  if (interpolation == Interpolation::linear) return segment.rise / segment.duration;
+  return 0.5 * std::numbers::pi * math::sin(std::numbers::pi * segment.fraction) * segment.rise / segment.duration;
 }
 
 double Profile::operator()(double t) const noexcept {
@@ -133,23 +137,23 @@ double Profile::rate(double t) const noexcept {
 }
 
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept {
-  return -leaning(orientation, tilt, azimuth).up;
+  return -tilted_frame(orientation, tilt, azimuth).up;
 }
 
 double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept {
-  const auto [up, side] = leaning(orientation, tilt, azimuth);
+  const auto [up, side] = tilted_frame(orientation, tilt, azimuth);
   return roll_towards(-up, side) + roll;
 }
 
 ScriptedMotion::ScriptedMotion(Orientation orientation, std::optional<std::array<Profile, 3>> position)
     : orientation_(std::move(orientation)), position_(std::move(position)) {
   if (orientation_.tilt.is_constant() && orientation_.azimuth.is_constant()) {
-    held_axis_ = tool_axis(orientation_, orientation_.tilt(0.0), orientation_.azimuth(0.0));
+    constant_axis_ = tool_axis(orientation_, orientation_.tilt(0.0), orientation_.azimuth(0.0));
   }
 }
 
 Vec3 ScriptedMotion::axis_at(double t) const noexcept {
-  if (held_axis_) return *held_axis_;
+  if (constant_axis_) return *constant_axis_;
   return tool_axis(orientation_, orientation_.tilt(t), orientation_.azimuth(t));
 }
 
@@ -174,7 +178,7 @@ RecordedMotion::RecordedMotion(std::vector<Sample> samples) : samples_(std::move
   }
 }
 
-RecordedMotion::Leg RecordedMotion::leg_at(double t) const noexcept {
+RecordedMotion::Segment RecordedMotion::segment_at(double t) const noexcept {
   const auto next = std::ranges::upper_bound(samples_, t, {}, &Sample::time);
   if (next == samples_.begin()) return {&samples_.front(), &samples_.front(), 0.0};
   if (next == samples_.end()) return {&samples_.back(), &samples_.back(), 0.0};
@@ -182,31 +186,31 @@ RecordedMotion::Leg RecordedMotion::leg_at(double t) const noexcept {
   return {&from, &*next, (t - from.time) / (next->time - from.time)};
 }
 
-Eigen::Quaterniond RecordedMotion::orientation_in(const Leg& leg) noexcept {
-  const Eigen::Quaterniond turn = leg.from->orientation->conjugate() * *leg.to->orientation;
+Eigen::Quaterniond RecordedMotion::orientation_in(const Segment& segment) noexcept {
+  const Eigen::Quaterniond turn = segment.from->orientation->conjugate() * *segment.to->orientation;
   const double sine = turn.vec().norm();  // of half the angle
-  if (sine == 0.0) return *leg.from->orientation;
-  return *leg.from->orientation * turn_about(turn.vec() / sine, leg.fraction * angle_of(turn, sine));
+  if (sine == 0.0) return *segment.from->orientation;
+  return *segment.from->orientation * turn_about(turn.vec() / sine, segment.fraction * angle_of(turn, sine));
 }
 
 Vec3 RecordedMotion::axis_at(double t) const noexcept {
-  const Leg leg = leg_at(t);
-  if (leg.from->orientation) return axis_of(orientation_in(leg));
-  const Vec3 axis = leg.from->axis + leg.fraction * (leg.to->axis - leg.from->axis);
-  // Opposite neighbours pass through zero half-way; keeps the last direction there.
-  return unit_or(axis, leg.from->axis);
+  const Segment segment = segment_at(t);
+  if (segment.from->orientation) return axis_of(orientation_in(segment));
+  const Vec3 axis = segment.from->axis + segment.fraction * (segment.to->axis - segment.from->axis);
+  // Between opposite axes the interpolation passes through zero; keep the last direction there.
+  return unit_or(axis, segment.from->axis);
 }
 
 double RecordedMotion::roll_at(double t) const noexcept {
-  const Leg leg = leg_at(t);
-  if (!leg.from->orientation) return 0.0;
-  const Eigen::Quaterniond q = orientation_in(leg);
+  const Segment segment = segment_at(t);
+  if (!segment.from->orientation) return 0.0;
+  const Eigen::Quaterniond q = orientation_in(segment);
   return roll_towards(axis_of(q), q * Vec3::UnitX());
 }
 
 Vec3 RecordedMotion::position_at(double t) const noexcept {
-  const Leg leg = leg_at(t);
-  return leg.from->position + leg.fraction * (leg.to->position - leg.from->position);
+  const Segment segment = segment_at(t);
+  return segment.from->position + segment.fraction * (segment.to->position - segment.from->position);
 }
 
 }  // namespace hapbench

@@ -13,49 +13,53 @@
 
 namespace hapbench {
 
-/// The tool's position, axis and roll in the world frame.
+/// Pose of the tool in the world frame: position, axis and roll.
 ///
-/// The axis is stored rather than computed from an orientation, because scripts give it and solids of revolution read
-/// it; the roll completes it to a rotation. The tool's own frame has its origin at the tip centre and its axis along
-/// -z.
+/// The axis is stored, instead of being computed from an orientation, because scripts define it and solids of
+/// revolution use nothing else; the roll completes it to a rotation. The tool's own frame has its origin at the tip
+/// centre and its axis along -z.
 struct ToolPose {
   Vec3 position = Vec3::Zero();  ///< centre of the tip [m]
-  Vec3 axis = {0.0, 0.0, -1.0};  ///< unit vector out of the tip
-  double roll = 0.0;             ///< turn about the axis, right-handed [rad]; see rotation()
+  Vec3 axis = {0.0, 0.0, -1.0};  ///< unit vector along the axis, out of the tip
+  double roll = 0.0;             ///< rotation about the axis, right-handed [rad]; see rotation()
 
-  /// Rotation from the tool's frame to the world's: the shortest turn of -z to the axis (half a turn about x if the
-  /// axis is +z), followed by the turn by `roll` about the axis.
+  /// Returns the rotation matrix from the tool frame to the world frame: the shortest rotation from -z to the axis
+  /// (by 180 degrees about x if the axis is +z), followed by the rotation by `roll` about the axis.
   Mat3 rotation() const noexcept;
 };
 
-/// Pose and velocity. The orientation is scripted, so the angular velocity is known and not integrated.
+/// Pose and velocity of the tool. The orientation is scripted, so its angular velocity is known and not integrated.
 struct ToolState {
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();  ///< of the tip centre [m/s]
-  /// Over the previous step, low-passed if the algorithm asks for that [rad/s]; zero unless an algorithm reads it.
-  /// Includes the turn about the axis if the pose or the script (Motion::scripts_roll) has one.
+  /// Angular velocity over the previous step [rad/s], low-pass filtered if the algorithm requests it. Zero unless
+  /// an algorithm reads it. Includes the rotation about the axis if the pose or the script (Motion::scripts_roll)
+  /// has one.
   Vec3 angular_velocity = Vec3::Zero();
 };
 
-/// The roll of the pose with this axis whose own x axis lies along `side`, in (-pi, pi]. Unit vectors, perpendicular.
+/// Returns the roll in (-pi, pi] of a pose with this axis that makes the tool's own x axis point along `side`.
+/// Precondition: `axis` and `side` are perpendicular unit vectors.
 double roll_towards(const Vec3& axis, const Vec3& side) noexcept;
 
-/// The rotation vector of the shortest turn from unit vector a to unit vector b [rad]; zero for opposite ones.
+/// Returns the rotation vector of the shortest rotation from unit vector a to unit vector b [rad]; zero if they are
+/// opposite.
 inline Vec3 turn(const Vec3& a, const Vec3& b) noexcept {
   const Vec3 cross = a.cross(b);
   const double sine = cross.norm();
   return sine > 0.0 ? Vec3(cross * (math::atan2(sine, a.dot(b)) / sine)) : Vec3::Zero();
 }
 
-/// The matrix of the shortest turn from one pose's axis to the other's, followed by the turn about that by the
-/// difference of their rolls; exactly the identity where axes and rolls are equal.
+/// Returns the rotation matrix from one pose to another: the shortest rotation between the axes, followed by a
+/// rotation about the new axis by the difference of the rolls. Exactly the identity if axes and rolls are equal.
 Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept;
 
-/// The rotation vector that turns one pose to the other [rad]. If neither has a roll, that of the shortest turn of the
-/// axis, because a solid of revolution, whose pose omits the roll, feels no other turn.
+/// Returns the rotation vector from one pose to another [rad]. If both rolls are 0, it is the shortest rotation
+/// between the axes, because the pose of a solid of revolution omits the roll, and no other rotation changes it.
 Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept;
 
-/// A scalar function of time, evaluated at any t [s] in O(1), for waypoints O(log n). The value's unit is the owner's.
+/// Scalar function of time t [s]. Evaluation takes O(1), for n waypoints O(log n). The unit of the value depends on
+/// the use.
 class Profile {
  public:
   struct Constant {
@@ -83,7 +87,8 @@ class Profile {
     double rate(double t) const noexcept;
   };
   enum class Interpolation { linear, cosine };
-  /// (t [s], value) with strictly increasing times, held constant outside; `cosine` starts and ends each leg at rest.
+  /// Pairs (t [s], value) with strictly increasing times; constant before the first and after the last. `cosine`
+  /// starts and ends each segment with zero rate.
   struct Waypoints {
     std::vector<std::pair<double, double>> points;
     Interpolation interpolation = Interpolation::linear;
@@ -98,7 +103,8 @@ class Profile {
   Profile(Shape shape) : shape_(std::move(shape)) {}  // NOLINT: implicit, a shape is a profile
 
   double operator()(double t) const noexcept;
-  /// Time derivative at t [unit of the value / s]; at a waypoint, that of the leg that begins there.
+  /// Returns the time derivative at t [unit of the value / s]; at a waypoint, the derivative of the segment that
+  /// begins there.
   double rate(double t) const noexcept;
   const Shape& shape() const { return shape_; }
   bool is_constant() const { return std::holds_alternative<Constant>(shape_); }
@@ -107,26 +113,27 @@ class Profile {
   Shape shape_{Constant{}};
 };
 
-/// The scripted part of the tool's motion: always its orientation, and its position too if that is prescribed.
+/// Scripted part of the tool's motion: always the orientation, and also the position if that is prescribed.
 class Motion {
  public:
   virtual ~Motion() = default;
-  /// Unit vector out of the tip at time t [s].
+  /// Returns the tool's axis at time t [s]: a unit vector out of the tip.
   virtual Vec3 axis_at(double t) const noexcept = 0;
-  /// ToolPose::roll at time t [rad]; called only if something reads the roll.
+  /// Returns ToolPose::roll at time t [s], in rad. Called only if something reads the roll.
   virtual double roll_at(double /*t*/) const noexcept { return 0.0; }
-  /// True if the script turns the tool about its axis, so that the angular velocity even of a solid of revolution
-  /// includes this turn; that of any other tool always does.
+  /// Returns true if the script rotates the tool about its axis. The angular velocity of a solid of revolution then
+  /// includes this rotation; the angular velocity of any other tool always includes it.
   virtual bool scripts_roll() const noexcept { return false; }
-  /// True if the tip centre is integrated, false if position_at prescribes it.
+  /// Returns true if the tip centre is integrated, false if position_at() prescribes it.
   virtual bool position_is_free() const noexcept { return true; }
-  /// Tip centre at time t [m]; called only if the position is not free.
+  /// Returns the tip centre at time t [s], in m. Called only if the position is prescribed.
   virtual Vec3 position_at(double /*t*/) const noexcept { return Vec3::Zero(); }
 };
 
-/// The tool leans by `tilt` from `up` towards lean', which is `lean` turned by `azimuth` about `up`:
-/// axis = -(cos(tilt) up + sin(tilt) lean'), so at tilt 0 the tip points down. If all three angles are 0, the tool's
-/// own x points along lean and its z along up; the roll turns it about its axis.
+/// Orientation of the tool as three angles over time. The tool is tilted by `tilt` from `up` towards lean', which
+/// is `lean` rotated by `azimuth` about `up`: axis = -(cos(tilt) up + sin(tilt) lean'). At tilt 0 the tip points
+/// down. If all three angles are 0, the tool's own x axis points along `lean` and its z axis along `up`. `roll`
+/// rotates it about its axis.
 struct Orientation {
   Vec3 up = {0.0, 0.0, 1.0};    ///< unit
   Vec3 lean = {1.0, 0.0, 0.0};  ///< unit, perpendicular to up
@@ -135,12 +142,12 @@ struct Orientation {
   Profile roll = {};            ///< [rad], right-handed about the axis
 };
 
-/// The tool's axis at the given tilt and azimuth [rad] in place of the orientation's.
+/// Returns the tool's axis at the given angles [rad]; the orientation's own profiles are not evaluated.
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept;
-/// The pose's roll at the given angles [rad] in place of the orientation's.
+/// Returns ToolPose::roll at the given angles [rad]; the orientation's own profiles are not evaluated.
 double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept;
 
-/// Orientation from profiles; position free, or three profiles [m].
+/// Motion with the orientation given by profiles. The position is free, or given by three profiles x, y, z [m].
 class ScriptedMotion final : public Motion {
  public:
   ScriptedMotion(Orientation orientation, std::optional<std::array<Profile, 3>> position);
@@ -153,26 +160,27 @@ class ScriptedMotion final : public Motion {
 
  private:
   Orientation orientation_;
-  std::optional<Vec3> held_axis_;  ///< if neither tilt nor azimuth changes
+  std::optional<Vec3> constant_axis_;  ///< set if tilt and azimuth are constant
   std::optional<std::array<Profile, 3>> position_;
 };
 
-/// A recorded stroke played back: linear interpolation between the samples, held constant outside. Orientations are
-/// interpolated at constant angular velocity the short way round (slerp), axes without orientations linearly and
-/// normalised, with a roll of 0.
+/// Playback of a recorded motion: linear interpolation between samples, constant before the first and after the
+/// last. Orientations are interpolated at constant angular velocity along the shorter arc (slerp). Axes without
+/// orientations are interpolated linearly and normalised, with roll 0.
 class RecordedMotion final : public Motion {
  public:
   struct Sample {
     double time = 0.0;  ///< [s], strictly increasing from sample to sample
     Vec3 position = Vec3::Zero();
+    /// Unit vector out of the tip; computed from `orientation` if that is set.
     Vec3 axis = {0.0, 0.0, -1.0};
-    /// Rotation from the tool's frame to the world's, unit; determines the axis. Either all samples have one or none
-    /// has.
+    /// Rotation from the tool frame to the world frame, a unit quaternion. Either all samples have an orientation
+    /// or none.
     std::optional<Eigen::Quaterniond> orientation = {};
   };
 
-  /// Throws std::invalid_argument if there is no sample, times do not increase or only some samples have an
-  /// orientation.
+  /// Throws std::invalid_argument if there is no sample, the times do not increase strictly, or only some samples
+  /// have an orientation.
   explicit RecordedMotion(std::vector<Sample> samples);
 
   std::span<const Sample> samples() const { return samples_; }
@@ -183,13 +191,14 @@ class RecordedMotion final : public Motion {
   Vec3 position_at(double t) const noexcept override;
 
  private:
-  struct Leg {
+  struct Segment {
     const Sample* from;
     const Sample* to;
+    /// Elapsed part of the segment, 0 to 1.
     double fraction;
   };
-  Leg leg_at(double t) const noexcept;
-  static Eigen::Quaterniond orientation_in(const Leg& leg) noexcept;
+  Segment segment_at(double t) const noexcept;
+  static Eigen::Quaterniond orientation_in(const Segment& leg) noexcept;
 
   std::vector<Sample> samples_;
 };

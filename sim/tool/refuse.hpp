@@ -8,7 +8,7 @@
 
 namespace hapbench {
 
-/// The parts in a row, numbers with six digits.
+/// Returns the parts concatenated to one text; numbers have six significant digits.
 template <class... Parts>
 std::string joined(const Parts&... parts) {
   std::ostringstream text;
@@ -16,11 +16,12 @@ std::string joined(const Parts&... parts) {
   return text.str();
 }
 
+/// Returns the three coordinates, separated by commas.
 inline std::string coordinates(const Vec3& place) {
   return joined(place.x(), ", ", place.y(), ", ", place.z());
 }
 
-/// Throws std::invalid_argument with the joined parts.
+/// Throws std::invalid_argument; the message is the concatenated parts.
 template <class... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
   throw std::invalid_argument(joined(parts...));

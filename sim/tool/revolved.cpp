@@ -13,10 +13,10 @@ namespace {
 
 using simd::Mask, simd::Pack, simd::select;
 
-/// Tests which points of `all`, with axial coordinate s and squared distance from the axis rho2, lie in the section
-/// with s <= 0. Compares squares of heights, because a root costs as much as four lines. This and the tests below are
-/// inlined whatever the compiler thinks of their size: calls, whose packs go through memory, cost a step of a bur a
-/// tenth.
+/// Returns the points of `all` that lie in the section with s <= 0. s: axial coordinate; rho2: squared distance
+/// from the axis. Compares squared heights, because a square root costs as much as four lines. This function and
+/// the tests below are always inlined: as calls, with their packs in memory, they made a simulation step of a bur
+/// 10 % slower.
 [[gnu::always_inline]] inline Mask in_section(const Meridian& meridian, const Mask& all, const Pack& s,
                                               const Pack& rho2) {
   const auto height = [&](std::size_t k) {
@@ -36,7 +36,7 @@ using simd::Mask, simd::Pack, simd::select;
   return in;
 }
 
-/// Tests which points of a pack lie in the section.
+/// Test for points of a pack in the section of a body.
 struct InProfile {
   const Meridian& meridian;
   Pack low, high, widest2;
@@ -47,7 +47,7 @@ struct InProfile {
   }
 };
 
-/// The same for a body with a round tip.
+/// Test for points of a pack in a body with a round tip.
 struct InProfileOrBall {
   InProfile in_profile;
   Pack ball2;
@@ -57,8 +57,9 @@ struct InProfileOrBall {
   }
 };
 
-/// Depth of points in a convex body's section, without the ball of a round tip: the distance to the nearest line. For a
-/// point outside, minus the distance to the half plane that it misses by most.
+/// Returns the depth of points in a convex body's section, without the ball of a round tip: the distance to the
+/// closest line. For a point outside, returns minus the largest distance to a half plane that does not contain the
+/// point.
 Pack convex_depth(const Meridian& meridian, const Pack& s, const Pack& rho) {
   Pack d = s - Pack(meridian.low);
   if (meridian.tip == Tip::flat) d = simd::min(d, Pack(meridian.high) - s);
@@ -66,16 +67,18 @@ Pack convex_depth(const Meridian& meridian, const Pack& s, const Pack& rho) {
   return d;
 }
 
-/// The place on the profile's lines and discs that is nearest to a point.
+/// Closest point on the profile's segments and discs.
 struct NearestPlace {
   Pack distance2;
-  Pack vs, vr;  ///< normal of the line it lies on; at a corner, the vector from the point to the corner
+  Pack vs, vr;  ///< segment's normal there; at a corner, the vector from the query point to the corner
   Mask at_corner;
 };
 
+/// Returns the closest point of the outline for points with axial coordinate s and distance rho from the axis.
 [[gnu::always_inline]] inline NearestPlace nearest_place(const Meridian& meridian, const Pack& s, const Pack& rho) {
   const Pack zero(0.0);
-  // Nearer to a corner, the direction to it is rounding; the line's normal is one of the possible directions.
+  // Closer to a corner than this, the direction to it is rounding. The segment's normal is one of the valid
+  // directions.
   const Pack at_line(1e-12 * meridian.widest);
   NearestPlace nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, zero < zero};
   for (const Meridian::Line& line : meridian.lines) {
@@ -94,12 +97,14 @@ struct NearestPlace {
   return nearest;
 }
 
-/// Distance to that place. What else is found there is computed only where it is read, as nearest_place is inlined.
+/// Returns the distance to the closest point of the outline. nearest_place() is inlined, so its other results are
+/// not computed here.
 Pack nearest_distance(const Meridian& meridian, const Pack& s, const Pack& rho) {
   return simd::sqrt(nearest_place(meridian, s, rho).distance2);
 }
 
-/// A ray x + d u in axial coordinates: s + d slope along the axis and the vector rho + d u across it.
+/// Ray x + d u in axial coordinates, with d the distance along it: s + d slope along the axis, and the vector rho +
+/// d u perpendicular to it.
 struct AxialRay {
   double s, slope;
   Vec3 rho, u;
@@ -116,8 +121,8 @@ struct AxialRay {
         sine2(u.cross(rho).squaredNorm()) {}
 };
 
-/// Intersections of a ray with the cone <n, (s, |rho|)> = offset. With k = offset - ns s and m = ns slope they are the
-/// roots of
+/// Intersections of a ray with the cone <n, (s, |rho|)> = offset. With k = offset - ns s and m = ns slope, the
+/// distances d along the ray are the roots of
 ///
 ///   nr^2 |rho + d u|^2 = (k - m d)^2,   a d^2 + 2 b d + c = 0 with a = nr^2 |u|^2 - m^2, b = nr^2 <rho, u> + k m,
 ///   c = nr^2 |rho|^2 - k^2 and the discriminant b^2 - a c = nr^2 (|k u + m rho|^2 - nr^2 |u x rho|^2),
@@ -125,7 +130,7 @@ struct AxialRay {
 /// computed without cancellation near the axis and the cone.
 struct ConeCrossing {
   double k, m, a, b, c, root;
-  bool meets;  ///< ignored for a ray from within a convex cone, which meets it whatever rounding says
+  bool meets;  ///< not read for a ray from inside a convex cone, which always intersects it
 
   ConeCrossing(const HalfPlane& cone, const AxialRay& ray) : k(cone.offset - cone.ns * ray.s), m(cone.ns * ray.slope) {
     const double nr = cone.nr;
@@ -138,9 +143,10 @@ struct ConeCrossing {
   }
 };
 
-/// Distance to where the ray from a point in the half plane's cone, a convex set, leaves it.
+/// Returns the distance at which the ray leaves the half plane's cone. Precondition: the ray starts in the cone,
+/// and the cone is convex.
 double exit_of_convex(const HalfPlane& plane, const AxialRay& ray) {
-  const double outwards = plane.ns * ray.slope + plane.nr * ray.u_length;  // far along the ray
+  const double outwards = plane.ns * ray.slope + plane.nr * ray.u_length;  // rate of <n, (s, rho)> far along the ray
   if (outwards <= 0.0) return kNever;
   if (plane.nr == 0.0) return std::max(0.0, plane.slack(ray.s, 0.0) / outwards);
   const ConeCrossing q(plane, ray);
@@ -149,11 +155,13 @@ double exit_of_convex(const HalfPlane& plane, const AxialRay& ray) {
   return q.a > 0.0 ? (q.root - q.b) / q.a : 0.0;
 }
 
-/// Tolerances relative to the reach: an outgoing crossing this little behind the ray's start counts as a start on the
-/// surface; a crossing this little beyond a line's end counts, so that no ray slips through between two lines.
+/// Tolerances relative to the reach of the body. kAtStart: an outgoing intersection this little behind the start of
+/// the ray counts as a start on the surface. kAtEnd: an intersection this little beyond the end of a segment
+/// counts, so that no ray passes between two segments.
 constexpr double kAtStart = 1e-12, kAtEnd = 1e-9;
 
-/// Distance to where the ray first goes out through the line.
+/// Returns the distance to the first point where the ray leaves the body through the segment; kNever if there is
+/// none.
 double exit_through(const Meridian::Line& line, const AxialRay& ray, double reach) {
   const double at_start = kAtStart * reach, at_end = kAtEnd * reach;
   const auto on_line = [&](double d, double rho) {
@@ -168,6 +176,7 @@ double exit_through(const Meridian::Line& line, const AxialRay& ray, double reac
   }
   const ConeCrossing q(line, ray);
   if (!q.meets) return kNever;
+  // Test both roots; a root counts if it lies on the segment and the ray leaves the body there.
   const double sum = -(q.b + std::copysign(q.root, q.b));
   double first = kNever;
   for (const double d : {sum / q.a, q.c / sum}) {
@@ -180,7 +189,8 @@ double exit_through(const Meridian::Line& line, const AxialRay& ray, double reac
   return first;
 }
 
-/// Distance to where the ray goes out through the half ball beyond the tip plane.
+/// Returns the distance to the point where the ray leaves through the half ball beyond the tip plane; kNever if
+/// there is none.
 double exit_through_ball(double radius, const Vec3& x, const Vec3& u, const AxialRay& ray, double reach) {
   const double b = x.dot(u), c = (radius - x.norm()) * (radius + x.norm());
   if (b * b + c < 0.0) return kNever;
@@ -190,6 +200,7 @@ double exit_through_ball(double radius, const Vec3& x, const Vec3& u, const Axia
   return there ? std::max(0.0, d) : kNever;
 }
 
+/// Returns the distance at which the ray from `point` along u first leaves the body.
 double exit_distance(const Meridian& meridian, const ToolPose& pose, const Vec3& point, const Vec3& u) {
   const Vec3 x = point - pose.position;
   const AxialRay ray(pose, x, u);
@@ -201,13 +212,15 @@ double exit_distance(const Meridian& meridian, const ToolPose& pose, const Vec3&
   return d < kNever ? d : 0.0;
 }
 
-/// Sine of the angle to a line below which a surface runs along it, so that all of the line is foremost.
+/// Sine of the angle between a surface and a segment below which the surface is parallel to the segment, so that
+/// every point of the segment is extreme.
 constexpr double kAlongLine = 1e-9;
 
-/// The unit vector from the axis to the points, perpendicular to the axis however near they are; `any` where undefined.
+/// Returns the unit vector from the axis to the points, perpendicular to the axis however close the points are to
+/// it; `any` where `defined` is not set.
 PackVector away_from_axis(const AxialPack& q, const PackVector& axis, const Mask& defined, const PackVector& any) {
   const PackVector rho{q.rho_x, q.rho_y, q.rho_z};
-  // Rounding of s gives a small radial vector a large axial component.
+  // Rounding of s gives a short radial vector a relatively large component along the axis; remove it.
   const PackVector across = combined(Pack(1.0), rho, -rho.dot(axis), axis);
   return unit_or(defined, across, simd::sqrt(across.dot(across)), any);
 }
@@ -248,7 +261,8 @@ void Revolved::mark_near(const ToolPose& pose, double margin, const PointArrays&
 Box Revolved::box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept {
   const AxisPart whole{meridian_.low - margin, std::max(meridian_.high, meridian_.ball) + margin};
   const AxisPart part = part_near(whole, pose, meridian_.widest + margin, bounds);
-  // Points in `bounds` have their s in the part, and places of the body near them theirs within the margin of it.
+  // Points in `bounds` have their s in the interval, and points of the body near them have their s within the
+  // margin of it.
   double widest = part.high + margin >= 0.0 ? meridian_.ball : 0.0;
   for (std::size_t i = 0; i + 1 < meridian_.profile.size(); ++i) {
     const auto [a, b] = std::pair(meridian_.profile[i], meridian_.profile[i + 1]);
@@ -275,7 +289,7 @@ void Revolved::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) co
     const Pack rho = simd::sqrt(q.rho2);
     Pack d = convex ? convex_depth(meridian_, q.s, rho) : nearest_distance(meridian_, q.s, rho);
     if (round) d = select(q.s > zero, simd::min(d, ball - simd::sqrt(q.distance2())), d);
-    // In the ball, rounding may put a point beyond a line that touches the ball.
+    // In the ball, rounding may place a point outside of a line that touches the ball.
     simd::store(simd::max(d, zero), &contacts.depth[i]);
   }
 }
@@ -289,6 +303,7 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack rho = simd::sqrt(q.rho2);
     const NearestPlace nearest = nearest_place(meridian_, q.s, rho);
+    // Unit vector to the closest point, from the half plane to the world frame.
     const Pack scale = one / simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
     const Pack vs = nearest.vs * scale, vr = nearest.vr * scale;
     const Mask on_axis = rho < undefined_rho;
@@ -297,6 +312,7 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
     Mask undefined = on_axis && simd::abs(vr) > sideways;
     if (round) {
       const Pack from_centre = simd::sqrt(q.distance2());
+      // A round tip that is closer replaces the closest point of the outline.
       const Pack to_ball = ball - from_centre;
       const Mask at_ball = q.s > zero && (to_ball <= zero || to_ball * to_ball <= nearest.distance2);
       x = select(at_ball, q.x, x);
@@ -304,7 +320,8 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
       z = select(at_ball, q.z, z);
       undefined = (at_ball && from_centre < undefined_x) || (undefined && !at_ball);
     }
-    // Normalises again, because rounding of s gives a small radial vector a large axial component.
+    // Normalise again, because rounding of s gives a short radial vector a relatively large component along the
+    // axis.
     const Pack length = simd::sqrt(x * x + y * y + z * z);
     const Pack unit = one / select(undefined, one, length);
     simd::store(select(undefined, -simd::load(&contacts.nx[i]), x * unit), &contacts.ux[i]);
@@ -330,11 +347,13 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     const Pack rho = simd::sqrt(q.rho2);
     const PackVector out = away_from_axis(q, axis, rho > on_axis, any);
     const Pack from_centre = simd::sqrt(q.distance2());
+    // Points inside the body.
     const Mask in_tip = q.s > zero && from_centre <= ball;
     const Mask inside = in_section(m, q.s >= low && q.s <= high, q.s, q.rho2) || in_tip;
 
+    // Signed distance and outward normal at the closest point of the outline.
     const NearestPlace nearest = nearest_place(m, q.s, rho);
-    // Outside, the vector to a corner is opposite to the normal.
+    // Outside of the body, the vector to a corner is opposite to the normal.
     const Pack length = simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
     const Pack scale = select(nearest.at_corner && !inside, -one, one) / length;
     Pack distance = simd::sqrt(nearest.distance2);
@@ -342,6 +361,8 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     PackVector normal = combined(nearest.vs * scale, axis, nearest.vr * scale, out);
 
     const PackVector surface(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
+    // If the displacement violates the constraint, a convex body uses the face that is flush with the surface
+    // instead.
     const Mask bumps = normal.dot(move) > distance;
     if (m.convex && simd::any(bumps)) {
       Pack furthest = -in_reach;
@@ -371,7 +392,8 @@ void Revolved::foremost_places(const ToolPose& pose, const ContactBuffer& contac
   const Meridian& m = meridian_;
   const Pack zero(0.0), one(1.0), along_line(kAlongLine), ball(m.ball);
   const PackVector position(pose.position), axis(pose.axis);
-  // If the surface is perpendicular to the axis, any place of a rim is foremost, and the rim's centre if convex.
+  // If the surface is perpendicular to the axis, every point of a rim is extreme. Use the rim's centre for a convex
+  // body, and any point of the rim otherwise.
   const PackVector none(m.convex ? Vec3(Vec3::Zero()) : pose.axis.unitOrthogonal());
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const PackVector n(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
@@ -380,6 +402,7 @@ void Revolved::foremost_places(const ToolPose& pose, const ContactBuffer& contac
     const Pack outward = simd::sqrt(across.dot(across));
     const PackVector out = unit_or(outward > zero, across, outward, none);
 
+    // Find the extreme corner of the profile.
     Pack best(-std::numeric_limits<double>::infinity()), s = zero, rho = zero;
     for (const ProfilePoint& p : m.profile) {
       const Pack ahead = forward * Pack(p.s) + outward * Pack(p.rho);
@@ -389,7 +412,8 @@ void Revolved::foremost_places(const ToolPose& pose, const ContactBuffer& contac
       rho = select(further, Pack(p.rho), rho);
     }
     const Pack enough = best - Pack(2.0 * kAlongLine * m.reach);
-    // All of a line that the surface runs along is foremost: takes the place abreast of the contact.
+    // If the surface is parallel to a segment, every point of the segment is extreme: use the point beside the
+    // contact.
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack beside = q.rho_x * out.x + q.rho_y * out.y + q.rho_z * out.z;
     Pack aside2(std::numeric_limits<double>::infinity());
@@ -405,6 +429,7 @@ void Revolved::foremost_places(const ToolPose& pose, const ContactBuffer& contac
       s = select(takes, there_s, s);
       rho = select(takes, there_rho, rho);
     }
+    // A round tip may be further ahead than every corner.
     const Mask at_ball = m.tip == Tip::round ? forward > along_line && ball >= best : zero > one;
     simd::store(select(at_ball, -ball * n.x, s * axis.x + rho * out.x) + position.x, &places.x[i]);
     simd::store(select(at_ball, -ball * n.y, s * axis.y + rho * out.y) + position.y, &places.y[i]);

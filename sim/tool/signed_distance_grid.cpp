@@ -16,16 +16,17 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kEdge = 16;  ///< cells along an edge of the cube
+constexpr std::size_t kEdge = 16;  ///< cells along an edge of the cube of directions
 constexpr std::size_t kCells = 6 * kEdge * kEdge;
-/// Distances below this, relative to the size of the body, are rounding.
+/// Relative to the size of the body, distances below this value are rounding.
 constexpr double kTie = 1e-9;
 
+/// Returns the cell index along one coordinate in [-1, 1] of a cube face.
 std::size_t cell_along(double coordinate) {
   return std::min(kEdge - 1, static_cast<std::size_t>(0.5 * (coordinate + 1.0) * static_cast<double>(kEdge)));
 }
 
-/// The cell of a direction; an arbitrary cell for one that is zero or not finite.
+/// Returns the cell of a direction; cell 0 for a direction that is zero or not finite.
 std::size_t cell_of(const Vec3& u) {
   Eigen::Index axis = 0;
   const double largest = u.cwiseAbs().maxCoeff(&axis);
@@ -34,7 +35,7 @@ std::size_t cell_of(const Vec3& u) {
   return (side * kEdge + cell_along(u[(axis + 1) % 3] / largest)) * kEdge + cell_along(u[(axis + 2) % 3] / largest);
 }
 
-/// The unit direction at (a, b) in the cell, which a and b cross from 0 to 1.
+/// Returns the unit direction at position (a, b) in a cell; a and b run from 0 to 1 across the cell.
 Vec3 direction_in(std::size_t cell, double a, double b) {
   const auto along = [](std::size_t i, double t) {
     return 2.0 * (static_cast<double>(i) + t) / static_cast<double>(kEdge) - 1.0;
@@ -48,9 +49,10 @@ Vec3 direction_in(std::size_t cell, double a, double b) {
   return u.normalized();
 }
 
-std::vector<std::uint32_t> foremost_in_cell(const std::vector<Vec3>& points, std::size_t cell, double tie) {
+/// Returns the points that may be extreme along some direction in the cell (see SupportTable).
+std::vector<std::uint32_t> support_candidates(const std::vector<Vec3>& points, std::size_t cell, double tie) {
   const Vec3 middle = direction_in(cell, 0.5, 0.5);
-  // Great circles bound a cell, so its corners are furthest from its middle.
+  // Great circles bound a cell, so its corners are farthest from its middle.
   double radius = 0.0;
   for (const double a : {0.0, 1.0}) {
     for (const double b : {0.0, 1.0}) radius = std::max(radius, (direction_in(cell, a, b) - middle).norm());
@@ -65,33 +67,37 @@ std::vector<std::uint32_t> foremost_in_cell(const std::vector<Vec3>& points, std
   return found;
 }
 
-/// Nodes between the mesh and the border on each side; with three, the 27 nodes around any border point are outside.
-constexpr double kBorder = 3.0;
-constexpr double kMostBytes = 1024.0 * 1024.0 * 1024.0;
+/// Number of nodes between the mesh and the border of the grid on each side. With three, all 27 nodes around a node
+/// on the border are outside of the body.
+constexpr double kMarginNodes = 3.0;
+constexpr double kMaxBytes = 1024.0 * 1024.0 * 1024.0;
 constexpr double kBytesPerNode = sizeof(double) + sizeof(std::uint8_t);
-constexpr double kMostThin = 0.1;
-/// A vertex this far in front of a plane, in spacings, does not make a body concave. It exceeds the rounding of files
-/// in single precision.
+// Largest fraction of the surface that may be thinner than two spacings.
+constexpr double kMaxThinFraction = 0.1;
+/// Largest distance, in spacings, of a vertex in front of the plane of a triangle of a convex body. It is larger
+/// than the rounding of mesh files in single precision.
 constexpr double kConvexWithin = 0.01;
-/// Normals that differ by less count as equal.
+/// Largest difference between normals that count as equal.
 constexpr double kSameNormal = 1e-6;
-/// A flat tool slides on few faces, and the faces of a round one need no special treatment.
-constexpr std::size_t kMostFaces = 64;
+/// Maximum number of flat faces. A flat tool slides on few faces, and the faces of a round tool need no special
+/// treatment.
+constexpr std::size_t kMaxFaces = 64;
 
 double suggested_for(const Vec3& extent) {
-  // Gives a cube 128 nodes along each edge: 121 over its extent and 7 in the margin around it. Each extent counts as at
-  // least 1 % of the largest, or the grid of a flat box, which is mostly margin, would have too many nodes.
+  // A cube gets 128 nodes along each edge: 121 across the cube and 7 in the margins. Each extent counts as at least
+  // 1 % of the largest. Otherwise the grid of a flat box, which consists mostly of margins, would have too many
+  // nodes.
   return math::pow(extent.cwiseMax(0.01 * extent.maxCoeff()).prod(), 1.0 / 3.0) / 121.0;
 }
 
-/// The number of nodes along each axis; as doubles, because a spacing that is wrong by a factor of 1000 asks for more
-/// nodes than integers can count. Throws std::invalid_argument if they are too many.
+/// Returns the number of nodes along each axis, as doubles, because with a spacing wrong by a factor of 1000 the
+/// number may not fit into an integer. Throws std::invalid_argument if the grid would take more than 1 GiB.
 Vec3 node_counts(const Vec3& extent, double spacing) {
   if (!(spacing > 0.0 && std::isfinite(spacing))) refuse("the spacing of a grid must be > 0, not ", spacing, " m");
-  const Vec3 wanted = (extent / spacing).array().ceil() + 2.0 * kBorder + 1.0;
-  if (const double bytes = kBytesPerNode * wanted.prod(); !(bytes <= kMostBytes)) {
+  const Vec3 wanted = (extent / spacing).array().ceil() + 2.0 * kMarginNodes + 1.0;
+  if (const double bytes = kBytesPerNode * wanted.prod(); !(bytes <= kMaxBytes)) {
     refuse("a grid of ", wanted.x(), " x ", wanted.y(), " x ", wanted.z(), " nodes, ", spacing, " m apart, would take ",
-           bytes / kMostBytes, " GiB, more than 1; the mesh is ", extent.x(), " x ", extent.y(), " x ", extent.z(),
+           bytes / kMaxBytes, " GiB, more than 1; the mesh is ", extent.x(), " x ", extent.y(), " x ", extent.z(),
            " m large: is that its scale? If so, set the nodes ", suggested_for(extent), " m apart");
   }
   return wanted;
@@ -100,19 +106,22 @@ Vec3 node_counts(const Vec3& extent, double spacing) {
 GridNodes nodes_around(const ClosedSurface& surface, double spacing) {
   const Box& box = surface.box();
   const Vec3 wanted = node_counts(box.size(), spacing);
-  // Centred, so that the nodes of a symmetric mesh are symmetric.
+  // Centre the grid, so that the nodes around a symmetric mesh are symmetric.
   GridNodes nodes{0.5 * (box.min + box.max - (wanted - Vec3::Ones()) * spacing), spacing, {}};
   for (int k = 0; k < 3; ++k) nodes.count[static_cast<std::size_t>(k)] = static_cast<std::size_t>(wanted[k]);
   return nodes;
 }
 
+/// Returns the normal of a triangle times its area [m^2].
 Vec3 area_vector(const ClosedSurface& surface, const TriangleCorners& t) {
   const auto [a, b, c] = surface.corners(t);
   return 0.5 * (b - a).cross(c - a);
 }
 
-/// The vertices, without those amid coplanar triangles, which are in no direction the only foremost ones.
+/// Returns the vertices except those that have only coplanar triangles around them, because such a vertex is never
+/// the only extreme point along a direction.
 std::vector<Vec3> corners_of(const ClosedSurface& surface) {
+  // Sum the unit normals of the triangles at each vertex; they are parallel if the sum is as long as their number.
   std::vector<Vec3> sums(surface.vertices().size(), Vec3::Zero());
   std::vector<double> counts(sums.size(), 0.0);
   for (const TriangleCorners& t : surface.triangles()) {
@@ -130,19 +139,20 @@ std::vector<Vec3> corners_of(const ClosedSurface& surface) {
   return corners;
 }
 
-/// Refuses a surface that winds around a node neither once nor not at all.
+/// Throws std::invalid_argument if the winding number at a node is neither 0 nor 1.
 void check_winding(const std::vector<std::int8_t>& numbers, const GridNodes& nodes) {
   const auto is_wrong = [](std::int8_t number) { return number != 0 && number != 1; };
   const auto first = std::find_if(numbers.begin(), numbers.end(), is_wrong);
   if (first == numbers.end()) return;
   const auto i = static_cast<std::size_t>(first - numbers.begin()), column = i / nodes.count[2];
-  const Vec3 place = nodes.place(column / nodes.count[1], column % nodes.count[1], i % nodes.count[2]);
-  refuse("the mesh passes through itself: it encloses [", coordinates(place), "] m ", int{*first}, " times, and so ",
+  const Vec3 position = nodes.place(column / nodes.count[1], column % nodes.count[1], i % nodes.count[2]);
+  refuse("the mesh passes through itself: it encloses [", coordinates(position), "] m ", int{*first}, " times, and so ",
          std::count_if(first, numbers.end(), is_wrong), " of ", nodes.count[0], " x ", nodes.count[1], " x ",
          nodes.count[2], " nodes; unite its parts, all counter-clockwise from outside");
 }
 
-/// Refuses a surface from too much of which another triangle lies inwards within less than `thickness`.
+/// Throws std::invalid_argument if more than a tenth of the surface is thinner than `thickness` [m]. The thickness
+/// is the distance from the middle of a triangle, along its inward normal, to the next triangle.
 void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, double thickness) {
   std::vector<double> thin(surface.triangles().size(), -1.0);
   std::vector<double> areas(thin.size());
@@ -150,9 +160,10 @@ void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, dou
     const auto [a, b, c] = surface.corners(surface.triangles()[i]);
     const Vec3 area = area_vector(surface, surface.triangles()[i]);
     areas[i] = area.norm();
-    // Starts beyond the rounding of the triangle's own plane.
+    // The ray starts beyond the rounding of the triangle's own plane.
     if (areas[i] > 0.0) thin[i] = tree.first_hit((a + b + c) / 3.0, -area / areas[i], 1e-6 * thickness);
   });
+  // Sum the thin area, and find the thinnest triangle.
   double all = 0.0, too_thin = 0.0, thinnest = thickness;
   std::size_t where = 0;
   for (std::size_t i = 0; i < thin.size(); ++i) {
@@ -164,12 +175,12 @@ void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, dou
       where = i;
     }
   }
-  if (too_thin <= kMostThin * all) return;
+  if (too_thin <= kMaxThinFraction * all) return;
   const auto [a, b, c] = surface.corners(surface.triangles()[where]);
-  const Vec3 place = (a + b + c) / 3.0;
+  const Vec3 position = (a + b + c) / 3.0;
   refuse("the mesh is thinner than its grid: ", std::round(100.0 * too_thin / all),
          " % of its surface is less than two spacings (", thickness, " m) thick, the thinnest place ", thinnest,
-         " m at [", coordinates(place), "] m; set the nodes at most ", 0.5 * thinnest,
+         " m at [", coordinates(position), "] m; set the nodes at most ", 0.5 * thinnest,
          " m apart, or take a thicker mesh");
 }
 
@@ -177,41 +188,42 @@ void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, dou
 
 SupportTable::SupportTable(std::vector<Vec3> points) : points_(std::move(points)), cells_(kCells) {
   tie_ = kTie * box_of(points_).size().norm();
-  parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells_[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
+  parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells_[i] = support_candidates(points_, i, 2.0 * tie_); });
 }
 
 double SupportTable::support(const Vec3& direction) const noexcept {
-  double most = -std::numeric_limits<double>::infinity();
-  for (const std::uint32_t i : cells_[cell_of(direction)]) most = std::max(most, direction.dot(points_[i]));
-  return most;
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : cells_[cell_of(direction)]) largest = std::max(largest, direction.dot(points_[i]));
+  return largest;
 }
 
-Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const noexcept {
+Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& near) const noexcept {
   const std::vector<std::uint32_t>& candidates = cells_[cell_of(direction)];
-  const double least = support(direction) - tie_;
+  const double threshold = support(direction) - tie_;
+  // Find the extreme point closest to `near`.
   const Vec3* nearest = nullptr;
   double distance2 = std::numeric_limits<double>::infinity();
   for (const std::uint32_t i : candidates) {
-    if (direction.dot(points_[i]) < least) continue;
-    const double d2 = (points_[i] - abreast).squaredNorm();
+    if (direction.dot(points_[i]) < threshold) continue;
+    const double d2 = (points_[i] - near).squaredNorm();
     if (nearest == nullptr || d2 < distance2) {
       nearest = &points_[i];
       distance2 = d2;
     }
   }
-  if (nearest == nullptr) return points_.front();  // a direction that is not finite
-  // Approaches the other foremost points as long as that comes nearer to `abreast`, twice for faces. Means of foremost
-  // places are foremost as well.
-  Vec3 place = *nearest;
+  if (nearest == nullptr) return points_.front();  // only if the direction is not finite
+  // Move towards the other extreme points as long as this approaches `near`; twice, for faces. A convex combination
+  // of extreme points is extreme as well.
+  Vec3 support = *nearest;
   for (int pass = 0; pass < 2; ++pass) {
     for (const std::uint32_t i : candidates) {
-      if (direction.dot(points_[i]) < least) continue;
-      const Vec3 way = points_[i] - place;
-      const double length2 = way.squaredNorm();
-      if (length2 > 0.0) place += std::clamp((abreast - place).dot(way) / length2, 0.0, 1.0) * way;
+      if (direction.dot(points_[i]) < threshold) continue;
+      const Vec3 line = points_[i] - support;
+      const double length2 = line.squaredNorm();
+      if (length2 > 0.0) support += std::clamp((near - support).dot(line) / length2, 0.0, 1.0) * line;
     }
   }
-  return place;
+  return support;
 }
 
 SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spacing)
@@ -233,10 +245,12 @@ double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
 }
 
 void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& tree) {
+  // The winding numbers give the sign.
   const std::vector<std::int8_t> numbers = winding_numbers(surface, nodes_);
   check_winding(numbers, nodes_);
-  // One more, because kernels read rows of three nodes as four.
+  // One more number, because kernels read rows of three nodes as four numbers.
   values_.assign(nodes_.size() + 1, 0.0);
+  // Compute the distances column by column, eight nodes at a time.
   parallel_for(std::size_t{0}, nodes_.count[0] * nodes_.count[1], [&](std::size_t column) {
     alignas(64) std::array<double, simd::lanes> x, y, z, distances2;
     x.fill(nodes_.coordinate(0, column / nodes_.count[1]));
@@ -245,7 +259,7 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
     for (std::size_t k = 0; k < nodes_.count[2]; k += simd::lanes) {
       for (std::size_t n = 0; n < simd::lanes; ++n) {
         z[n] = nodes_.coordinate(2, k + n);
-        // The distance grows along the column by at most the distance between the nodes.
+        // Along the column, the distance grows by at most the distance between the nodes.
         const double at_most = last + static_cast<double>(n + 1) * nodes_.spacing;
         distances2[n] = (1.0 + 1e-9) * at_most * at_most;
       }
@@ -265,6 +279,7 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
 }
 
 void SignedDistanceGrid::classify() {
+  // Nodes on the border of the grid stay `outside`, because the body is at least kMarginNodes away.
   kinds_.assign(nodes_.size(), outside);
   parallel_for(std::size_t{1}, nodes_.count[0] - 1, [&](std::size_t i) {
     for (std::size_t j = 1; j + 1 < nodes_.count[1]; ++j) {
@@ -282,10 +297,10 @@ void SignedDistanceGrid::classify() {
   });
 }
 
-/// Finds out whether the body is convex and, if so, its largest flat faces.
+/// Determines whether the body is convex and, if it is, finds its largest flat faces.
 void SignedDistanceGrid::find_faces(const ClosedSurface& surface) {
   const double tolerance = kConvexWithin * nodes_.spacing;
-  // Triangles of a convex body with the same normal lie in the same plane.
+  // In a convex body, triangles with the same normal lie in the same plane.
   std::map<std::array<long, 3>, Vec3> areas;
   convex_ = true;
   for (const TriangleCorners& t : surface.triangles()) {
@@ -299,13 +314,14 @@ void SignedDistanceGrid::find_faces(const ClosedSurface& surface) {
     areas.try_emplace({std::lround(rounded.x()), std::lround(rounded.y()), std::lround(rounded.z())}, Vec3::Zero())
         .first->second += area;
   }
+  // Keep the faces larger than the square of the body's half width, the largest first.
   std::vector<Vec3> largest;
   for (const auto& [normal, area] : areas) {
     if (area.norm() >= half_width_ * half_width_) largest.push_back(area);
   }
   std::stable_sort(largest.begin(), largest.end(),
                    [](const Vec3& a, const Vec3& b) { return a.squaredNorm() > b.squaredNorm(); });
-  largest.resize(std::min(largest.size(), kMostFaces));
+  largest.resize(std::min(largest.size(), kMaxFaces));
   for (const Vec3& area : largest) faces_.push_back({area.normalized(), hull_.support(area.normalized())});
 }
 

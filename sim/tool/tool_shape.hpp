@@ -11,136 +11,149 @@
 
 namespace hapbench {
 
-/// Points as one array per coordinate, aligned and padded to whole packs of eight (sim/core/simd.hpp), and the same for
-/// output.
+/// Points as one array per coordinate [m], aligned and padded to whole packs of eight (sim/core/simd.hpp).
 struct PointArrays {
   const double *x, *y, *z;
 };
+/// Output arrays for points in the layout of PointArrays.
 struct PlaceArrays {
   double *x, *y, *z;
 };
 
-/// A run of points in such arrays: packs first … last - 1, without some points of the first and the last one.
+/// Range of points in PointArrays: the packs first … last - 1. Some points of the first and the last pack may be
+/// excluded.
 struct PackRange {
   std::size_t first, last;
-  std::uint8_t own_in_first = 0xff;  ///< bit k: point k of the first pack belongs to the run
-  std::uint8_t own_in_last = 0xff;   ///< the same for the last pack
+  std::uint8_t mask_of_first = 0xff;  ///< bit k: point k of the first pack belongs to the range
+  std::uint8_t mask_of_last = 0xff;   ///< bit k: point k of the last pack belongs to the range
 
-  /// Clears the marks of a pack's points that do not belong to the run.
+  /// Returns `marks` (bit k: point k) of pack number `pack`, with the bits of all points outside of the range
+  /// cleared.
   std::uint8_t own(std::uint8_t marks, std::size_t pack) const noexcept {
-    if (pack == first) marks &= own_in_first;
-    if (pack + 1 == last) marks &= own_in_last;
+    if (pack == first) marks &= mask_of_first;
+    if (pack + 1 == last) marks &= mask_of_last;
     return marks;
   }
 };
 
-/// Cosine of the angle, 6 degrees, up to which a flat face of a tool counts as flush with a surface: normals of shells
-/// are off by a few degrees, and a face that leans by more would hold an edge up too early.
+/// Cosine of the largest angle, 6 degrees, between a tool's flat face and a surface at which the face counts as
+/// flush with the surface. The normals of shells are wrong by a few degrees. A face with a larger angle would keep
+/// the edge above the surface too early.
 inline constexpr double kFlush = 0.9945;
 
-/// The solid that touches the environment: the geometry that contact search, depth models, the proxy and metrics need.
-/// Code outside the shapes uses this interface alone and knows neither a radius nor a tip.
+/// Shape of the tool: the geometry that contact search, depth models, the proxy and metrics need. Code outside of
+/// the shapes uses only this interface and knows neither a radius nor a type of tip.
 ///
-/// Poses and points are given in the world frame, lengths in metres. The pose's position is the tip centre. A shape
-/// that is not a solid of revolution uses the pose's rotation().
+/// Poses and points are in the world frame, lengths in m. The position of a pose is the tip centre. A shape that is
+/// not a solid of revolution uses the pose's rotation().
 ///
-/// Each call handles many points, so that its virtual dispatch is paid once per query or step. All functions except
-/// `outline`, `grown` and `cover` are called in the step loop and allocate nothing. Shapes are immutable and may be
-/// shared between runs and threads.
+/// Each call processes many points, so the cost of its virtual dispatch is paid once per query or step. All
+/// functions except `outline`, `grown` and `cover` are called in the step loop and allocate nothing. Shapes are
+/// immutable and may be shared between runs and threads.
 ///
-/// Search and depths must agree about points on the surface: a point that `push_inside` finds has a depth >=
-/// 0 up to rounding, so both should use the same operations in the same order.
+/// Contact search and depths must agree about points on the surface: a point found by `push_inside` must have a
+/// depth >= 0 up to rounding. Both should therefore use the same operations in the same order.
 class ToolShape {
  public:
   virtual ~ToolShape() = default;
 
-  /// Half the thickness of the body [m]; skins and margins are multiples of it.
+  /// Half the thickness of the body [m]; skins and margins of the contact search are multiples of it.
   double half_width() const noexcept { return half_width_; }
-  /// Distance of the body's furthest point from the tip centre.
+  /// Distance from the tip centre to the farthest point of the body [m].
   double reach() const noexcept { return reach_; }
-  /// Largest distance of the body's surface from the one that it stands for [m], such as a mesh sampled on a grid.
+  /// Largest distance [m] between the surface of the body and the exact surface that it approximates, such as a
+  /// mesh sampled on a grid; 0 if the body is exact.
   virtual double surface_error() const noexcept { return 0.0; }
-  /// A proxy keeps every point out of a convex body only.
+  /// Returns true if the body is convex. Only for a convex body does the proxy keep every point outside of it.
   virtual bool convex() const noexcept = 0;
-  /// True for a solid of revolution about the axis: a turn about the axis maps the body to itself, so that no answer of
-  /// the shape depends on the roll of a pose.
+  /// Returns true for a solid of revolution about the axis. A rotation about the axis maps such a body to itself,
+  /// so no result depends on the roll of a pose.
   virtual bool is_axisymmetric() const noexcept = 0;
-  /// The outline for drawings, in the axial half plane: from the far end on the axis to the foremost point on the axis,
-  /// curves as polylines. For a body that is not a solid of revolution it is the largest rho at each s. Allocates.
+  /// Returns the outline for drawings, in the axial half plane: a polyline from the rear end on the axis to the
+  /// front end on the axis. For a body that is not a solid of revolution, rho is the largest distance from the axis
+  /// at each s. Allocates.
   virtual std::vector<ProfilePoint> outline() const = 0;
 
   // Contact search.
 
-  /// Appends the points of the first `packs` packs that lie in the body or on its surface, in order; none for a pose
-  /// that is not finite. Precondition: `contacts` has room.
+  /// Appends the points of the first `packs` packs that lie in the body or on its surface, in order. Appends
+  /// nothing if the pose is not finite. Precondition: `contacts` has room for them.
   virtual void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                            ContactBuffer& contacts) const noexcept = 0;
-  /// Marks every point of the ranges within `margin` >= 0 of the body, and possibly some a little further away: bit k
-  /// of a mark stands for point k of a pack. Writes a mark for each pack of the ranges, range after range.
+  /// Marks every point of the ranges within `margin` [m] of the body, and possibly some points slightly farther
+  /// away. Writes one byte for each pack of the ranges, range after range; bit k stands for point k of the pack.
+  /// Precondition: margin >= 0.
   virtual void mark_near(const ToolPose& pose, double margin, const PointArrays& points,
                          std::span<const PackRange> ranges, std::uint8_t* marks) const noexcept = 0;
-  /// A box that contains every point of `bounds` within `margin` of the body, ideally around the part of the body near
-  /// `bounds` alone. Empty if no part is near.
+  /// Returns a box that contains every point of `bounds` within `margin` [m] of the body. Ideally the box encloses
+  /// only the part of the body near `bounds`. Empty if no part is near.
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
-  /// Number and radius [m] of balls that together contain the body and everything that `mark_near` marks with this
-  /// margin. Many small balls bound the number of points that the body can touch (most_points_in, grid_index.hpp) more
-  /// tightly than the one ball of this default, which suits a `mark_near` that reaches at most twice the margin.
+  /// Number and radius [m] of balls whose union contains the body and everything that `mark_near` marks with this
+  /// margin. Used to bound the number of points that the body can touch (most_points_in, grid_index.hpp); many
+  /// small balls give a tighter bound than one ball. The default is one ball, valid for a `mark_near` that reaches
+  /// at most twice the margin.
   struct Cover {
     std::size_t balls;
     double radius;
   };
   virtual Cover cover(double margin) const { return {1, (1.0 + 1e-9) * (reach_ + 2.0 * margin)}; }
-  /// Upper bound of the distance by which a move from one pose to the other moves any point of the body [m]. This
-  /// default is that of a solid of revolution: the shortest rotation from one axis to the other moves a point by at
-  /// most |a' - a| times its distance from the tip centre; a turn about the axis maps the body to itself.
+  /// Returns an upper bound of the displacement of all points of the body between two poses [m]. The default is
+  /// valid for a solid of revolution: the shortest rotation from axis a to axis a' moves a point by at most |a' -
+  /// a| times its distance from the tip centre, and a rotation about the axis maps the body to itself.
   virtual double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept {
     const double moved = (to.position - from.position).norm();
-    // Most steps of most scenes do not turn the tool; adding a turn of zero would change no bit.
+    // In most steps the tool does not rotate. Adding a zero rotation would not change the result.
     if (to.axis == from.axis) return moved;
     return moved + (to.axis - from.axis).norm() * reach_;
   }
 
   // Depth models. Precondition: the contacts lie in the body or on its surface.
 
-  /// Writes each contact's distance to the nearest place of the surface as its depth. May write the whole last pack, as
-  /// the following.
+  /// Writes the distance from each contact to the closest point of the body's surface as its depth [m]. This
+  /// function and the following ones may overwrite the whole last pack.
   virtual void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
-  /// Writes the unit vector to that place as each contact's gradient; the contact's inverse normal if no single place
-  /// is nearest, as on a cylinder's axis.
+  /// Writes the unit vector from each contact to the closest point of the surface as its gradient. Writes the
+  /// contact's negative normal if the closest point is not unique, for example on the axis of a cylinder.
   virtual void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
-  /// Writes to exits[i], i < size(), the distance from contact i to where the ray along its gradient leaves the body.
-  /// Finite and >= 0, also for points on the surface.
+  /// Writes to exits[i], for i < size(), the distance [m] from contact i along its gradient to the point where the
+  /// ray leaves the body. Finite and >= 0, also for points on the surface.
   virtual void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept = 0;
 
-  // The proxy. Its guarantee holds for a convex body; a shape that is not convex documents what it returns instead.
+  // Proxy (virtual tool that stays outside of the surface). The guarantee below holds for a convex body. A shape
+  // that is not convex documents what it returns instead.
 
-  /// Constraints that keep the body out of points near it: for each contact the signed distance g_i of the point to the
-  /// body's surface, negative inside, as depth d_i = -g_i, and the outward normal at the nearest place of the surface
-  /// as gradient m_i. Pads.
+  /// Writes linear constraints that keep nearby points out of the body. For each contact i, with g_i the signed
+  /// distance from the point to the body's surface (negative inside): depth d_i = -g_i [m], and gradient m_i =
+  /// outward normal at the closest point of the surface. Pads the contacts.
   ///
-  /// The signed distance to a convex body is a convex function of the point and m_i one of its subgradients. Moved by
-  /// x, the body is at least g_i - <m_i, x> away from the point, hence
+  /// The signed distance to a convex body is a convex function of the point, and m_i is one of its subgradients.
+  /// After the body is moved by a displacement x, its distance from the point is at least g_i - <m_i, x>, hence
   ///
   ///     d_i + <m_i, x> <= 0   =>   the point is not inside the moved body,
   ///
-  /// for moves of any length. If the nearest place is not unique, any of the nearest ones has that property.
+  /// for displacements of any length. If the closest point is not unique, any of the closest points has that
+  /// property.
   ///
-  /// A flat face that slides along a surface would bump into the points ahead, which lie in its plane and whose nearest
-  /// place is its edge. Either face of an edge keeps out a point beyond (or within `slack` of) both faces. Therefore,
-  /// if the move `wanted` violates the nearest one, a face that is flush with the contact's normal replaces it.
+  /// A flat face that slides along a surface would be stopped by the points ahead: they lie in the plane of the
+  /// face, and their closest point on the body is the edge of the face. A point that lies beyond both faces of an
+  /// edge, or within `slack` [m] of that, is kept out by the constraint of either face. Therefore, if the
+  /// displacement `wanted` [m] violates the constraint of the closest point, a face that is flush (kFlush) with the
+  /// contact's normal replaces it.
   virtual void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                                    ContactBuffer& contacts) const noexcept = 0;
-  /// Writes the place of the body that is foremost against each contact's normal: the support point in the direction
-  /// -n_i, argmin <q, n_i> over the body. If there are several, the one abreast of the contact.
+  /// Writes the support point of the body in the direction -n_i for each contact normal n_i: argmin <q, n_i> over
+  /// the points q of the body. If the support point is not unique, writes the support point beside the contact.
   virtual void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
                                const PlaceArrays& places) const noexcept = 0;
 
-  /// The body grown on all sides; its tip centre lies `forward` [m] ahead along the axis.
+  /// Shape that encloses the body with a margin. Its tip centre lies `forward` [m] ahead of the body's along the
+  /// axis.
   struct Grown {
     std::unique_ptr<const ToolShape> shape;
     double forward;
   };
-  /// A shape that contains every point within `margin` >= 0 of this one, and possibly a little more. Allocates.
+  /// Returns a shape that contains every point within `margin` [m] of this one, and possibly slightly more.
+  /// Precondition: margin >= 0. Allocates.
   virtual Grown grown(double margin) const = 0;
 
  protected:
