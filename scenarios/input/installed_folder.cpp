@@ -20,7 +20,7 @@ namespace {
 constexpr char kHere = 0;
 
 /// The share folder that the build defines; may be empty.
-fs::path share_of_build() {
+fs::path build_share_folder() {
 #ifdef HAPBENCH_SHARE
   return HAPBENCH_SHARE;
 #else
@@ -29,7 +29,7 @@ fs::path share_of_build() {
 }
 
 /// The paths at which the folder is looked for, in this order.
-std::vector<fs::path> places_of(const std::string& name) {
+std::vector<fs::path> candidate_paths(const std::string& name) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error), wanted = fs::path("share") / "hapbench" / name;
   Dl_info object;
@@ -40,14 +40,14 @@ std::vector<fs::path> places_of(const std::string& name) {
     for (fs::path above = library.parent_path(); above != above.root_path(); above = above.parent_path())
       places.push_back(above / wanted);
   places.push_back(program.parent_path().parent_path() / wanted);
-  if (const fs::path share = share_of_build(); !share.empty()) places.push_back(share / name);
+  if (const fs::path share = build_share_folder(); !share.empty()) places.push_back(share / name);
   return places;
 }
 
 }  // namespace
 
 fs::path installed_folder(const std::string& name) {
-  const std::vector<fs::path> places = places_of(name);
+  const std::vector<fs::path> places = candidate_paths(name);
   for (const fs::path& place : places) {
     std::error_code error;
     // Canonical, so that messages name a folder of the source tree instead of the build tree's link to it.

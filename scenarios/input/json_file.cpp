@@ -13,8 +13,8 @@
 namespace hapbench {
 namespace {
 
-constexpr int kDeepestNesting = 64;
-constexpr std::size_t kMostKeys = 10'000;
+constexpr int kMaxNesting = 64;
+constexpr std::size_t kMaxKeys = 10'000;
 
 [[noreturn]] void refuse_syntax(const std::string& problem) {
   throw InputError(InputError::Kind::shape, "", "is not JSON: " + problem);
@@ -37,8 +37,7 @@ class Guard {
     switch (event) {
       case Event::object_start:
       case Event::array_start:
-        if (depth >= kDeepestNesting)
-          refuse_here(fmt::format("nested too deeply; allowed: {} levels", kDeepestNesting));
+        if (depth >= kMaxNesting) refuse_here(fmt::format("nested too deeply; allowed: {} levels", kMaxNesting));
         levels_.push_back({event == Event::array_start, "", 0, {}});
         break;
       case Event::object_end:
@@ -84,7 +83,7 @@ class Guard {
     Level& object = levels_.back();
     object.key = key;
     if (!object.seen.insert(key).second) refuse_here("the key stands twice in one object; allowed: once");
-    if (object.seen.size() > kMostKeys) refuse_here(fmt::format("more than {} keys in one object", kMostKeys));
+    if (object.seen.size() > kMaxKeys) refuse_here(fmt::format("more than {} keys in one object", kMaxKeys));
   }
 
   std::vector<Level> levels_;  ///< open objects and arrays

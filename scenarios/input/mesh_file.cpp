@@ -44,10 +44,10 @@ void scale_and_check(TriangleSoup& soup, double scale, const fs::path& file) {
     if (!vertex.allFinite())
       fail_in_file(file, fmt::format("vertex {}: is not finite; allowed: finite coordinates", i));
     const double largest = vertex.cwiseAbs().maxCoeff();
-    if (largest > kFarthestPoint) {
+    if (largest > kMaxCoordinate) {
       fail_in_file(
           file, fmt::format("vertex {}: got coordinate {} after scaling; allowed: at most {} m (is \"scale\" right?)",
-                            i, largest, kFarthestPoint));
+                            i, largest, kMaxCoordinate));
     }
   }
 }
@@ -61,10 +61,10 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
 }
 
 /// A triangle mesh has half as many vertices as faces, more only in so far as it is open.
-constexpr double kMostFaces = 2.0 * kMostPoints;
+constexpr double kMaxFaces = 2.0 * kMostPoints;
 
 /// Reads the surface in a file and does all checks.
-CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
+CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
   const auto* format = std::ranges::find(kMeshFormats, mesh_extension(file), &MeshFormat::extension);
   if (bytes.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
   TriangleSoup soup = format->read(bytes, file);
@@ -81,7 +81,7 @@ CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshS
     fail_in_file(file, fmt::format("has {} vertices; allowed: at most {:.0g}", vertices, kMostPoints));
   if (vertices_with_normals(surface.mesh).empty())
     fail_in_file(file, "has no faces with an area; allowed: at least one");
-  if (sampling.spacing && refined_face_count(surface.mesh, *sampling.spacing, kMostFaces) > kMostFaces) {
+  if (sampling.spacing && refined_face_count(surface.mesh, *sampling.spacing, kMaxFaces) > kMaxFaces) {
     fail_in_file(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing",
                                    *sampling.spacing, kMostPoints));
   }
@@ -101,7 +101,7 @@ std::string mesh_extension(const fs::path& file) {
 }
 
 MeshFile::MeshFile(std::string_view bytes, const fs::path& file, const MeshSampling& sampling)
-    : sampling_(sampling), surface_(std::make_shared<const CheckedMesh>(surface_in(bytes, file, sampling))) {}
+    : sampling_(sampling), surface_(std::make_shared<const CheckedMesh>(read_surface(bytes, file, sampling))) {}
 
 std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
   const MeshFindings& found = surface_->findings;

@@ -17,17 +17,17 @@ namespace {
 /// Number of letters to replace, remove, insert or swap with a neighbour to turn `a` into `b`. If that is less, one
 /// more than the number for a part of `b` that ends before an underscore.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1), before(row), before_that(row);  // for the first letters of `a`
+  std::vector<std::size_t> row(b.size() + 1), before(row), row_before_previous(row);  // for the first letters of `a`
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    before_that.swap(before);
+    row_before_previous.swap(before);
     before.swap(row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t replaced = before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
       row[j] = std::min({replaced, before[j] + 1, row[j - 1] + 1});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        row[j] = std::min(row[j], before_that[j - 2] + 1);
+        row[j] = std::min(row[j], row_before_previous[j - 2] + 1);
     }
   }
   std::size_t least = row.back();

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCsvHeader = "x_m,y_m,z_m,nx,ny,nz";
 
-std::vector<SurfacePoint> csv_points_in(std::string_view text, const fs::path& file) {
+std::vector<SurfacePoint> parse_csv_points(std::string_view text, const fs::path& file) {
   const NumberTable table = number_table_in(text, file, {kCsvHeader}, static_cast<std::size_t>(kMostPoints));
   std::vector<SurfacePoint> points;
   points.reserve(table.rows());
@@ -36,7 +36,7 @@ void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file
   for (std::size_t i = 0; i < points.size(); ++i) {
     SurfacePoint& point = points[i];
     const double largest = point.position.cwiseAbs().maxCoeff();
-    if (!point.position.allFinite() || largest > kFarthestPoint)
+    if (!point.position.allFinite() || largest > kMaxCoordinate)
       fail_in_file(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
     const double length = point.normal.norm();
     if (!(std::abs(length - 1.0) <= 1e-3))
@@ -77,7 +77,7 @@ std::string shell_extension(const std::filesystem::path& file) {
 }
 
 std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file) {
-  auto points = shell_extension(file) == ".csv" ? csv_points_in(text, file) : ply_points_in(text, file);
+  auto points = shell_extension(file) == ".csv" ? parse_csv_points(text, file) : ply_points_in(text, file);
   check_and_normalise(points, file);
   return points;
 }

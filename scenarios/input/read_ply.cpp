@@ -48,14 +48,14 @@ const PlyType* ply_type(std::string_view name) {
 }
 
 /// The numbers of a vertex. The role of a property is the place of one of them, or one of those below.
-constexpr std::array<std::string_view, 6> kOfVertex = {"x", "y", "z", "nx", "ny", "nz"};
-constexpr std::size_t kCorners = 6, kNothing = 7;
-using Values = std::array<double, kOfVertex.size()>;
+constexpr std::array<std::string_view, 6> kVertexProperties = {"x", "y", "z", "nx", "ny", "nz"};
+constexpr std::size_t kCorners = 6, kIgnored = 7;
+using Values = std::array<double, kVertexProperties.size()>;
 
 struct Property {
   const PlyType* count;  ///< type of a list's length; null for a scalar
   const PlyType* type;
-  std::size_t role = kNothing;
+  std::size_t role = kIgnored;
 };
 
 struct Element {
@@ -117,8 +117,8 @@ class PlyHeader {
       if (elements_.empty()) fail("got a property before an element; allowed: after one");
       elements_.back().properties.push_back(property(words));
     } else if (first != "comment" && first != "obj_info") {
-      fail(
-          fmt::format("got {}; allowed: format, comment, obj_info, element, property, end_header", quoted_word(first)));
+      fail(fmt::format("got {}; allowed: format, comment, obj_info, element, property, end_header",
+                       quoted_token(first)));
     }
     return true;
   }
@@ -140,12 +140,13 @@ class PlyHeader {
       fail("allowed: \"property TYPE NAME\" or, with an integer COUNT, \"property list COUNT TYPE NAME\"");
     const std::string_view name = words.back();
     if (!is_list) {
-      const auto role = static_cast<std::size_t>(std::ranges::find(kOfVertex, name) - kOfVertex.begin());
-      return {nullptr, type, elements_.back().is_vertex() && role < numbers_ ? role : kNothing};
+      const auto role =
+          static_cast<std::size_t>(std::ranges::find(kVertexProperties, name) - kVertexProperties.begin());
+      return {nullptr, type, elements_.back().is_vertex() && role < numbers_ ? role : kIgnored};
     }
     const bool has_corners = elements_.back().name == "face" && (name == "vertex_indices" || name == "vertex_index");
     if (has_corners && type->is_real) fail("allowed for the vertices of a face: an integer type");
-    return {count, type, has_corners ? kCorners : kNothing};
+    return {count, type, has_corners ? kCorners : kIgnored};
   }
 
   void check_vertices() const {
@@ -153,8 +154,9 @@ class PlyHeader {
       if (!element.is_vertex()) continue;
       for (std::size_t i = 0; i < numbers_; ++i) {
         if (element.count(i) == 1) continue;
-        fail(fmt::format("got {} vertex properties \"{}\"; allowed: one each of {}", element.count(i), kOfVertex[i],
-                         fmt::join(kOfVertex.begin(), kOfVertex.begin() + numbers_, ", ")));
+        fail(fmt::format("got {} vertex properties \"{}\"; allowed: one each of {}", element.count(i),
+                         kVertexProperties[i],
+                         fmt::join(kVertexProperties.begin(), kVertexProperties.begin() + numbers_, ", ")));
       }
     }
     if (std::ranges::none_of(elements_, &Element::is_vertex)) fail("allowed before the faces: vertices");
@@ -211,9 +213,10 @@ class PlyValues {
   }
   [[noreturn]] void fail_cut_short() const {
     if (is_text_ && !text_.words().empty())
-      text_.fail(fmt::format("got {} values; allowed: all of a {}", text_.words().size(), quoted_word(element_->name)));
+      text_.fail(
+          fmt::format("got {} values; allowed: all of a {}", text_.words().size(), quoted_token(element_->name)));
     fail(fmt::format("the file ends before its {} {}; allowed: a complete file", element_->entries,
-                     quoted_word(element_->name)));
+                     quoted_token(element_->name)));
   }
 
   bool is_text_;
@@ -239,10 +242,10 @@ void read_entry(const Element& element, std::size_t i, PlyValues& values, Conten
     if (p.role == kCorners && length < 3)
       values.fail(fmt::format("face {}: got {} corners; allowed: at least 3", i, length));
     if (length < 0) {
-      values.fail(fmt::format("{} {}: got a list of {} entries; allowed: an integer from 0", quoted_word(element.name),
+      values.fail(fmt::format("{} {}: got a list of {} entries; allowed: an integer from 0", quoted_token(element.name),
                               i, length));
     }
-    if (p.role == kNothing) {
+    if (p.role == kIgnored) {
       values.skip(static_cast<std::size_t>(length), *p.type);
     } else if (p.role == kCorners) {
       // A negative index of a binary file becomes too large and is refused as such.

@@ -41,7 +41,7 @@ TriangleSoup read_stl_text(std::string_view text, const fs::path& file) {
                first != "endsolid") {
       lines.fail(
           fmt::format("got {}; allowed: solid, facet, outer loop, three times vertex, endloop, endfacet, endsolid",
-                      quoted_word(lines.words()[0])));
+                      quoted_token(lines.words()[0])));
     }
   }
   return soup;

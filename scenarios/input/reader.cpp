@@ -129,7 +129,7 @@ class Reader final : public Fields {
     const auto entry = json_.find(name);
     if (entry != json_.end()) return collect([&] { read_value(*entry, member(at_, std::string(name)), value); });
     // A misspelt name of this field has been reported already.
-    if (presence != Presence::required || std::ranges::count(meant_, name) > 0) return;
+    if (presence != Presence::required || std::ranges::count(suggested_, name) > 0) return;
     collect([&] { fail(fmt::format("missing field \"{}\"; allowed: {}", name, guide_to(value).allowed)); });
   }
 
@@ -186,7 +186,7 @@ class Reader final : public Fields {
             InputError::Kind::shape, member(at_, entry.key()),
             fmt::format("unknown field{}; allowed here: {}", hint, quoted_list(allowed, described_by(root))));
       });
-      meant_.push_back(nearest_name(entry.key(), allowed));
+      suggested_.push_back(nearest_name(entry.key(), allowed));
     }
     collect([&] { body(*this); });
     throw_errors();
@@ -207,8 +207,8 @@ class Reader final : public Fields {
   const std::function<void(Fields&)>* value_ = nullptr;  ///< describes it
   /// When not null, the body of an object is called only to collect the names of its fields.
   std::vector<std::string_view>* names_ = nullptr;
-  std::vector<InputError> errors_;  ///< of the fields or entries that were read
-  std::vector<std::string> meant_;  ///< valid names near to unknown fields
+  std::vector<InputError> errors_;      ///< of the fields or entries that were read
+  std::vector<std::string> suggested_;  ///< valid names near to unknown fields
 };
 
 }  // namespace

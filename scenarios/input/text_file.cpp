@@ -12,7 +12,7 @@
 
 namespace hapbench {
 
-static constexpr std::uintmax_t kLargestTable = std::uintmax_t{4} << 30;  ///< that is read [bytes]
+static constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;  ///< that is read [bytes]
 
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
   // The system would open the file whose name ends before the zero byte.
@@ -33,7 +33,7 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
 
 std::string read_named_file(const std::filesystem::path& file) {
   try {
-    return read_text_file(file, kLargestTable);
+    return read_text_file(file, kMaxFileBytes);
   } catch (const InputError& error) {
     fail_in_file(file, error.problem());
   }

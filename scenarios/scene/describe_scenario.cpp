@@ -29,13 +29,13 @@
 namespace hapbench {
 namespace {
 
-constexpr auto kMostStepsOrRows = static_cast<std::int64_t>(kMostSteps);
+constexpr auto kMaxStepsOrRows = static_cast<std::int64_t>(kMostSteps);
 
 /// Returns the number of steps, which may be more than a scenario can hold.
 double describe_time(Fields& f, TimeFields& time) {
   std::optional<double> duration;
   f.number("step_s", time.step, {0.0, 1.0, "s", true}, "time step", Presence::required);
-  f.integer("steps", time.steps, {1, kMostStepsOrRows}, "number of steps (rows)", Presence::no_default);
+  f.integer("steps", time.steps, {1, kMaxStepsOrRows}, "number of steps (rows)", Presence::no_default);
   f.if_any("duration_s", duration, "instead of steps: duration_s / step_s, rounded", [](Fields& d, double& value) {
     d.number(value, {0.0, 1e9, "s", true});
   });
@@ -105,7 +105,7 @@ static void describe(Fields& f, DivergenceBounds& bounds) {
 
 static void describe(Fields& f, RecordFields& record) {
   f.boolean("trajectory", record.trajectory, "write trajectory.csv");
-  f.integer("every", record.every, {1, kMostStepsOrRows}, "record each N-th step only");
+  f.integer("every", record.every, {1, kMaxStepsOrRows}, "record each N-th step only");
   f.list("ratio_iterations", record.ratio_iterations, {0, 1000},
          "write ratios.csv after these numbers of shaping iterations", [](Fields& i, std::int64_t& value) {
            i.integer(value, {0, 100'000});

@@ -16,7 +16,7 @@
 
 namespace hapbench {
 
-constexpr double kMostDeviceDelay = 10'000.0;  ///< of an impedance device
+constexpr double kMaxDeviceDelay = 10'000.0;  ///< of an impedance device
 
 static void describe_force_limit(Fields& f, std::optional<double>& limit) {
   f.number("force_limit_N", limit, {0.0, 1e9, "N", true}, "input force limit f_th; null: off");
@@ -112,7 +112,7 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
   f.number("encoder_step_m", device.encoder_step, {0.0, 1.0, "m"},
            "the measured position is the nearest multiple of it, halves away from zero; 0: exact");
   // A device by itself, whose delay is in seconds, has no samples yet (resolve_delay).
-  f.number("delay_samples", device.delay_samples, {0.0, kMostDeviceDelay, "time steps"},
+  f.number("delay_samples", device.delay_samples, {0.0, kMaxDeviceDelay, "time steps"},
            "from a sample to its force; a fraction changes the force within a time step",
            std::isnan(device.delay_samples) ? Presence::left_out : Presence::has_default);
   f.if_any(
@@ -151,9 +151,9 @@ void resolve_delay(Scenario& scenario) {
   auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
   if (device == nullptr || !device->delay) return;
   const double delay = *device->delay, samples = delay / scenario.time.step, given = device->delay_samples;
-  if (samples > kMostDeviceDelay) {
+  if (samples > kMaxDeviceDelay) {
     fail_at("/device/delay_s",
-            fmt::format("got {} s, {:.3g} time steps; allowed: at most {} of them", delay, samples, kMostDeviceDelay));
+            fmt::format("got {} s, {:.3g} time steps; allowed: at most {} of them", delay, samples, kMaxDeviceDelay));
   }
   // 1e-9 forgives the rounding of whoever wrote both.
   if (std::abs(given - samples) > 1e-9 * std::max(1.0, samples)) {

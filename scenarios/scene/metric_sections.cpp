@@ -57,7 +57,7 @@ const SectionKind kSections[] = {
      make<ContactAgeObserver>},
     {"targets", target_places, observe_targets, true}};
 
-void tell_common(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
+void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
   Section section(list, "");
   metrics.tell(section);
   (inside != nullptr ? *inside : InsideDepths()).tell(section, metrics.has_settled());
@@ -68,7 +68,7 @@ void tell_common(const MetricsObserver& metrics, const InsideDepths* inside, Met
 template <class Parts>
 MetricList list_without_values(const Parts& parts) {
   MetricList metrics;
-  tell_common(MetricsObserver(1.0), nullptr, metrics);
+  report_common_metrics(MetricsObserver(1.0), nullptr, metrics);
   for (const SectionKind& kind : kSections) {
     const std::size_t count = parts(kind);
     if (count == 0) continue;
@@ -112,7 +112,7 @@ void SectionObservers::begin(const TrialParts& trial) {
 }
 
 void SectionObservers::tell(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const {
-  tell_common(metrics, inside, result.metrics);
+  report_common_metrics(metrics, inside, result.metrics);
   for (std::size_t i = 0; i < observers_.size(); ++i) {
     const SectionKind& kind = kSections[kinds_[i]];
     if (trials_ > 1 && !kind.merges) continue;

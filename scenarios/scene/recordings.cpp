@@ -15,8 +15,8 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kMostSamples = 10'000'000;
-constexpr double kLargestNormError = 1e-3;  ///< of a quaternion: three decimals suffice
+constexpr std::size_t kMaxSamples = 10'000'000;
+constexpr double kMaxNormError = 1e-3;  ///< of a quaternion: three decimals suffice
 constexpr std::size_t kForceColumns = 3;
 constexpr std::size_t kAxisPose = 7;  ///< columns of time, position and axis; a quaternion has one more
 
@@ -34,14 +34,13 @@ Vec3 axis_of(std::span<const double> cells, const std::filesystem::path& file, s
 Eigen::Quaterniond orientation_of(std::span<const double> cells, const std::filesystem::path& file, std::size_t row) {
   const Eigen::Quaterniond q(cells[0], cells[1], cells[2], cells[3]);
   const double norm = q.norm();
-  if (std::abs(norm - 1.0) <= kLargestNormError) return q.normalized();
-  fail(file, row,
-       fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kLargestNormError));
+  if (std::abs(norm - 1.0) <= kMaxNormError) return q.normalized();
+  fail(file, row, fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError));
 }
 
-constexpr std::size_t kMostContacts = 20'000'000, kMostAtOnce = 100'000;
-constexpr double kLargestLengthError = 1e-3;  ///< of a gradient: three decimals suffice
-constexpr double kRounding = 1e-12;           ///< of the length of a gradient in double precision
+constexpr std::size_t kMaxContacts = 20'000'000, kMaxContactsPerTime = 100'000;
+constexpr double kMaxLengthError = 1e-3;  ///< of a gradient: three decimals suffice
+constexpr double kRounding = 1e-12;       ///< of the length of a gradient in double precision
 constexpr std::string_view kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m";
 
 }  // namespace
@@ -52,7 +51,7 @@ Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
                       {"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z", "time_s,px_m,py_m,pz_m,qw,qx,qy,qz",
                        "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
                        "time_s,px_m,py_m,pz_m,qw,qx,qy,qz,mfx_N,mfy_N,mfz_N"},
-                      kMostSamples);
+                      kMaxSamples);
   if (table.rows() == 0) fail(file, 0, "no samples; allowed: at least one");
   const bool has_force = table.columns >= kAxisPose + kForceColumns;
   const std::size_t pose = table.columns - (has_force ? kForceColumns : 0);
@@ -80,7 +79,7 @@ Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
 }
 
 ContactTrace trace_in(std::string_view text, const std::filesystem::path& file) {
-  const NumberTable table = number_table_in(text, file, {kTraceHeader}, kMostContacts);
+  const NumberTable table = number_table_in(text, file, {kTraceHeader}, kMaxContacts);
   ContactTrace trace;
   trace.contacts.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
@@ -92,12 +91,12 @@ ContactTrace trace_in(std::string_view text, const std::filesystem::path& file) 
       trace.times.push_back({row[0], i});
     else if (row[0] < trace.times.back().time)
       refuse(fmt::format("got time {} after {}; allowed: ascending times", row[0], trace.times.back().time));
-    if (i - trace.times.back().first >= kMostAtOnce)
-      refuse(fmt::format("got more contacts at time {}; allowed: at most {}", row[0], kMostAtOnce));
+    if (i - trace.times.back().first >= kMaxContactsPerTime)
+      refuse(fmt::format("got more contacts at time {}; allowed: at most {}", row[0], kMaxContactsPerTime));
     ContactTrace::Contact contact{{row[1], row[2], row[3]}, {row[4], row[5], row[6]}, row[7]};
     const double length = contact.gradient.norm();
-    if (!(std::abs(length - 1.0) <= kLargestLengthError))
-      refuse(fmt::format("got a gradient ux,uy,uz of length {}; allowed: 1 within {}", length, kLargestLengthError));
+    if (!(std::abs(length - 1.0) <= kMaxLengthError))
+      refuse(fmt::format("got a gradient ux,uy,uz of length {}; allowed: 1 within {}", length, kMaxLengthError));
     if (std::abs(length - 1.0) > kRounding) contact.gradient /= length;
     if (contact.depth < 0.0)
       refuse(fmt::format("got depth {}; allowed: >= 0, how deep the point is in the tool", contact.depth));

@@ -32,10 +32,10 @@ void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vecto
                         fmt::format("\"{}\" is not used: algorithm \"{}\" is defined with \"{}\"", depth_model,
                                     fixed.algorithm, fixed.depth_model)});
   }
-  if (has_other_contacts(scenario) && !entry.reported_depth_model.empty()) {
+  if (has_external_contacts(scenario) && !entry.reported_depth_model.empty()) {
     warnings.push_back({kNoEffect, "/rendering/contact_source",
                         fmt::format("not used: algorithm \"{}\" finds its points itself", fixed.algorithm)});
-  } else if (has_other_contacts(scenario) && !entry.fixed_depth_model.empty()) {
+  } else if (has_external_contacts(scenario) && !entry.fixed_depth_model.empty()) {
     warnings.push_back(
         {"other_depths", "/rendering/contact_source",
          fmt::format("algorithm \"{}\" is defined with depth model \"{}\"; here it has the depths of \"{}\"",

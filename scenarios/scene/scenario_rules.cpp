@@ -17,8 +17,8 @@
 namespace hapbench {
 namespace {
 
-constexpr double kMostDelaySamples = 1e6;  ///< longest reaction delay of a simulated subject [time steps]
-constexpr double kLongestDrag = 1e6;       ///< entries of the table of a path over a surface
+constexpr double kMaxDelaySamples = 1e6;  ///< longest reaction delay of a simulated subject [time steps]
+constexpr double kMaxPathEntries = 1e6;   ///< entries of the table of a path over a surface
 
 void check_sizes(const Scenario& scenario, double steps) {
   if (!(steps >= 1.0 && steps <= kMostSteps)) {
@@ -39,7 +39,7 @@ void check_orientation(const MotionFields& motion) {
   if (!motion.orientation) return;
   const Vec3 &up = motion.orientation->up, &lean = motion.orientation->lean;
   // 1e-9 forgives the rounding of directions that were normalised by somebody else.
-  if (up.norm() >= kShortestDirection && lean.norm() >= kShortestDirection &&
+  if (up.norm() >= kMinDirectionNorm && lean.norm() >= kMinDirectionNorm &&
       std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm())
     return;
   fail_at("/motion/orientation", fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero",
@@ -108,18 +108,18 @@ constexpr Rule kRules[] = {
      [](const Scenario& s) { return is<TrackingHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
     // The contacts of a trace belong to its motion, and neither they nor those of a library are points of our shell.
     {"/rendering/contact_source", "got \"{}\"; allowed: \"own\", with springs, which have no surface",
-     [](const Scenario& s) { return has_other_contacts(s) && is<SpringsEnvironment>(s.environment); }},
+     [](const Scenario& s) { return has_external_contacts(s) && is<SpringsEnvironment>(s.environment); }},
     {"/rendering/contact_source",
      "got \"{}\"; allowed: \"own\", unless motion.position is prescribed, as it was when the contacts were recorded",
      [](const Scenario& s) {
        return s.rendering.contact_source == kTrace && (position_is_free(s.motion) || handle_moves_tool(s.device));
      }},
     {"/rendering/contact_source", "got \"{}\"; allowed: \"own\", with local_average, which merges shell points",
-     [](const Scenario& s) { return has_other_contacts(s) && s.rendering.local_average; }},
+     [](const Scenario& s) { return has_external_contacts(s) && s.rendering.local_average; }},
     {"/rendering/contact_source",
      "got \"{}\"; allowed: \"own\", with reduction.shuffle_seed, which orders shell points",
      [](const Scenario& s) {
-       return has_other_contacts(s) && s.rendering.reduction && s.rendering.reduction->shuffle_seed;
+       return has_external_contacts(s) && s.rendering.reduction && s.rendering.reduction->shuffle_seed;
      }},
     // The rules below are about the virtual mass between hand and tool, which an impedance device does not have.
     {"/hand/type",
@@ -149,16 +149,16 @@ void check_drag_hand(const Scenario& scenario, double steps) {
   if (hand == nullptr) return;
   if (hand->direction) require_direction(*hand->direction, "/hand/direction");
   const double entries = drag_length(*hand, steps * scenario.time.step) / SurfacePath::spacing(hand->smoothing);
-  if (entries <= kLongestDrag) return;
+  if (entries <= kMaxPathEntries) return;
   fail_at("/hand/smoothing_m",
-          fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kLongestDrag));
+          fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kMaxPathEntries));
 }
 
 void check_tracking_hand(const Scenario& scenario, double steps) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   if (hand == nullptr) return;
   for (std::size_t i = 0; i < hand->subjects.size(); ++i)
-    require_at_most(kMostDelaySamples, hand->subjects[i].reaction_delay / scenario.time.step,
+    require_at_most(kMaxDelaySamples, hand->subjects[i].reaction_delay / scenario.time.step,
                     fmt::format("/hand/subjects/{}/reaction_delay_s", i), "time steps");
   require_at_most(kMostSteps, trial_count(scenario.hand) * steps, "/hand/trials", "steps in all trials");
 }

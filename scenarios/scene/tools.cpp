@@ -14,7 +14,7 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kMostCorners = 1000;  // of a profile; the cost of a step grows with them
+constexpr std::size_t kMaxProfilePoints = 1000;  // of a profile; the cost of a step grows with them
 
 /// In the order of the variant.
 constexpr TypeName kToolTypes[] = {
@@ -37,7 +37,7 @@ void check_shape(const std::string& at, const char* allowed, const Make& make) {
 /// Throws std::invalid_argument when there is none.
 Revolved revolved_of(const BurFields& bur) {
   const BurProfile of_bur = bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
-                                        bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));
+                                        bur.shank_diameter.value_or(BurFields::kShankRatio * bur.diameter));
   return Revolved(of_bur.profile, of_bur.tip);
 }
 
@@ -53,7 +53,7 @@ static void describe(Fields& f, CylinderFields& tool) {
 
 static void describe(Fields& f, RevolvedFields& tool) {
   f.list(
-      "profile_m", tool.profile, {2, kMostCorners},
+      "profile_m", tool.profile, {2, kMaxProfilePoints},
       "corners [s, rho] of the outline beside the axis, from the far end to the tip: s <= 0 along the axis from the "
       "tip centre, rho from the axis",
       [](Fields& p, ProfilePoint& point) {
