@@ -42,13 +42,16 @@ InputError::InputError(Kind kind, const std::string& pointer, const std::string&
 InputError::InputError(const std::string& problem) : InputError(Kind::relation, ErrorLocation{}, problem) {}
 
 InputError InputError::all(const std::vector<InputError>& errors) {
+  // Collect the faults of all errors.
   std::vector<InputError> faults;
   for (const InputError& error : errors) {
     const std::vector<InputError> more = error.faults();
     faults.insert(faults.end(), more.begin(), more.end());
   }
+  // Put faults of kind `shape` first, and limit the number of faults.
   std::stable_partition(faults.begin(), faults.end(), [](const InputError& e) { return e.kind() == Kind::shape; });
   if (faults.size() > kMostFaults) faults.erase(faults.begin() + kMostFaults, faults.end());
+  // The first fault gives the message and holds the other faults.
   InputError first = std::move(faults.front());
   first.more_.assign(faults.begin() + 1, faults.end());
   return first;
