@@ -10,14 +10,16 @@
 namespace hapbench {
 namespace {
 
-/// A section of the summary.
+/// A section of the summary: its name, when a run has it, and its observer.
 struct SectionKind {
   const char* name;
-  /// Number of target places, 1 for sections without places; 0 when the scenario does not ask for the section.
+  /// Returns the number of target positions, or 1 for a section that has no target positions. Returns 0 if the
+  /// scenario does not request the section.
   std::size_t (*parts)(const Scenario& scenario, bool has_reference_force);
-  /// The observer of a run of the scenario; without one, an observer that sees nothing and so documents the metrics.
+  /// Returns the observer of a run of the scenario. If `scenario` is null, returns an observer that is only used to
+  /// list the metrics.
   std::unique_ptr<MetricObserver> (*observe)(const Scenario* scenario, std::size_t parts);
-  bool merges = false;  ///< several trials also have it
+  bool merges = false;  ///< the section can be computed over several trials
 };
 
 template <class Type>
@@ -40,7 +42,8 @@ std::size_t target_places(const Scenario& scenario, bool) {
   return hand == nullptr ? 0 : hand->task.places.size();
 }
 
-/// In the order of the summary. A section is a row here and the file of its observer.
+/// All sections, in the order of the summary. To add a section, add an entry here and a source file with its
+/// observer.
 const SectionKind kSections[] = {
     {"passivity", [](const Scenario&, bool) { return std::size_t{1}; }, make<PassivityObserver>, true},
     {"energy", [](const Scenario& s, bool) { return std::size_t{s.record.energy}; }, make<EnergyLedger>},
@@ -57,6 +60,7 @@ const SectionKind kSections[] = {
      make<ContactAgeObserver>},
     {"targets", target_places, observe_targets, true}};
 
+/// Adds the metrics that every run has. `inside` is null if the environment has no solid.
 void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
   Section section(list, "");
   metrics.tell(section);
@@ -64,7 +68,8 @@ void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* i
   metrics.tell_end(section);
 }
 
-/// The metrics of every run and of each section of which `parts` says that there are some.
+/// Returns the common metrics and the metrics of the sections, without values. `parts(kind)` is the number of
+/// target positions as in SectionKind::parts; a section with 0 is skipped.
 template <class Parts>
 MetricList list_without_values(const Parts& parts) {
   MetricList metrics;
@@ -116,6 +121,7 @@ void SectionObservers::tell(const MetricsObserver& metrics, const InsideDepths* 
   for (std::size_t i = 0; i < observers_.size(); ++i) {
     const SectionKind& kind = kSections[kinds_[i]];
     if (trials_ > 1 && !kind.merges) continue;
+    // Add the section's metrics, and its members that are not metrics.
     Section section(result.metrics, kind.name);
     observers_[i]->tell(section);
     observers_[i]->add_members(result.sections[kind.name] = nlohmann::ordered_json::object());

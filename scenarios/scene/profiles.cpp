@@ -13,10 +13,12 @@
 namespace hapbench {
 namespace {
 
-constexpr double kMaxMagnitude = 1e9;
+constexpr double kMaxMagnitude = 1e9;  ///< of a value or a time of a profile
 
+/// All shapes of profiles except a constant, which is written as a number.
 using TimeVaryingShape = std::variant<Profile::Ramp, Profile::Sine, Profile::Waypoints>;
 
+/// Throws InputError unless the times of the waypoints increase strictly.
 void check_times(const Profile::Waypoints& waypoints, const std::string& at) {
   const auto& points = waypoints.points;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -54,12 +56,14 @@ void describe_shape(Fields& f, Profile::Waypoints& waypoints, NumberRange range)
 void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc, Presence presence) {
   const NumberRange range = {-kMaxMagnitude, kMaxMagnitude, unit};
   const auto describe_profile = [&](Fields& value) {
+    // Split the profile into a constant or a shape.
     double constant = profile.is_constant() ? profile(0.0) : 0.0;
     TimeVaryingShape moving;
     const auto take = [&moving](const auto& shape) {
       if constexpr (!std::is_same_v<std::decay_t<decltype(shape)>, Profile::Constant>) moving = shape;
     };
     std::visit(take, profile.shape());
+    // Describe a number or an object with a type. When a file is read, replace the profile.
     value.plain_or_object(
         !profile.is_constant(),
         [&](Fields& v) {
