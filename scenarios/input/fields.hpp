@@ -45,7 +45,7 @@ enum class Presence {
   required,
   has_default,  ///< optional; default: the member's value in a default-constructed object
   no_default,   ///< optional; the default depends on the scenario, and the field's documentation gives it
-  left_out      ///< optional; has no value at present, so that writers omit the field
+  omitted       ///< optional; has no value at present, so that writers omit the field
 };
 
 /// Treatment of an object without the field "type", if the type determines the object's other fields.
@@ -277,7 +277,7 @@ class Fields {
   /// A field that is omitted from written files if the optional is empty. It is optional in files that are read.
   template <class T, class Each>
   void if_any(std::string_view name, std::optional<T>& value, const char* doc, Each each) {
-    field(name, doc, value ? Presence::no_default : Presence::left_out,
+    field(name, doc, value ? Presence::no_default : Presence::omitted,
           [&](Fields& f) { describe_held(f, value, each); });
   }
   /// An object that is omitted from written files if the optional is empty. It is optional in files that are read.

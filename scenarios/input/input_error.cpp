@@ -26,11 +26,11 @@ std::string ErrorLocation::text() const {
   return fmt::format("{}", fmt::join(parts, ": "));
 }
 
-InputError::InputError(Kind kind, ErrorLocation location, std::string place, std::string problem)
-    : std::runtime_error(one_line(place.empty() ? problem : place + ": " + problem)),
+InputError::InputError(Kind kind, ErrorLocation location, std::string location_text, std::string problem)
+    : std::runtime_error(one_line(location_text.empty() ? problem : location_text + ": " + problem)),
       kind_(kind),
       location_(std::move(location)),
-      place_(std::move(place)),
+      location_text_(std::move(location_text)),
       problem_(std::move(problem)) {}
 
 InputError::InputError(Kind kind, ErrorLocation location, const std::string& problem)

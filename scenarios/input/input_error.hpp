@@ -51,17 +51,17 @@ class InputError : public std::runtime_error {
   Kind kind() const { return kind_; }
   const ErrorLocation& location() const { return location_; }
   /// Returns the location as text; empty if the location has no parts.
-  const std::string& place() const { return place_; }
+  const std::string& place() const { return location_text_; }
   const std::string& problem() const { return problem_; }
   /// Returns each fault as an error. An error that was not made by `all` has one fault.
   std::vector<InputError> faults() const;
 
  private:
-  InputError(Kind kind, ErrorLocation location, std::string place, std::string problem);
+  InputError(Kind kind, ErrorLocation location, std::string location_text, std::string problem);
 
   Kind kind_;
   ErrorLocation location_;
-  std::string place_;
+  std::string location_text_;
   std::string problem_;
   std::vector<InputError> more_;  ///< all faults except the first
 };

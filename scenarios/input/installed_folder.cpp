@@ -36,31 +36,31 @@ std::vector<fs::path> candidate_paths(const std::string& name) {
   const fs::path program = fs::read_symlink("/proc/self/exe", error), wanted = fs::path("share") / "hapbench" / name;
   Dl_info object;
   const fs::path library = dladdr(&kHere, &object) != 0 ? fs::canonical(object.dli_fname, error) : program;
-  std::vector<fs::path> places;
+  std::vector<fs::path> candidates;
   // A shared library searches near itself first. The Python interpreter that loads it may be next to the files of
   // another version.
   if (library != program)
     for (fs::path above = library.parent_path(); above != above.root_path(); above = above.parent_path())
-      places.push_back(above / wanted);
-  places.push_back(program.parent_path().parent_path() / wanted);
-  if (const fs::path share = build_share_folder(); !share.empty()) places.push_back(share / name);
-  return places;
+      candidates.push_back(above / wanted);
+  candidates.push_back(program.parent_path().parent_path() / wanted);
+  if (const fs::path share = build_share_folder(); !share.empty()) candidates.push_back(share / name);
+  return candidates;
 }
 
 }  // namespace
 
 fs::path installed_folder(const std::string& name) {
-  const std::vector<fs::path> places = candidate_paths(name);
-  for (const fs::path& place : places) {
+  const std::vector<fs::path> candidates = candidate_paths(name);
+  for (const fs::path& candidate : candidates) {
     std::error_code error;
     // The build tree has a symbolic link to the folder in the source tree. The canonical path makes messages name the
     // source tree.
-    const fs::path found = fs::canonical(place, error);
+    const fs::path found = fs::canonical(candidate, error);
     if (!error && fs::is_directory(found, error)) return found;
   }
   throw InputError(
       fmt::format("{}: is missing; allowed: the program where it was built or installed, with its folders next to it",
-                  places.back().string()));
+                  candidates.back().string()));
 }
 
 }  // namespace hapbench

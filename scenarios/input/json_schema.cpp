@@ -123,7 +123,7 @@ class SchemaWriter final : public Fields {
   void ignored(std::string_view name, const char* doc) override {
     guide_.schema["properties"][std::string(name)] = {{"description", doc}};
     guide_.fields.push_back(
-        {.name = std::string(name), .meaning = doc, .presence = Presence::left_out, .initial = {}, .value = {}});
+        {.name = std::string(name), .meaning = doc, .presence = Presence::omitted, .initial = {}, .value = {}});
   }
   void exactly_one_of(const char* a, const char* b) override {
     Json& schema = guide_.schema;

@@ -37,10 +37,10 @@ std::shared_ptr<SharedCache::Entry> SharedCache::entry_of(const std::string& key
 }
 
 void SharedCache::drop_oldest() {
-  const std::size_t fewest = 2 * std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t min_entries = 2 * std::max(1u, std::thread::hardware_concurrency());
   std::size_t bytes = 0;
   for (const auto& entry : entries_) bytes += entry->made.bytes;
-  while (entries_.size() > fewest && (entries_.size() > kMaxEntries || bytes > kMaxBytes)) {
+  while (entries_.size() > min_entries && (entries_.size() > kMaxEntries || bytes > kMaxBytes)) {
     bytes -= entries_.back()->made.bytes;
     entries_.pop_back();
   }

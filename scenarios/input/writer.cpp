@@ -62,7 +62,7 @@ class Writer final : public Fields {
     body(*this);
   }
   void field(std::string_view name, const char*, Presence presence, Body value) override {
-    if (presence == Presence::left_out) return;
+    if (presence == Presence::omitted) return;
     if (presence == Presence::no_default && which_ == Which::with_default) return;
     json_[std::string(name)] = written(name, value);
   }

@@ -38,7 +38,7 @@ void number(Fields& f, const Parameter& parameter, Number& value, const char* do
 /// field if the optional is empty.
 template <class T, class Each>
 void if_not_null(Fields& f, std::string_view name, std::optional<T>& value, const char* doc, Each each) {
-  f.nullable(name, value, doc, each, value ? Presence::no_default : Presence::left_out);
+  f.nullable(name, value, doc, each, value ? Presence::no_default : Presence::omitted);
 }
 
 /// Describes the parameters that belong to one algorithm only.
@@ -59,12 +59,11 @@ void own_parameters(Fields& f, RenderingConfig& rendering) {
   const auto presence = [&rendering](const AlgorithmEntry& entry) {
     const bool written = !entry.own_parameters.empty() &&
                          (entry.info->name == rendering.algorithm || rendering.parameters.contains(entry.info->name));
-    return written ? Presence::no_default : Presence::left_out;
+    return written ? Presence::no_default : Presence::omitted;
   };
-  const bool any =
-      std::ranges::any_of(algorithms(), [&](auto& entry) { return presence(entry) != Presence::left_out; });
+  const bool any = std::ranges::any_of(algorithms(), [&](auto& entry) { return presence(entry) != Presence::omitted; });
   f.group("parameters", "parameters that algorithms have for themselves: an object for each algorithm",
-          any ? Presence::no_default : Presence::left_out, [&](Fields& all) {
+          any ? Presence::no_default : Presence::omitted, [&](Fields& all) {
             for (const AlgorithmEntry& entry : algorithms()) {
               if (entry.own_parameters.empty()) continue;
               all.group(entry.info->name, "parameters of this algorithm", presence(entry),
@@ -158,7 +157,7 @@ static void describe(Fields& f, EnergyTankConfig& tank) {
 static void describe(Fields& f, ActuatorLimitedPassivityConfig& limited) {
   f.nullable(key(parameter::kActuatorForce), limited.max_force,
              "most force of the actuator along each axis of the world; null: no limit",
-             [](Fields& v, Vec3& most) { v.vector3(most, parameter::kActuatorForce.range); });
+             [](Fields& v, Vec3& force) { v.vector3(force, parameter::kActuatorForce.range); });
   number(f, parameter::kActuatorDamping, limited.max_damping,
          "most damping; null: M / dt, which stops the virtual tool in one step");
 }

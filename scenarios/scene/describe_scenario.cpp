@@ -95,7 +95,7 @@ static void describe(Fields& f, IntegratorFields& integrator) {
   if (f.reads()) integrator.type = *std::ranges::find(kIntegrators, type, [](auto* entry) { return entry->info.name; });
   f.number("tolerance_s", integrator.tolerance, {1e-15, 1.0, "s"},
            "of event: within which it finds the times of contact on and off; 1e-9 unless it is given",
-           integrator.type == &kEvent ? Presence::no_default : Presence::left_out);
+           integrator.type == &kEvent ? Presence::no_default : Presence::omitted);
 }
 
 static void describe(Fields& f, DivergenceBounds& bounds) {
@@ -168,7 +168,7 @@ static void describe_extends(Fields& f) {
   f.text(kExtends, other, 4096,
          "another scenario, a file or a bundled name, over whose fields (but name and expect) these are merged; "
          "null replaces; so does an object of another type",
-         Presence::left_out);
+         Presence::omitted);
   if (!f.reads() || !f.given(kExtends)) return;
   fail_at(member(f.at(), kExtends), "got it in no file; allowed: in files");
 }

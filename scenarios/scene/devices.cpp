@@ -115,7 +115,7 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
   // A device with a delay in seconds has no number of samples (NaN) until resolve_delay knows the time step.
   f.number("delay_samples", device.delay_samples, {0.0, kMaxDeviceDelay, "time steps"},
            "from a sample to its force; a fraction changes the force within a time step",
-           std::isnan(device.delay_samples) ? Presence::left_out : Presence::has_default);
+           std::isnan(device.delay_samples) ? Presence::omitted : Presence::has_default);
   f.if_any(
       "delay_s", device.delay,
       "instead of delay_samples: delay_s / time.step_s of them, fractions too. An effective scenario has both, which "

@@ -49,8 +49,8 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   const BlockWithHole& block = environment.block;
   const double grid = environment.grid;
   const Vec3& size = block.size;
-  // At most 1e5 cells along an edge, which can still be numbered. A wall thinner than 3 cells may have no nodes on
-  // one side.
+  // Upper limit: 1e5 grid cells along an edge of the block, because each cell needs an index. Lower limit: 3
+  // cells, because a thinner wall may have no grid nodes on one of its sides.
   const double longest = 1e5 * grid, thinnest = 3.0 * grid;
   const auto fail = [&at](const char* field, const std::string& problem) { fail_at(at + "/" + field, problem); };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));

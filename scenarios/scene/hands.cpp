@@ -99,7 +99,7 @@ static void describe(Fields& f, TargetRules& task) {
            "panel: x and y count, the orientation is scripted; height: z counts, the hand turns the tool");
   f.list(
       "places_m", task.places, {1, TrackingHandFields::kMostPlaces}, "where targets appear",
-      [](Fields& p, Vec3& place) { p.vector3(place, kCoordinate); }, Presence::required);
+      [](Fields& p, Vec3& position) { p.vector3(position, kCoordinate); }, Presence::required);
   f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "in one trial");
   f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "the tip is on the target within this distance");
   f.number("logged_m", task.logged, {0.0, 1.0, "m", true},

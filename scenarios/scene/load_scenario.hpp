@@ -58,8 +58,8 @@ struct LoadedScenario {
 /// other files, is an error.
 ScenarioText read_scenario_text(const std::filesystem::path& file);
 
-/// Applies the overrides to a scenario that was read before, and checks the result. The rules and errors are
-/// those of the overload below. Several threads may pass the same `text`.
+/// Applies the overrides to a scenario that was read before, and checks the result. The overload below describes
+/// the rules and errors. Several threads may pass the same `text`.
 LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides);
 
 /// Reads a scenario file and the scenarios that it extends, applies the overrides and checks the result. An

@@ -33,8 +33,8 @@ std::unique_ptr<MetricObserver> observe_ideal_trajectory(const Scenario* scenari
                                                    static_cast<std::uint64_t>(scenario->record.every));
 }
 
-std::unique_ptr<MetricObserver> observe_targets(const Scenario*, std::size_t places) {
-  return std::make_unique<TargetMetricsObserver>(places);
+std::unique_ptr<MetricObserver> observe_targets(const Scenario*, std::size_t target_positions) {
+  return std::make_unique<TargetMetricsObserver>(target_positions);
 }
 
 std::size_t target_places(const Scenario& scenario, bool) {
@@ -93,8 +93,8 @@ MetricList metrics_without_values(const Scenario& scenario, bool has_reference_f
   });
 }
 
-MetricList metrics_without_values(std::size_t places) {
-  return list_without_values([places](const SectionKind&) { return places; });
+MetricList metrics_without_values(std::size_t target_positions) {
+  return list_without_values([target_positions](const SectionKind&) { return target_positions; });
 }
 
 const MetricList& all_metrics() {

@@ -18,9 +18,9 @@ namespace hapbench {
 /// the summary. `has_reference_force` is true if the scenario has a reference force or its recorded stroke has a
 /// measured force.
 MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force);
-/// Returns the metrics of all sections without values. `places` is the number of target positions of a tracking
-/// task.
-MetricList metrics_without_values(std::size_t places);
+/// Returns the metrics of all sections without values. `target_positions` is the number of target positions of a
+/// tracking task.
+MetricList metrics_without_values(std::size_t target_positions);
 /// Returns the metrics that `expect` can bound. The list is computed once. It has metrics for two target
 /// positions, because the tasks of the thesis have two.
 const MetricList& all_metrics();

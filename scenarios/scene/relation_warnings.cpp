@@ -103,7 +103,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
     for (const OwnParameter& parameter : other.own_parameters)
       readers[fmt::format("/rendering/parameters/{}/{}", other.info->name, parameter.name)] = {other.info->name};
   }
-  // Warn about those in the file.
+  // Warn about the parameters that the file sets.
   const auto is_given = [&](const std::string& pointer) {
     const Json::json_pointer at(pointer);
     return json.contains(at) && !(initial.contains(at) && initial.at(at) == json.at(at));
@@ -143,7 +143,7 @@ void warn_of_stiff_bristle(const Scenario& scenario, std::vector<Warning>& warni
 /// Precondition: the reader has checked `json`.
 std::optional<Warning> first_unplayed(const Json& json, const std::string& at, double duration) {
   if (!json.is_object()) return std::nullopt;
-  // Waypoints: compare the last but one time with the duration.
+  // Waypoints: the second-to-last time is the beginning of the last segment.
   if (json.value("type", Json()) == "waypoints") {
     const Json& points = json.at("points");
     if (points.size() < 2 || points[points.size() - 2][0].get<double>() < duration) return std::nullopt;

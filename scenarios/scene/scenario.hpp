@@ -236,7 +236,7 @@ struct MetricBound {
   std::optional<double> min;
   std::optional<double> max;
 };
-/// A run is as expected if it has one of these outcomes and all metrics are within their bounds.
+/// Expectations of a run. A run meets them if it has one of `outcomes` and every metric is within its bounds.
 struct ExpectFields {
   std::vector<Outcome> outcomes = {Outcome::completes, Outcome::leaves_hole, Outcome::tool_horizontal};
   std::map<std::string, MetricBound> metrics;  ///< by the name of the metric
