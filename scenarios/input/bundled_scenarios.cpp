@@ -30,6 +30,7 @@ std::vector<BundledScenario> bundled_scenarios() {
 }
 
 fs::path find_scenario(const std::string& argument, const fs::path& directory) {
+  // An existing file.
   std::error_code error;
   const fs::path file = directory / argument;
   if (fs::exists(file, error)) {
@@ -38,11 +39,13 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
           fmt::format("{0}: is a mesh; allowed: a scenario, as \"hapbench new mesh --from {0}\" writes one", argument));
     return file;
   }
+  // A bundled scenario.
   std::vector<std::string> names;
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == argument) return bundled.file;
     names.push_back(bundled.name);
   }
+  // Neither: report a likely mistake.
   const std::string missing = argument + ": no such file and no bundled scenario";
   if (fs::exists(file.string() + ".json", error)) throw InputError(missing + "; there is " + argument + ".json");
   if (argument.find('=') != std::string::npos)
@@ -54,11 +57,13 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
 std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {
   std::vector<fs::path> files;
   for (const std::string& argument : arguments) {
+    // Not the name of a group, or a file has that name.
     std::error_code error;
     if (std::ranges::find(kScenarioGroups, argument) == std::end(kScenarioGroups) || fs::exists(argument, error)) {
       files.push_back(find_scenario(argument));
       continue;
     }
+    // All scenarios of the group.
     for (const BundledScenario& scenario : bundled_scenarios()) {
       if (scenario.group == argument) files.push_back(scenario.file);
     }

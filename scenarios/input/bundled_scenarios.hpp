@@ -4,30 +4,35 @@
 #include <string>
 #include <vector>
 
-/// The scenarios that come with the program, found by their names.
+/// Scenarios that come with the program. They are found by name.
 namespace hapbench {
 
+/// Names of the groups. A group is a subfolder of scenarios/library.
 inline constexpr const char* kScenarioGroups[] = {"thesis", "limits", "beyond", "quality", "examples"};
 
-/// A bundled scenario.
+/// A scenario that comes with the program.
 struct BundledScenario {
   std::string name;   ///< file name without extension
-  std::string group;  ///< thesis, limits, beyond, quality, examples
+  std::string group;  ///< one of kScenarioGroups
   std::filesystem::path file;
 };
 
-/// All of them, by group and name. Throws InputError when their folders are not beside the program.
+/// Returns all bundled scenarios, in the order of kScenarioGroups and by name within a group. Throws InputError
+/// if the installed folder of a group is missing.
 std::vector<BundledScenario> bundled_scenarios();
 
-/// The file a scenario argument means: a path, relative ones starting from `directory`, or else the name of a bundled
-/// scenario. Throws InputError.
+/// Returns the scenario file that `argument` names: a path, or the name of a bundled scenario if no such file
+/// exists. A relative path starts from `directory` (empty: the working directory). Throws InputError if neither
+/// exists, or if the file is a mesh.
 std::filesystem::path find_scenario(const std::string& argument, const std::filesystem::path& directory = {});
 
-/// The files that several arguments mean: what find_scenario finds, and for the name of a group all that is in it, by
-/// name. A file of that name goes before the group. Throws InputError.
+/// Returns the scenario files that the arguments name. The name of a group stands for all scenarios of the group,
+/// ordered by name, unless a file has that name. Every other argument is resolved by find_scenario. Throws
+/// InputError.
 std::vector<std::filesystem::path> find_scenarios(const std::vector<std::string>& arguments);
 
-/// The names of scenario files, after which results are named. Throws InputError when two are the same.
+/// Returns the names of scenario files, without folder and extension. Results are filed under these names. Throws
+/// InputError if two names are equal.
 std::vector<std::string> names_of_scenarios(const std::vector<std::filesystem::path>& files);
 
 }  // namespace hapbench

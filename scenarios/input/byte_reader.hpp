@@ -8,16 +8,18 @@
 
 namespace hapbench {
 
-/// Takes the numbers of a binary file one after another. The bytes must outlive it.
+/// Reads the numbers of a binary file one after another. The bytes must outlive the reader.
 class ByteReader {
  public:
+  /// `order` is the byte order of the file.
   ByteReader(std::string_view bytes, std::endian order) : bytes_(bytes), order_(order) {}
 
-  /// Number of bytes that have not been taken yet.
+  /// Returns the number of bytes that have not been read yet.
   std::size_t left() const { return bytes_.size(); }
+  /// Precondition: at least `bytes` bytes are left.
   void skip(std::size_t bytes) { bytes_.remove_prefix(bytes); }
 
-  /// Precondition: at least sizeof(T) bytes are left.
+  /// Reads the next number. Precondition: at least sizeof(T) bytes are left.
   template <class T>
   T take() {
     std::array<char, sizeof(T)> number;

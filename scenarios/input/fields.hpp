@@ -16,122 +16,130 @@
 #include "scenarios/input/mesh_sampling.hpp"
 #include "sim/core/types.hpp"
 
-/// The format of scenario files, described once, so that program, files, schema and documentation cannot disagree. A
-/// function `describe(Fields&, T&)` for each struct names its fields with meaning, unit and range. Visitors use that to
-/// read files (read_value), to write them and find the files that they name (json_of) and to explain them (guide_to).
+/// The format of scenario files. It is described once in code, so that program, files, schema and documentation
+/// cannot disagree. Each struct T has a function `describe(Fields&, T&)` that lists its fields with meaning, unit
+/// and range. Visitors, which derive from Fields, call these functions:
+///   - read_value reads a value from JSON,
+///   - json_of writes a value as JSON and lists the files that it names,
+///   - guide_to builds the JSON Schema and the documentation.
 namespace hapbench {
 
-/// A parameter that is called and not kept.
+/// Parameter type for a function that is only called during the call and not stored.
 template <class... Arguments>
 using FunctionRef = const std::function<void(Arguments...)>&;
 
-/// Bounds of an integer, included.
+/// Inclusive bounds of an integer.
 struct IntegerRange {
   std::int64_t min;
   std::int64_t max;
 };
 
-/// Fewest and most entries of a list.
+/// Minimum and maximum number of entries of a list.
 struct ListSize {
   std::size_t min;
   std::size_t max;
 };
 
-/// Tells whether a field must be in a file, and what applies if it is not.
+/// Says whether a field must be in a file, and which value applies if it is missing.
 enum class Presence {
   required,
-  has_default,  ///< the member's value in a default-constructed object
-  no_default,   ///< no default holds for every scenario; the field's meaning says what applies
-  left_out      ///< as no_default, and the object has no value to write
+  has_default,  ///< optional; default: the member's value in a default-constructed object
+  no_default,   ///< optional; the default depends on the scenario, and the field's documentation gives it
+  omitted       ///< optional; has no value at present, so that writers omit the field
 };
 
-/// The meaning of an object without a "type", where types choose the fields.
+/// Treatment of an object without the field "type", if the type determines the object's other fields.
 enum class Untyped {
-  refused,
-  first  ///< one of the first type, which is written without
+  refused,  ///< an error
+  first     ///< the object has the first type; writers omit the field "type" for the first type
 };
 
-/// The field that chooses the alternative of an object.
+/// Field that selects one alternative of a variant.
 inline constexpr const char* kTypeField = "type";
 
-/// A value of the field "type", and what such an object is in a few words.
+/// A value of the field "type", with a short description of the objects of this type.
 struct TypeName {
   const char* name;
   const char* summary;
 };
 
-/// The content of a file that a scenario names, and how it is read.
+/// Kind of content of a file that a scenario names, and parameters for reading it.
 struct FileContent {
   enum class Kind { point_shell, mesh, stroke, trace, library };
   Kind kind;
-  MeshSampling sampling = {};  ///< of a mesh
+  MeshSampling sampling = {};  ///< used for a mesh only
 };
 
-/// The field of an object that names a file. No other field names one, and no field of that name holds anything else.
+/// Name of every field that holds the path of a file. A field with this name never holds anything else.
 inline constexpr const char* kFileField = "file";
-/// Longest path of a file [characters].
-inline constexpr std::size_t kLongestPath = 4096;
+/// Maximum length of the path of a file [characters].
+inline constexpr std::size_t kMaxPathLength = 4096;
 
-/// Visitor of one JSON value: of what kind it is, bound to the C++ object that holds it. Of an object it visits the
-/// fields, each of which is a value of its own and has a visitor of its own.
+/// Visitor of one JSON value. A description calls the function for the value's kind (number, text, list …) and
+/// passes the C++ object that holds the value. For a JSON object, the visitor visits the fields; each field's
+/// value has its own visitor.
 class Fields {
  public:
   using Body = FunctionRef<Fields&>;
 
   virtual ~Fields() = default;
 
-  // The kinds of values. A visitor is told one of these, once.
+  // Kinds of values. A description calls exactly one of these functions, once.
   virtual void number(double& value, NumberRange range) = 0;
-  /// A JSON number such as 1e3 counts as an integer.
+  /// An integer. A JSON number with an integer value, such as 1e3, is accepted.
   virtual void integer(std::int64_t& value, IntegerRange range) = 0;
   virtual void boolean(bool& value) = 0;
-  /// Any text up to `max_length` characters (code points).
+  /// A text of at most `max_length` characters (Unicode code points).
   virtual void text(std::string& value, std::size_t max_length) = 0;
   /// The path of a file, relative to the scenario file.
-  virtual void file(std::string& path, const FileContent&) { text(path, kLongestPath); }
-  /// One of `names`, by its index; `what` says of what kind, for messages.
+  virtual void file(std::string& path, const FileContent&) { text(path, kMaxPathLength); }
+  /// One of `names`, given by its index in `names`. `what` is the kind of name for messages, such as "algorithm".
   virtual void name(std::size_t& index, const std::vector<std::string>& names, const char* what) = 0;
   /// Three numbers [x, y, z].
   virtual void vector3(Vec3& value, NumberRange component) = 0;
-  /// A list of two numbers; `allowed` says which, for messages.
+  /// A list of two numbers. `allowed` describes them in messages, such as "a pair [time in s, value]".
   virtual void pair(const char* allowed, double& first, NumberRange of_first, double& second,
                     NumberRange of_second) = 0;
-  /// A list that has `length` entries and can be resized. The entry behind the last is an example, for the schema.
+  /// A list with `length` entries. Readers call `resize` with the number of entries in the file. `entry` describes
+  /// the entry at an index. The index `length` stands for an example entry, from which the schema is made.
   virtual void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
                        FunctionRef<Fields&, std::size_t> entry) = 0;
-  /// null, or what `value` describes.
+  /// null, or the value that `value` describes.
   virtual void or_null(bool is_null, FunctionRef<> set_null, Body value) = 0;
-  /// A number or a name, or an object.
+  /// Either an object, or a plain value: a number or a name.
   virtual void plain_or_object(bool is_object, Body plain, Body object) = 0;
-  /// Any object, as JSON text: the program hands it on and does not look into it.
+  /// An arbitrary JSON object, kept as JSON text. The program passes it on without interpreting it.
   virtual void any_object(std::string& json) = 0;
-  /// A single value, or a list.
+  /// Either a single value or a list.
   virtual void one_or_list(bool is_list, Body one, Body list) = 0;
-  /// An object whose field "type" is one of `types` and chooses the other fields; `what` says of what kind. `held` is
-  /// the index of the alternative to write. `fields` describes those of an alternative.
+  /// An object whose field "type" is one of `types` and determines the other fields. `what` is the kind of object
+  /// for messages, such as "device". `held` is the index of the type that the C++ object has now. `fields`
+  /// describes the fields of the type at an index.
   virtual void alternatives(const char* what, std::span<const TypeName> types, Untyped untyped, std::size_t held,
                             FunctionRef<Fields&, std::size_t> fields) = 0;
-  /// An object. `body` is called with this visitor, perhaps more than once, and describes the object's fields.
+  /// An object. The visitor calls `body` with itself, possibly more than once. `body` describes the object's
+  /// fields.
   virtual void fields(Body body) = 0;
-  /// A value that is described alike in many places: the schema has it once, as the definition of this name.
+  /// A value whose description is used by many fields. The schema contains it once, as a definition with this name.
   virtual void shared(const char*, Body value) { value(*this); }
 
-  // Inside `fields`: the object's fields. Names must live as long as the visit, as literals do.
+  // Fields of an object; called by the body of `fields`. A name must outlive the visit; use string literals.
   virtual void field(std::string_view name, const char* doc, Presence presence, Body value) = 0;
-  /// A field that may hold anything and means nothing, such as "$schema".
+  /// A field whose value is ignored, such as "$schema".
   virtual void ignored(std::string_view /*name*/, const char* /*doc*/) {}
-  /// Exactly one of two fields must be there. Called after both and at most once for an object.
+  /// Requires exactly one of two fields. Call it after both fields, at most once for an object.
   virtual void exactly_one_of(const char* /*a*/, const char* /*b*/) {}
 
-  // Inside `fields`, for what a schema cannot say.
-  /// True while fields are being read: what was described so far has its value.
+  // For checks that a schema cannot express; called by the body of `fields`.
+  /// Returns true if values are being read and no error has occurred in this object. Then all fields that were
+  /// described before have their values.
   virtual bool reads() const { return false; }
-  /// JSON pointer of the value that is being read.
+  /// Returns the JSON pointer of the value that is being read; empty for writers.
   virtual std::string at() const { return {}; }
-  /// Returns true if the file being read has that field; always false for writers.
+  /// Returns true if the object being read has the field `name`; always false for writers.
   virtual bool given(std::string_view) const { return false; }
 
-  // ---- The same for C++ types, by the primitives above. ----
+  // ---- Values of C++ types, implemented with the functions above. ----
 
   template <class T>
   void object(T& value) {
@@ -145,7 +153,7 @@ class Fields {
     value = static_cast<Integer>(wide);
   }
 
-  /// A value of an enumeration; `names` are those of all its values, which count from 0.
+  /// A value of an enumeration. `names[i]` is the name of the enumerator with the value i.
   template <class Enum>
   void choice(Enum& value, const std::vector<std::string>& names, const char* what) {
     auto index = static_cast<std::size_t>(value);
@@ -153,13 +161,14 @@ class Fields {
     if (reads()) value = static_cast<Enum>(index);
   }
 
+  /// A text that must be one of `names`.
   void choice(std::string& value, const std::vector<std::string>& names, const char* what) {
     auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), value) - names.begin());
     name(index, names, what);
     if (reads()) value = names[index];
   }
 
-  /// `each(Fields&, T&)` describes an entry.
+  /// A list of values of type T. `each(Fields&, T&)` describes an entry.
   template <class T, class Each>
   void list(std::vector<T>& values, ListSize size, Each each) {
     entries(
@@ -170,7 +179,8 @@ class Fields {
         });
   }
 
-  /// The types of a variant, named in the variant's order; `each(Fields&, T&)` describes the fields of one.
+  /// A variant. `types` names the alternatives, in the variant's order. `each(Fields&, T&)` describes the fields of
+  /// the alternative T.
   template <class... Ts, class Each>
   void variant(std::variant<Ts...>& value, const char* what, const TypeName (&types)[sizeof...(Ts)], Untyped untyped,
                Each each) {
@@ -181,7 +191,7 @@ class Fields {
       std::visit([&](auto& held) { each(f, held); }, i == value.index() ? value : example);
     });
   }
-  /// The same where a function `describe` is visible for each type that has members.
+  /// A variant for which a function `describe(Fields&, T&)` is visible for each alternative T that has members.
   template <class... Ts>
   void variant(std::variant<Ts...>& value, const char* what, const TypeName (&types)[sizeof...(Ts)],
                Untyped untyped = Untyped::refused) {
@@ -190,13 +200,14 @@ class Fields {
     });
   }
 
-  // ---- Fields of the kinds above: a name, the member, its range, and what it means. ----
+  // ---- Fields: the name, the member that holds the value, its range, and its documentation. ----
 
   void number(std::string_view name, double& value, NumberRange range, const char* doc,
               Presence presence = Presence::has_default) {
     field(name, doc, presence, [&](Fields& f) { f.number(value, range); });
   }
-  /// null without a value, here and below; `each(Fields&, T&)` describes a value, at first a default-constructed one.
+  /// A field that is null if the optional is empty. `each(Fields&, T&)` describes the value; readers start from a
+  /// default-constructed value.
   template <class T, class Each>
   void nullable(std::string_view name, std::optional<T>& value, const char* doc, Each each,
                 Presence presence = Presence::has_default) {
@@ -205,6 +216,7 @@ class Fields {
           !value, [&value] { value.reset(); }, [&](Fields& held) { describe_held(held, value, each); });
     });
   }
+  /// A number, or null if the optional is empty.
   void number(std::string_view name, std::optional<double>& value, NumberRange range, const char* doc,
               Presence presence = Presence::has_default) {
     nullable(
@@ -217,7 +229,7 @@ class Fields {
             Presence presence = Presence::has_default) {
     field(name, doc, presence, [&](Fields& f) { f.text(value, max_length); });
   }
-  /// The field kFileField, which is required. `content` as the object says it now.
+  /// The required field kFileField. `content` is made from the fields that were described before.
   void file(std::string& path, const FileContent& content, const char* doc) {
     field(kFileField, doc, Presence::required, [&](Fields& f) { f.file(path, content); });
   }
@@ -239,16 +251,17 @@ class Fields {
   void object(std::string_view name, T& value, const char* doc, Presence presence = Presence::has_default) {
     field(name, doc, presence, [&value](Fields& f) { f.object(value); });
   }
+  /// An object, or null if the optional is empty.
   template <class T>
   void object(std::string_view name, std::optional<T>& value, const char* doc) {
     nullable(name, value, doc, [](Fields& f, T& inner) { f.object(inner); });
   }
-  /// A value whose `describe` says of what kind it is.
+  /// A value of any kind. `describe(Fields&, T&)` determines the kind.
   template <class T>
   void value(std::string_view name, T& value, const char* doc, Presence presence = Presence::has_default) {
     field(name, doc, presence, [&value](Fields& f) { describe(f, value); });
   }
-  /// Fields of the same C++ object that lie in a JSON object of their own.
+  /// A JSON object that groups some fields of the current C++ object.
   void group(std::string_view name, const char* doc, Presence presence, Body fields) {
     field(name, doc, presence, [&](Fields& f) { f.fields(fields); });
   }
@@ -261,20 +274,21 @@ class Fields {
   void objects(std::string_view name, std::vector<T>& values, ListSize size, const char* doc) {
     list(name, values, size, doc, [](Fields& f, T& value) { f.object(value); });
   }
-  /// A field that is in the file exactly when the optional has a value.
+  /// A field that is omitted from written files if the optional is empty. It is optional in files that are read.
   template <class T, class Each>
   void if_any(std::string_view name, std::optional<T>& value, const char* doc, Each each) {
-    field(name, doc, value ? Presence::no_default : Presence::left_out,
+    field(name, doc, value ? Presence::no_default : Presence::omitted,
           [&](Fields& f) { describe_held(f, value, each); });
   }
-  /// An object that is in the file exactly when the optional has a value.
+  /// An object that is omitted from written files if the optional is empty. It is optional in files that are read.
   template <class T>
   void object_if_any(std::string_view name, std::optional<T>& value, const char* doc) {
     if_any(name, value, doc, [](Fields& f, T& inner) { f.object(inner); });
   }
 
  private:
-  /// Describes the value, or without one a default-constructed one, which is kept when it has been read.
+  /// Describes the value of the optional. If it is empty, describes a default-constructed value, and stores that
+  /// value if it was read without error.
   template <class T, class Each>
   static void describe_held(Fields& f, std::optional<T>& value, Each& each) {
     if (value) return each(f, *value);

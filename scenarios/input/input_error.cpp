@@ -26,11 +26,11 @@ std::string ErrorLocation::text() const {
   return fmt::format("{}", fmt::join(parts, ": "));
 }
 
-InputError::InputError(Kind kind, ErrorLocation location, std::string place, std::string problem)
-    : std::runtime_error(one_line(place.empty() ? problem : place + ": " + problem)),
+InputError::InputError(Kind kind, ErrorLocation location, std::string location_text, std::string problem)
+    : std::runtime_error(one_line(location_text.empty() ? problem : location_text + ": " + problem)),
       kind_(kind),
       location_(std::move(location)),
-      place_(std::move(place)),
+      location_text_(std::move(location_text)),
       problem_(std::move(problem)) {}
 
 InputError::InputError(Kind kind, ErrorLocation location, const std::string& problem)
@@ -42,13 +42,16 @@ InputError::InputError(Kind kind, const std::string& pointer, const std::string&
 InputError::InputError(const std::string& problem) : InputError(Kind::relation, ErrorLocation{}, problem) {}
 
 InputError InputError::all(const std::vector<InputError>& errors) {
+  // Collect the faults of all errors.
   std::vector<InputError> faults;
   for (const InputError& error : errors) {
     const std::vector<InputError> more = error.faults();
     faults.insert(faults.end(), more.begin(), more.end());
   }
+  // Put faults of kind `shape` first, and limit the number of faults.
   std::stable_partition(faults.begin(), faults.end(), [](const InputError& e) { return e.kind() == Kind::shape; });
   if (faults.size() > kMostFaults) faults.erase(faults.begin() + kMostFaults, faults.end());
+  // The first fault gives the message and holds the other faults.
   InputError first = std::move(faults.front());
   first.more_.assign(faults.begin() + 1, faults.end());
   return first;

@@ -8,67 +8,75 @@
 
 namespace hapbench {
 
-/// `text` with a '?' in place of each control character (file names and values from outside may have some).
+/// Returns `text` with each control character replaced by '?'. File names and values from users may contain such
+/// characters.
 std::string one_line(std::string text);
 
 /// Maximum number of errors reported per file.
 inline constexpr std::size_t kMostFaults = 20;
 
-/// The place of a fault, as data. What does not apply is empty.
+/// Location of a fault. Members that do not apply are empty or 0.
 struct ErrorLocation {
-  std::string option = {};                        ///< option with the fault, as typed: "--set time.step_s=0"
-  std::vector<std::filesystem::path> outer = {};  ///< files by which `file` was found, the outermost first
+  std::string option = {};  ///< faulty command-line option as typed, such as "--set time.step_s=0"
+  std::vector<std::filesystem::path> outer =
+      {};  ///< files that lead to `file`, the outermost first: a scenario that names a mesh
   std::filesystem::path file = {};
-  std::size_t line = 0;      ///< in the file, from 1; 0: none
-  std::string entry = {};    ///< of the file, as "sample 3"
+  std::size_t line = 0;      ///< line in `file`, from 1; 0: not known
+  std::string entry = {};    ///< entry of `file`, such as "sample 3"
   std::string pointer = {};  ///< JSON pointer of the field
   /// Names of the options that the problem is about, the option at fault first: "--between". They are no part of the
   /// text, which the problem words; a study finds the line by them that gave an option.
   std::vector<std::string> about_options = {};
 
-  /// The parts that are there, as a message begins with them: "scene.json: /time/step_s" or "mesh.obj, line 3".
+  /// Returns the location as a message begins with it, such as "scene.json: /time/step_s" or "mesh.obj, line 3".
   std::string text() const;
 };
 
-/// Bad input: a file, an argument or a field the program refuses. Exit status 2. The message is one line that names the
-/// place, the value given, what is allowed and, for names, the nearest valid one: the first of perhaps several faults.
+/// Thrown for invalid input: a file, an argument or a field that the program rejects. The program then exits with
+/// status 2. The message is one line with the location, the given value, the allowed values and, for names, the
+/// nearest valid name. An error may hold several faults; the message describes the first fault.
 class InputError : public std::runtime_error {
  public:
   enum class Kind {
-    shape,     ///< one field by itself is wrong; the JSON Schema refuses it too
-    relation,  ///< fields contradict each other or the world (a missing file); a schema cannot express that
+    shape,     ///< a single field is wrong; the JSON Schema rejects it too
+    relation,  ///< fields contradict each other, or a file is missing; a schema cannot express such a rule
   };
 
   InputError(Kind kind, ErrorLocation location, const std::string& problem);
-  /// An error in the field at a JSON pointer; an empty pointer means the whole file.
+  /// An error in the field at a JSON pointer. An empty pointer stands for the whole file.
   InputError(Kind kind, const std::string& pointer, const std::string& problem);
   /// An error of kind `relation` that is not about a particular field.
   explicit InputError(const std::string& problem);
-  /// Several faults, at most kMostFaults of them, those of kind `shape` first. Precondition: there is at least one.
+  /// Combines the faults of several errors into one error. Faults of kind `shape` come first; faults beyond
+  /// kMostFaults are dropped. Precondition: `errors` is not empty.
   static InputError all(const std::vector<InputError>& errors);
 
   Kind kind() const { return kind_; }
   const ErrorLocation& location() const { return location_; }
-  /// The text of the location; empty for the whole file.
-  const std::string& place() const { return place_; }
+  /// Returns the location as text; empty if the location has no parts.
+  const std::string& place() const { return location_text_; }
   const std::string& problem() const { return problem_; }
-  /// The faults one by one; only one unless the error was made by `all`.
+  /// Returns each fault as an error. An error that was not made by `all` has one fault.
   std::vector<InputError> faults() const;
 
  private:
-  InputError(Kind kind, ErrorLocation location, std::string place, std::string problem);
+  InputError(Kind kind, ErrorLocation location, std::string location_text, std::string problem);
 
   Kind kind_;
   ErrorLocation location_;
-  std::string place_;
+  std::string location_text_;
   std::string problem_;
-  std::vector<InputError> more_;  ///< all faults but the first
+  std::vector<InputError> more_;  ///< all faults except the first
 };
 
-/// Throws an InputError (a relation) about the field at a JSON pointer, about a file, a line of it, or another place.
+// Each function throws an InputError of kind `relation`.
+/// The fault is in the field at a JSON pointer.
 [[noreturn]] void fail_at(const std::string& pointer, const std::string& problem);
+/// The fault is in a file.
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
+/// The fault is in a line of a file. Lines count from 1.
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
+/// The fault is at any location.
 [[noreturn]] void fail_in(ErrorLocation location, const std::string& problem);
 /// Throws an InputError about the value of an option, whose name begins the message: "--between: got …".
 [[noreturn]] void fail_in_option(const std::string& option, const std::string& problem);

@@ -7,7 +7,8 @@
 
 #include "scenarios/input/input_error.hpp"
 
-// A static library does not know where it was installed. Users of find_package link .cmake/share_folder.cpp instead.
+// Share folder, defined in .cmake/share_folder.cpp, which projects that use find_package link. Null in other
+// programs. A static library cannot find out where it was installed.
 extern "C" [[gnu::weak]] const char hapbench_share_folder[];
 
 namespace hapbench {
@@ -16,11 +17,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// An address in this shared object or program, for dladdr.
+/// An object in this shared library or program. dladdr finds the library's file by its address.
 constexpr char kHere = 0;
 
-/// The share folder that the build defines; may be empty.
-fs::path share_of_build() {
+/// Returns the share folder that the build defines, or an empty path.
+fs::path build_share_folder() {
 #ifdef HAPBENCH_SHARE
   return HAPBENCH_SHARE;
 #else
@@ -28,35 +29,38 @@ fs::path share_of_build() {
 #endif
 }
 
-/// The paths at which the folder is looked for, in this order.
-std::vector<fs::path> places_of(const std::string& name) {
+/// Returns the paths at which the folder may be, in the order of the search.
+std::vector<fs::path> candidate_paths(const std::string& name) {
+  // Find the files of this library and of the program. They are equal if the library is linked statically.
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error), wanted = fs::path("share") / "hapbench" / name;
   Dl_info object;
   const fs::path library = dladdr(&kHere, &object) != 0 ? fs::canonical(object.dli_fname, error) : program;
-  std::vector<fs::path> places;
-  // A library knows its own: the interpreter that loads it may lie beside another version's.
+  std::vector<fs::path> candidates;
+  // A shared library searches near itself first. The Python interpreter that loads it may be next to the files of
+  // another version.
   if (library != program)
     for (fs::path above = library.parent_path(); above != above.root_path(); above = above.parent_path())
-      places.push_back(above / wanted);
-  places.push_back(program.parent_path().parent_path() / wanted);
-  if (const fs::path share = share_of_build(); !share.empty()) places.push_back(share / name);
-  return places;
+      candidates.push_back(above / wanted);
+  candidates.push_back(program.parent_path().parent_path() / wanted);
+  if (const fs::path share = build_share_folder(); !share.empty()) candidates.push_back(share / name);
+  return candidates;
 }
 
 }  // namespace
 
 fs::path installed_folder(const std::string& name) {
-  const std::vector<fs::path> places = places_of(name);
-  for (const fs::path& place : places) {
+  const std::vector<fs::path> candidates = candidate_paths(name);
+  for (const fs::path& candidate : candidates) {
     std::error_code error;
-    // Canonical, so that messages name a folder of the source tree instead of the build tree's link to it.
-    const fs::path found = fs::canonical(place, error);
+    // The build tree has a symbolic link to the folder in the source tree. The canonical path makes messages name the
+    // source tree.
+    const fs::path found = fs::canonical(candidate, error);
     if (!error && fs::is_directory(found, error)) return found;
   }
   throw InputError(
       fmt::format("{}: is missing; allowed: the program where it was built or installed, with its folders next to it",
-                  places.back().string()));
+                  candidates.back().string()));
 }
 
 }  // namespace hapbench

@@ -5,11 +5,13 @@
 
 namespace hapbench {
 
-/// A folder of the files that come with hapbench: the first existing share/hapbench/NAME of
-///   - the folders above the shared object that contains this library: libhapbench.so, a Python module;
-///   - the parent of the running program's folder: hapbench, installed or in its build tree;
-///   - the place that the build defines, for projects that use this one by find_package or add_subdirectory.
-/// Throws InputError when there is none.
+/// Returns a folder of files that come with hapbench. Searches share/hapbench/NAME in this order and returns the
+/// first existing folder:
+///   1. in each folder above the shared object that contains this library (libhapbench.so or a Python module);
+///   2. in the parent of the running program's folder (hapbench installed, or in its build tree);
+///   3. in the share folder that the build defines, for projects that use hapbench by find_package or
+///   add_subdirectory.
+/// Throws InputError if no folder exists.
 std::filesystem::path installed_folder(const std::string& name);
 
 }  // namespace hapbench

@@ -8,25 +8,29 @@
 
 namespace hapbench {
 
-/// JSON that keeps the order of keys, so that written scenarios read like the documentation. This header only declares
-/// it to save compile time: a source that creates or reads values includes <nlohmann/json.hpp>.
+/// JSON value that keeps the order of keys, so that written scenarios have the order of the documentation. To
+/// save compile time, this header only declares the type. A source that creates or reads values includes
+/// <nlohmann/json.hpp>.
 using Json = nlohmann::ordered_json;
 
-/// Largest JSON file read [bytes].
+/// Maximum size of a JSON file [bytes]. Larger files are rejected.
 inline constexpr std::uintmax_t kLargestJsonFile = 64 << 20;
 
-/// Parses JSON that may be hostile. Throws InputError for syntax errors (with line, column and what was expected),
-/// nesting deeper than 64, objects with more than 10 000 keys, duplicate keys and numbers beyond the range of double.
+/// Parses JSON from an untrusted source. Throws InputError for syntax errors (with line, column and the expected
+/// token), for nesting deeper than 64 levels, for objects with more than 10 000 keys, for duplicate keys and for
+/// numbers beyond the range of double.
 Json parse_json(const std::string& text);
 
-/// Parses a file of at most kLargestJsonFile bytes. Throws InputError of both, without the file's name.
+/// Reads and parses a file. Throws InputError, without the file's name, if the file cannot be read, is larger
+/// than kLargestJsonFile or is not valid for parse_json.
 Json read_json(const std::filesystem::path& file);
 
-/// The value as an error message shows it: JSON on one line, cut when long.
+/// Returns the value as an error message shows it: JSON on one line, truncated if it is long.
 std::string shown(const Json& json);
 
-/// JSON pointer of a member or an element of the value at `at`, escaped as in RFC 6901.
+/// Returns the JSON pointer of a member of the object at the pointer `at`, escaped by RFC 6901.
 std::string member(const std::string& at, const std::string& name);
+/// Returns the JSON pointer of an element of the list at the pointer `at`.
 std::string element(const std::string& at, std::size_t index);
 
 }  // namespace hapbench

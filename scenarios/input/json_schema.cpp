@@ -12,7 +12,7 @@
 namespace hapbench {
 namespace {
 
-/// Describes which values are allowed (guide_to).
+/// Visitor that builds the documentation of a value. Implements guide_to.
 class SchemaWriter final : public Fields {
  public:
   explicit SchemaWriter(Json* definitions) : definitions_(definitions) {}
@@ -76,6 +76,7 @@ class SchemaWriter final : public Fields {
                     FunctionRef<Fields&, std::size_t> fields) override {
     guide_.allowed =
         fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types, &TypeName::name)));
+    // Document each type with a writer of its own.
     Json schemas = Json::array();
     for (std::size_t i = 0; i < types.size(); ++i) {
       SchemaWriter choice(definitions_);
@@ -86,17 +87,21 @@ class SchemaWriter final : public Fields {
       schemas.push_back(choice.guide_.schema);
       guide_.choices.push_back(std::move(choice.guide_));
     }
+    // The value must have one of the types.
     guide_.schema = {{"oneOf", std::move(schemas)}};
   }
   void fields(Body body) override {
+    // Start with an object without fields.
     guide_.schema = {{"type", "object"},
                      {"properties", Json::object()},
                      {"additionalProperties", false},
                      {"required", Json::array()}};
+    // Add the field "type" if the object is one alternative of several.
     if (!guide_.type.empty()) {
       guide_.schema["properties"][kTypeField] = {{"const", guide_.type}};
       if (!guide_.may_be_untyped) guide_.schema["required"].push_back(kTypeField);
     }
+    // Add the other fields: `body` calls field() for each.
     body(*this);
     if (guide_.schema["required"].empty()) guide_.schema.erase("required");
     guide_.allowed = "an object with the fields " + quoted_list(names_of(guide_.fields, &FieldGuide::name));
@@ -118,7 +123,7 @@ class SchemaWriter final : public Fields {
   void ignored(std::string_view name, const char* doc) override {
     guide_.schema["properties"][std::string(name)] = {{"description", doc}};
     guide_.fields.push_back(
-        {.name = std::string(name), .meaning = doc, .presence = Presence::left_out, .initial = {}, .value = {}});
+        {.name = std::string(name), .meaning = doc, .presence = Presence::omitted, .initial = {}, .value = {}});
   }
   void exactly_one_of(const char* a, const char* b) override {
     Json& schema = guide_.schema;
@@ -131,22 +136,22 @@ class SchemaWriter final : public Fields {
   ValueGuide guide_to_number(double& value, NumberRange range) const {
     return guide_of([&](Fields& f) { f.number(value, range); });
   }
-  /// One of two values, of which the second may be an object.
+  /// Documents a value that is either `first` or `second`. Keeps the fields of `second`, which may be an object.
   void any_of(ValueGuide first, ValueGuide second) {
     guide_ = std::move(second);
     guide_.schema = {{"anyOf", {first.schema, guide_.schema}}};
     guide_.allowed = first.allowed + ", or " + guide_.allowed;
   }
 
-  Json* definitions_;
-  ValueGuide guide_;
+  Json* definitions_;  ///< definitions of shared values; null: no definitions are written
+  ValueGuide guide_;   ///< documentation of the visited value
 };
 
 }  // namespace
 
 Json FieldGuide::schema() const {
   Json entry = value.schema;
-  // Draft 7 ignores what stands beside a reference.
+  // JSON Schema draft 7 ignores all keys next to "$ref". Therefore the reference is wrapped in "allOf".
   if (entry.contains("$ref")) entry = {{"allOf", Json::array({std::move(entry)})}};
   entry["description"] = meaning;
   if (presence == Presence::has_default) entry["default"] = initial;

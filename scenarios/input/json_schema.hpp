@@ -7,37 +7,38 @@
 #include "scenarios/input/fields.hpp"
 #include "scenarios/input/json_file.hpp"
 
-/// Explains which values a description of fields allows, as a JSON Schema and in words.
+/// Documentation of the values that a description of fields allows: a JSON Schema and plain text.
 namespace hapbench {
 
 struct FieldGuide;
 
-/// The values that are allowed: as a JSON Schema (draft 7), in words, and by the fields of an object.
+/// Documentation of one value: a JSON Schema (draft 7), a text, and the fields if the value is an object.
 struct ValueGuide {
   Json schema;
-  std::string allowed;              ///< as in "a number > 0 and <= 10 [m]"
-  std::vector<FieldGuide> fields;   ///< of an object whose fields no type chooses, or that is of one type
-  std::vector<ValueGuide> choices;  ///< the objects among which a field "type" chooses
-  std::string type, summary;        ///< of such an object: its type, and what that is in a few words
-  bool may_be_untyped = false;      ///< of such an object: it may stand without its type
+  std::string allowed;             ///< allowed values as a text, such as "a number > 0 and <= 10 [m]"
+  std::vector<FieldGuide> fields;  ///< fields of an object without alternatives, or of one alternative
+  /// Alternatives from which the field "type" selects; empty if the value is not such an object.
+  std::vector<ValueGuide> choices;
+  std::string type, summary;    ///< of an alternative: its value of "type", and a short description
+  bool may_be_untyped = false;  ///< of an alternative: true if its field "type" may be omitted
 };
 
-/// A field of an object.
+/// Documentation of a field of an object.
 struct FieldGuide {
   std::string name;
   std::string meaning;
   Presence presence;
-  Json initial;  ///< the default, with Presence::has_default
+  Json initial;  ///< the default value; null unless presence is Presence::has_default
   ValueGuide value;
 
-  /// The schema of the value with meaning and default.
+  /// Returns the schema of the value, extended by the field's meaning and default.
   Json schema() const;
 };
 
-/// Which values are allowed where `value` describes them. Defaults are those of the described object, which has to be a
-/// default-constructed one. With `definitions`, values that are described alike in many places are put there once, by
-/// their names, and the schema refers to "#/definitions/NAME". Throws std::logic_error where two pairs of fields of one
-/// object exclude each other, for which the schema has no place.
+/// Returns the documentation of the values that `value` describes. Defaults are read from the described C++
+/// object. Precondition: that object is default-constructed. If `definitions` is not null, each value that is
+/// described by Fields::shared is stored there once, by its name, and the schema refers to "#/definitions/NAME".
+/// Throws std::logic_error if one object calls exactly_one_of twice, which the schema cannot express.
 ValueGuide guide_to(Fields::Body value, Json* definitions = nullptr);
 
 }  // namespace hapbench

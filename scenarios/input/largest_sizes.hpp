@@ -1,12 +1,13 @@
 #pragma once
 
-/// Largest sizes of a scenario. Larger requests, which may exceed every integer, are refused before they take memory.
+/// Maximum sizes of a scenario. Larger requests are rejected before memory is allocated. The limits have type
+/// double, because a requested size may exceed the range of every integer type.
 namespace hapbench {
 
-inline constexpr double kMostPoints = 2e7;  ///< shell points or springs of an environment
+inline constexpr double kMostPoints = 2e7;  ///< points of a point shell, or springs, of an environment
 inline constexpr double kMostSteps = 1e9;   ///< steps of a run
-inline constexpr double kMostRows = 2e7;    ///< rows that a run may record
+inline constexpr double kMostRows = 2e7;    ///< time steps that a run may record
 
-inline constexpr double kFarthestPoint = 1000.0;  ///< largest coordinate of a point of a surface's file [m]
+inline constexpr double kMaxCoordinate = 1000.0;  ///< maximum absolute coordinate of a point in a surface file [m]
 
 }  // namespace hapbench

@@ -20,12 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A mesh format: file extension in lower case, and parser.
 struct MeshFormat {
   std::string_view extension;
   TriangleSoup (*read)(std::string_view text, const fs::path& file);
 };
 constexpr MeshFormat kMeshFormats[] = {{".obj", read_obj}, {".ply", read_ply}, {".stl", read_stl}, {".off", read_off}};
 
+/// Throws InputError if a triangle refers to a vertex that the file does not have.
 void check_indices(const TriangleSoup& soup, const fs::path& file) {
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
     for (const std::uint32_t vertex : soup.triangles[t]) {
@@ -37,6 +39,7 @@ void check_indices(const TriangleSoup& soup, const fs::path& file) {
   }
 }
 
+/// Converts the vertices to metres. Throws InputError if a coordinate is not finite or too large.
 void scale_and_check(TriangleSoup& soup, double scale, const fs::path& file) {
   for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
     Vec3& vertex = soup.vertices[i];
@@ -44,14 +47,15 @@ void scale_and_check(TriangleSoup& soup, double scale, const fs::path& file) {
     if (!vertex.allFinite())
       fail_in_file(file, fmt::format("vertex {}: is not finite; allowed: finite coordinates", i));
     const double largest = vertex.cwiseAbs().maxCoeff();
-    if (largest > kFarthestPoint) {
+    if (largest > kMaxCoordinate) {
       fail_in_file(
           file, fmt::format("vertex {}: got coordinate {} after scaling; allowed: at most {} m (is \"scale\" right?)",
-                            i, largest, kFarthestPoint));
+                            i, largest, kMaxCoordinate));
     }
   }
 }
 
+/// Connects the triangles to a mesh. Throws InputError if that is impossible.
 CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
   try {
     return mesh_from_triangles(soup);
@@ -60,19 +64,24 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
   }
 }
 
-/// A triangle mesh has half as many vertices as faces, more only in so far as it is open.
-constexpr double kMostFaces = 2.0 * kMostPoints;
+/// Maximum number of faces after refinement. A closed triangle mesh has about half as many vertices as faces, so
+/// that this bounds the number of points.
+constexpr double kMaxFaces = 2.0 * kMostPoints;
 
-/// Reads the surface in a file and does all checks.
-CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
+/// Parses the contents of a mesh file and makes all checks.
+CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
+  // Parse the triangles.
   const auto* format = std::ranges::find(kMeshFormats, mesh_extension(file), &MeshFormat::extension);
   if (bytes.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
   TriangleSoup soup = format->read(bytes, file);
+  // Check and scale them.
   check_indices(soup, file);
   scale_and_check(soup, sampling.scale, file);
+  // Reverse the winding, and with it the normals.
   if (sampling.flip) {
     for (auto& corners : soup.triangles) std::swap(corners[1], corners[2]);
   }
+  // Connect the triangles and check the surface.
   CheckedMesh surface = connect(soup, file);
   if (sampling.flip && surface.findings.open_edges.empty())
     fail_in_file(file, "is closed, so that its outside is known; allowed: flip_normals of an open surface only");
@@ -81,7 +90,7 @@ CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshS
     fail_in_file(file, fmt::format("has {} vertices; allowed: at most {:.0g}", vertices, kMostPoints));
   if (vertices_with_normals(surface.mesh).empty())
     fail_in_file(file, "has no faces with an area; allowed: at least one");
-  if (sampling.spacing && refined_face_count(surface.mesh, *sampling.spacing, kMostFaces) > kMostFaces) {
+  if (sampling.spacing && refined_face_count(surface.mesh, *sampling.spacing, kMaxFaces) > kMaxFaces) {
     fail_in_file(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing",
                                    *sampling.spacing, kMostPoints));
   }
@@ -101,7 +110,7 @@ std::string mesh_extension(const fs::path& file) {
 }
 
 MeshFile::MeshFile(std::string_view bytes, const fs::path& file, const MeshSampling& sampling)
-    : sampling_(sampling), surface_(std::make_shared<const CheckedMesh>(surface_in(bytes, file, sampling))) {}
+    : sampling_(sampling), surface_(std::make_shared<const CheckedMesh>(read_surface(bytes, file, sampling))) {}
 
 std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
   const MeshFindings& found = surface_->findings;
@@ -109,6 +118,7 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
   const auto warn = [&](const std::string& text) {
     warnings.push_back(one_line(file.filename().string() + ": " + text));
   };
+  // Boundary edges, with their bounding box in millimetres.
   if (!found.open_edges.empty()) {
     Box box{found.open_edges[0], found.open_edges[0]};
     for (const Vec3& p : found.open_edges) box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
@@ -118,12 +128,14 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
         "beyond them there is nothing to touch",
         found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z()));
   }
+  // Edges with more than two faces.
   if (!found.crowded_edges.empty()) {
     const Vec3 p = 1e3 * found.crowded_edges[0];
     warn(fmt::format(
         "the surface is cut along edges with more than two faces: {}, the first at ({:.3g}, {:.3g}, {:.3g}) mm",
         found.crowded_edges.size(), p.x(), p.y(), p.z()));
   }
+  // Repairs of faces.
   for (const auto& [count, text] :
        {std::pair{found.degenerate_triangles, "faces left out, two of their corners being the same"},
         {found.rewound_triangles, "faces turned, which were wound against their neighbours"},

@@ -10,36 +10,42 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/geometry/triangle_tree.hpp"
 
-/// Files that hold the surface of an environment or a tool as a triangle mesh.
+/// Triangle-mesh files with the surface of an environment or of a tool.
 namespace hapbench {
 
 struct CheckedMesh;
 
-/// True when the file's extension is that of a supported mesh format.
+/// Returns true if the file has the extension of a supported mesh format.
 bool is_mesh_name(const std::filesystem::path& file);
-/// The extension of a mesh file, in lower case. Throws InputError if the format is not supported.
+/// Returns the extension of a mesh file in lower case, such as ".obj". Throws InputError if the format is not
+/// supported.
 std::string mesh_extension(const std::filesystem::path& file);
 
-/// The surface in a mesh file (.obj, .ply, .stl, .off; PLY and STL also binary). Copies share it.
+/// The checked surface of a mesh file (.obj, .ply, .stl or .off; PLY and STL as text or binary). Copies share the
+/// surface.
 class MeshFile {
  public:
-  /// `bytes` are the contents of the file, whose name tells the format. Checks all. Throws InputError that names it.
+  /// Parses and checks `bytes`, the contents of `file`. The extension of `file` selects the format. Throws
+  /// InputError that names the file.
   MeshFile(std::string_view bytes, const std::filesystem::path& file, const MeshSampling& sampling);
 
-  /// Peculiarities of the mesh of this file: it is open, or its winding was changed. Each names the file without its
-  /// directory, because results, into which they go, must not depend on where it lies.
+  /// Returns warnings about the mesh: it is open, or it was repaired (faces were reversed, removed, or cut apart
+  /// at an edge). Each warning names the file without its folder, because warnings are part of the results and
+  /// results must not depend on the folder.
   std::vector<std::string> warnings(const std::filesystem::path& file) const;
-  /// Midpoints of the edges where the surface ends [m]; empty when it is closed.
+  /// Returns the midpoints of the boundary edges, which have only one face [m]. Empty for a closed surface.
   const std::vector<Vec3>& open_edges() const;
 
-  /// True when it has no such edges and none with more than two faces.
+  /// Returns true if every edge of the file's mesh has exactly two faces.
   bool is_closed() const;
 
-  /// Its triangles, all wound alike and outwards where the surface is closed [m].
+  /// Returns the triangles [m], with consistent winding. Faces of closed parts are wound such that their normals
+  /// point outwards.
   TriangleSoup triangles() const;
 
-  /// Points with normals: the vertices of the mesh. With a spacing, the mesh is first refined until no edge is longer
-  /// than it, and then at most one point is kept in each cube of that size.
+  /// Returns the points of the point shell, with normals: the vertices of the mesh. If the sampling has a
+  /// spacing, the mesh is first refined until no edge is longer than the spacing. Then the vertices are
+  /// subsampled: at most one point is kept in each cube with the spacing as side length.
   std::vector<SurfacePoint> points() const;
 
  private:

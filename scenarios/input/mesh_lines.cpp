@@ -21,7 +21,7 @@ double MeshLines::number(std::size_t word) const {
   std::string_view text = words_[word];
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   const auto value = finite_number(text);
-  if (!value) fail("got " + quoted_word(text) + "; allowed: a finite number");
+  if (!value) fail("got " + quoted_token(text) + "; allowed: a finite number");
   return *value;
 }
 
@@ -33,7 +33,7 @@ Vec3 MeshLines::position(std::size_t first) const {
 std::size_t MeshLines::count(std::size_t word, const char* what) const {
   const auto number = word < words_.size() ? whole_number(words_[word]) : std::nullopt;
   if (number && *number <= std::numeric_limits<std::int32_t>::max()) return *number;
-  fail(fmt::format("got {} {}; allowed: an integer from 0", word < words_.size() ? quoted_word(words_[word]) : "no",
+  fail(fmt::format("got {} {}; allowed: an integer from 0", word < words_.size() ? quoted_token(words_[word]) : "no",
                    what));
 }
 

@@ -4,11 +4,12 @@
 
 namespace hapbench {
 
-/// How a mesh becomes a point shell.
+/// Parameters for converting a mesh file to a point shell.
 struct MeshSampling {
-  double scale = 1.0;             ///< [m] for each unit of the file
-  std::optional<double> spacing;  ///< [m]; none: take the mesh's own vertices
-  bool flip = false;              ///< turn all normals of an open surface round; a closed one is refused
+  double scale = 1.0;  ///< length of the file's unit [m]
+  std::optional<double>
+      spacing;        ///< largest distance of neighbouring points [m]; empty: the points are the mesh's vertices
+  bool flip = false;  ///< reverses all normals; allowed for an open surface only
 };
 
 }  // namespace hapbench

@@ -15,26 +15,29 @@
 namespace hapbench {
 namespace {
 
-/// Number of letters to replace, remove, insert or swap with a neighbour to turn `a` into `b`. If that is less, one
-/// more than the number for a part of `b` that ends before an underscore.
+/// Returns the edit distance (optimal string alignment) of two names: the minimum number of letters to replace,
+/// remove, insert or swap with a neighbour to convert `a` into `b`. Omitting the part of `b` after an underscore
+/// counts as one edit.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1), before(row), before_that(row);  // for the first letters of `a`
+  std::vector<std::size_t> row(b.size() + 1), before(row),
+      row_before_previous(row);  // of the distance matrix; row[j]: first i letters of `a` to first j of `b`
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    before_that.swap(before);
+    row_before_previous.swap(before);
     before.swap(row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t replaced = before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
       row[j] = std::min({replaced, before[j] + 1, row[j - 1] + 1});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        row[j] = std::min(row[j], before_that[j - 2] + 1);
+        row[j] = std::min(row[j], row_before_previous[j - 2] + 1);
     }
   }
-  std::size_t least = row.back();
+  // Allow a missing ending of `b`.
+  std::size_t smallest = row.back();
   for (std::size_t j = 1; j < b.size(); ++j)
-    if (b[j] == '_') least = std::min(least, row[j] + 1);
-  return least;
+    if (b[j] == '_') smallest = std::min(smallest, row[j] + 1);
+  return smallest;
 }
 
 /// Returns the new name of a renamed name if it is valid here, else an empty text.
@@ -49,10 +52,12 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
   if (const std::string_view now = valid_new_name(given, valid); !now.empty()) return std::string(now);
   const std::string lower = lower_case(given);
   std::string best;
-  // A third of the letters may be wrong, but only one in a short name, which would otherwise match anything.
+  // Accept a distance of up to a third of the letters, at least 2. Names of up to 4 letters: at most 1, because
+  // they would match almost any name otherwise.
   std::size_t best_distance = std::max<std::size_t>(given.size() > 4 ? 2 : 1, given.size() / 3) + 1;
   for (const std::string& name : valid) {
-    // Letters to remove alone are too many. A hostile name may be megabytes long.
+    // Skip names whose difference in length alone exceeds the distance. A name from an untrusted file may be
+    // megabytes long.
     if (given.size() >= name.size() + best_distance) continue;
     const bool contains = given.size() >= 3 && name.find(given) != std::string::npos;
     const std::size_t distance = contains ? 1 : edit_distance(lower, lower_case(name));
@@ -95,7 +100,7 @@ void require_valid_name(std::string_view got, const std::string& name, std::span
 
 std::string quoted_list(std::span<const std::string> names, std::string_view shown_by) {
   if (names.empty()) return "nothing";
-  const std::size_t most = shown_by.empty() ? 50 : 8, more = names.size() - std::min(names.size(), most);
+  const std::size_t max_shown = shown_by.empty() ? 50 : 8, more = names.size() - std::min(names.size(), max_shown);
   std::string text = fmt::format("\"{}\"", fmt::join(names.first(names.size() - more), "\", \""));
   if (more > 0) text += fmt::format(" and {} more", more);
   return more > 0 && !shown_by.empty() ? text + fmt::format(", which \"{}\" tells", shown_by) : text;

@@ -4,26 +4,31 @@
 #include <string>
 #include <string_view>
 
-/// Messages about a name that is none of the valid ones.
+/// Error messages for unknown names.
 namespace hapbench {
 
-/// Returns the valid name nearest to `given` in edit distance, or an empty text if no name is near enough to suggest. The
-/// new name of a renamed name (renamed_names.hpp) is the nearest. Case does not matter, and an ending after an
-/// underscore, such as a unit, may be missing.
+/// Returns the valid name with the smallest edit distance to `given`, or an empty text if no name is near enough to be
+/// suggested. The new name of a renamed name (renamed_names.hpp) is the nearest. The comparison ignores case. The part
+/// of a valid name after an underscore, such as a unit, may be missing in `given`.
 std::string nearest_name(std::string_view given, std::span<const std::string> valid);
 
-/// Returns `; nearest valid name: "x"`, or `; version 0.4.0 renamed it to "x"`, or an empty text.
+/// Returns `; nearest valid name: "x"`, or `; version 0.4.0 renamed it to "x"`, or an empty text if no name is near
+/// enough.
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
 
-/// Throws an InputError about the value of an option when that is not among the valid names.
+/// Throws an InputError about the value of an option if the value is not one of the valid names. `shown_by` is passed to
+/// quoted_list.
 void require_valid_option(const std::string& option, const std::string& name, std::span<const std::string> valid,
                           std::string_view shown_by = {});
 
-/// Throws an InputError, `got` before the name, when the name is not among the valid ones. `shown_by`: see below.
+/// Throws an InputError if `name` is not one of the valid names. `got` is the beginning of the message, before
+/// the name. `shown_by` is passed to quoted_list.
 void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
                         std::string_view shown_by = {});
 
-/// "a", "b", "c"; of more than 50 only how many more there are, of more than 8 where the command `shown_by` shows them.
+/// Returns the names as `"a", "b", "c"`. A list of more than 50 names is truncated and ends with the number of
+/// omitted names. If a command `shown_by` is given, a list of more than 8 names is truncated and ends with that
+/// command, which shows all names.
 std::string quoted_list(std::span<const std::string> names, std::string_view shown_by = {});
 
 }  // namespace hapbench

@@ -11,6 +11,7 @@
 namespace hapbench {
 namespace {
 
+/// Returns the text without white space at both ends.
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r";
   const std::size_t first = text.find_first_not_of(kBlank);
@@ -18,6 +19,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
+/// Splits a row into cells and trims them.
 Words cells_of(std::string_view row) {
   Words cells = parts_of(row, ',');
   for (std::string_view& cell : cells) cell = trimmed(cell);
@@ -42,12 +44,14 @@ bool CsvReader::next() {
 }
 
 NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
-                            std::initializer_list<std::string_view> headers, std::size_t most_rows) {
+                            std::initializer_list<std::string_view> headers, std::size_t max_rows) {
+  // Check the header.
   const auto allowed = [headers] { return fmt::format("\"{}\"", fmt::join(headers, "\" or \"")); };
   if (text.empty()) fail_in_line(file, 1, fmt::format("the file is empty; allowed: header {} and rows", allowed()));
   CsvReader csv{LineReader(text), file};
   if (std::find(headers.begin(), headers.end(), csv.header()) == headers.end())
-    fail_in_line(file, 1, fmt::format("got header {}; allowed: {}", quoted_word(csv.header()), allowed()));
+    fail_in_line(file, 1, fmt::format("got header {}; allowed: {}", quoted_token(csv.header()), allowed()));
+  // Parse the rows.
   NumberTable table;
   table.columns = csv.columns().size();
   while (csv.next()) {
@@ -55,11 +59,11 @@ NumberTable number_table_in(std::string_view text, const std::filesystem::path& 
       const auto value = finite_number(csv.cells()[i]);
       if (!value) {
         fail_in_line(file, csv.line(),
-                     fmt::format("column {}: got {}; allowed: a finite number", i + 1, quoted_word(csv.cells()[i])));
+                     fmt::format("column {}: got {}; allowed: a finite number", i + 1, quoted_token(csv.cells()[i])));
       }
       table.values.push_back(*value);
     }
-    if (table.rows() > most_rows) fail_in_line(file, csv.line(), fmt::format("more than {} rows", most_rows));
+    if (table.rows() > max_rows) fail_in_line(file, csv.line(), fmt::format("more than {} rows", max_rows));
   }
   return table;
 }

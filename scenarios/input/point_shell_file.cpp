@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCsvHeader = "x_m,y_m,z_m,nx,ny,nz";
 
-std::vector<SurfacePoint> csv_points_in(std::string_view text, const fs::path& file) {
+std::vector<SurfacePoint> parse_csv_points(std::string_view text, const fs::path& file) {
   const NumberTable table = number_table_in(text, file, {kCsvHeader}, static_cast<std::size_t>(kMostPoints));
   std::vector<SurfacePoint> points;
   points.reserve(table.rows());
@@ -29,6 +29,7 @@ std::vector<SurfacePoint> csv_points_in(std::string_view text, const fs::path& f
   return points;
 }
 
+/// Checks the points and normalises their normals. Throws InputError that names the file and the point.
 void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file) {
   if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");
   if (static_cast<double>(points.size()) > kMostPoints)
@@ -36,12 +37,12 @@ void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file
   for (std::size_t i = 0; i < points.size(); ++i) {
     SurfacePoint& point = points[i];
     const double largest = point.position.cwiseAbs().maxCoeff();
-    if (!point.position.allFinite() || largest > kFarthestPoint)
+    if (!point.position.allFinite() || largest > kMaxCoordinate)
       fail_in_file(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
     const double length = point.normal.norm();
     if (!(std::abs(length - 1.0) <= 1e-3))
       fail_in_file(file, fmt::format("point {}: got a normal of length {}; allowed: unit normals", i, length));
-    // Unit to rounding is left alone, so that an exported shell reads back bit for bit.
+    // A normal whose length is 1 up to rounding is not changed, so that an exported shell is read back exactly.
     if (std::abs(length - 1.0) > 1e-12) point.normal /= length;
   }
 }
@@ -62,7 +63,7 @@ std::string ply_text(const std::vector<SurfacePoint>& points) {
       points.size());
   for (const SurfacePoint& p : points) {
     const Eigen::Vector3f position = p.position.cast<float>(), normal = p.normal.cast<float>();
-    // Nine digits are all that single precision holds.
+    // Nine significant digits represent a number in single precision exactly.
     fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g}\n", fmt::join(position, " "), fmt::join(normal, " "));
   }
   return text;
@@ -77,7 +78,7 @@ std::string shell_extension(const std::filesystem::path& file) {
 }
 
 std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file) {
-  auto points = shell_extension(file) == ".csv" ? csv_points_in(text, file) : ply_points_in(text, file);
+  auto points = shell_extension(file) == ".csv" ? parse_csv_points(text, file) : ply_points_in(text, file);
   check_and_normalise(points, file);
   return points;
 }

@@ -7,19 +7,21 @@
 
 #include "sim/geometry/point_shell.hpp"
 
-/// Files that hold the surface of an environment as points with normals.
+/// Files that contain the surface of an environment as points with normals (a point shell).
 namespace hapbench {
 
-/// The extension of a point shell's file. Throws InputError when it is neither .csv nor .ply.
+/// Returns the extension of a point-shell file. Throws InputError unless it is .csv or .ply.
 std::string shell_extension(const std::filesystem::path& file);
 
-/// The point shell in the contents of a file: CSV with header x_m,y_m,z_m,nx,ny,nz, or PLY with vertex normals.
-/// Normals, normalised unless unit to rounding, must be unit to 1e-3, coordinates finite and within 1 km. Throws
-/// InputError that names file and point.
+/// Parses the contents of a point-shell file: CSV with the header x_m,y_m,z_m,nx,ny,nz, or PLY with vertex
+/// normals. Coordinates must be finite and at most 1 km. Normals must have length 1 within 1e-3. They are
+/// normalised, unless their length is 1 within 1e-12. Throws InputError that names the file and the line or
+/// point.
 std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file);
 
-/// The shell as the text of a .csv (shortest round-trip numbers) or .ply file (single precision, for viewers). Throws
-/// InputError for another extension.
+/// Returns the contents of a file with these points. The extension of `file` selects the format. CSV has the
+/// shortest numbers that read back exactly. PLY has single precision, for viewers. Throws InputError for every
+/// other extension.
 std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file);
 
 }  // namespace hapbench

@@ -12,13 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Index of the vertex that a face's corner names: "7/1/3" the file's seventh, "-1" the last of the `vertices` so far.
+/// Returns the vertex index, from 0, of a face's corner. The token "7/1/3" means the file's 7th vertex. The token
+/// "-1" means the last of the `vertices` vertices that were read so far.
 std::uint32_t vertex_of(std::string_view word, std::size_t vertices, const MeshLines& lines) {
-  const auto index = whole_word_as<int>(word.substr(0, word.find('/')));
+  const auto index = parse_number<int>(word.substr(0, word.find('/')));
   const auto count = static_cast<std::int64_t>(vertices);
   if (!index || *index == 0 || *index < -count) {
     lines.fail(fmt::format("got {}; allowed: the number of a vertex, from 1, or back from -1, the last one",
-                           quoted_word(word)));
+                           quoted_token(word)));
   }
   return static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index);
 }

@@ -7,9 +7,10 @@
 
 namespace hapbench {
 
-/// Vertices and faces of a Wavefront OBJ file in the file's unit: the lines "v" and "f"; other lines are ignored.
-/// Numbers are read in double precision. MeshFile checks that indices are those of vertices and that coordinates are
-/// finite. Throws InputError that names the file and the line.
+/// Parses the vertices (lines "v") and faces (lines "f") of a Wavefront OBJ file. Ignores all other lines.
+/// Returns coordinates in the file's unit, read in double precision. Does not check that every vertex index of a
+/// face exists and that coordinates stay finite after scaling; MeshFile does. Throws InputError with file and
+/// line.
 TriangleSoup read_obj(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace hapbench

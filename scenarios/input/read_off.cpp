@@ -13,20 +13,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads what follows the header's keyword. What comes after a position or corners, as normals or colours, is ignored.
+/// Parses the part of the file after the keyword "OFF". Ignores tokens after the position of a vertex or the
+/// corners of a face, such as normals or colours.
 TriangleSoup read_off_text(MeshLines& lines) {
-  // The counts may stand in the line of the header.
+  // Read the counts, which may be in the line of the keyword.
   const std::size_t counts = lines.words().size() > 1 ? 1 : 0;
   if (counts == 0 && !lines.next()) lines.fail("the file ends before its counts of vertices, faces and edges");
   const std::size_t vertices = lines.count(counts, "vertices"), faces = lines.count(counts + 1, "faces");
   const auto next = [&lines](std::size_t count, const char* what) {
     if (!lines.next()) lines.fail(fmt::format("the file ends before its {} {}; allowed: a complete file", count, what));
   };
+  // Read the vertices.
   TriangleSoup soup;
   for (std::size_t i = 0; i < vertices; ++i) {
     next(vertices, "vertices");
     soup.vertices.push_back(lines.position(0));
   }
+  // Read the faces.
   for (std::size_t i = 0; i < faces; ++i) {
     next(faces, "faces");
     const std::size_t count = lines.count(0, "corners");

@@ -7,9 +7,10 @@
 
 namespace hapbench {
 
-/// Vertices and faces of an OFF file in the file's unit, from a text with or without normals, colours and texture
-/// coordinates. Numbers are read in double precision. MeshFile checks that indices are those of vertices and that
-/// coordinates are finite. Throws InputError that names the file and the line.
+/// Parses the vertices and faces of an OFF file in text form. Ignores normals, colours and texture coordinates.
+/// Returns coordinates in the file's unit, read in double precision. Does not check that every vertex index of a
+/// face exists and that coordinates stay finite after scaling; MeshFile does. Throws InputError with file and
+/// line.
 TriangleSoup read_off(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace hapbench

@@ -20,15 +20,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A type of numbers in a PLY file.
+/// A numeric type of PLY files.
 struct PlyType {
   std::string_view name, alias;
-  std::size_t size;  ///< in a binary file [bytes]
-  bool is_real;
-  /// The next number of a binary file, which a double can always represent. Precondition: enough bytes are left.
+  std::size_t size;  ///< size of a number in a binary file [bytes]
+  bool is_real;      ///< floating-point type
+  /// Reads the next number of a binary file. A double represents every PLY number exactly. Precondition: at least
+  /// `size` bytes are left.
   double (*take)(ByteReader& reader);
 };
 
+/// Returns the PLY type of C++ type T, with its two names.
 template <class T>
 constexpr PlyType type_named(std::string_view name, std::string_view alias) {
   return {name, alias, sizeof(T), std::is_floating_point_v<T>,
@@ -40,49 +42,58 @@ constexpr PlyType kPlyTypes[] = {
     type_named<std::int32_t>("int", "int32"),   type_named<std::uint32_t>("uint", "uint32"),
     type_named<float>("float", "float32"),      type_named<double>("double", "float64")};
 
-/// Null for a name that is none.
+/// Returns the type with this name, or null if there is none.
 const PlyType* ply_type(std::string_view name) {
   const auto is_named = [name](const PlyType& type) { return name == type.name || name == type.alias; };
   const auto* found = std::find_if(std::begin(kPlyTypes), std::end(kPlyTypes), is_named);
   return found == std::end(kPlyTypes) ? nullptr : found;
 }
 
-/// The numbers of a vertex. The role of a property is the place of one of them, or one of those below.
-constexpr std::array<std::string_view, 6> kOfVertex = {"x", "y", "z", "nx", "ny", "nz"};
-constexpr std::size_t kCorners = 6, kNothing = 7;
-using Values = std::array<double, kOfVertex.size()>;
+/// Names of the vertex properties that are read. The role of a property is its index in this list, kCorners or
+/// kIgnored.
+constexpr std::array<std::string_view, 6> kVertexProperties = {"x", "y", "z", "nx", "ny", "nz"};
+constexpr std::size_t kCorners = 6;  ///< role of a list with the vertex indices of a face
+constexpr std::size_t kIgnored = 7;  ///< role of every other property
+/// Values of kVertexProperties.
+using Values = std::array<double, kVertexProperties.size()>;
 
+/// A property of an element: a number or a list of numbers.
 struct Property {
   const PlyType* count;  ///< type of a list's length; null for a scalar
-  const PlyType* type;
-  std::size_t role = kNothing;
+  const PlyType* type;   ///< type of the number or of the list's entries
+  std::size_t role = kIgnored;
 };
 
+/// An element of the header, such as "vertex" or "face": a table with `entries` entries.
 struct Element {
   std::string_view name;
-  std::size_t line = 0;  ///< of its declaration
+  std::size_t line = 0;  ///< line of its declaration in the file
   std::size_t entries = 0;
   std::vector<Property> properties = {};
 
   bool is_vertex() const { return name == "vertex"; }
+  /// Returns the number of properties with a role.
   auto count(std::size_t role) const { return std::ranges::count(properties, role, &Property::role); }
 };
 
-/// The use of a file: a surface by its faces, or points by its vertices, which then have normals.
+/// Content that is read from a file: a surface (faces), or points with normals (vertices only).
 enum class Wanted { faces, points };
 
-/// Reads the header of a PLY file, from "ply" to "end_header". Throws InputError that names file and line.
+/// Parses the header of a PLY file, from "ply" to "end_header". Throws InputError that names file and line.
 class PlyHeader {
  public:
   PlyHeader(LineReader& lines, Wanted wanted, const fs::path& file)
       : lines_(lines), numbers_(wanted == Wanted::points ? 6 : 3), file_(file) {
+    // Parse all lines of the header.
     while (read_line()) {
     }
     if (!format_) fail("allowed: a header with \"format\"");
+    // Drop the elements after the wanted element.
     const std::string_view name = wanted == Wanted::points ? "vertex" : "face";
     const auto last = std::ranges::find(elements_, name, &Element::name);
     if (last == elements_.end()) fail(fmt::format("has no {}; allowed: \"element {} COUNT\"", name, name));
     elements_.erase(last + 1, elements_.end());
+    // Check the properties.
     check_vertices();
     if (wanted == Wanted::faces && elements_.back().count(kCorners) != 1) {
       fail_in_line(file_, elements_.back().line,
@@ -90,14 +101,14 @@ class PlyHeader {
     }
   }
 
-  /// The elements up to those wanted; later ones are not read.
+  /// Returns the elements up to and including the wanted element. Later elements are not read.
   const std::vector<Element>& elements() const { return elements_; }
   bool is_text() const { return format_ == "ascii"; }
-  /// The byte order of the numbers. Precondition: not is_text().
+  /// Returns the byte order of a binary file. Precondition: !is_text().
   std::endian byte_order() const { return format_ == "binary_big_endian" ? std::endian::big : std::endian::little; }
 
  private:
-  /// False at the end of the header.
+  /// Parses the next line. Returns false at the end of the header.
   bool read_line() {
     const auto line = lines_.next();
     if (!line) fail("the header does not end; allowed: a PLY header up to \"end_header\"");
@@ -117,8 +128,8 @@ class PlyHeader {
       if (elements_.empty()) fail("got a property before an element; allowed: after one");
       elements_.back().properties.push_back(property(words));
     } else if (first != "comment" && first != "obj_info") {
-      fail(
-          fmt::format("got {}; allowed: format, comment, obj_info, element, property, end_header", quoted_word(first)));
+      fail(fmt::format("got {}; allowed: format, comment, obj_info, element, property, end_header",
+                       quoted_token(first)));
     }
     return true;
   }
@@ -131,7 +142,8 @@ class PlyHeader {
     format_ = words[1];
   }
 
-  /// A scalar, "property TYPE NAME", or a list, "property list COUNT TYPE NAME". A role is that of the last element.
+  /// Parses "property TYPE NAME" (a number) or "property list COUNT TYPE NAME" (a list of numbers). The property
+  /// belongs to the last element, which determines its role.
   Property property(const Words& words) const {
     const bool is_list = words.size() == 5 && words[1] == "list";
     const PlyType* count = is_list ? ply_type(words[2]) : nullptr;
@@ -140,21 +152,24 @@ class PlyHeader {
       fail("allowed: \"property TYPE NAME\" or, with an integer COUNT, \"property list COUNT TYPE NAME\"");
     const std::string_view name = words.back();
     if (!is_list) {
-      const auto role = static_cast<std::size_t>(std::ranges::find(kOfVertex, name) - kOfVertex.begin());
-      return {nullptr, type, elements_.back().is_vertex() && role < numbers_ ? role : kNothing};
+      const auto role =
+          static_cast<std::size_t>(std::ranges::find(kVertexProperties, name) - kVertexProperties.begin());
+      return {nullptr, type, elements_.back().is_vertex() && role < numbers_ ? role : kIgnored};
     }
     const bool has_corners = elements_.back().name == "face" && (name == "vertex_indices" || name == "vertex_index");
     if (has_corners && type->is_real) fail("allowed for the vertices of a face: an integer type");
-    return {count, type, has_corners ? kCorners : kNothing};
+    return {count, type, has_corners ? kCorners : kIgnored};
   }
 
+  /// Throws InputError unless there are vertices, and each needed vertex property is declared exactly once.
   void check_vertices() const {
     for (const Element& element : elements_) {
       if (!element.is_vertex()) continue;
       for (std::size_t i = 0; i < numbers_; ++i) {
         if (element.count(i) == 1) continue;
-        fail(fmt::format("got {} vertex properties \"{}\"; allowed: one each of {}", element.count(i), kOfVertex[i],
-                         fmt::join(kOfVertex.begin(), kOfVertex.begin() + numbers_, ", ")));
+        fail(fmt::format("got {} vertex properties \"{}\"; allowed: one each of {}", element.count(i),
+                         kVertexProperties[i],
+                         fmt::join(kVertexProperties.begin(), kVertexProperties.begin() + numbers_, ", ")));
       }
     }
     if (std::ranges::none_of(elements_, &Element::is_vertex)) fail("allowed before the faces: vertices");
@@ -163,33 +178,36 @@ class PlyHeader {
   [[noreturn]] void fail(const std::string& problem) const { fail_in_line(file_, lines_.line(), problem); }
 
   LineReader& lines_;
-  std::size_t numbers_;  ///< of a vertex that are read: its place, or also its normal
+  std::size_t numbers_;  ///< number of vertex properties to read: 3 (position) or 6 (position and normal)
   const fs::path& file_;
   std::optional<std::string_view> format_;
   std::vector<Element> elements_;
 };
 
-/// The values of a PLY file's entries in order: words of a text, a line for each entry, or numbers of a binary file.
+/// Reads the values after the header in order. In a text, each entry has a line and each value is a token. In a
+/// binary file, values follow each other.
 class PlyValues {
  public:
   PlyValues(const LineReader& lines, const PlyHeader& header, const fs::path& file)
       : is_text_(header.is_text()), text_(lines, file), bytes_(lines.rest(), header.byte_order()), file_(file) {}
 
-  /// Goes to the next entry, which is one of `element`.
+  /// Advances to the next entry, which is an entry of `element`.
   void begin(const Element& element) {
     element_ = &element;
     word_ = 0;
     if (is_text_ && !text_.next()) fail_cut_short();
   }
+  /// Reads a number.
   double number(const PlyType& type) {
     if (!is_text_) return take(type);
     skip(1, type);
     return text_.number(word_ - 1);
   }
-  /// A count or an index; `what` it counts is for the message.
+  /// Reads a count or an index. `what` names the counted items in an error message.
   std::int64_t whole(const PlyType& type, const char* what) {
     return is_text_ ? static_cast<std::int64_t>(text_.count(word_++, what)) : static_cast<std::int64_t>(take(type));
   }
+  /// Skips `numbers` values.
   void skip(std::size_t numbers, const PlyType& type) {
     const std::size_t left = is_text_ ? text_.words().size() - word_ : bytes_.left() / type.size;
     if (left < numbers) fail_cut_short();
@@ -211,47 +229,52 @@ class PlyValues {
   }
   [[noreturn]] void fail_cut_short() const {
     if (is_text_ && !text_.words().empty())
-      text_.fail(fmt::format("got {} values; allowed: all of a {}", text_.words().size(), quoted_word(element_->name)));
+      text_.fail(
+          fmt::format("got {} values; allowed: all of a {}", text_.words().size(), quoted_token(element_->name)));
     fail(fmt::format("the file ends before its {} {}; allowed: a complete file", element_->entries,
-                     quoted_word(element_->name)));
+                     quoted_token(element_->name)));
   }
 
   bool is_text_;
   MeshLines text_;
-  std::size_t word_ = 0;  ///< of the text's line, to be taken next
+  std::size_t word_ = 0;  ///< index of the next token in the text's line
   ByteReader bytes_;
   const Element* element_ = nullptr;
   const fs::path& file_;
 };
 
+/// Contents of a PLY file: a surface or points, depending on `wanted`.
 struct Contents {
   Wanted wanted;
   TriangleSoup soup = {};
-  std::vector<SurfacePoint> points = {};  ///< instead of the vertices
+  std::vector<SurfacePoint> points = {};  ///< used instead of `soup` if points are wanted
 };
 
-/// Reads an entry, whose number is `i`.
+/// Reads entry number `i` of an element and adds it to the contents.
 void read_entry(const Element& element, std::size_t i, PlyValues& values, Contents& contents) {
   values.begin(element);
   Values vertex{};
   for (const Property& p : element.properties) {
+    // Read and check the length of a list.
     const std::int64_t length = p.count ? values.whole(*p.count, "entries") : 1;
     if (p.role == kCorners && length < 3)
       values.fail(fmt::format("face {}: got {} corners; allowed: at least 3", i, length));
     if (length < 0) {
-      values.fail(fmt::format("{} {}: got a list of {} entries; allowed: an integer from 0", quoted_word(element.name),
+      values.fail(fmt::format("{} {}: got a list of {} entries; allowed: an integer from 0", quoted_token(element.name),
                               i, length));
     }
-    if (p.role == kNothing) {
+    // Read the values by their role.
+    if (p.role == kIgnored) {
       values.skip(static_cast<std::size_t>(length), *p.type);
     } else if (p.role == kCorners) {
-      // A negative index of a binary file becomes too large and is refused as such.
+      // The cast turns a negative index of a binary file into a large index, which MeshFile rejects.
       add_polygon(static_cast<std::size_t>(length), contents.soup,
                   [&](std::size_t) { return static_cast<std::uint32_t>(values.whole(*p.type, "as a vertex")); });
     } else {
       vertex[p.role] = values.number(*p.type);
     }
   }
+  // Store the vertex.
   if (!element.is_vertex()) return;
   const Vec3 position(vertex[0], vertex[1], vertex[2]);
   if (contents.wanted == Wanted::points)

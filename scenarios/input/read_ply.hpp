@@ -9,13 +9,15 @@
 
 namespace hapbench {
 
-/// Vertices and faces of a PLY file, text or binary of either byte order, in the file's unit. Elements and properties
-/// that are not part of the surface are ignored. Numbers of a text are read in double precision, those of a binary file
-/// as they are stored. MeshFile checks that indices are those of vertices and that coordinates are finite. Throws
-/// InputError that names the file and, of a text, the line.
+/// Parses the vertices and faces of a PLY file, which is text or binary with either byte order. Ignores all other
+/// elements and properties. Returns coordinates in the file's unit. Numbers in a text are read in double
+/// precision; numbers in a binary file have the stored type. Does not check that every vertex index of a face
+/// exists and that binary coordinates are finite; MeshFile does. Throws InputError that names the file and, for a
+/// text, the line.
 TriangleSoup read_ply(std::string_view text, const std::filesystem::path& file);
 
-/// The vertices of a PLY file, with properties x, y, z [m], nx, ny, nz of any type. Throws as read_ply does.
+/// Parses the vertices of a PLY file as points with normals, from the properties x, y, z [m], nx, ny and nz of
+/// any numeric type. Throws InputError that names the file and, for a text, the line.
 std::vector<SurfacePoint> ply_points_in(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace hapbench

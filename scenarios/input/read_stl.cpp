@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;  // bytes of a binary file
+// Sizes in a binary file [bytes]: the name, the name with the number of triangles, and one triangle.
+constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;
 
 void add_triangle(const std::array<Vec3, 3>& corners, TriangleSoup& soup) {
   const auto first = static_cast<std::uint32_t>(soup.vertices.size());
@@ -41,7 +42,7 @@ TriangleSoup read_stl_text(std::string_view text, const fs::path& file) {
                first != "endsolid") {
       lines.fail(
           fmt::format("got {}; allowed: solid, facet, outer loop, three times vertex, endloop, endfacet, endsolid",
-                      quoted_word(lines.words()[0])));
+                      quoted_token(lines.words()[0])));
     }
   }
   return soup;
@@ -50,7 +51,7 @@ TriangleSoup read_stl_text(std::string_view text, const fs::path& file) {
 TriangleSoup read_stl_binary(ByteReader reader, std::size_t triangles, const fs::path& file) {
   TriangleSoup soup;
   for (std::size_t t = 0; t < triangles; ++t) {
-    reader.skip(3 * sizeof(float));  // the normal
+    reader.skip(3 * sizeof(float));  // normal
     std::array<Vec3, 3> corners;
     for (Vec3& corner : corners) {
       for (double& coordinate : corner) coordinate = reader.take<float>();
@@ -65,6 +66,7 @@ TriangleSoup read_stl_binary(ByteReader reader, std::size_t triangles, const fs:
 }  // namespace
 
 TriangleSoup read_stl(std::string_view text, const fs::path& file) {
+  // Read the number of triangles as if the file was binary.
   const std::string first_word = lower_case(text.substr(0, text.find_first_of(" \t\r\n")));
   ByteReader reader(text, std::endian::little);
   std::size_t triangles = 0;
@@ -74,7 +76,8 @@ TriangleSoup read_stl(std::string_view text, const fs::path& file) {
     triangles = reader.take<std::uint32_t>();
     complete = reader.left() / kTriangle >= triangles;
   }
-  // Binary files may begin with "solid" too, but not fill their header with text.
+  // Decide whether the file is a text. Binary files may also begin with "solid", but then their size is exact or
+  // their header contains zero bytes.
   const bool exact = complete && text.size() == kHeader + kTriangle * triangles;
   const bool is_text = text.substr(0, kHeader).find('\0') == std::string_view::npos;
   if (first_word == "solid" && is_text && !exact) return read_stl_text(text, file);

@@ -7,9 +7,10 @@
 
 namespace hapbench {
 
-/// Vertices and faces of an STL file, text or binary, in the file's unit. Numbers of a text are read in double
-/// precision, those of a binary file as they are stored. MeshFile checks that coordinates are finite. Throws InputError
-/// that names the file and, of a text, the line.
+/// Parses the triangles of an STL file, which is text or binary. Each triangle has its own three vertices;
+/// vertices are not merged. Returns coordinates in the file's unit. Numbers in a text are read in double
+/// precision; numbers in a binary file have single precision. Throws InputError that names the file and, for a
+/// text, the line.
 TriangleSoup read_stl(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace hapbench

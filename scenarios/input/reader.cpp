@@ -14,12 +14,13 @@
 namespace hapbench {
 namespace {
 
-/// Hint for users who passed the name of a file instead of its content.
+/// Returns a hint for users who passed the name of a JSON file instead of its contents; otherwise empty.
 std::string text_of_file_hint(const Json& given) {
   if (!given.is_string() || !given.get_ref<const std::string&>().ends_with(".json")) return "";
   return fmt::format("; on a command line \"$(cat {})\" is what is in the file", given.get_ref<const std::string&>());
 }
 
+/// Visitor that reads a JSON value into the C++ object that a description binds. Implements read_value.
 class Reader final : public Fields {
  public:
   Reader(const Json& json, std::string at) : json_(json), at_(std::move(at)) {}
@@ -39,12 +40,13 @@ class Reader final : public Fields {
 
   void integer(std::int64_t& value, IntegerRange range) override {
     if (!json_.is_number()) refuse();
-    // Through double, which sees unsigned and 1e3 alike and is exact for every integer that a range allows.
+    // Convert to double, which treats unsigned integers and 1e3 alike. It is exact for all integers in the allowed
+    // ranges.
     const double given = json_.get<double>();
     const auto min = static_cast<double>(range.min), max = static_cast<double>(range.max);
     if (!(given >= min && given <= max) || given != std::floor(given)) refuse();
     const auto whole = static_cast<std::int64_t>(given);
-    // 2^53 + 1 would round to 2^53.
+    // Reject integers that a double cannot represent: 2^53 + 1 was rounded to 2^53.
     if (json_.is_number_integer() && json_ != Json(whole)) refuse();
     value = whole;
   }
@@ -64,7 +66,8 @@ class Reader final : public Fields {
     const auto& given = json_.get_ref<const std::string&>();
     const auto found = std::find(names.begin(), names.end(), given);
     if (found == names.end()) {
-      const bool in_file_of_its_own = std::ranges::count(at_, '/') == 1;  // a device with its preset
+      const bool in_file_of_its_own =
+          std::ranges::count(at_, '/') == 1;  // top-level field, such as /preset of a device file
       const std::string shown_by = in_file_of_its_own ? fmt::format("hapbench describe {}s", what) : described_by("");
       fail(fmt::format("got {}{}; allowed: {}: one of {}", shown(json_), nearest_name_hint(given, names), what,
                        quoted_list(names, shown_by)));
@@ -110,12 +113,14 @@ class Reader final : public Fields {
   void alternatives(const char* what, std::span<const TypeName> choices, Untyped untyped, std::size_t,
                     FunctionRef<Fields&, std::size_t> fields) override {
     if (!json_.is_object()) refuse(text_of_file_hint(json_));
+    // Find the type.
     const std::vector<std::string> types = names_of(choices, &TypeName::name);
     const auto type = json_.find(kTypeField);
     if (type == json_.end() && untyped == Untyped::refused)
       fail(fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));
     std::size_t index = 0;
     if (type != json_.end()) read_value(*type, member(at_, kTypeField), [&](Fields& f) { f.name(index, types, what); });
+    // Read the fields of that type.
     read_fields([&](Fields& f) { fields(f, index); }, {kTypeField}, what);
   }
 
@@ -128,8 +133,8 @@ class Reader final : public Fields {
     if (names_ != nullptr) return names_->push_back(name);
     const auto entry = json_.find(name);
     if (entry != json_.end()) return collect([&] { read_value(*entry, member(at_, std::string(name)), value); });
-    // A misspelt name of this field has been reported already.
-    if (presence != Presence::required || std::ranges::count(meant_, name) > 0) return;
+    // If an unknown field resembles this field, the misspelt name has been reported already.
+    if (presence != Presence::required || std::ranges::count(suggested_, name) > 0) return;
     collect([&] { fail(fmt::format("missing field \"{}\"; allowed: {}", name, guide_to(value).allowed)); });
   }
 
@@ -152,14 +157,15 @@ class Reader final : public Fields {
 
  private:
   [[noreturn]] void fail(const std::string& problem) const { throw InputError(InputError::Kind::shape, at_, problem); }
-  /// Refuses the value: "got VALUE; allowed: ...", in the words that the schema writer has for it.
+  /// Throws InputError "got VALUE; allowed: ...". The allowed values are described by guide_to.
   [[noreturn]] void refuse(const std::string& hint = "") const {
     fail(fmt::format("got {}; allowed: {}{}", shown(json_), guide_to(*value_).allowed, hint));
   }
+  /// Reads element `i` of the list.
   void read_number(std::size_t i, double& value, NumberRange range) const {
     read_value(json_[i], element(at_, i), [&](Fields& f) { f.number(value, range); });
   }
-  /// Calls `read` and keeps the error that it may throw for `throw_errors`, which throws all that were kept.
+  /// Calls `read` and stores an InputError that it throws. throw_errors throws the stored errors later.
   void collect(FunctionRef<> read) {
     try {
       read();
@@ -172,11 +178,14 @@ class Reader final : public Fields {
     if (!errors_.empty()) throw InputError::all(errors_);
   }
 
-  /// `names` are the fields that `body` does not describe; `root` is what a whole file of them is.
+  /// Reads the fields of an object. `names` are allowed fields that `body` does not describe. `root` is the name of
+  /// the object in "hapbench describe" if the object is the whole file.
   void read_fields(Body body, std::vector<std::string_view> names, std::string_view root) {
+    // Collect the names of the allowed fields.
     names_ = &names;
     body(*this);
     names_ = nullptr;
+    // Report unknown fields.
     for (const auto& entry : json_.items()) {
       if (std::ranges::count(names, entry.key()) > 0) continue;
       const std::vector<std::string> allowed(names.begin(), names.end());
@@ -186,17 +195,18 @@ class Reader final : public Fields {
             InputError::Kind::shape, member(at_, entry.key()),
             fmt::format("unknown field{}; allowed here: {}", hint, quoted_list(allowed, described_by(root))));
       });
-      meant_.push_back(nearest_name(entry.key(), allowed));
+      suggested_.push_back(nearest_name(entry.key(), allowed));
     }
+    // Read the fields.
     collect([&] { body(*this); });
     throw_errors();
   }
 
-  /// The command that describes the object that is being read.
+  /// Returns the command that documents the object that is being read.
   std::string described_by(std::string_view root) const {
     std::string section;
     for (const std::string_view key : parts_of(at_, '/')) {
-      if (whole_number(key)) break;  // entries are described with their list
+      if (whole_number(key)) break;  // entries are documented with their list
       if (!key.empty()) section += fmt::format("{}{}", section.empty() ? "" : ".", key);
     }
     return fmt::format("hapbench describe {}", section.empty() ? root : section);
@@ -204,11 +214,11 @@ class Reader final : public Fields {
 
   const Json& json_;
   std::string at_;                                       ///< JSON pointer of the value
-  const std::function<void(Fields&)>* value_ = nullptr;  ///< describes it
-  /// When not null, the body of an object is called only to collect the names of its fields.
+  const std::function<void(Fields&)>* value_ = nullptr;  ///< description of the value; null before read()
+  /// If not null, field() only adds the field's name to this list and reads nothing.
   std::vector<std::string_view>* names_ = nullptr;
-  std::vector<InputError> errors_;  ///< of the fields or entries that were read
-  std::vector<std::string> meant_;  ///< valid names near to unknown fields
+  std::vector<InputError> errors_;      ///< errors of the fields or entries read so far
+  std::vector<std::string> suggested_;  ///< valid names that were suggested for unknown fields
 };
 
 }  // namespace

@@ -7,10 +7,11 @@
 
 namespace hapbench {
 
-/// Reads and checks a JSON value, found at the JSON pointer `at`, into what `value` describes. Fields that the file
-/// does not have leave their members as they are. Throws InputError, of kind shape for what the schema refuses too,
-/// that names the place, the value and what is allowed. After a fault the remaining fields and entries are still read,
-/// so that one error reports the faults of all.
+/// Reads a JSON value into the C++ object that `value` describes, and checks it. `at` is the JSON pointer of the
+/// value, for messages. A field that is missing in the JSON leaves its member unchanged. Throws InputError with
+/// the location, the given value and the allowed values. The error has kind `shape` if the JSON Schema rejects
+/// the value too. Reading continues after a fault, so that one error reports the faults of all fields and
+/// entries.
 void read_value(const Json& json, const std::string& at, Fields::Body value);
 
 }  // namespace hapbench

@@ -8,7 +8,8 @@
 namespace hapbench {
 
 double rounded_to_digits(double value, int digits) {
-  // By way of the text, because multiples of a power of ten are not exact in binary.
+  // Format and parse the number. Rounding by arithmetic would not give the nearest double, because powers of ten
+  // such as 0.1 are not exact in binary.
   const std::string text = fmt::format("{:.{}g}", value, digits);
   std::from_chars(text.data(), text.data() + text.size(), value);
   return value;

@@ -2,8 +2,8 @@
 
 namespace hapbench {
 
-/// The double nearest to the decimal number of `digits` significant digits that is nearest to `value`: 0.12345 to two
-/// digits is 0.12. Infinities and NaN stay.
+/// Returns `value` rounded to `digits` significant decimal digits, as the nearest double. Example: 0.12345
+/// rounded to two digits is 0.12. Infinities and NaN are returned unchanged.
 double rounded_to_digits(double value, int digits);
 
 }  // namespace hapbench

@@ -8,11 +8,15 @@
 namespace hapbench {
 
 std::shared_ptr<const void> SharedCache::get_untyped(const std::string& key, const std::function<Made()>& make) {
+  // Return the value if it is cached. The entry's lock makes other threads wait while one thread computes the
+  // value.
   const std::shared_ptr<Entry> entry = entry_of(key);
   const std::lock_guard lock(entry->mutex);
   if (entry->made.value) return entry->made.value;
-  // Isolated, or this thread might take up another run while it waits, and wait for itself at the lock.
+  // Compute the value. If `make` waits for parallel work, this thread could otherwise start another run, which
+  // might request the same key and deadlock at the entry's lock; isolate() prevents this.
   Made made = isolate(make);
+  // Store the value.
   const std::lock_guard list_lock(mutex_);
   entry->made = std::move(made);
   ++made_;
@@ -33,10 +37,10 @@ std::shared_ptr<SharedCache::Entry> SharedCache::entry_of(const std::string& key
 }
 
 void SharedCache::drop_oldest() {
-  const std::size_t fewest = 2 * std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t min_entries = 2 * std::max(1u, std::thread::hardware_concurrency());
   std::size_t bytes = 0;
   for (const auto& entry : entries_) bytes += entry->made.bytes;
-  while (entries_.size() > fewest && (entries_.size() > kMost || bytes > kMostBytes)) {
+  while (entries_.size() > min_entries && (entries_.size() > kMaxEntries || bytes > kMaxBytes)) {
     bytes -= entries_.back()->made.bytes;
     entries_.pop_back();
   }

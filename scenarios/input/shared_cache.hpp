@@ -10,14 +10,18 @@
 
 namespace hapbench {
 
-/// Values that take long to make, for all runs of a process: parsed files, point shells, distance grids. Thread-safe.
-/// Keeps the values used last, up to 128 values and 512 MB, but at least two values for each thread of the machine, so
-/// that parallel runs do not drop each other's values. A dropped value lives on while a run holds it.
+/// Cache of values that take long to compute: parsed files, point shells, distance grids. All runs of a process
+/// share it. Thread-safe. Keeps the most recently used values, up to 128 values and 512 MiB. It always keeps at
+/// least two values for each hardware thread, so that parallel runs do not evict each other's values. An evicted
+/// value stays alive while a run holds it.
 class SharedCache {
  public:
-  /// Returns the value of a key. The key must contain everything that the value depends on. If the value is missing,
-  /// calls `make`, which returns a std::shared_ptr<const T>; `bytes` returns the value's approximate size. Waits while
-  /// another thread makes the value. Passes on exceptions of `make`; the next caller then calls `make` again.
+  /// Returns the value of a key. If the value is missing, calls `make` and caches the result. If another thread
+  /// is computing the value, waits for that thread.
+  /// @param key must contain everything that the value depends on, and the kind of value, because T is not
+  /// checked
+  /// @param make returns a std::shared_ptr<const T>; its exceptions are passed on and nothing is cached
+  /// @param bytes returns the approximate size of a value in bytes
   template <class T, class Make, class Bytes>
   std::shared_ptr<const T> get(const std::string& key, const Make& make, const Bytes& bytes) {
     return std::static_pointer_cast<const T>(get_untyped(key, [&]() -> Made {
@@ -27,7 +31,7 @@ class SharedCache {
     }));
   }
 
-  /// Number of values made so far.
+  /// Returns how many values have been computed so far.
   std::size_t made() const {
     const std::lock_guard lock(mutex_);
     return made_;
@@ -43,20 +47,22 @@ class SharedCache {
     std::mutex mutex;
     Made made;
   };
-  static constexpr std::size_t kMost = 128;
-  static constexpr std::size_t kMostBytes = std::size_t{512} << 20;
+  static constexpr std::size_t kMaxEntries = 128;                   ///< limit unless there are many threads
+  static constexpr std::size_t kMaxBytes = std::size_t{512} << 20;  ///< limit of all values together
 
   std::shared_ptr<const void> get_untyped(const std::string& key, const std::function<Made()>& make);
+  /// Returns the entry of a key and marks it as most recently used. Adds an entry without a value if the key is
+  /// new.
   std::shared_ptr<Entry> entry_of(const std::string& key);
-  /// Precondition: the list is locked.
+  /// Evicts the least recently used entries while the cache exceeds its limits. Precondition: mutex_ is locked.
   void drop_oldest();
 
   mutable std::mutex mutex_;
-  std::list<std::shared_ptr<Entry>> entries_;  ///< the one used last first
+  std::list<std::shared_ptr<Entry>> entries_;  ///< most recently used entry first
   std::size_t made_ = 0;
 };
 
-/// The one of this process.
+/// Returns the cache of this process.
 SharedCache& shared_cache();
 
 }  // namespace hapbench

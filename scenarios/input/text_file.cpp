@@ -12,20 +12,20 @@
 
 namespace hapbench {
 
-static constexpr std::uintmax_t kLargestTable = std::uintmax_t{4} << 30;  ///< that is read [bytes]
+static constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;  ///< maximum size of a named file: 4 GiB
 
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
-  // The system would open the file whose name ends before the zero byte.
+  // The operating system would ignore the part of the name after the zero byte and open another file.
   if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(fmt::format("cannot be read: {}", std::strerror(errno)));
-  // Read in pieces up to the limit, because pipes and devices have no size.
+  // Read in chunks and check the limit after each, because the size of a pipe or device is not known in advance.
   std::string text;
-  std::vector<char> piece(1 << 16);
-  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0) {
-    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  std::vector<char> chunk(1 << 16);
+  while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || stream.gcount() > 0) {
+    text.append(chunk.data(), static_cast<std::size_t>(stream.gcount()));
     if (text.size() > largest) throw InputError(fmt::format("is larger than {} MiB", largest >> 20));
   }
   return text;
@@ -33,7 +33,7 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
 
 std::string read_named_file(const std::filesystem::path& file) {
   try {
-    return read_text_file(file, kLargestTable);
+    return read_text_file(file, kMaxFileBytes);
   } catch (const InputError& error) {
     fail_in_file(file, error.problem());
   }

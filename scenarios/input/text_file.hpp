@@ -6,10 +6,12 @@
 
 namespace hapbench {
 
-/// Reads a whole file. Throws InputError without a place when it cannot be read or is larger than `largest` bytes.
+/// Returns the contents of a file. Throws InputError without a location if the file cannot be read or is larger
+/// than `largest` bytes.
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest);
 
-/// The bytes of a file that a scenario names. Throws InputError that names the file.
+/// Returns the contents of a file that a scenario names. Throws InputError that names the file if it cannot be
+/// read or is larger than 4 GiB.
 std::string read_named_file(const std::filesystem::path& file);
 
 }  // namespace hapbench

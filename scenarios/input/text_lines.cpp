@@ -30,11 +30,11 @@ Words parts_of(std::string_view text, char separator) {
 }
 
 std::optional<double> finite_number(std::string_view word) {
-  const auto value = whole_word_as<double>(word);
+  const auto value = parse_number<double>(word);
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-std::string quoted_word(std::string_view word) {
+std::string quoted_token(std::string_view word) {
   return shown(word.substr(0, 60));
 }
 

@@ -11,49 +11,54 @@
 #include <system_error>
 #include <vector>
 
-/// Texts taken apart: lines, words and numbers.
+/// Splitting of texts into lines and tokens, and conversion of tokens to numbers.
 namespace hapbench {
 
+/// Tokens of a text. They refer to the text, which must outlive them.
 using Words = std::vector<std::string_view>;
 
-/// The words of a line, separated by white space.
+/// Splits a line into tokens at white space.
 Words words_of(std::string_view line);
 
-/// The parts of a text between separators, empty ones included; one more than there are separators.
+/// Splits a text at each separator. Parts may be empty. There is one part more than there are separators.
 Words parts_of(std::string_view text, char separator);
 
-/// The whole word as a finite number, or none.
+/// Converts a token to a finite number. Returns nullopt if the token is anything else.
 std::optional<double> finite_number(std::string_view word);
 
-/// The whole word as a number of that type, or none.
+/// Converts a token to a number of type Number. Returns nullopt if the token, in whole or in part, is anything
+/// else or out of range.
 template <class Number>
-std::optional<Number> whole_word_as(std::string_view word) {
+std::optional<Number> parse_number(std::string_view word) {
   Number value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
   return value;
 }
 
-/// The whole word as a count or index, or none.
+/// Converts a token to an integer >= 0. Returns nullopt if the token is anything else.
 inline std::optional<std::size_t> whole_number(std::string_view word) {
-  return whole_word_as<std::size_t>(word);
+  return parse_number<std::size_t>(word);
 }
 
-/// The word as an error message shows it: in quotes, control characters escaped, cut when long.
-std::string quoted_word(std::string_view word);
+/// Returns a token as an error message shows it: in quotes, with escaped control characters, truncated if it is
+/// long.
+std::string quoted_token(std::string_view word);
 
-/// The text with its ASCII letters in lower case.
+/// Returns the text with its ASCII letters in lower case.
 std::string lower_case(std::string_view text);
 
-/// True at the first byte of a character (code point) of UTF-8.
+/// Returns true if `byte` is the first byte of a character (code point) in UTF-8.
 inline bool begins_character(char byte) {
   return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
 }
+/// Returns the number of characters (code points) in a UTF-8 text.
 inline std::size_t characters_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
 }
 
-/// The names of a table's entries, or of what its pointers point to.
+/// Returns the name of each entry of a table. `name` is a pointer to a member of the entry or a function of the
+/// entry. Entries may be pointers.
 template <class Table, class Name>
 std::vector<std::string> names_of(const Table& table, Name name) {
   std::vector<std::string> names;
@@ -62,15 +67,15 @@ std::vector<std::string> names_of(const Table& table, Name name) {
   return names;
 }
 
-/// Returns the lines of a text one by one. The text must outlive it.
+/// Returns the lines of a text one by one. The text must outlive the reader.
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : rest_(text) {}
 
-  /// The next line without its end; none at the end of the text.
+  /// Returns the next line without its newline, or nullopt at the end of the text.
   std::optional<std::string_view> next();
-  std::size_t line() const { return line_; }       ///< number, from 1, of the last line returned
-  std::string_view rest() const { return rest_; }  ///< the text behind it
+  std::size_t line() const { return line_; }  ///< number of the last returned line, from 1; 0 before the first line
+  std::string_view rest() const { return rest_; }  ///< the text after the last returned line
 
  private:
   std::string_view rest_;

@@ -8,13 +8,15 @@
 namespace hapbench {
 namespace {
 
-/// Selects the fields to write: all that have a value, or only those whose default holds for every scenario.
+/// Selects the fields to write: all fields that have a value, or only fields that are required or have a fixed
+/// default.
 enum class Which { all, with_default };
 
-/// Writes a value as JSON, and tells the files that it names where they are asked for.
+/// Visitor that writes a value as JSON and calls a callback for each file that the value names.
 class Writer final : public Fields {
  public:
-  /// `on_file` is null, or outlives the writer.
+  /// Writes the value that `value` describes. `on_file` may be null; otherwise it must outlive the writer. `at` is
+  /// the JSON pointer of the value.
   Writer(Which which, Body value, const OnFile* on_file, std::string at = "")
       : which_(which), on_file_(on_file), at_(std::move(at)) {
     value(*this);
@@ -60,19 +62,20 @@ class Writer final : public Fields {
     body(*this);
   }
   void field(std::string_view name, const char*, Presence presence, Body value) override {
-    if (presence == Presence::left_out) return;
+    if (presence == Presence::omitted) return;
     if (presence == Presence::no_default && which_ == Which::with_default) return;
     json_[std::string(name)] = written(name, value);
   }
 
  private:
+  /// Returns the JSON of the field or entry `name`.
   Json written(std::string_view name, Body value) const {
     return Writer(which_, value, on_file_, on_file_ != nullptr ? fmt::format("{}/{}", at_, name) : "").json();
   }
 
   Which which_;
   const OnFile* on_file_;
-  std::string at_;  ///< JSON pointer of the value, where files are asked for
+  std::string at_;  ///< JSON pointer of the value; empty if on_file_ is null
   Json json_;
 };
 

@@ -9,23 +9,26 @@
 
 namespace hapbench {
 
-/// Is told a file that a value names: the JSON pointer of the field, the path as the field has it, and the content.
+/// Callback for each file that a value names. Receives the JSON pointer of the field, the path in the field, and
+/// the kind of content.
 using OnFile = std::function<void(const std::string& pointer, const std::string& path, const FileContent& content)>;
 
-/// The JSON of what `value` describes. Tells the files it names in order. Throws std::logic_error for one without a
-/// name.
+/// Returns the JSON of the value that `value` describes. If `file` is given, calls it for each file that the
+/// value names, in the order of the fields. Throws std::logic_error if an enumerator has no name or a variant has
+/// no value.
 Json json_of(Fields::Body value, const OnFile& file = nullptr);
 
-/// The JSON of a field's default: as json_of, without the fields inside it whose default depends on the scenario.
+/// Returns the JSON of a field's default value. In contrast to json_of, omits inner fields whose default depends
+/// on the scenario (Presence::no_default).
 Json default_of(Fields::Body value);
 
-/// The JSON of a value, by its `describe`, which says of what kind it is.
+/// Returns the JSON of a value of any kind, by its function `describe`.
 template <class T>
 Json written(T value) {
   return json_of([&value](Fields& f) { describe(f, value); });
 }
 
-/// The JSON of a struct, by its `describe`.
+/// Returns the JSON object of a struct, by its function `describe`.
 template <class T>
 Json written_object(T value) {
   return json_of([&value](Fields& f) { f.object(value); });

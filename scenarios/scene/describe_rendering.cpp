@@ -13,17 +13,18 @@
 namespace hapbench {
 namespace {
 
-/// The field's name without the objects it lies in.
+/// Returns the field's name without the path of the objects around it.
 std::string_view key(const Parameter& parameter) {
   const std::string_view path = parameter.field;
   return path.substr(path.rfind('.') + 1);
 }
 
+/// Returns the range of an integer parameter.
 IntegerRange integers(const Parameter& parameter) {
   return {static_cast<std::int64_t>(parameter.range.min), static_cast<std::int64_t>(parameter.range.max)};
 }
 
-/// A number, a number or null, or an integer.
+/// Describes the field of a parameter: an integer, a number, or a number that may be null.
 template <class Number>
 void number(Fields& f, const Parameter& parameter, Number& value, const char* doc,
             Presence presence = Presence::has_default) {
@@ -33,12 +34,14 @@ void number(Fields& f, const Parameter& parameter, Number& value, const char* do
     f.number(key(parameter), value, parameter.range, doc, presence);
 }
 
-/// null, or what `each(Fields&, T&)` describes; left out of written scenarios that have none.
+/// Describes a field that is null or has the value that `each(Fields&, T&)` describes. Written scenarios omit the
+/// field if the optional is empty.
 template <class T, class Each>
 void if_not_null(Fields& f, std::string_view name, std::optional<T>& value, const char* doc, Each each) {
-  f.nullable(name, value, doc, each, value ? Presence::no_default : Presence::left_out);
+  f.nullable(name, value, doc, each, value ? Presence::no_default : Presence::omitted);
 }
 
+/// Describes the parameters that belong to one algorithm only.
 void own_parameters(Fields& f, RenderingConfig& rendering, const AlgorithmEntry& entry) {
   const std::vector<double> values = own_values(rendering, entry);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -49,18 +52,18 @@ void own_parameters(Fields& f, RenderingConfig& rendering, const AlgorithmEntry&
   }
 }
 
-/// The parameters that algorithms have for themselves. Written are those of the algorithm, and those given, so that a
-/// scenario without them is the same whatever algorithms there are.
+/// Describes the field `parameters`, which holds an object for each algorithm that has parameters of its own.
+/// Only the objects of the scenario's algorithm and of algorithms whose parameters were given are written.
+/// Otherwise a written scenario would change whenever an algorithm is added.
 void own_parameters(Fields& f, RenderingConfig& rendering) {
   const auto presence = [&rendering](const AlgorithmEntry& entry) {
     const bool written = !entry.own_parameters.empty() &&
                          (entry.info->name == rendering.algorithm || rendering.parameters.contains(entry.info->name));
-    return written ? Presence::no_default : Presence::left_out;
+    return written ? Presence::no_default : Presence::omitted;
   };
-  const bool any =
-      std::ranges::any_of(algorithms(), [&](auto& entry) { return presence(entry) != Presence::left_out; });
+  const bool any = std::ranges::any_of(algorithms(), [&](auto& entry) { return presence(entry) != Presence::omitted; });
   f.group("parameters", "parameters that algorithms have for themselves: an object for each algorithm",
-          any ? Presence::no_default : Presence::left_out, [&](Fields& all) {
+          any ? Presence::no_default : Presence::omitted, [&](Fields& all) {
             for (const AlgorithmEntry& entry : algorithms()) {
               if (entry.own_parameters.empty()) continue;
               all.group(entry.info->name, "parameters of this algorithm", presence(entry),
@@ -85,7 +88,8 @@ static void describe(Fields& f, DryFrictionConfig& dry) {
   number(f, parameter::kDryDampingRatio, dry.damping_ratio, "zeta_t of the bristle with the virtual mass");
 }
 
-/// The thesis's viscous friction, whose defaults depend on the scene, or dry friction in its place.
+/// Describes the field `friction`: the thesis's viscous friction, whose defaults depend on the scene, or dry
+/// friction instead.
 static void describe_friction(Fields& f, RenderingConfig& rendering) {
   constexpr TypeName kTypes[] = {{"viscous", "the thesis's, proportional to the velocity; the default"},
                                  {"dry", "sticks up to mu times the load and slides above (ours)"}};
@@ -107,6 +111,7 @@ static void describe_friction(Fields& f, RenderingConfig& rendering) {
                  });
 }
 
+/// Describes Hunt-Crossley damping with the coefficient `chi`.
 static void describe_hunt_crossley(Fields& f, double& chi) {
   constexpr TypeName kTypes[] = {{"hunt_crossley", "-chi K sum c_i d_i <v, u_i> u_i: no step at contact on and off"}};
   f.alternatives("damping", kTypes, Untyped::refused, 0, [&chi](Fields& fields, std::size_t) {
@@ -122,7 +127,7 @@ static void describe(Fields& f, Lateness& late) {
   number(f, parameter::kDropout, late.dropout, "probability that a query after the first is lost, by the seed");
 }
 
-/// A name, or an object that names a file. The visitors hold on to the file's name.
+/// Describes the source of contacts: a name, or an object that names a file (a recording or a shared library).
 static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
   constexpr TypeName kTypes[] = {{kTrace, "contacts recorded at times, of a prescribed motion"},
                                  {kContactPlugin, "a shared library by hapbench_module.h, whose code is run"}};
@@ -152,7 +157,7 @@ static void describe(Fields& f, EnergyTankConfig& tank) {
 static void describe(Fields& f, ActuatorLimitedPassivityConfig& limited) {
   f.nullable(key(parameter::kActuatorForce), limited.max_force,
              "most force of the actuator along each axis of the world; null: no limit",
-             [](Fields& v, Vec3& most) { v.vector3(most, parameter::kActuatorForce.range); });
+             [](Fields& v, Vec3& force) { v.vector3(force, parameter::kActuatorForce.range); });
   number(f, parameter::kActuatorDamping, limited.max_damping,
          "most damping; null: M / dt, which stops the virtual tool in one step");
 }
@@ -167,7 +172,7 @@ void describe(Fields& f, RenderingConfig& rendering) {
   static const std::vector<std::string> kDepthModels =
       names_of(depth_models(), [](const DepthModelEntry& entry) { return entry.info->name; });
   f.choice("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
-  // The stages that the algorithm fixes are the defaults of the fields below.
+  // Set the stages that the algorithm fixes. They are the defaults of the fields below.
   if (f.reads()) rendering = with_fixed_stages(rendering);
   number(f, parameter::kIterations, rendering.iterations, "m of the shaping iteration");
   f.choice("depth_model", rendering.depth_model, kDepthModels, "depth model",

@@ -5,8 +5,8 @@
 
 namespace hapbench {
 
-/// The fields of `rendering` with meaning, unit, range and default. A visitor that reads fills in the stages that the
-/// algorithm fixes.
+/// Describes the fields of `rendering` with meaning, unit, range and default. When a file is read, the stages
+/// that the chosen algorithm fixes, such as its depth model, become the defaults.
 void describe(Fields& f, RenderingConfig& rendering);
 
 }  // namespace hapbench

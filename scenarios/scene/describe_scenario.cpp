@@ -29,13 +29,14 @@
 namespace hapbench {
 namespace {
 
-constexpr auto kMostStepsOrRows = static_cast<std::int64_t>(kMostSteps);
+constexpr auto kMaxStepsOrRows = static_cast<std::int64_t>(kMostSteps);
 
-/// Returns the number of steps, which may be more than a scenario can hold.
+/// Describes the field `time`. Returns the number of time steps, which may exceed the allowed number and the
+/// range of integers.
 double describe_time(Fields& f, TimeFields& time) {
   std::optional<double> duration;
   f.number("step_s", time.step, {0.0, 1.0, "s", true}, "time step", Presence::required);
-  f.integer("steps", time.steps, {1, kMostStepsOrRows}, "number of steps (rows)", Presence::no_default);
+  f.integer("steps", time.steps, {1, kMaxStepsOrRows}, "number of steps (rows)", Presence::no_default);
   f.if_any("duration_s", duration, "instead of steps: duration_s / step_s, rounded", [](Fields& d, double& value) {
     d.number(value, {0.0, 1e9, "s", true});
   });
@@ -47,7 +48,7 @@ double describe_time(Fields& f, TimeFields& time) {
   return duration ? std::round(*duration / time.step) : static_cast<double>(time.steps);
 }
 
-/// One outcome, or a list of them.
+/// Describes a field with one outcome or a list of outcomes.
 void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
   const std::vector<std::string> names = names_of(outcome_infos(), &OutcomeInfo::name);
   const auto outcome = [&names](Fields& o, Outcome& value) { o.choice(value, names, "outcome"); };
@@ -63,7 +64,8 @@ void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
       });
 }
 
-/// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1) in place of the structs' own, those of springs.
+/// Sets the defaults of the scene's type to the thesis's parameters (Tables A.1, A.2, B.1). Does nothing for
+/// springs, whose parameters are the structs' default values.
 void set_scene_defaults(Scenario& scenario) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return;
   RenderingConfig& rendering = scenario.rendering;
@@ -93,7 +95,7 @@ static void describe(Fields& f, IntegratorFields& integrator) {
   if (f.reads()) integrator.type = *std::ranges::find(kIntegrators, type, [](auto* entry) { return entry->info.name; });
   f.number("tolerance_s", integrator.tolerance, {1e-15, 1.0, "s"},
            "of event: within which it finds the times of contact on and off; 1e-9 unless it is given",
-           integrator.type == &kEvent ? Presence::no_default : Presence::left_out);
+           integrator.type == &kEvent ? Presence::no_default : Presence::omitted);
 }
 
 static void describe(Fields& f, DivergenceBounds& bounds) {
@@ -105,7 +107,7 @@ static void describe(Fields& f, DivergenceBounds& bounds) {
 
 static void describe(Fields& f, RecordFields& record) {
   f.boolean("trajectory", record.trajectory, "write trajectory.csv");
-  f.integer("every", record.every, {1, kMostStepsOrRows}, "record each N-th step only");
+  f.integer("every", record.every, {1, kMaxStepsOrRows}, "record each N-th step only");
   f.list("ratio_iterations", record.ratio_iterations, {0, 1000},
          "write ratios.csv after these numbers of shaping iterations", [](Fields& i, std::int64_t& value) {
            i.integer(value, {0, 100'000});
@@ -159,18 +161,20 @@ static void describe(Fields& f, ExpectFields& expect) {
           });
 }
 
-/// Reading a file has already replaced this field by the fields of the scenario that it names.
+/// Describes the field `extends`. read_scenario_text has merged the scenario that a file extends and removed the
+/// field, so that the field is only found in JSON that was not read from a file. Throws InputError in this case.
 static void describe_extends(Fields& f) {
   std::string other;
   f.text(kExtends, other, 4096,
          "another scenario, a file or a bundled name, over whose fields (but name and expect) these are merged; "
          "null replaces; so does an object of another type",
-         Presence::left_out);
+         Presence::omitted);
   if (!f.reads() || !f.given(kExtends)) return;
   fail_at(member(f.at(), kExtends), "got it in no file; allowed: in files");
 }
 
 void describe(Fields& f, Scenario& scenario) {
+  // Name, origin and seed.
   double steps = 0.0;
   f.ignored("$schema", "the JSON Schema, for editors");
   describe_extends(f);
@@ -178,9 +182,11 @@ void describe(Fields& f, Scenario& scenario) {
   f.text("description", scenario.description, 10'000, "what it shows");
   f.text("source", scenario.source, 1000, "where the numbers come from");
   f.integer("seed", scenario.seed, {0, std::int64_t{1} << 53}, "of everything random");
+  // Time and environment. The environment's type determines defaults of the fields below.
   f.group("time", "time steps", Presence::required, [&](Fields& time) { steps = describe_time(time, scenario.time); });
   f.value("environment", scenario.environment, "what the tool touches", Presence::required);
   if (f.reads()) set_scene_defaults(scenario);
+  // Tool, hand, device and rendering.
   f.object("initial", scenario.initial, "state at t = 0");
   f.value("tool", scenario.tool, "the tool; without a type it is a cylinder");
   f.object("motion", scenario.motion, "scripted motion");
@@ -188,6 +194,7 @@ void describe(Fields& f, Scenario& scenario) {
   f.value("device", scenario.device, "the haptic device");
   f.object("rendering", scenario.rendering, "how contacts become a force");
   f.object("integrator", scenario.integrator, "how forces become motion");
+  // Limits, output and expectations.
   f.object("bounds", scenario.bounds, "where a run counts as diverged");
   f.object_if_any(
       "reference_force", scenario.reference_force,
@@ -196,6 +203,7 @@ void describe(Fields& f, Scenario& scenario) {
   f.object("metrics", scenario.metrics, "where metrics of settled contact begin");
   f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");
   if (!f.reads()) return;
+  // Check the rules between fields and derive values.
   resolve_delay(scenario);
   check_relations(scenario, steps);
   scenario.time.steps = static_cast<std::int64_t>(steps);

@@ -5,8 +5,8 @@
 
 namespace hapbench {
 
-/// The fields of a scenario file with meaning, unit, range and default. A visitor that reads also checks the relations
-/// between them, and throws InputError.
+/// Describes the fields of a scenario file with meaning, unit, range and default. When a file is read, also
+/// checks the rules between fields (check_relations). Throws InputError if a rule is broken.
 void describe(Fields& f, Scenario& scenario);
 
 }  // namespace hapbench

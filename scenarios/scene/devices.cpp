@@ -16,7 +16,7 @@
 
 namespace hapbench {
 
-constexpr double kMostDeviceDelay = 10'000.0;  ///< of an impedance device
+constexpr double kMaxDeviceDelay = 10'000.0;  ///< maximum delay of an impedance device [time steps]
 
 static void describe_force_limit(Fields& f, std::optional<double>& limit) {
   f.number("force_limit_N", limit, {0.0, 1e9, "N", true}, "input force limit f_th; null: off");
@@ -80,8 +80,9 @@ static void describe(Fields& f, VelocityFilterConfig& filter) {
        {"adaptive_window", "slope over the longest window that fits a straight line (Janabi-Sharifi et al. 2000)"}});
 }
 
-/// Puts the numbers of a published device in place of the defaults. An effective scenario has these numbers and not the
-/// name, because the numbers are what is simulated.
+/// Describes the field `preset`, which replaces the defaults by the parameters of a published device. An
+/// effective scenario contains these parameters and not the preset's name, because only the parameters determine
+/// the simulation.
 static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
   std::optional<std::string> preset;
   const std::vector<std::string> names = names_of(device_presets(), &DevicePreset::name);
@@ -111,10 +112,10 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
   f.number("coulomb_N", device.coulomb, {0.0, 1e9, "N"}, "dry friction of each axis, moving and at rest");
   f.number("encoder_step_m", device.encoder_step, {0.0, 1.0, "m"},
            "the measured position is the nearest multiple of it, halves away from zero; 0: exact");
-  // A device by itself, whose delay is in seconds, has no samples yet (resolve_delay).
-  f.number("delay_samples", device.delay_samples, {0.0, kMostDeviceDelay, "time steps"},
+  // A device with a delay in seconds has no number of samples (NaN) until resolve_delay knows the time step.
+  f.number("delay_samples", device.delay_samples, {0.0, kMaxDeviceDelay, "time steps"},
            "from a sample to its force; a fraction changes the force within a time step",
-           std::isnan(device.delay_samples) ? Presence::left_out : Presence::has_default);
+           std::isnan(device.delay_samples) ? Presence::omitted : Presence::has_default);
   f.if_any(
       "delay_s", device.delay,
       "instead of delay_samples: delay_s / time.step_s of them, fractions too. An effective scenario has both, which "
@@ -123,7 +124,7 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
         d.number(value, {0.0, 1e4, "s"});
       });
   if (f.reads() && device.delay && !f.given("delay_samples"))
-    device.delay_samples = std::numeric_limits<double>::quiet_NaN();  // resolve_delay knows the time step
+    device.delay_samples = std::numeric_limits<double>::quiet_NaN();  // set by resolve_delay
   f.value("velocity_filter", device.velocity_filter, "makes the tool's velocity of measured positions");
   f.number("force_max_N", device.force_max, {0.0, 1e9, "N", true}, "the motors saturate at this norm; null: never");
   f.number("force_step_N", device.force_step, {0.0, 1e9, "N"},
@@ -150,12 +151,13 @@ void describe(Fields& f, DeviceFields& device) {
 void resolve_delay(Scenario& scenario) {
   auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
   if (device == nullptr || !device->delay) return;
+  // Convert to time steps and check the range.
   const double delay = *device->delay, samples = delay / scenario.time.step, given = device->delay_samples;
-  if (samples > kMostDeviceDelay) {
+  if (samples > kMaxDeviceDelay) {
     fail_at("/device/delay_s",
-            fmt::format("got {} s, {:.3g} time steps; allowed: at most {} of them", delay, samples, kMostDeviceDelay));
+            fmt::format("got {} s, {:.3g} time steps; allowed: at most {} of them", delay, samples, kMaxDeviceDelay));
   }
-  // 1e-9 forgives the rounding of whoever wrote both.
+  // If both delays are given, they must agree up to the rounding of the written numbers.
   if (std::abs(given - samples) > 1e-9 * std::max(1.0, samples)) {
     fail_at("/device/delay_s",
             fmt::format(
@@ -169,14 +171,16 @@ void resolve_delay(Scenario& scenario) {
 std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
   if (const auto* ideal = std::get_if<IdealDeviceFields>(&scenario.device))
     return std::make_unique<IdealDevice>(ideal->force_limit);
+  // An impedance device, to whose handle a hand may be fixed.
   if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
     ImpedanceDeviceConfig config = *impedance;
     config.seed = derived_seed(scenario, trial, RandomUse::position_noise);
-    AttachedHand attached;  // moves with the handle between samples
+    AttachedHand attached;  // hand mass, spring and damper that the device integrates together with the handle
     if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&scenario.hand))
       attached = {hand->mass, hand->spring.stiffness, hand->spring.damping};
     return std::make_unique<ImpedanceDevice>(config, scenario.time.step, attached);
   }
+  // An admittance device, whose force sensor measures the handle's weight.
   AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
   if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up.normalized();
   config.sensor.seed = derived_seed(scenario, trial, RandomUse::sensor_noise);

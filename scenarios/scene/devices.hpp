@@ -7,15 +7,18 @@
 #include "scenarios/scene/trials.hpp"
 #include "sim/loop/device.hpp"
 
-/// Haptic devices: their fields, and the device that these say.
+/// Haptic devices: description of their fields, and construction of the simulated device.
 namespace hapbench {
 
-/// The fields of `device` with meaning, unit, range and default.
+/// Describes the fields of `device` with meaning, unit, range and default.
 void describe(Fields& f, DeviceFields& device);
 
-/// Makes samples of a device's delay in seconds. Throws InputError where given samples say something else.
+/// Converts the delay of an impedance device from seconds to time steps. Does nothing if the scenario gives no
+/// delay in seconds. Throws InputError if the scenario also gives a different number of time steps, or if the
+/// delay is longer than 10 000 time steps.
 void resolve_delay(Scenario& scenario);
 
+/// Returns the device of the scenario, with the random seeds of the trial.
 std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial);
 
 }  // namespace hapbench

@@ -22,14 +22,17 @@ namespace {
 
 using Shell = std::shared_ptr<const PointShell>;
 
+/// Allowed number of springs in a group.
 constexpr IntegerRange kSpringCount = {0, 20'000'000};
 
+/// Throws InputError if the shell would have too many points. The template parameter is an analytic shape.
 template <class Shell>
 void check_point_count(Fields& f, const Shell& shell) {
   if (f.reads())
     require_at_most(kMostPoints, point_count(shell), f.at(), "shell points (from the lengths and spacing_m)");
 }
 
+/// Throws InputError if the fields of springs contradict each other.
 void check_springs(const SpringsEnvironment& springs, const std::string& at) {
   double count = static_cast<double>(springs.random.count);
   for (std::size_t i = 0; i < springs.groups.size(); ++i) {
@@ -41,16 +44,18 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
   fail_at(at + "/signed", "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
 }
 
+/// Throws InputError if the grid is too coarse for the hole and its walls, or would give too many points.
 void check_block(const BlockEnvironment& environment, const std::string& at) {
   const BlockWithHole& block = environment.block;
   const double grid = environment.grid;
   const Vec3& size = block.size;
-  // Cells smaller than this cannot be numbered; thinner walls have no nodes on both sides.
+  // Upper limit: 1e5 grid cells along an edge of the block, because each cell needs an index. Lower limit: 3
+  // cells, because a thinner wall may have no grid nodes on one of its sides.
   const double longest = 1e5 * grid, thinnest = 3.0 * grid;
   const auto fail = [&at](const char* field, const std::string& problem) { fail_at(at + "/" + field, problem); };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
   const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  const double copies = environment.per_cell ? 4.0 : 1.0;  // on an edge of four cells
+  const double copies = environment.per_cell ? 4.0 : 1.0;  // each vertex lies on a grid edge that four cells share
   require_at_most(kMostPoints, copies * area / (grid * grid), at, "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
     fail("hole_diameter_m",
@@ -157,7 +162,9 @@ void describe(Fields& f, Environment& environment) {
 
 namespace {
 
-/// The environment with every default and hashes of files in place of paths: equal for equal shells. Throws InputError.
+/// Returns the environment as JSON with every default filled in and with hashes of files instead of paths. Used
+/// as a cache key: environments with equal JSON have equal shells and solids. Throws InputError if a file cannot
+/// be read.
 Json environment_content(const Scenario& scenario, const NamedFiles& files) {
   constexpr std::string_view kEnvironment = "/environment";
   Json json = written(scenario.environment);
@@ -168,7 +175,7 @@ Json environment_content(const Scenario& scenario, const NamedFiles& files) {
   return json;
 }
 
-/// Builds the shell of each type of environment.
+/// Builds the point shell, for each type of environment. Null for springs.
 struct Build {
   const NamedFiles& files;
 
@@ -193,7 +200,7 @@ struct Build {
   }
 };
 
-/// The inside of each type of environment. One that has none says so here; one that says nothing does not compile.
+/// Builds the solid, for each type of environment. Null for springs.
 struct BuildSolid {
   const NamedFiles& files;
 
@@ -217,13 +224,14 @@ struct BuildSolid {
 
 Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
-  const auto bytes = [](const PointShell& shell) { return 100 * shell.size(); };
+  const auto bytes = [](const PointShell& shell) { return 100 * shell.size(); };  // estimated: 100 bytes a point
   return shared_cache().get<PointShell>(
       "shell " + environment_content(scenario, files).dump(),
       [&] { return std::visit(Build{files}, scenario.environment); }, bytes);
 }
 
 std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files) {
+  // Only the solids of files take long to build and are cached.
   const auto make = [&] { return std::visit(BuildSolid{files}, scenario.environment); };
   if (files.find(kEnvironmentFile) == nullptr) return make();
   const auto bytes = [](const Solid& solid) { return solid.bytes(); };
@@ -235,12 +243,14 @@ SpringSet make_springs(const Scenario& scenario) {
   SpringSet springs;
   springs.bilateral = fields.bilateral;
   springs.signed_depths = fields.signed_depths;
+  // Springs with given directions.
   for (const SpringGroup& group : fields.groups) {
     const double length = group.direction.norm();
-    // Unit to rounding is left alone: dividing would change last digits.
+    // A direction whose norm is 1 up to rounding is not normalised, because division would change its last digits.
     const Vec3 unit = std::abs(length - 1.0) <= 1e-12 ? group.direction : Vec3(group.direction / length);
     springs.gradients.insert(springs.gradients.end(), static_cast<std::size_t>(group.count), unit);
   }
+  // Springs with random directions.
   Random random(static_cast<std::uint64_t>(scenario.seed));
   for (std::int64_t i = 0; i < fields.random.count; ++i)
     springs.gradients.push_back(fields.random.planar ? random.direction_in_plane() : random.direction());

@@ -9,25 +9,29 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/geometry/solid.hpp"
 
-/// Environments: their fields, and the points, the inside and the springs that these say.
+/// Environments: description of their fields, and construction of their point shell, solid or springs.
 namespace hapbench {
 
-/// The fields of `environment` with meaning, unit, range and default.
+/// Describes the fields of `environment` with meaning, unit, range and default.
 void describe(Fields& f, Environment& environment);
 
-/// The environment's points, as `validate --points` writes them; null for springs. Equal ones are shared (SharedCache).
-/// `files` are those of the scenario. Throws InputError when the named file cannot be used.
+/// Returns the environment's point shell, which `validate --points` writes to a file; null for springs. Scenarios
+/// with equal environments share the shell (SharedCache). `files` are the scenario's files. Throws InputError if
+/// the environment's file cannot be used.
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const NamedFiles& files);
-/// The same; reads the scenario's files.
+/// Returns the environment's point shell. Reads the scenario's files anew.
 inline std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
   return make_shell(scenario, NamedFiles(scenario));
 }
 
-/// The inside of the environment's true surface, not of its shell; null for springs. Equal ones are shared.
-/// `files` are those of the scenario. Throws InputError when the named file cannot be used.
+/// Returns the solid that the environment's exact surface bounds; null for springs. It does not depend on the
+/// sampling of the shell, except for a point-shell file, which has no other surface. Environments from equal
+/// files share the solid (SharedCache). `files` are the scenario's files. Throws InputError if the environment's
+/// file cannot be used.
 std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files);
 
-/// The springs, those with random directions from the seed. Precondition: the environment is springs.
+/// Returns the springs of the environment. Random directions depend on the scenario's seed. Precondition: the
+/// environment has the type SpringsEnvironment.
 SpringSet make_springs(const Scenario& scenario);
 
 }  // namespace hapbench

@@ -4,17 +4,18 @@
 
 #include "sim/core/types.hpp"
 
-/// Ranges and checks that several descriptions of fields share.
+/// Ranges and checks that are shared by several descriptions of fields.
 namespace hapbench {
 
-/// Range of the lengths in a scene.
+/// Allowed range of lengths in a scene: above 0, up to 1 km.
 inline constexpr NumberRange kLength = {0.0, 1000.0, "m", true};
-/// Shortest length of a direction: the square of a much shorter one would lose digits.
-inline constexpr double kShortestDirection = 1e-12;
+/// Minimum norm of a direction vector. The squared norm of a much shorter vector would lose digits.
+inline constexpr double kMinDirectionNorm = 1e-12;
 
-/// Throws InputError at the JSON pointer `at` when the direction is shorter than kShortestDirection.
+/// Throws InputError at the JSON pointer `at` if the direction is shorter than kMinDirectionNorm.
 void require_direction(const Vec3& direction, const std::string& at);
-/// Throws InputError at the JSON pointer `at` when the count of `what` is larger than `most`.
-void require_at_most(double most, double count, const std::string& at, const char* what);
+/// Throws InputError at the JSON pointer `at` if `count` is larger than `max`. `what` names the counted items in
+/// the message.
+void require_at_most(double max, double count, const std::string& at, const char* what);
 
 }  // namespace hapbench

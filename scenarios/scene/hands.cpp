@@ -15,7 +15,7 @@
 namespace hapbench {
 
 constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
-constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn either way
+constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn in both directions
 
 static void describe(Fields& f, ForceHandFields& hand) {
   profiles(f, {"x_N", "y_N", "z_N"}, hand.force, "N", "force on the handle over time");
@@ -99,7 +99,7 @@ static void describe(Fields& f, TargetRules& task) {
            "panel: x and y count, the orientation is scripted; height: z counts, the hand turns the tool");
   f.list(
       "places_m", task.places, {1, TrackingHandFields::kMostPlaces}, "where targets appear",
-      [](Fields& p, Vec3& place) { p.vector3(place, kCoordinate); }, Presence::required);
+      [](Fields& p, Vec3& position) { p.vector3(position, kCoordinate); }, Presence::required);
   f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "in one trial");
   f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "the tip is on the target within this distance");
   f.number("logged_m", task.logged, {0.0, 1.0, "m", true},
@@ -154,19 +154,23 @@ namespace {
 
 std::unique_ptr<TrackingHand> make_tracking_hand(const Scenario& scenario, const TrackingHandFields& fields,
                                                  Trial trial) {
-  // The same subject gets the same order of targets with every algorithm, as the scenario's seed is the same.
+  // The order of targets depends only on the scenario's seed and the trial. Therefore a subject gets the same order
+  // with every algorithm.
   return std::make_unique<TrackingHand>(fields.subjects[trial.subject],
                                         TargetTask(fields.task, derived_seed(scenario, trial, RandomUse::target_order)),
                                         scenario.motion.orientation->tilt(0.0), scenario.time.step,
                                         derived_seed(scenario, trial, RandomUse::motor_noise));
 }
 
+/// Sets the hand and, if the hand controls the tilt, the motion. Precondition: parts.shell is set.
 void add_drag(const Scenario& scenario, const DragHandFields& fields, SimulationParts& parts) {
+  // Compute the path over the surface: through given points or along a direction.
   const SmoothedSurface surface(*parts.shell, fields.smoothing);
   const double length = fields.drag.speed * static_cast<double>(scenario.time.steps) * scenario.time.step;
   const auto path = std::make_shared<const SurfacePath>(
       fields.path ? SurfacePath::over(surface, *fields.path)
                   : SurfacePath::along(surface, scenario.initial.position, *fields.direction, length));
+  // Create the hand, which follows the path.
   parts.hand = std::make_unique<DragHand>(fields.drag, path);
   if (fields.tilt)
     parts.motion = std::make_unique<DragOrientation>(path, fields.drag.speed, *fields.tilt, fields.azimuth);
@@ -193,6 +197,7 @@ void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Tria
   } else {
     parts.hand = std::make_unique<ForceHand>();
   }
+  // The hand does not control the orientation: use the scripted or recorded motion.
   if (!parts.motion) parts.motion = make_motion(scenario, files);
 }
 

@@ -6,14 +6,15 @@
 #include "scenarios/scene/trials.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Hands that hold the handle: their fields, and the hand that these say.
+/// Hands that hold the handle: description of their fields, and construction of the simulated hand.
 namespace hapbench {
 
-/// The fields of `hand` with meaning, unit, range and default.
+/// Describes the fields of `hand` with meaning, unit, range and default.
 void describe(Fields& f, HandFields& hand);
 
-/// Adds the hand and the motion, which some hands steer. `files` are those of the scenario. Precondition: the shell is
-/// there. Throws InputError when a recorded motion cannot be used.
+/// Sets `parts.hand` and `parts.motion`. Some hands also control the tool's orientation, which is part of the
+/// motion. `files` are the scenario's files. Precondition: `parts.shell` is set, unless the environment is
+/// springs. Throws InputError if a recorded motion cannot be used.
 void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Trial trial, SimulationParts& parts);
 
 }  // namespace hapbench

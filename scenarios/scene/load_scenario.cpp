@@ -19,17 +19,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Fields of which an object has one or the other.
+/// Pairs of a field and the field that it excludes. Each pair is listed in both orders.
 constexpr std::pair<std::string_view, const char*> kEitherOr[] = {
     {"steps", "duration_s"}, {"duration_s", "steps"},      {"path_m", "direction"},
     {"direction", "path_m"}, {"delay_s", "delay_samples"}, {"delay_samples", "delay_s"}};
 
-/// Takes out of `object` the field that excludes the one of this name.
+/// Removes from `object` the field that excludes `field`.
 void drop_alternative(Json& object, std::string_view field) {
   for (const auto& [given, other] : kEitherOr)
     if (given == field) object.erase(other);
 }
 
+/// Merges `more` over `base` by the rules of read_scenario_text.
 void merge(Json& base, const Json& more) {
   const bool other_type =
       more.contains(kTypeField) && (!base.contains(kTypeField) || base[kTypeField] != more[kTypeField]);
@@ -41,13 +42,13 @@ void merge(Json& base, const Json& more) {
   for (const auto& entry : more.items()) merge(base[entry.key()], entry.value());
 }
 
-/// Removes the delay of the device in samples where the scenario has it in seconds too, as effective scenarios do: the
-/// samples are those of a time step that is no longer the scenario's.
+/// Removes `delay_samples` of the device if `delay_s` is there too. An effective scenario has both, but the
+/// number of samples was computed for a time step that has changed since.
 void drop_derived_samples(Json& scenario) {
   if (scenario.contains(Json::json_pointer("/device/delay_s"))) scenario["device"].erase("delay_samples");
 }
 
-/// Makes relative paths of files start from `directory`.
+/// Prepends `directory` to each relative path in a field "file".
 void keep_files(Json& json, const fs::path& directory) {
   if (!json.is_structured()) return;
   for (auto& entry : json.items()) {
@@ -60,7 +61,7 @@ void keep_files(Json& json, const fs::path& directory) {
   }
 }
 
-/// Refuses to extend a file that is in the chain already.
+/// Throws InputError if `next` is already one of the layers, so that files extend each other in a circle.
 void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next) {
   std::error_code ignored;
   const auto is_next = [&](const ScenarioLayer& layer) { return fs::equivalent(layer.file, next, ignored); };
@@ -70,7 +71,7 @@ void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next)
   throw InputError(fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
 }
 
-/// The file that `json`, read from `file`, extends.
+/// Returns the file that `json` extends. `json` was read from `file`.
 fs::path base_file(const Json& json, const fs::path& file, const std::vector<ScenarioLayer>& layers) {
   const Json& name = json[kExtends];
   const std::string at = fmt::format("/{}", kExtends);
@@ -87,8 +88,9 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
   }
 }
 
-/// Appends the file and those it extends to `layers`; returns the fields of all.
+/// Appends the file and, recursively, the files that it extends to `layers`. Returns their merged fields.
 Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
+  // Read this file.
   Json json;
   fs::path base;
   with_file(file, [&] {
@@ -99,26 +101,30 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
       throw InputError(fmt::format("got {}; allowed: a scenario, which is an object", shown(json)));
   });
   if (base.empty()) return json;
+  // Read the base, and drop what is not inherited.
   Json merged = read_extended(base, layers);
   if (base.parent_path() != file.parent_path()) keep_files(merged, fs::current_path() / base.parent_path());
   for (const char* own : {"name", "expect"}) merged.erase(own);
+  // Merge this file over the base.
   json.erase(kExtends);
   if (json.contains(Json::json_pointer("/time/step_s"))) drop_derived_samples(merged);
   merge(merged, json);
   return merged;
 }
 
-/// Sets the field at a dotted path; a number in the path indexes a list. Of two fields that exclude each other the
-/// other one is removed, as where a scenario extends another.
+/// Applies an override "path=value". A number in the dotted path is an index of a list. A field that excludes the
+/// overridden field is removed.
 void apply_override(Json& json, const std::string& text) {
+  // Split and check the override.
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos)
     fail_in_option("--set", "got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
   const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
   const Words keys = parts_of(path, '.');
-  constexpr std::size_t kDeepestPath = 64;  // what walks through JSON goes down by a call for each
+  constexpr std::size_t kDeepestPath = 64;  // functions that walk through JSON recurse once per level
   if (keys.size() > kDeepestPath)
     fail_in_option("--set", fmt::format("got a path of more than {0} keys; allowed: at most {0}", kDeepestPath));
+  // Follow the path, creating objects where they are missing.
   Json* node = &json;
   for (const std::string_view& key : keys) {
     if (node->is_array()) {
@@ -130,7 +136,7 @@ void apply_override(Json& json, const std::string& text) {
       }
       node = &(*node)[*index];
     } else {
-      if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
+      if (!node->is_object()) *node = Json::object();  // replaces null or a number
       if (&key == &keys.back()) drop_alternative(*node, key);
       node = &(*node)[std::string(key)];
     }
@@ -139,20 +145,22 @@ void apply_override(Json& json, const std::string& text) {
   if (path == "time" || path == "time.step_s") drop_derived_samples(json);
 }
 
-/// True when a run with this field overridden is still the run that the scenario's expectations were written for.
+/// Returns true if the override does not change the run, so that the scenario's expectations still apply to it.
 bool leaves_run_alone(std::string_view override) {
   constexpr std::string_view kSections[] = {"expect", "record", "name", "description", "source"};
-  // Metrics come and go with these, and those of the ideal trajectory are over the recorded rows.
+  // These fields add or remove metrics. `record.every` also selects the steps that the ideal-trajectory metrics
+  // use.
   constexpr std::string_view kMeasured[] = {"record.energy", "record.ideal_trajectory", "record.torque",
                                             "record.every"};
   const std::string_view path = overridden_path(override), section = path.substr(0, path.find('.'));
   return std::ranges::count(kSections, section) > 0 && std::ranges::count(kMeasured, path) == 0;
 }
 
-/// Removes the expectations that hold only for the run that the scenario describes: bounds on metrics and the exact
-/// outcome. A run that misses its object or diverges stays unexpected unless the scenario expects it.
+/// Relaxes the expectations for a run that an override has changed. Removes the bounds on metrics, and adds the
+/// default outcomes to the listed outcomes. A run that never touches its object or diverges stays unexpected
+/// unless the scenario lists that outcome.
 void expect_less(Json& expect) {
-  if (!expect.is_object()) return;  // the reader will say so
+  if (!expect.is_object()) return;  // the reader reports this error
   expect.erase("metrics");
   Json outcomes = Json::array();
   for (const Outcome outcome : ExpectFields().outcomes) outcomes.push_back(outcome_name(outcome));
@@ -163,10 +171,11 @@ void expect_less(Json& expect) {
   expect["outcome"] = std::move(outcomes);
 }
 
-/// The reader's refusals of fields that do not exist begin with this.
+/// Beginning of the reader's message about a field that does not exist.
 constexpr std::string_view kUnknownField = "unknown field";
 
-/// The hint for a field whose name resembles no field of its object: fields elsewhere with the nearest name.
+/// Returns a hint for an unknown field whose name resembles no field of its object: the paths of the fields with
+/// the nearest name in other objects. Empty if there are none.
 std::string hint_elsewhere(const std::string& pointer) {
   const std::vector<std::string> paths = scenario_field_paths();
   const auto own_name = [](const std::string& path) { return parts_of(path, '.').back(); };
@@ -179,16 +188,16 @@ std::string hint_elsewhere(const std::string& pointer) {
   return found.empty() ? "" : "; nearest valid names: " + quoted_list(found);
 }
 
-/// The hint for a field that does not exist, and whose name resembles none of its object; may be empty.
+/// Returns the hint for an unknown field whose name resembles no field of its object. May be empty.
 std::string hint_for(const InputError& fault) {
   const bool is_of_law = fault.location().pointer.starts_with("/rendering/parameters/");
   return is_of_law ? "; a law from outside brings its own with --module" : hint_elsewhere(fault.location().pointer);
 }
 
-/// The fault with its file in front, and with hints.
+/// Returns the fault with the file's name in its location, and with hints for unknown names.
 InputError in_file(const InputError& fault, const fs::path& file) {
   ErrorLocation location = fault.location();
-  if (!location.file.empty()) {  // that the scenario's file names
+  if (!location.file.empty()) {  // the fault is in a file that the scenario names
     location.outer.insert(location.outer.begin(), file);
     return {fault.kind(), location, fault.problem()};
   }
@@ -236,7 +245,7 @@ ScenarioText read_scenario_text(const fs::path& file) {
 
 fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   if (!pointer.starts_with('/')) return loaded.file;
-  // A field that no file has is at its default; the object around it is the nearest place to name.
+  // A field that no file sets has its default value. Then search for the object around it.
   for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
     for (const ScenarioLayer& layer : loaded.layers)
       if (layer.json.contains(at)) return layer.file;
@@ -256,13 +265,16 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
   loaded.file = text.file;
   loaded.layers = text.layers;
   return with_file(loaded, [&] {
+    // Relax the expectations if an override changes the run.
     Json json = text.json;
     const bool same_run = std::all_of(overrides.begin(), overrides.end(), leaves_run_alone);
     if (!same_run && json.is_object() && json.contains("expect")) expect_less(json["expect"]);
+    // Apply the overrides, also to the first layer, from which file_of finds the file of a value.
     for (const std::string& override : overrides) apply_override(json, override);
     if (!loaded.layers.empty()) {
       for (const std::string& override : overrides) apply_override(loaded.layers.front().json, override);
     }
+    // Read and check the fields.
     LoadedScenario read = read_scenario(json, text.file.parent_path());
     read.file = loaded.file;
     read.layers = std::move(loaded.layers);
@@ -273,6 +285,7 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
 
 Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
   Json json = written_object(scenario);
+  // Make the paths of files relative to `directory`.
   const NamedFiles files(scenario);
   for (const auto& file : files.all()) {
     const fs::path path = fs::current_path() / file->path();

@@ -10,14 +10,16 @@
 namespace hapbench {
 namespace {
 
-/// A section of the summary.
+/// A section of the summary: its name, when a run has it, and its observer.
 struct SectionKind {
   const char* name;
-  /// Number of target places, 1 for sections without places; 0 when the scenario does not ask for the section.
+  /// Returns the number of target positions, or 1 for a section that has no target positions. Returns 0 if the
+  /// scenario does not request the section.
   std::size_t (*parts)(const Scenario& scenario, bool has_reference_force);
-  /// The observer of a run of the scenario; without one, an observer that sees nothing and so documents the metrics.
+  /// Returns the observer of a run of the scenario. If `scenario` is null, returns an observer that is only used to
+  /// list the metrics.
   std::unique_ptr<MetricObserver> (*observe)(const Scenario* scenario, std::size_t parts);
-  bool merges = false;  ///< several trials also have it
+  bool merges = false;  ///< the section can be computed over several trials
 };
 
 template <class Type>
@@ -31,8 +33,8 @@ std::unique_ptr<MetricObserver> observe_ideal_trajectory(const Scenario* scenari
                                                    static_cast<std::uint64_t>(scenario->record.every));
 }
 
-std::unique_ptr<MetricObserver> observe_targets(const Scenario*, std::size_t places) {
-  return std::make_unique<TargetMetricsObserver>(places);
+std::unique_ptr<MetricObserver> observe_targets(const Scenario*, std::size_t target_positions) {
+  return std::make_unique<TargetMetricsObserver>(target_positions);
 }
 
 std::size_t target_places(const Scenario& scenario, bool) {
@@ -40,7 +42,8 @@ std::size_t target_places(const Scenario& scenario, bool) {
   return hand == nullptr ? 0 : hand->task.places.size();
 }
 
-/// In the order of the summary. A section is a row here and the file of its observer.
+/// All sections, in the order of the summary. To add a section, add an entry here and a source file with its
+/// observer.
 const SectionKind kSections[] = {
     {"passivity", [](const Scenario&, bool) { return std::size_t{1}; }, make<PassivityObserver>, true},
     {"energy", [](const Scenario& s, bool) { return std::size_t{s.record.energy}; }, make<EnergyLedger>},
@@ -57,18 +60,20 @@ const SectionKind kSections[] = {
      make<ContactAgeObserver>},
     {"targets", target_places, observe_targets, true}};
 
-void tell_common(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
+/// Adds the metrics that every run has. `inside` is null if the environment has no solid.
+void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
   Section section(list, "");
   metrics.tell(section);
   (inside != nullptr ? *inside : InsideDepths()).tell(section, metrics.has_settled());
   metrics.tell_end(section);
 }
 
-/// The metrics of every run and of each section of which `parts` says that there are some.
+/// Returns the common metrics and the metrics of the sections, without values. `parts(kind)` is the number of
+/// target positions as in SectionKind::parts; a section with 0 is skipped.
 template <class Parts>
 MetricList list_without_values(const Parts& parts) {
   MetricList metrics;
-  tell_common(MetricsObserver(1.0), nullptr, metrics);
+  report_common_metrics(MetricsObserver(1.0), nullptr, metrics);
   for (const SectionKind& kind : kSections) {
     const std::size_t count = parts(kind);
     if (count == 0) continue;
@@ -88,8 +93,8 @@ MetricList metrics_without_values(const Scenario& scenario, bool has_reference_f
   });
 }
 
-MetricList metrics_without_values(std::size_t places) {
-  return list_without_values([places](const SectionKind&) { return places; });
+MetricList metrics_without_values(std::size_t target_positions) {
+  return list_without_values([target_positions](const SectionKind&) { return target_positions; });
 }
 
 const MetricList& all_metrics() {
@@ -112,10 +117,11 @@ void SectionObservers::begin(const TrialParts& trial) {
 }
 
 void SectionObservers::tell(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const {
-  tell_common(metrics, inside, result.metrics);
+  report_common_metrics(metrics, inside, result.metrics);
   for (std::size_t i = 0; i < observers_.size(); ++i) {
     const SectionKind& kind = kSections[kinds_[i]];
     if (trials_ > 1 && !kind.merges) continue;
+    // Add the section's metrics, and its members that are not metrics.
     Section section(result.metrics, kind.name);
     observers_[i]->tell(section);
     observers_[i]->add_members(result.sections[kind.name] = nlohmann::ordered_json::object());

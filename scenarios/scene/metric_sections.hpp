@@ -9,29 +9,33 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/scene/scenario.hpp"
 
-/// The metrics of runs: those that every run has, and those of the sections of a summary. Observers, summary.json,
-/// columns.json, tables of sweeps, `expect` and `describe` follow from the list of sections in metric_sections.cpp.
+/// The metrics of a run: metrics that every run has, and metrics of optional sections, such as friction. The list
+/// of sections in metric_sections.cpp determines the observers, summary.json, columns.json, the columns of
+/// sweeps, and the metrics in `expect` and `describe`.
 namespace hapbench {
 
-/// The metrics of a run of the scenario, in the order of the summary, with unit and meaning, without values.
-/// `has_reference_force`: the scenario gives a reference force or its stroke has a measured one.
+/// Returns the metrics of a run of the scenario with name, unit and meaning but without values, in the order of
+/// the summary. `has_reference_force` is true if the scenario has a reference force or its recorded stroke has a
+/// measured force.
 MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force);
-/// The metrics of all sections, with so many places in tasks.
-MetricList metrics_without_values(std::size_t places);
-/// The metrics that `expect` may bound, made once; tasks have two places, as those of the thesis.
+/// Returns the metrics of all sections without values. `target_positions` is the number of target positions of a
+/// tracking task.
+MetricList metrics_without_values(std::size_t target_positions);
+/// Returns the metrics that `expect` can bound. The list is computed once. It has metrics for two target
+/// positions, because the tasks of the thesis have two.
 const MetricList& all_metrics();
 
-/// The observers of a run for the sections that its scenario asks for.
+/// The observers of a run: one observer for each section that the scenario requests.
 class SectionObservers {
  public:
   SectionObservers(const Scenario& scenario, bool has_reference_force);
 
-  /// Before each trial.
+  /// Called before each trial.
   void begin(const TrialParts& trial);
-  /// In the order of the sections.
+  /// Returns the observers in the order of the sections.
   const std::vector<std::unique_ptr<MetricObserver>>& all() const { return observers_; }
 
-  /// The observer of that type; null when the scenario does not ask for it.
+  /// Returns the observer of type Type, or null if the scenario does not request its section.
   template <class Type>
   Type* find() const {
     for (const auto& observer : observers_) {
@@ -40,14 +44,15 @@ class SectionObservers {
     return nullptr;
   }
 
-  /// Adds the metrics of every run, then the sections with theirs, but of several trials not those that make no sense
-  /// over them. `inside`: null without a solid.
+  /// Adds to `result` the metrics that every run has, then the metrics of each section. After several trials,
+  /// sections that cannot be computed over several trials are skipped. `inside` is null if the environment has no
+  /// solid.
   void tell(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const;
 
  private:
   std::vector<std::unique_ptr<MetricObserver>> observers_;
-  std::vector<std::size_t> kinds_;  ///< place of each observer's section in the list
-  std::size_t trials_ = 0;          ///< begun
+  std::vector<std::size_t> kinds_;  ///< index in the list of sections, for each observer
+  std::size_t trials_ = 0;          ///< number of trials begun
 };
 
 }  // namespace hapbench

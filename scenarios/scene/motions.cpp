@@ -44,6 +44,7 @@ void describe(Fields& f, MotionFields& motion) {
   f.object_if_any("orientation", motion.orientation, "scripted orientation; not with a recorded motion");
   f.value("position", motion.position, "free: integrated; prescribed or file: forces are computed, not integrated");
   if (!f.reads() || !std::holds_alternative<RecordedPosition>(motion.position)) return;
+  // A recorded motion includes the orientation.
   if (f.given("orientation")) {
     fail_at(f.at() + "/orientation",
             "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two");

@@ -7,16 +7,17 @@
 #include "scenarios/scene/scenario.hpp"
 #include "sim/tool/motion.hpp"
 
-/// Motions of a tool: their fields, and the motion that these say.
+/// Motions of a tool: description of their fields, and construction of the motion.
 namespace hapbench {
 
-/// The fields of `motion` with meaning, unit, range and default.
+/// Describes the fields of `motion` with meaning, unit, range and default.
 void describe(Fields& f, MotionFields& motion);
 
+/// Returns the scripted orientation; normalises its directions.
 Orientation make_orientation(const OrientationFields& fields);
 
-/// The scripted or recorded motion. `files` are those of the scenario. Throws InputError when a recording cannot be
-/// used.
+/// Returns the scripted or recorded motion of the tool. `files` are the scenario's files. Throws InputError if a
+/// recording cannot be used.
 std::unique_ptr<Motion> make_motion(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

@@ -18,12 +18,13 @@
 namespace hapbench {
 namespace {
 
-/// A text that differs after a change of the file, so that a known file need not be read again. Nothing for a file that
-/// is not regular, or that changed so recently that the clock of the file system might not tell the next change.
+/// Returns a text that changes whenever the file changes, so that a cached file need not be read again. Returns
+/// nullopt if the file is not a regular file. Also returns nullopt if the file changed within the last 2 s: a
+/// further change might then get the same time stamp, because file systems store times with a coarse resolution.
 std::optional<std::string> stamp_of(const std::filesystem::path& file) {
   struct stat s {};
   if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return std::nullopt;
-  constexpr std::time_t kSettled = 2;  // [s]
+  constexpr std::time_t kSettled = 2;  // minimum age of the last change [s]
   if (std::time(nullptr) < std::max(s.st_mtim.tv_sec, s.st_ctim.tv_sec) + kSettled) return std::nullopt;
   return fmt::format("stamp {} {} {} {} {} {} {}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec,
                      s.st_ctim.tv_sec, s.st_ctim.tv_nsec);
@@ -33,15 +34,18 @@ std::optional<std::string> stamp_of(const std::filesystem::path& file) {
 
 const NamedFile::Read& NamedFile::read() {
   if (read_) return *read_;
+  // Check the extension.
   if (content_.kind == FileContent::Kind::point_shell) shell_extension(path_);
   if (content_.kind == FileContent::Kind::mesh) mesh_extension(path_);
+  // Identify the contents by the file's time stamps or, if they are not reliable, by a hash. The time stamps are
+  // taken before reading. If the file changes during reading, it will never have these time stamps again.
   std::string bytes;
-  // Kept under the stamp of before the reading, which a file that changed meanwhile never has again.
   std::optional<std::string> state = stamp_of(path_);
   if (!state) {
     bytes = read_named_file(path_);
     state = hash_text(hash_of(bytes));
   }
+  // Parse the contents, or take them from the cache.
   const std::string key = fmt::format("file {} as {}, scale {}, spacing {}, flip {}: {}", *state,
                                       static_cast<int>(content_.kind), content_.sampling.scale,
                                       content_.sampling.spacing.value_or(0.0), content_.sampling.flip, path_.string());
@@ -49,7 +53,7 @@ const NamedFile::Read& NamedFile::read() {
     if (bytes.empty()) bytes = read_named_file(path_);
     return std::make_shared<const Read>(Read{hash_text(hash_of(bytes)), parsed(bytes)});
   };
-  // A parsed mesh takes some times the space of its text.
+  // A parsed mesh needs about 4 times the memory of its text.
   read_ = shared_cache().get<Read>(key, parse, [&bytes](const Read&) { return 4 * bytes.size(); });
   return *read_;
 }
@@ -78,6 +82,7 @@ std::vector<Warning> NamedFile::warnings() {
 }
 
 NamedFiles::NamedFiles(Scenario scenario) {
+  // Writing the scenario calls `add` for each file.
   const auto add = [&](const std::string& pointer, const std::string& path, const FileContent& content) {
     files_.push_back(std::make_shared<NamedFile>(pointer, scenario.directory / path, content));
   };

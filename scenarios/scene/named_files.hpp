@@ -17,15 +17,15 @@
 
 namespace hapbench {
 
-// Pointers of the files that have a use of their own.
+// JSON pointers of the fields whose files the program looks up individually.
 inline constexpr std::string_view kEnvironmentFile = "/environment/file";
 inline constexpr std::string_view kToolFile = "/tool/file";
 inline constexpr std::string_view kMotionFile = "/motion/position/file";
 inline constexpr std::string_view kContactFile = "/rendering/contact_source/file";
 
-/// A file that a scenario names. It is read and parsed when something of it is first asked for, once for all scenarios
-/// that take the same contents alike (SharedCache), and stays as it was then for this one. Functions that need its
-/// contents throw InputError when they cannot be used.
+/// A file that a scenario names. It is read and parsed on first use. Scenarios that read the same contents with
+/// the same parameters share the result (SharedCache). Later changes of the file do not affect an object that has
+/// read it. Functions that need the contents throw InputError if the file cannot be read or is invalid.
 class NamedFile {
  public:
   NamedFile(std::string pointer, std::filesystem::path path, const FileContent& content)
@@ -34,22 +34,24 @@ class NamedFile {
   const std::string& pointer() const { return pointer_; }
   const std::filesystem::path& path() const { return path_; }
 
-  /// FNV-1a of its bytes, as 16 hexadecimal digits.
+  /// Returns the FNV-1a hash of the file's bytes as 16 hexadecimal digits.
   const std::string& hash() { return read().hash; }
-  /// Reads and parses the file.
+  /// Reads and parses the file. Throws InputError if the file is invalid.
   void check() { read(); }
-  /// Warnings about its contents, without the file's directory.
+  /// Returns warnings about the contents. They name the file without its folder.
   std::vector<Warning> warnings();
 
-  /// The points with normals. Precondition, here and below: the content is of that kind.
+  // Precondition of the functions below: the file's content has the requested kind.
+
+  /// Returns points with normals.
   const std::vector<SurfacePoint>& points() { return std::get<std::vector<SurfacePoint>>(read().contents); }
   const MeshFile& mesh() { return std::get<MeshFile>(read().contents); }
-  // These may be kept longer than the file.
+  // The returned object may outlive this NamedFile.
   std::shared_ptr<const Stroke> stroke() { return kept<Stroke>(); }
   std::shared_ptr<const ContactTrace> trace() { return kept<ContactTrace>(); }
 
  private:
-  /// Nothing of a library, whose code is loaded elsewhere.
+  /// Parsed contents; empty for a shared library, whose code is loaded elsewhere.
   using Contents = std::variant<std::monostate, std::vector<SurfacePoint>, MeshFile, Stroke, ContactTrace>;
 
   struct Read {
@@ -57,31 +59,34 @@ class NamedFile {
     Contents contents;
   };
 
+  /// Returns the contents as a pointer that shares ownership of everything that was read.
   template <class Kind>
   std::shared_ptr<const Kind> kept() {
     const Kind& kind = std::get<Kind>(read().contents);
     return {read_, &kind};
   }
+  /// Reads and parses the file on the first call. Returns the hash and the contents.
   const Read& read();
   Contents parsed(std::string_view bytes) const;
 
   std::string pointer_;
   std::filesystem::path path_;
   FileContent content_;
-  std::shared_ptr<const Read> read_;  ///< null until something of it is asked for
+  std::shared_ptr<const Read> read_;  ///< null until the file has been read
 };
 
-/// Every file that a scenario names, in the order of its fields: by this list files are loaded, checked, hashed and
-/// rewritten. Copies share what was read, and must not be used by two threads at once.
+/// All files that a scenario names, in the order of its fields. Used to load, check and hash the files and to
+/// rewrite their paths. Copies share the files. Two threads must not use an object, or copies of it, at the same
+/// time.
 class NamedFiles {
  public:
   NamedFiles() = default;
   explicit NamedFiles(Scenario scenario);
 
   const std::vector<std::shared_ptr<NamedFile>>& all() const { return files_; }
-  /// The file that the field at a JSON pointer names; null when the scenario has no such field.
+  /// Returns the file that the field at a JSON pointer names, or null if the scenario has no such field.
   NamedFile* find(std::string_view pointer) const;
-  /// Precondition: the scenario has that field.
+  /// Returns the file that the field at a JSON pointer names. Precondition: the scenario has that field.
   NamedFile& at(std::string_view pointer) const { return *find(pointer); }
 
  private:

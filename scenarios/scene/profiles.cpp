@@ -13,10 +13,12 @@
 namespace hapbench {
 namespace {
 
-constexpr double kLargestValue = 1e9;
+constexpr double kMaxMagnitude = 1e9;  ///< of a value or a time of a profile
 
-using MovingShape = std::variant<Profile::Ramp, Profile::Sine, Profile::Waypoints>;
+/// All shapes of profiles except a constant, which is written as a number.
+using TimeVaryingShape = std::variant<Profile::Ramp, Profile::Sine, Profile::Waypoints>;
 
+/// Throws InputError unless the times of the waypoints increase strictly.
 void check_times(const Profile::Waypoints& waypoints, const std::string& at) {
   const auto& points = waypoints.points;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -34,13 +36,13 @@ void describe_shape(Fields& f, Profile::Ramp& ramp, NumberRange range) {
 void describe_shape(Fields& f, Profile::Sine& sine, NumberRange range) {
   f.number("mean", sine.mean, range, "m of m + a sin(2 pi t / T + phase)", Presence::required);
   f.number("amplitude", sine.amplitude, range, "a", Presence::required);
-  f.number("period_s", sine.period_s, {0.0, kLargestValue, "s", true}, "T", Presence::required);
-  f.number("phase_rad", sine.phase_rad, {-kLargestValue, kLargestValue, "rad"}, "phase at t = 0");
+  f.number("period_s", sine.period_s, {0.0, kMaxMagnitude, "s", true}, "T", Presence::required);
+  f.number("phase_rad", sine.phase_rad, {-kMaxMagnitude, kMaxMagnitude, "rad"}, "phase at t = 0");
 }
 
 void describe_shape(Fields& f, Profile::Waypoints& waypoints, NumberRange range) {
   const auto point = [range](Fields& p, std::pair<double, double>& value) {
-    p.pair("a pair [time in s, value]", value.first, {-kLargestValue, kLargestValue, "s"}, value.second, range);
+    p.pair("a pair [time in s, value]", value.first, {-kMaxMagnitude, kMaxMagnitude, "s"}, value.second, range);
   };
   f.list("points", waypoints.points, {1, 1'000'000}, "[t, v] pairs, t increasing; held constant outside", point,
          Presence::required);
@@ -52,14 +54,16 @@ void describe_shape(Fields& f, Profile::Waypoints& waypoints, NumberRange range)
 }  // namespace
 
 void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc, Presence presence) {
-  const NumberRange range = {-kLargestValue, kLargestValue, unit};
+  const NumberRange range = {-kMaxMagnitude, kMaxMagnitude, unit};
   const auto describe_profile = [&](Fields& value) {
+    // Split the profile into a constant or a shape.
     double constant = profile.is_constant() ? profile(0.0) : 0.0;
-    MovingShape moving;
+    TimeVaryingShape moving;
     const auto take = [&moving](const auto& shape) {
       if constexpr (!std::is_same_v<std::decay_t<decltype(shape)>, Profile::Constant>) moving = shape;
     };
     std::visit(take, profile.shape());
+    // Describe a number or an object with a type. When a file is read, replace the profile.
     value.plain_or_object(
         !profile.is_constant(),
         [&](Fields& v) {

@@ -8,11 +8,12 @@
 
 namespace hapbench {
 
-/// A field that holds a function of time with values in `unit`.
+/// Describes a field that holds a profile, which is a scalar function of time. `unit` is the unit of its values.
 void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc,
              Presence presence = Presence::has_default);
 
-/// Three fields that hold functions of time with values in `unit`, which are x, y and z.
+/// Describes three fields that hold the x, y and z components of a vector as functions of time. `unit` is the
+/// unit of their values.
 void profiles(Fields& f, const char* const (&names)[3], std::array<Profile, 3>& profiles, const char* unit,
               const char* doc, Presence presence = Presence::has_default);
 

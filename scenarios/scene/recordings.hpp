@@ -8,24 +8,30 @@
 #include "sim/contact/trace_source.hpp"
 #include "sim/tool/motion.hpp"
 
-/// Files that were recorded: strokes of a tool, and contacts over time.
+/// Recorded data: strokes of a tool, and contacts over time.
 namespace hapbench {
 
-/// A recorded stroke: the motion of the tool and, optionally, the force on it that was measured at the same time.
+/// A recorded stroke: the motion of the tool and, optionally, the force on the tool that was measured during the
+/// motion.
 struct Stroke {
   RecordedMotion motion;
   std::optional<ReferenceForce> force;
 };
 
-/// The stroke in the contents of a CSV file with the header time_s,px_m,py_m,pz_m, then axis_x,axis_y,axis_z or
-/// qw,qx,qy,qz, then perhaps a measured force mfx_N,mfy_N,mfz_N. Times must increase strictly, axes must not be zero,
-/// and quaternions must have norm 1 within 0.001; both are normalised. A quaternion turns the tool's frame, whose axis
-/// points along -z, into the world's. Throws InputError that names the sample.
+/// Parses a stroke from the contents of a CSV file. Columns in this order:
+///   - time_s,px_m,py_m,pz_m: time and position of the tip centre,
+///   - axis_x,axis_y,axis_z or qw,qx,qy,qz: axis or orientation of the tool,
+///   - optionally mfx_N,mfy_N,mfz_N: measured force.
+/// Times must increase strictly. Axes must not be zero, and quaternions must have norm 1 within 0.001; both are
+/// normalised. A quaternion rotates vectors from the tool frame, in which the tool's axis is -z, to the world
+/// frame. Throws InputError that names the sample.
 Stroke stroke_in(std::string_view text, const std::filesystem::path& file);
 
-/// The contacts in a CSV file with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m: at most 20 million, 100 000 of one
-/// time. Times must not fall, depths must not be below 0, and gradients, normalised unless unit to rounding, must be
-/// unit to 0.001. Throws InputError that names the contact.
+/// Parses contacts over time from the contents of a CSV file with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m.
+/// The columns are time, position, depth gradient (ux,uy,uz) and penetration depth. Times must not decrease,
+/// depths must be >= 0, and gradients must have norm 1 within 0.001. Gradients are normalised, unless their norm
+/// is 1 within 1e-12. At most 20 million contacts, and 100 000 contacts at one time, are allowed. Throws
+/// InputError that names the contact.
 ContactTrace trace_in(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace hapbench

@@ -19,10 +19,11 @@
 namespace hapbench {
 namespace {
 
-constexpr const char* kNoEffect = "no_effect";  ///< of warnings: a given value that nothing reads
+constexpr const char* kNoEffect = "no_effect";  ///< kind of a warning: a value in the file is not used
 
-/// Warnings about values in `json` that the scenario does not have, because the algorithm's definition fixes others,
-/// and about contacts that the algorithm does not have by its definition.
+/// Warns about a depth model or reduction in `json` that differs from the depth model or reduction that the
+/// algorithm fixes. Also warns about recorded or external contacts if the algorithm ignores them or is defined
+/// with another depth model.
 void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vector<Warning>& warnings) {
   const RenderingConfig& fixed = scenario.rendering;
   const AlgorithmEntry& entry = *find_algorithm(fixed.algorithm);
@@ -32,10 +33,10 @@ void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vecto
                         fmt::format("\"{}\" is not used: algorithm \"{}\" is defined with \"{}\"", depth_model,
                                     fixed.algorithm, fixed.depth_model)});
   }
-  if (has_other_contacts(scenario) && !entry.reported_depth_model.empty()) {
+  if (has_external_contacts(scenario) && !entry.reported_depth_model.empty()) {
     warnings.push_back({kNoEffect, "/rendering/contact_source",
                         fmt::format("not used: algorithm \"{}\" finds its points itself", fixed.algorithm)});
-  } else if (has_other_contacts(scenario) && !entry.fixed_depth_model.empty()) {
+  } else if (has_external_contacts(scenario) && !entry.fixed_depth_model.empty()) {
     warnings.push_back(
         {"other_depths", "/rendering/contact_source",
          fmt::format("algorithm \"{}\" is defined with depth model \"{}\"; here it has the depths of \"{}\"",
@@ -48,6 +49,7 @@ void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vecto
   }
 }
 
+/// Warns about an integrator other than the default if the device has no virtual mass to integrate.
 void warn_of_idle_integrator(const Scenario& scenario, std::vector<Warning>& warnings) {
   if (!handle_moves_tool(scenario.device) || scenario.integrator.type == IntegratorFields{}.type) return;
   warnings.push_back({kNoEffect, "/integrator/type",
@@ -55,8 +57,9 @@ void warn_of_idle_integrator(const Scenario& scenario, std::vector<Warning>& war
                                   scenario.integrator.type->info.name)});
 }
 
-/// A warning about an admittance device whose servo or mechanics differ from the usual ones under a hand that does not
-/// feel the handle. Sensor and limiter have an effect under any hand, so a device that changes only these is fine.
+/// Warns about an admittance device if the hand does not feel the handle: then servo and mechanics have no
+/// effect. Sensor and limiter always have an effect. Therefore there is no warning if only they differ from the
+/// defaults.
 void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warnings) {
   const char* hand = std::holds_alternative<NoHandFields>(scenario.hand)      ? "none"
                      : std::holds_alternative<ForceHandFields>(scenario.hand) ? "force"
@@ -75,18 +78,20 @@ void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warning
            hand)});
 }
 
-/// True when the algorithm documents the field as one of its parameters.
+/// Returns true if the algorithm documents the field as one of its parameters.
 bool reads(const AlgorithmEntry& algorithm, std::string_view field) {
   const auto is_field = [field](const ParameterInfo& info) { return info.parameter.field == field; };
   return std::ranges::any_of(algorithm.info->parameters, is_field);
 }
 
-/// Warnings about values in `json`, other than the defaults, that the rendering does not read: parameters of other
-/// algorithms, and the filter of a velocity that nothing sees.
+/// Warns about values in `json` that differ from the defaults and that the rendering does not use: parameters of
+/// other algorithms, damping that rendering.damping replaces, and the filter of an unused angular velocity.
 void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::vector<Warning>& warnings) {
+  // Collect the parameters that only other algorithms use.
   const AlgorithmEntry& own = *find_algorithm(scenario.rendering.algorithm);
   const Json initial = {{"rendering", written_object(RenderingConfig{})}};
-  std::map<std::string, std::vector<std::string>> readers;  // pointer of a field -> algorithms
+  // Maps the JSON pointer of a field to the names of the algorithms that use the field.
+  std::map<std::string, std::vector<std::string>> readers;
   for (const AlgorithmEntry& other : algorithms()) {
     for (const ParameterInfo& info : other.info->parameters) {
       if (reads(own, info.parameter.field)) continue;
@@ -98,6 +103,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
     for (const OwnParameter& parameter : other.own_parameters)
       readers[fmt::format("/rendering/parameters/{}/{}", other.info->name, parameter.name)] = {other.info->name};
   }
+  // Warn about the parameters that the file sets.
   const auto is_given = [&](const std::string& pointer) {
     const Json::json_pointer at(pointer);
     return json.contains(at) && !(initial.contains(at) && initial.at(at) == json.at(at));
@@ -108,6 +114,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
         {kNoEffect, pointer,
          fmt::format("has no effect on this algorithm; it is a parameter of {}", fmt::join(names, ", "))});
   }
+  // Warn about damping and filter without effect.
   for (const char* pointer : {"/rendering/damping_ratio", "/rendering/damping_N_s_per_m"}) {
     if (scenario.rendering.hunt_crossley && is_given(pointer))
       warnings.push_back({kNoEffect, pointer, "has no effect together with rendering.damping"});
@@ -117,7 +124,8 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
     warnings.push_back({kNoEffect, kCutoff, "has no effect without rendering.angular_damping"});
 }
 
-/// A warning where the integrator does not step the bristle of dry friction stably: the tool never comes to rest.
+/// Warns if the bristle (tangential spring and damper) of dry friction is unstable at this time step and mass.
+/// Then a sticking tool never comes to rest.
 void warn_of_stiff_bristle(const Scenario& scenario, std::vector<Warning>& warnings) {
   const RenderingConfig& r = scenario.rendering;
   if (!r.dry_friction || handle_moves_tool(scenario.device)) return;
@@ -130,9 +138,12 @@ void warn_of_stiff_bristle(const Scenario& scenario, std::vector<Warning>& warni
                    bristle.K, bristle.dt, r.mass)});
 }
 
-/// The first script within `json`, found at `at`, that a run of so long [s] does not play. The reader has checked it.
+/// Returns a warning about the first script of waypoints within `json` whose last segment begins after the end of
+/// the run, or nullopt. `at` is the JSON pointer of `json`; `duration` is the length of the run [s].
+/// Precondition: the reader has checked `json`.
 std::optional<Warning> first_unplayed(const Json& json, const std::string& at, double duration) {
   if (!json.is_object()) return std::nullopt;
+  // Waypoints: the second-to-last time is the beginning of the last segment.
   if (json.value("type", Json()) == "waypoints") {
     const Json& points = json.at("points");
     if (points.size() < 2 || points[points.size() - 2][0].get<double>() < duration) return std::nullopt;
@@ -141,6 +152,7 @@ std::optional<Warning> first_unplayed(const Json& json, const std::string& at, d
                                "time.duration_s (or steps) right?",
                                points.back()[0].get<double>(), duration)};
   }
+  // Any other object: search its fields.
   for (const auto& field : json.items()) {
     if (auto found = first_unplayed(field.value(), at + "/" + field.key(), duration)) return found;
   }
@@ -156,6 +168,7 @@ std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& jso
   warn_of_idle_device(scenario, warnings);
   warn_of_unread_rendering(scenario, json, warnings);
   warn_of_stiff_bristle(scenario, warnings);
+  // Scripts of hand and motion.
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   for (const char* part : {"hand", "motion"}) {
     if (!json.contains(part)) continue;

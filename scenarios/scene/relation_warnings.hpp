@@ -8,9 +8,10 @@
 
 namespace hapbench {
 
-/// Warnings about values without effect in `json`, from which the scenario was read, such as the first script of
-/// waypoints of hand and motion whose last leg begins only when the run is over: a shorter time step with the same
-/// number of steps does that unnoticed.
+/// Returns warnings about values in `json`, from which the scenario was read, that have no effect or are likely
+/// mistakes. Examples: a parameter that the algorithm does not use; a script of waypoints whose last segment
+/// begins after the end of the run. The latter happens easily if the time step is reduced and the number of steps
+/// is not increased.
 std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& json);
 
 }  // namespace hapbench

@@ -35,7 +35,7 @@ std::optional<double> input_force_limit(const DeviceFields& device) {
   return admittance != nullptr ? admittance->force_limit : std::nullopt;
 }
 
-bool has_other_contacts(const Scenario& scenario) {
+bool has_external_contacts(const Scenario& scenario) {
   return scenario.rendering.contact_source != kOwnContacts;
 }
 

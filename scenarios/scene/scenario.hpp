@@ -26,92 +26,101 @@
 #include "sim/tool/motion.hpp"
 #include "sim/tool/revolved.hpp"
 
-/// A scenario file as plain structs, with every default in place: a default-constructed scenario is that of springs.
-/// The functions `describe` of this folder have names, units and ranges of the file's fields.
+/// The contents of a scenario file as plain structs. Default member values are the defaults of a scenario with
+/// springs. The functions `describe` in this folder list the names, units and ranges of the fields.
 namespace hapbench {
 
-/// Conditions that end a run early, with the outcome of the same name.
+/// Conditions that end a run early. The run then has the outcome with the same name.
 enum class StopCondition { leaves_hole, tool_horizontal };
 
 struct TimeFields {
-  double step = 0.0005;    ///< [s]
-  std::int64_t steps = 1;  ///< rows
-  std::vector<StopCondition> stop_when;
-  /// Steps between rows that the metrics take in, so that finer steps are measured as often; not a field of the file.
+  double step = 0.0005;                  ///< [s]
+  std::int64_t steps = 1;                ///< number of time steps
+  std::vector<StopCondition> stop_when;  ///< empty: the run never ends early
+  /// The metrics use every stride-th time step, so that a run with a smaller time step is sampled at the same
+  /// times. Not a field of the file.
   std::int64_t stride = 1;
 };
 
+/// Springs with the same direction.
 struct SpringGroup {
-  Vec3 direction = {1.0, 0.0, 0.0};  ///< gradient; normalised when the springs are made
+  Vec3 direction = {1.0, 0.0, 0.0};  ///< depth gradient; make_springs normalises it
   std::int64_t count = 1;
 };
+/// Springs with random directions.
 struct RandomSprings {
   std::int64_t count = 0;
-  bool planar = true;
+  bool planar = true;  ///< directions in the plane z = 0; false: in all directions
 };
+/// Springs between the tool's tip and the origin, without a surface.
 struct SpringsEnvironment {
-  bool bilateral = true;
-  bool signed_depths = true;
+  bool bilateral = true;      ///< springs push and pull; false: only while their depth is positive
+  bool signed_depths = true;  ///< depth <p, u> of the tip p along the direction u; false: its absolute value
   std::vector<SpringGroup> groups;
   RandomSprings random;
 };
 struct BlockEnvironment {
   BlockWithHole block;
-  double grid = 0.0001;  ///< of the density field [m]
+  double grid = 0.0001;  ///< spacing of the density field [m]
   Density density = Density::signed_distance;
-  bool per_cell = false;  ///< lists a vertex for each cell that has it on an edge, as thesis 2.1 and C.2; else once
+  bool per_cell = false;  ///< lists a vertex once for each cell that shares it (thesis 2.1, C.2); false: once
 };
 struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file
-  std::optional<double> grid;  ///< cell of the local average [m]
+  std::optional<double> grid;  ///< cell size of the local average [m]; empty: no cells
 };
 struct MeshEnvironment {
   std::string file;               ///< OBJ, PLY, STL or OFF, relative to the scenario file
-  double scale = 1.0;             ///< [m] for each unit of the file
-  std::optional<double> spacing;  ///< resampled to this [m]
-  std::optional<double> grid;     ///< cell of the local average [m]
-  bool flip = false;              ///< an open surface's outside is its inside
+  double scale = 1.0;             ///< length of the file's unit [m]
+  std::optional<double> spacing;  ///< spacing after resampling [m]; empty: no resampling
+  std::optional<double> grid;     ///< cell size of the local average [m]; empty: no cells
+  bool flip = false;              ///< reverses the normals of an open surface
 };
 using Environment = std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment,
                                  MeshEnvironment, ConicalHole>;
 
+/// State at t = 0.
 struct InitialFields {
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
+  Vec3 position = Vec3::Zero();  ///< of the tip centre [m]
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
 struct CylinderFields {
   double diameter = 0.001;  ///< [m]
-  double length = 0.01;     ///< [m]
+  double length = 0.01;     ///< from the tip plane to the far end [m]
   Tip tip = Tip::flat;
 };
+/// A solid of revolution.
 struct RevolvedFields {
-  std::vector<ProfilePoint> profile;
+  std::vector<ProfilePoint> profile;  ///< outline, from the far end to the tip
   Tip tip = Tip::flat;
 };
+/// A dental or bone bur: a head with a shank.
 struct BurFields {
   BurFamily family = BurFamily::ball;
-  double diameter = 0.001;               ///< of the head, where it is widest [m]
-  std::optional<double> length;          ///< of the head [m]; none: as long as it is wide
-  std::optional<double> shank_diameter;  ///< [m]; none: kShankShare of the head's
-  static constexpr double kShankShare = 0.6;
+  double diameter = 0.001;               ///< largest diameter of the head [m]
+  std::optional<double> length;          ///< length of the head [m]; empty: its diameter
+  std::optional<double> shank_diameter;  ///< [m]; empty: kShankRatio times the head's diameter
+  static constexpr double kShankRatio = 0.6;
 };
 struct MeshToolFields {
   std::string file;            ///< OBJ, PLY, STL or OFF, relative to the scenario file
-  double scale = 1.0;          ///< [m] for each unit of the file
-  Vec3 tip = Vec3::Zero();     ///< place of the file that is the tip centre [m]
-  Vec3 tip_axis = {0, 0, -1};  ///< where the tip points in the file; of any length
-  std::optional<double> grid;  ///< spacing of the signed distances [m]
+  double scale = 1.0;          ///< length of the file's unit [m]
+  Vec3 tip = Vec3::Zero();     ///< tip centre in the file's frame, after scaling [m]
+  Vec3 tip_axis = {0, 0, -1};  ///< direction in which the tip points, in the file's frame; any norm
+  std::optional<double> grid;  ///< spacing of the signed-distance grid [m]; empty: about 128^3 nodes
 };
 using ToolFields = std::variant<CylinderFields, RevolvedFields, BurFields, MeshToolFields>;
 
+/// A scripted orientation of the tool (sim/tool/motion.hpp).
 struct OrientationFields {
-  Vec3 up = {0.0, 1.0, 0.0};
-  Vec3 lean = {1.0, 0.0, 0.0};
-  Profile tilt;
-  Profile azimuth;
-  Profile roll;
+  Vec3 up = {0.0, 1.0, 0.0};    ///< against gravity
+  Vec3 lean = {1.0, 0.0, 0.0};  ///< direction in which the tool tilts at azimuth 0; perpendicular to up
+  Profile tilt;                 ///< [rad]
+  Profile azimuth;              ///< [rad]
+  Profile roll;                 ///< rotation about the tool's axis [rad]
 };
+/// Forces move the tool.
 struct FreePosition {};
 struct PrescribedPosition {
   std::array<Profile, 3> coordinates;  ///< [m]
@@ -121,82 +130,90 @@ struct RecordedPosition {
 };
 using PositionFields = std::variant<FreePosition, PrescribedPosition, RecordedPosition>;
 struct MotionFields {
-  std::optional<OrientationFields> orientation = OrientationFields{};  ///< none with a recorded position alone
+  std::optional<OrientationFields> orientation = OrientationFields{};  ///< empty only if the position is recorded
   PositionFields position;
 };
 
-/// True when forces move the tool's tip, false when a script or a recording prescribes its place.
+/// Returns true if forces move the tool's tip, false if a script or a recording prescribes its position.
 inline bool position_is_free(const MotionFields& motion) {
   return std::holds_alternative<FreePosition>(motion.position);
 }
 
+/// Nobody holds the handle.
 struct NoHandFields {};
 struct ForceHandFields {
   std::array<Profile, 3> force;  ///< [N]
 };
 struct PushHandFields {
   Profile force;         ///< [N]
-  double angle = 0.0;    ///< from straight down [rad]
-  double azimuth = 0.0;  ///< of the lean, from +x about z [rad]
+  double angle = 0.0;    ///< between the force and -z [rad]
+  double azimuth = 0.0;  ///< of the force's horizontal part, from +x about z [rad]
 };
+/// A spring and a damper between the handle and a moving target.
 struct ImpedanceHandFields {
   double stiffness = 300.0;            ///< [N/m]
   double damping = 6.0;                ///< [N s/m]
   std::array<Profile, 3> target;       ///< [m]
-  std::optional<TremorConfig> tremor;  ///< none: the hand follows the target alone
+  std::optional<TremorConfig> tremor;  ///< empty: no tremor
 };
-/// A passive hand, fixed to the handle of an impedance device.
+/// A passive hand that is fixed to the handle of an impedance device.
 struct MassSpringDamperHandFields {
   double mass = 0.2;           ///< [kg]
-  ImpedanceHandFields spring;  ///< and damper, towards the target
+  ImpedanceHandFields spring;  ///< spring and damper towards the target
 };
+/// A hand that leads the tool over the surface and presses along the normal. Either `path` or `direction` is set.
 struct DragHandFields {
   Drag drag;
-  std::optional<std::vector<Vec3>> path;  ///< [m]; it or the direction
-  std::optional<Vec3> direction;
-  std::optional<double> tilt = 0.0;  ///< [rad]; none: the orientation is that of the motion
-  double azimuth = 0.0;              ///< [rad]
-  double smoothing = 0.0005;         ///< radius of SmoothedSurface [m]
+  std::optional<std::vector<Vec3>> path;  ///< points on or near the surface [m]
+  std::optional<Vec3> direction;          ///< from the initial position along the surface
+  /// Angle between the tool's axis and the normal [rad]. Empty: the motion gives the orientation.
+  std::optional<double> tilt = 0.0;
+  double azimuth = 0.0;       ///< of the tilt, about the normal, from the direction of travel [rad]
+  double smoothing = 0.0005;  ///< radius of SmoothedSurface [m]
 };
-/// The length of the whole path, or of the way along the direction in `duration` [s] [m].
+/// Returns the length of the drag hand's path [m]. If the hand has a direction and no path, returns the distance
+/// that it travels in `duration` [s].
 double drag_length(const DragHandFields& hand, double duration);
 
-/// The man-machine experiments: every subject does every trial from the initial state.
+/// A simulated subject in a target-tracking experiment. Every subject does every trial, starting from the initial
+/// state.
 struct TrackingHandFields {
-  static constexpr std::size_t kMostPlaces = 100;  ///< of targets
+  static constexpr std::size_t kMostPlaces = 100;  ///< maximum number of target positions
   TargetRules task;
   std::vector<Subject> subjects = {Subject{}};
-  std::int64_t trials = 1;
+  std::int64_t trials = 1;  ///< trials of each subject
 };
 using HandFields = std::variant<NoHandFields, ForceHandFields, PushHandFields, ImpedanceHandFields, DragHandFields,
                                 TrackingHandFields, MassSpringDamperHandFields>;
 
-/// The spring and damper towards a target that a hand is, or is fixed to; null of other hands.
+/// Returns the spring and damper of a hand of type impedance or mass_spring_damper; null for all other hands.
 inline const ImpedanceHandFields* spring_of(const HandFields& hand) {
   const auto* passive = std::get_if<MassSpringDamperHandFields>(&hand);
   return passive != nullptr ? &passive->spring : std::get_if<ImpedanceHandFields>(&hand);
 }
 
 struct IdealDeviceFields {
-  std::optional<double> force_limit;  ///< [N]
+  std::optional<double> force_limit;  ///< [N]; empty: no limit
 };
 using DeviceFields = std::variant<IdealDeviceFields, AdmittanceDeviceConfig, ImpedanceDeviceConfig>;
 
-/// True when the handle moves the tool: there is no virtual mass, so that the integrator and f_in have no part in it.
+/// Returns true if the tool follows the handle's position (impedance device). Then there is no virtual mass, and
+/// neither the integrator nor the input force f_in is used.
 inline bool handle_moves_tool(const DeviceFields& device) {
   return std::holds_alternative<ImpedanceDeviceConfig>(device);
 }
-/// Threshold of the input-force limiter [N], if the device has one.
+/// Returns the threshold of the input-force limiter [N], or nullopt if the device has no limiter.
 std::optional<double> input_force_limit(const DeviceFields& device);
 
 struct IntegratorFields {
   const IntegratorEntry* type = &kLeapfrog;  ///< never null
-  double tolerance = kEventTolerance;        ///< of `event` [s]
+  double tolerance = kEventTolerance;        ///< time tolerance of the integrator `event` [s]
 };
 
+/// The output files of a run besides its summary.
 struct RecordFields : TrajectoryExtras {
   bool trajectory = true;
-  std::int64_t every = 1;
+  std::int64_t every = 1;  ///< records every n-th time step
   std::vector<std::int64_t> ratio_iterations;
   bool contacts = false;
   bool stiffness_tensor = false;
@@ -206,26 +223,28 @@ struct RecordFields : TrajectoryExtras {
   bool force_reference = false;
 };
 
-/// True when a run writes rows of its steps.
+/// Returns true if a run records its time steps in any table.
 bool records_rows(const RecordFields& record);
 
-/// The force that an ideal rendering would give on a prescribed way.
+/// Force that an ideal rendering would give on a prescribed path.
 struct ReferenceForceFields {
   std::array<Profile, 3> force;  ///< [N]
 };
 
+/// Bounds of a metric. An empty bound is not checked.
 struct MetricBound {
   std::optional<double> min;
   std::optional<double> max;
 };
-/// The conditions for a run to count as expected: one of the outcomes, and bounds on metrics.
+/// Expectations of a run. A run meets them if it has one of `outcomes` and every metric is within its bounds.
 struct ExpectFields {
   std::vector<Outcome> outcomes = {Outcome::completes, Outcome::leaves_hole, Outcome::tool_horizontal};
-  std::map<std::string, MetricBound> metrics;
+  std::map<std::string, MetricBound> metrics;  ///< by the name of the metric
 };
 
 struct Scenario {
-  // Defined in one source: each that copied the alternatives below would compile the copies anew.
+  // Defined in scenario.cpp to save compile time. Otherwise every source that copies a scenario would compile the
+  // copying of all variants again.
   Scenario();
   Scenario(const Scenario&);
   Scenario(Scenario&&) noexcept;
@@ -252,16 +271,19 @@ struct Scenario {
   SettlingRule metrics;
   ExpectFields expect;
 
-  std::filesystem::path directory;  ///< of the scenario file: what relative paths of the files it names start from
+  std::filesystem::path directory;  ///< folder of the scenario file; relative paths of files start from it
 };
 
-/// Runs of the scenario: one for each subject and trial of a tracking hand. May be more than any integer holds.
+/// Returns the number of runs of the scenario: subjects times trials for a tracking hand, otherwise 1. The type
+/// is double, because the product may exceed the range of integers.
 double trial_count(const HandFields& hand);
 
-/// True when the contacts are not those of the scenario's own search, but of a recording or a library.
-bool has_other_contacts(const Scenario& scenario);
+/// Returns true if the contacts come from a recording or a shared library, and not from hapbench's contact
+/// search.
+bool has_external_contacts(const Scenario& scenario);
 
-/// The scenario with another algorithm, whose name is known, and the depth model and reduction that it fixes.
+/// Returns the scenario with another algorithm, and with the depth model and reduction that this algorithm fixes.
+/// Precondition: `algorithm` is the name of a registered algorithm.
 Scenario with_algorithm(Scenario scenario, std::string_view algorithm);
 
 }  // namespace hapbench

@@ -17,9 +17,10 @@
 namespace hapbench {
 namespace {
 
-constexpr double kMostDelaySamples = 1e6;  ///< longest reaction delay of a simulated subject [time steps]
-constexpr double kLongestDrag = 1e6;       ///< entries of the table of a path over a surface
+constexpr double kMaxDelaySamples = 1e6;  ///< maximum reaction delay of a simulated subject [time steps]
+constexpr double kMaxPathEntries = 1e6;   ///< maximum number of samples of a drag hand's path
 
+/// Throws InputError if the run has too many steps, recorded rows or timed steps.
 void check_sizes(const Scenario& scenario, double steps) {
   if (!(steps >= 1.0 && steps <= kMostSteps)) {
     fail_at("/time/duration_s",
@@ -30,16 +31,17 @@ void check_sizes(const Scenario& scenario, double steps) {
     fail_at("/record/every", fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less",
                                          rows, kMostRows));
   }
-  // Every step of every trial has its time in memory.
+  // The measured times of all steps of all trials are kept in memory.
   if (scenario.record.timing)
     require_at_most(kMostRows, steps * trial_count(scenario.hand), "/record/timing", "timed steps");
 }
 
+/// Throws InputError unless `up` and `lean` are perpendicular and not zero.
 void check_orientation(const MotionFields& motion) {
   if (!motion.orientation) return;
   const Vec3 &up = motion.orientation->up, &lean = motion.orientation->lean;
-  // 1e-9 forgives the rounding of directions that were normalised by somebody else.
-  if (up.norm() >= kShortestDirection && lean.norm() >= kShortestDirection &&
+  // 1e-9 allows for the rounding of directions in a file.
+  if (up.norm() >= kMinDirectionNorm && lean.norm() >= kMinDirectionNorm &&
       std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm())
     return;
   fail_at("/motion/orientation", fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero",
@@ -55,14 +57,14 @@ bool is_zero(const Profile& profile) {
   return profile.is_constant() && profile(0.0) == 0.0;
 }
 
-/// A combination of fields that is refused.
+/// A combination of fields that is rejected.
 struct Rule {
-  const char* at;
-  const char* problem;  ///< with {} for the source of contacts
+  const char* at;       ///< JSON pointer of the field that the error names
+  const char* problem;  ///< message; "{}" stands for rendering.contact_source
   bool (*is_broken)(const Scenario& scenario);
 };
 
-/// A later rule may rely on the earlier ones.
+/// Checked in this order. The condition of a rule may assume that all rules before it are satisfied.
 constexpr Rule kRules[] = {
     {"/rendering/local_average", "got true; allowed: false, because springs have no grid cells",
      [](const Scenario& s) { return s.rendering.local_average && is<SpringsEnvironment>(s.environment); }},
@@ -106,22 +108,23 @@ constexpr Rule kRules[] = {
     {"/motion/position/type",
      "got a prescribed position; allowed: \"free\" with hand \"tracking\", which moves the tool",
      [](const Scenario& s) { return is<TrackingHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
-    // The contacts of a trace belong to its motion, and neither they nor those of a library are points of our shell.
+    // Recorded contacts are valid for the recorded motion only. Recorded contacts and contacts of a library are not
+    // points of the scenario's point shell.
     {"/rendering/contact_source", "got \"{}\"; allowed: \"own\", with springs, which have no surface",
-     [](const Scenario& s) { return has_other_contacts(s) && is<SpringsEnvironment>(s.environment); }},
+     [](const Scenario& s) { return has_external_contacts(s) && is<SpringsEnvironment>(s.environment); }},
     {"/rendering/contact_source",
      "got \"{}\"; allowed: \"own\", unless motion.position is prescribed, as it was when the contacts were recorded",
      [](const Scenario& s) {
        return s.rendering.contact_source == kTrace && (position_is_free(s.motion) || handle_moves_tool(s.device));
      }},
     {"/rendering/contact_source", "got \"{}\"; allowed: \"own\", with local_average, which merges shell points",
-     [](const Scenario& s) { return has_other_contacts(s) && s.rendering.local_average; }},
+     [](const Scenario& s) { return has_external_contacts(s) && s.rendering.local_average; }},
     {"/rendering/contact_source",
      "got \"{}\"; allowed: \"own\", with reduction.shuffle_seed, which orders shell points",
      [](const Scenario& s) {
-       return has_other_contacts(s) && s.rendering.reduction && s.rendering.reduction->shuffle_seed;
+       return has_external_contacts(s) && s.rendering.reduction && s.rendering.reduction->shuffle_seed;
      }},
-    // The rules below are about the virtual mass between hand and tool, which an impedance device does not have.
+    // An impedance device has no virtual mass between hand and tool.
     {"/hand/type",
      "got \"mass_spring_damper\", which is fixed to the handle of device \"impedance\"; allowed with other devices: "
      "\"impedance\", the same spring and damper without the mass",
@@ -144,21 +147,23 @@ constexpr Rule kRules[] = {
      }},
 };
 
+/// Throws InputError if the drag hand's direction is zero or its path has too many samples.
 void check_drag_hand(const Scenario& scenario, double steps) {
   const auto* hand = std::get_if<DragHandFields>(&scenario.hand);
   if (hand == nullptr) return;
   if (hand->direction) require_direction(*hand->direction, "/hand/direction");
   const double entries = drag_length(*hand, steps * scenario.time.step) / SurfacePath::spacing(hand->smoothing);
-  if (entries <= kLongestDrag) return;
+  if (entries <= kMaxPathEntries) return;
   fail_at("/hand/smoothing_m",
-          fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kLongestDrag));
+          fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kMaxPathEntries));
 }
 
+/// Throws InputError if a subject's reaction delay or the total number of steps is too large.
 void check_tracking_hand(const Scenario& scenario, double steps) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   if (hand == nullptr) return;
   for (std::size_t i = 0; i < hand->subjects.size(); ++i)
-    require_at_most(kMostDelaySamples, hand->subjects[i].reaction_delay / scenario.time.step,
+    require_at_most(kMaxDelaySamples, hand->subjects[i].reaction_delay / scenario.time.step,
                     fmt::format("/hand/subjects/{}/reaction_delay_s", i), "time steps");
   require_at_most(kMostSteps, trial_count(scenario.hand) * steps, "/hand/trials", "steps in all trials");
 }

@@ -2,10 +2,11 @@
 
 #include "scenarios/scene/scenario.hpp"
 
-/// Rules between the fields of a scenario, which a schema cannot express.
+/// Rules between the fields of a scenario. A schema cannot express them.
 namespace hapbench {
 
-/// Throws InputError for fields that contradict each other. `steps` may be more than a scenario can hold.
+/// Throws InputError if fields contradict each other or a size limit is exceeded. `steps` is the requested number
+/// of time steps. Its type is double, because the number may exceed the range of integers.
 void check_relations(const Scenario& scenario, double steps);
 
 }  // namespace hapbench

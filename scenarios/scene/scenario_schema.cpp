@@ -14,6 +14,7 @@
 namespace hapbench {
 namespace {
 
+/// Returns the documentation of a complete scenario. `definitions` is passed to guide_to.
 ValueGuide full_scenario(Json* definitions) {
   Scenario defaults;
   ValueGuide guide = guide_to([&defaults](Fields& f) { f.object(defaults); }, definitions);
@@ -23,20 +24,24 @@ ValueGuide full_scenario(Json* definitions) {
   return guide;
 }
 
-/// Returns true if a part of what the schema allows is also allowed.
+/// Returns true if an object that lacks some fields of a valid object is also valid: nothing inside the schema is
+/// required.
 bool allows_parts(const Json& schema) {
   if (!schema.is_structured()) return true;
   if (schema.is_object() && (schema.contains("required") || schema.contains("oneOf"))) return false;
   return std::all_of(schema.begin(), schema.end(), allows_parts);
 }
 
-/// For a file that extends another and so may leave out anything: only fields that mean something without the other
-/// file are checked. The schema of a file in full is found at `at`.
+/// Returns the schema of a file that extends another file. Such a file may omit any field, and the meaning of
+/// some fields depends on the base file, such as the type of an object. Only fields whose meaning does not depend
+/// on the base file are checked. `at` is the reference to the schema of a complete file.
 Json partial_schema(const ValueGuide& full, const std::string& at) {
   Json schema = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
   for (const FieldGuide& field : full.fields) {
     Json& part = schema["properties"][field.name];
     const Json& whole = field.value.schema;
+    // Nothing is required: the same schema. An object with required parts: recurse. Otherwise any value is
+    // allowed.
     if (allows_parts(whole)) {
       part = {{"$ref", at + "/properties/" + field.name}};
     } else if (whole.contains("properties") && !whole.contains("required") && !whole.contains("oneOf")) {
@@ -49,7 +54,9 @@ Json partial_schema(const ValueGuide& full, const std::string& at) {
   return schema;
 }
 
-/// Adds the fields of an object and of those in it. `at` is the path of the object with a dot behind it.
+/// Appends the fields of an object and, recursively, the fields of the objects in it. `at` is the object's dotted
+/// path, with a dot at the end unless it is empty. `types` is the condition on types under which the object
+/// exists.
 void add_fields(std::vector<PlacedField>& all, const ValueGuide& object, const std::string& at,
                 const std::string& types) {
   for (const ValueGuide& choice : object.choices) add_fields(all, choice, at, types);
@@ -66,7 +73,7 @@ void add_fields(std::vector<PlacedField>& all, const ValueGuide& object, const s
 const ValueGuide& scenario_guide() {
   static std::mutex mutex;
   static std::deque<ValueGuide> built;
-  static std::size_t known = 0;  // additions() when the last one was built
+  static std::size_t known = 0;  // value of additions() when the last guide was built
   const std::lock_guard lock(mutex);
   if (built.empty() || known != additions()) built.push_back(full_scenario(nullptr));
   known = additions();

@@ -7,23 +7,25 @@
 
 namespace hapbench {
 
-/// The whole JSON Schema (draft 7) that scenarios/library/scenario.schema.json holds.
+/// Returns the JSON Schema (draft 7) of scenario files, which is stored in
+/// scenarios/library/scenario.schema.json.
 Json scenario_schema();
 
-/// The guide to a scenario in full, that is, with the fields of the scenario that it extends filled in. It is built
-/// once, and again after an algorithm has been added; references stay valid. For several threads.
+/// Returns the documentation of a complete scenario, that is, after merging with the scenario that it extends. It
+/// is built on the first call, and again after an algorithm has been added. Earlier references stay valid.
+/// Thread-safe.
 const ValueGuide& scenario_guide();
 
-/// A field of scenarios; those of list entries aside.
+/// A field of a scenario, with its path. Fields of list entries are not included.
 struct PlacedField {
-  std::string path;   ///< dotted, as "rendering.limits.max_force_N"
-  std::string types;  ///< that lead to it, as `hand.type "drag"`; empty where all types have it
+  std::string path;   ///< dotted path, such as "rendering.limits.max_force_N"
+  std::string types;  ///< condition on types, such as `hand.type "drag"`; empty if all types have the field
   const FieldGuide* field = nullptr;
 };
-/// All of them, once for each type that has them.
+/// Returns all fields of scenarios. A field that several types have is listed once for each type.
 std::vector<PlacedField> placed_fields();
 
-/// Their paths, each once, and those of the fields "type".
+/// Returns the paths of all fields, including the fields "type". Each path is listed once.
 std::vector<std::string> scenario_field_paths();
 
 }  // namespace hapbench

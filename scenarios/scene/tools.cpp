@@ -14,9 +14,9 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kMostCorners = 1000;  // of a profile; the cost of a step grows with them
+constexpr std::size_t kMaxProfilePoints = 1000;  // of a tool's outline; the cost of a time step grows with their number
 
-/// In the order of the variant.
+/// Types of tools, in the order of the variant ToolFields.
 constexpr TypeName kToolTypes[] = {
     {"cylinder", "a drill's stylus with a flat or a round tip"},
     {"revolved", "a solid of revolution, given by its profile"},
@@ -24,7 +24,8 @@ constexpr TypeName kToolTypes[] = {
     {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},
 };
 
-/// Turns the objection of a shape to its fields into an InputError at `at`.
+/// Calls `make`, which constructs a shape. Converts a std::invalid_argument into an InputError at the JSON
+/// pointer `at`.
 template <class Make>
 void check_shape(const std::string& at, const char* allowed, const Make& make) {
   try {
@@ -34,10 +35,10 @@ void check_shape(const std::string& at, const char* allowed, const Make& make) {
   }
 }
 
-/// Throws std::invalid_argument when there is none.
+/// Returns the shape of a bur. Throws std::invalid_argument if no bur has these dimensions.
 Revolved revolved_of(const BurFields& bur) {
   const BurProfile of_bur = bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
-                                        bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));
+                                        bur.shank_diameter.value_or(BurFields::kShankRatio * bur.diameter));
   return Revolved(of_bur.profile, of_bur.tip);
 }
 
@@ -53,7 +54,7 @@ static void describe(Fields& f, CylinderFields& tool) {
 
 static void describe(Fields& f, RevolvedFields& tool) {
   f.list(
-      "profile_m", tool.profile, {2, kMostCorners},
+      "profile_m", tool.profile, {2, kMaxProfilePoints},
       "corners [s, rho] of the outline beside the axis, from the far end to the tip: s <= 0 along the axis from the "
       "tip centre, rho from the axis",
       [](Fields& p, ProfilePoint& point) {
@@ -101,12 +102,15 @@ std::vector<std::string> tool_names() {
 
 namespace {
 
-/// The signed distances from the surface in the tool's own frame: tip centre at the origin, axis along -z. Throws
-/// InputError that names the file when there is no grid of them.
+/// Computes the grid of signed distances from a mesh tool's surface, in the tool frame: origin at the tip centre,
+/// axis along -z. Throws InputError that names the file if the surface is not closed or the grid would be too
+/// large.
 std::shared_ptr<const SignedDistanceGrid> make_grid(const MeshToolFields& fields, const NamedFiles& files) {
+  // Transform the surface from the file's frame to the tool frame.
   TriangleSoup surface = files.at(kToolFile).mesh().triangles();
   const Mat3 to_file = ToolPose{.position = fields.tip, .axis = fields.tip_axis.normalized()}.rotation();
   for (Vec3& vertex : surface.vertices) vertex = to_file.transpose() * (vertex - fields.tip);
+  // Compute the grid.
   try {
     const double spacing = fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices));
     return std::make_shared<const SignedDistanceGrid>(ClosedSurface(surface.vertices, surface.triangles), spacing);
@@ -115,6 +119,7 @@ std::shared_ptr<const SignedDistanceGrid> make_grid(const MeshToolFields& fields
   }
 }
 
+/// Constructs the shape of each type of tool.
 struct Make {
   const NamedFiles& files;
 

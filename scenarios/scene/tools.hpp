@@ -10,19 +10,20 @@
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/tool_shape.hpp"
 
-/// Tools: their fields, and the shape that these say.
+/// Tools: description of their fields, and construction of their shape.
 namespace hapbench {
 
-/// The fields of `tool` with meaning, unit, range and default.
+/// Describes the fields of `tool` with meaning, unit, range and default.
 void describe(Fields& f, ToolFields& tool);
 
-/// The types of tools, in the variant's order.
+/// Returns the names of the tool types, in the order of the variant ToolFields.
 std::vector<std::string> tool_names();
 
-/// The tool. `files` are those of the scenario. The grid of a mesh takes seconds to make; equal ones are shared
-/// (SharedCache). Throws InputError when the named file cannot be used.
+/// Returns the shape of the tool. `files` are the scenario's files. Computing the signed-distance grid of a mesh
+/// tool takes seconds; tools with equal grids share it (SharedCache). Throws InputError if the tool's file cannot
+/// be used.
 std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const NamedFiles& files);
-/// The tool, for callers that need a cylinder. Throws InputError when it is none.
+/// Returns the tool as a cylinder. Throws InputError if the tool has another type.
 Cylinder make_cylinder(const ToolFields& fields);
 
 }  // namespace hapbench

@@ -7,15 +7,16 @@
 
 namespace hapbench {
 
-/// One run of a scenario that has several: a simulated subject's trial. Both count from 0.
+/// One run of a scenario: a trial of a simulated subject. A scenario without subjects has one run.
 struct Trial {
-  std::size_t subject = 0;
-  std::size_t number = 0;
+  std::size_t subject = 0;  ///< index of the subject, from 0
+  std::size_t number = 0;   ///< index of the subject's trial, from 0
 };
 
-/// The uses of randomness that differ from trial to trial, by numbers on which seeds depend.
+/// Uses of random numbers that differ from trial to trial. Seeds depend on the numeric values; do not renumber.
 enum class RandomUse { sensor_noise = 1, motor_noise, target_order, position_noise, lost_queries, tremor };
-/// A seed of its own for each use in each trial: far apart in the 64 bits, whatever the scenario's seed.
+/// Returns a 64-bit seed for one use of random numbers in one trial. Different uses, trials and scenario seeds
+/// give unrelated seeds.
 std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use);
 
 }  // namespace hapbench
