@@ -27,7 +27,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 enum { kPosition, kVelocity, kLastPosition, kModes };
 
 bool is_pair(const LowPassMode& mode) {
-  return mode.taken.imag() != 0.0;
+  return mode.gain.imag() != 0.0;
 }
 
 /// The matrix of motion_rate with (x, T v) of the motors and then of the handle, on a transmission.
@@ -110,12 +110,12 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
     for (const LowPassMode& mode : modes) {
       const Eigen::Index at = next;
       next += is_pair(mode) ? 2 : 1;
-      const double t = mode.taken.real(), turned = mode.taken.imag();
-      A.row(at) = (1.0 - t) * unit(at) + (t * mode.share.real() - turned * mode.share.imag()) * u;
+      const double t = mode.gain.real(), turned = mode.gain.imag();
+      A.row(at) = (1.0 - t) * unit(at) + (t * mode.residue.real() - turned * mode.residue.imag()) * u;
       if (is_pair(mode)) {
         A.row(at) += turned * unit(at + 1);
         A.row(at + 1) =
-            (1.0 - t) * unit(at + 1) - turned * unit(at) + (t * mode.share.imag() + turned * mode.share.real()) * u;
+            (1.0 - t) * unit(at + 1) - turned * unit(at) + (t * mode.residue.imag() + turned * mode.residue.real()) * u;
       }
       output += A.row(at);
     }
