@@ -16,7 +16,7 @@ namespace hapbench {
 
 /// Involuntary motion of a hand that tries to rest. Physiological tremor has its power at 8 to 12 Hz (T. Novak, K.
 /// M. Newell, Neuroscience Letters 641, 2017). A finger's amplitude is about 30 um with the arm at rest, twice as
-/// large with the hand at rest, and four to five times as large with the arm held out (W. Growdon et al.,
+/// large with the hand held out, and four to five times as large with the arm held out (W. Growdon et al.,
 /// Electromyogr. Clin. Neurophysiol. 40(5), 2000).
 struct TremorConfig {
   Vec3 rms = {30e-6, 30e-6, 30e-6};  ///< root mean square of the displacement in each axis [m]

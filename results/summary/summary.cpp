@@ -31,7 +31,7 @@ ordered_json divergence_json(const RunEnd& result) {
   return json;
 }
 
-/// The tolerances of the metrics that have one, by the full names of these.
+/// Returns the tolerances of all metrics that have one, by the metric's full name.
 ordered_json tolerances_json(const MetricList& list) {
   ordered_json json = ordered_json::object();
   for (const Metric& metric : list)
@@ -39,13 +39,14 @@ ordered_json tolerances_json(const MetricList& list) {
   return json;
 }
 
-/// The array of a vector whose coordinates are three metrics; null without values.
+/// Returns the array of a vector whose x, y and z are three consecutive metrics; null without values.
 ordered_json vector_json(const Metric* xyz) {
   if (std::holds_alternative<std::monostate>(xyz->value)) return nullptr;
   return {cell_json(xyz[0].value), cell_json(xyz[1].value), cell_json(xyz[2].value)};
 }
 
-/// Puts each metric into the object of its section or "metrics"; dots lead into nested objects, vectors become arrays.
+/// Adds each metric to the object of its section, or to "metrics". Dots in a name create nested objects; vectors
+/// become arrays.
 void add_metrics(ordered_json& json, const MetricList& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     std::string_view name = list[i].name;
