@@ -66,8 +66,8 @@ void StepTimes::lap() noexcept {
 }
 
 void StepSampler::on_step(const StepRecord& record) noexcept {
-  has_row_ = !has_row_;
-  if (has_row_) {
+  observing_ = !observing_;
+  if (observing_) {
     if (std::exchange(runs_, false)) times_.lap();
   } else if (record.step % every_ == 0) {
     runs_ = true;

@@ -56,8 +56,8 @@ class StepSampler final : public Observer {
  private:
   std::uint64_t every_;
   StepTimes times_;
-  bool runs_ = false;     ///< a sample has begun
-  bool has_row_ = false;  ///< the other observers see a row now
+  bool runs_ = false;       ///< a sample has begun
+  bool observing_ = false;  ///< the other observers see a row now
 };
 
 /// Deadlines of a haptic loop [s]: the thesis's simulations step at 2 kHz, its device at 2048 Hz.
