@@ -52,8 +52,9 @@ struct Peak {
   bool inside = false;  ///< not at an end of the range
 };
 
-/// The peaks as high as the largest one, to kSamePeak, of the correlations at the shifts -m … m. Two peaks are told
-/// apart by a dip of kDip between them, so that noise on a peak does not split it.
+/// Returns the peaks of the correlations at the shifts -m … m whose height is within kSamePeak of the highest peak.
+/// Two maxima count as separate peaks only if the correlation dips by kDip between them, so noise does not split a
+/// peak.
 std::vector<Peak> largest_peaks(const std::vector<double>& found) {
   constexpr double kDip = 0.1, kSamePeak = 0.01;
   const double least = std::ranges::max(found) - kDip;

@@ -42,7 +42,7 @@ inline constexpr double kMostLag = 0.1;
 
 /// Time lag of a signal behind another signal.
 struct Lag {
-  double time = 0.0;             ///< [s]
+  double time = 0.0;             ///< lag [s], > 0 if the signal is late
   std::optional<double> period;  ///< distance to the next equally good lag [s], for periodic signals
 };
 

@@ -22,7 +22,7 @@ namespace hapbench {
 /// (The deepest point is never inside the tip's flat face: a horizontal displacement keeps z, and D does not fall
 /// in both directions.) The depths of two lines differ by at most radius * angle between them. Of 64 lines around
 /// the tool, the angles near lines deeper than their neighbours are searched to 1e-8 rad, which gives a depth
-/// accurate to about 1e-11 m. Takes about 2 us.
+/// accurate to about 1e-11 m. Takes about 2 us. Precondition: the tool does not point upwards, axis.z <= 0.
 double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose);
 
 /// Position of the tip centre in the vertical plane through the hole's axis in which the tool leans.

@@ -17,11 +17,11 @@ std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator,
 
 namespace {
 
-/// Replaces `sorted` by the numbers in ascending order. Allocates nothing within its capacity.
+/// Sets `sorted` to the numbers in ascending order. Allocates nothing if they fit into its capacity.
 void sort_into(std::vector<std::uint32_t>& sorted, std::span<const std::uint32_t> numbers) noexcept {
   assert(numbers.size() <= sorted.capacity());
   sorted.assign(numbers.begin(), numbers.end());
-  if (!std::ranges::is_sorted(sorted)) std::ranges::sort(sorted);  // without a shuffle the order ascends as a rule
+  if (!std::ranges::is_sorted(sorted)) std::ranges::sort(sorted);  // usually ascending, unless the points were shuffled
 }
 
 }  // namespace
@@ -32,10 +32,10 @@ ReductionJumps::ReductionJumps(std::size_t capacity) {
 
 void ReductionJumps::add(const ContactBuffer& kept, double step_squared, bool settled) noexcept {
   const std::span<const std::uint32_t> now(kept.index.data(), kept.size());
-  // Most rows keep the same points in the same order.
+  // In most steps the same points are kept in the same order.
   if (std::ranges::equal(now, last_)) return;
 
-  // Compare the points without their order.
+  // Compare the sets of points.
   bool same = false;
   if (now.size() == last_.size()) {
     sort_into(sorted_now_, now);
@@ -91,7 +91,7 @@ void MetricsObserver::add_motion(const Vec3& position, const Vec3& v) noexcept {
 }
 
 ForceChange MetricsObserver::add_force(const RenderedForce& force) noexcept {
-  // The force before the first row is zero, so that this row reverses nothing.
+  // The force before the first step counts as zero, so the first step reverses nothing.
   ForceChange change;
   change.reverses = force.rendered.dot(last_force_) < 0.0;
   if (change.reverses) ++force_reversals_;

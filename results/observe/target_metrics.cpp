@@ -42,7 +42,7 @@ void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
 
 namespace {
 
-/// The values of one quantity at one place, by subject.
+/// Values of one quantity at one target position, by subject.
 using ValuesOfSubjects = std::map<std::size_t, std::vector<double>>;
 
 double mean_of(const std::vector<double>& values) {
