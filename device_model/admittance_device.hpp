@@ -128,8 +128,8 @@ struct HandleMechanicsConfig {
   double carriage_mass = 0.25;  ///< [kg]
   double handle_mass = 0.07;    ///< [kg]
   double friction = 2.0;        ///< viscous friction of the carriage [N s/m]
-  double structure_stiffness =
-      200000.0;                     ///< stiffness between carriage and handle (the inverse of the compliance) [N/m]
+  /// Stiffness between carriage and handle (the inverse of the compliance) [N/m].
+  double structure_stiffness = 200000.0;
   double structure_damping = 40.0;  ///< damping between carriage and handle [N s/m]
 
   bool operator==(const HandleMechanicsConfig&) const = default;

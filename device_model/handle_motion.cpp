@@ -129,8 +129,8 @@ void HandleMotion::move(Eigen::Index axis, double motors, double friction, const
   const double hand = hand_force_if_at_rest(axis), v = handle_.velocity[axis];
   const double g = (motors + hand + friction) / mass_;
   const double displacement = v * motion.S + g * motion.P, after = v * motion.V + g * motion.S;
-  const double squares =
-      v * v * motion.W + v * g * motion.S * motion.S + g * g * motion.Z;  // integral of the squared velocity
+  // Integral of the squared velocity.
+  const double squares = v * v * motion.W + v * g * motion.S * motion.S + g * g * motion.Z;
   handle_.position[axis] += displacement;
   handle_.velocity[axis] = after;
   work_.actuator += motors * displacement;

@@ -153,7 +153,7 @@ class ElasticMotion : public HandleMotionBase {
   Stretch stretch(double time) const;
 
   void reset(const HandleState& handle) noexcept;
-  /// Advances by the stretch's time under a constant force of the motors [N]. Allocates nothing.
+  /// Advances by the interval of `stretch` under a constant force of the motors [N]. Allocates nothing.
   void advance(const Vec3& motors, const Stretch& stretch) noexcept;
 
   /// Position and velocity on the motors' side, which the encoder measures.
@@ -197,7 +197,7 @@ struct LoggedHandle {
 };
 
 /// Simulates a log. Computes the `positions` [m] at `times` [s] of a handle that starts at 0. Each of `forces` [N]
-/// is commanded at the time with the same index, acts `handle.delay` later and is then held; before the first one
+/// is commanded at the time with the same index, acts `handle.delay` later and is then held; before the first force
 /// acts, only the offset acts. Exact, including stops and rests. Precondition: `times` increase, and all spans have
 /// the same length. Takes 20 ns for each time.
 void simulate_log(const LoggedHandle& handle, std::span<const double> times, std::span<const double> forces,

@@ -96,6 +96,7 @@ Vec3 VelocityFilter::read(const Vec3& position) noexcept {
   samples_[next_] = position;
   next_ = (next_ + 1) % samples_.size();
   known_ = std::min(known_ + 1, samples_.size());
+  // Estimate the velocity by the configured method.
   if (const auto* window = std::get_if<AdaptiveWindowFilter>(&config_)) {
     const double noise = window->noise;
     return {end_fit(0, noise), end_fit(1, noise), end_fit(2, noise)};
@@ -108,6 +109,7 @@ Vec3 VelocityFilter::read(const Vec3& position) noexcept {
 double VelocityFilter::end_fit(Eigen::Index axis, double noise) const noexcept {
   const double now = sample(0)[axis];
   double rise = 0.0;  // rise of the fitted line per sample [m]
+  // Lengthen the window while the line through its ends fits all samples in it.
   for (std::size_t n = 1; n < known_; ++n) {
     const double longer = (now - sample(n)[axis]) / static_cast<double>(n);
     for (std::size_t i = 1; i < n; ++i) {
@@ -191,6 +193,7 @@ Vec3 ImpedanceDevice::read_position() noexcept {
 }
 
 void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexcept {
+  // Move the handle over the period; the motors' force may change within it.
   const HeldForce motors = path_.hold(rendered);
   const auto advance = [&](auto& motion, const auto& before, const auto& after) {
     motion.take_hand(hand_force);
@@ -200,6 +203,7 @@ void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexce
   elastic_ ? advance(elastic_->parts, elastic_->before, elastic_->after) : advance(motion_, before_, after_);
   sampled_.position = read_position();
   sampled_.velocity = filter_.read(sampled_.position);
+  // Filter the rendered position only; the velocity uses the unfiltered position.
   if (position_filter_) sampled_.position = position_filter_->filter(sampled_.position);
 }
 

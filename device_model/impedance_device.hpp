@@ -20,8 +20,8 @@ namespace hapbench {
 struct LowPassFilter {
   double cutoff = 100.0;  ///< half-power frequency [Hz]
   std::size_t order = 1;  ///< 1 to kHighest
-  static constexpr int kHighest =
-      8;  ///< largest order; up to it, the sum of modes loses less than 1e-12 of the input to rounding
+  /// Largest order; up to it, the sum of modes loses less than 1e-12 of the input to rounding.
+  static constexpr int kHighest = 8;
 };
 
 /// One mode of a sampled low-pass: a term of the partial fractions of its transfer function. Its state is updated

@@ -36,12 +36,14 @@ void TrackingHand::reset() noexcept {
 }
 
 Vec3 TrackingHand::force(double, const HandView& view) noexcept {
+  // Update the task and respond to the delayed display.
   if (!started_) intended_ = view.handle.position;
   started_ = true;
   task_.advance(view.tool.position, view.spring_force.z(), view.model_force.z(), dt_);
   follow(delayed_display(view));
-  const Vec3 reach =
-      Vec3::Constant(subject_.max_force / subject_.stiffness);  // distance at which the hand's force reaches its limit
+  // Limit the spring force and add motor noise.
+  // Distance at which the hand's force reaches its limit.
+  const Vec3 reach = Vec3::Constant(subject_.max_force / subject_.stiffness);
   intended_ = intended_.cwiseMax(view.handle.position - reach).cwiseMin(view.handle.position + reach);
   for (double& component : force_noise_) component = next_noise(component);
   return subject_.stiffness * (intended_ - view.handle.position) - subject_.damping * view.handle.velocity +
@@ -62,6 +64,7 @@ TrackingHand::Display TrackingHand::delayed_display(const HandView& view) noexce
 void TrackingHand::follow(const Display& seen) noexcept {
   const auto limited = [](double rate, double limit) { return std::clamp(rate, -limit, limit); };
   const double follow_rate = kTwoPi * subject_.bandwidth;
+  // Follow the target: the hand on the panel, the wrist with the height meter.
   if (task_.rules().display == TargetDisplay::panel) {
     intended_.x() += limited(follow_rate * seen.error.x(), subject_.max_speed) * dt_;
     intended_.y() += limited(follow_rate * seen.error.y(), subject_.max_speed) * dt_;
@@ -71,6 +74,7 @@ void TrackingHand::follow(const Display& seen) noexcept {
     tilt_noise_ = next_noise(tilt_noise_);
     tilt_ = wrist_ + subject_.tilt_noise * tilt_noise_;
   }
+  // Correct the pressing force.
   const double press_rate = kTwoPi * subject_.press_bandwidth / subject_.stiffness;
   intended_.z() -= limited(press_rate * (subject_.press - seen.gauge), subject_.max_speed) * dt_;
 }

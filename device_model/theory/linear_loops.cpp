@@ -96,6 +96,7 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
   const Eigen::Index whole = static_cast<Eigen::Index>(std::floor(delay));
   const double part = delay - static_cast<double>(whole);
   const Eigen::Index kept = whole + (part > 0.0 ? 1 : 0);
+  // Count the state components of filters, delayed forces and transmission.
   std::vector<LowPassMode> velocity = velocity_modes(*this);
   if (velocity.empty()) velocity.push_back({1.0, 1.0});
   const std::vector<LowPassMode> position = position_modes(*this);
@@ -126,6 +127,7 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
     }
     return output;
   };
+  // The wall's force as a row vector over the state.
   const Eigen::RowVectorXd measured = unit(kPosition);
   A.row(kLastPosition) = measured;
   Eigen::RowVectorXd force = -(wall_damping * T / m) * filtered(velocity, measured - unit(kLastPosition));
@@ -135,6 +137,7 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
     return age == 0 ? force : unit(forces + age - 1);
   };
 
+  // Motion over the period under the delayed forces, then shift of the delay line.
   const Eigen::RowVectorXd before = part > 0.0 ? force_of(whole + 1) : Eigen::RowVectorXd();
   std::vector<Eigen::Index> body = {kPosition, kVelocity};
   if (device.transmission) body.insert(body.end(), {n - 2, n - 1});
@@ -190,17 +193,20 @@ Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
     kCarriageVelocity,
     kHandle,
     kHandleVelocity,
+    // Indices of the state.
     kCommands
-  };  // indices of the state
+  };
   const auto delay = static_cast<Eigen::Index>(servo.delay);
   const Eigen::Index n = kCommands + delay;
   const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
 
+  // Virtual mass under the forces of hand and wall.
   const Eigen::RowVectorXd hand = -hand_stiffness * unit(kHandle) - hand_damping * unit(kHandleVelocity);
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
   A.block<2, 2>(kTool, kTool) = tool.step_matrix();
   A.middleRows<2>(kTool) += tool.input_step() * hand;
 
+  // Carriage and handle under the delayed servo force and the hand's force.
   const Eigen::RowVectorXd command = servo.stiffness * (A.row(kTool) - unit(kCarriage)) +
                                      servo.damping * (A.row(kToolVelocity) - unit(kCarriageVelocity));
   const Eigen::RowVectorXd actuator = delay == 0 ? command : unit(kCommands + delay - 1);
@@ -210,6 +216,7 @@ Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
 
   for (Eigen::Index i = 0; i < delay; ++i) A.row(kCommands + i) = i == 0 ? command : unit(kCommands + i - 1);
 
+  // Scale all components to metres.
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
   for (const Eigen::Index velocity : {kToolVelocity, kCarriageVelocity, kHandleVelocity}) scale[velocity] = tool.dt;
   scale.tail(delay).setConstant(tool.dt * tool.dt / tool.M);

@@ -27,6 +27,7 @@ void write(std::string& out, const ordered_json& value, std::size_t indent) {
   const auto is_plain = [](const ordered_json& item) { return item.is_primitive(); };
   const bool one_line = !is_object && std::all_of(value.begin(), value.end(), is_plain);
   const std::string end_of_line = one_line ? "" : "\n" + std::string(indent, ' ');
+  // Write the items, separated by commas, with line breaks unless it is an array of plain values.
   out += is_object ? '{' : '[';
   const char* separator = "";
   for (const auto& [key, item] : value.items()) {

@@ -186,8 +186,8 @@ class ContactForces {
 
   std::uint64_t landings_ = 0, landing_rows_ = 0, settled_rows_ = 0;
   double landing_max_squared_ = 0.0, landing_step_max_squared_ = 0.0;  ///< as below, for landings
-  double max_squared_ = 0.0,
-         step_max_squared_ = 0.0;                  ///< in settled contact: largest ||f||^2, ||f_k - f_(k-1)||^2 [N^2]
+  /// In settled contact: largest ||f||^2, ||f_k - f_(k-1)||^2 [N^2].
+  double max_squared_ = 0.0, step_max_squared_ = 0.0;
   double sum_ = 0.0, above_cutoff_squares_ = 0.0;  ///< sums of ||f|| [N] and ||high-passed f||^2 [N^2]
   MagnitudeHistogram steps_;                       ///< ||f_k - f_(k-1)||
   std::uint64_t reversals_ = 0;                    ///< steps whose f_k has a negative inner product with f_(k-1)

@@ -58,8 +58,8 @@ class ContactAgeObserver final : public MetricObserver {
   double dt_ = 0.0;
   std::uint64_t rows_ = 0, oldest_ = 0;
   std::uint64_t requested_ = 0, lost_ = 0;
-  std::vector<std::uint64_t>
-      rows_of_age_;  ///< number of steps for each age in time steps; the last entry also counts all older contacts
+  /// Number of steps for each age in time steps; the last entry also counts all older contacts.
+  std::vector<std::uint64_t> rows_of_age_;
 };
 
 /// Observes the lost torque (thesis Fig. 1), tau = sum r_i x f_i about the tip centre. f_i is the part of f_spring

@@ -13,7 +13,7 @@
 
 namespace hapbench {
 
-/// Energy balance of a run since its first row [J].
+/// Energy balance of a run since its first step [J].
 ///
 ///   kinetic + stored = initial values + input + damping + rotation + created + integration + script + residual
 ///   input = hand + actuator                                        (when the handle is the tool)
@@ -99,12 +99,12 @@ class EnergyLedger final : public MetricObserver {
   void add_event(const StepRecord& now, double created) noexcept;
 
   double mass_, dt_;
-  bool position_is_free_,
-      holds_force_;  ///< the position is not prescribed; the integrator holds the force of a step until the next
+  /// The position is not prescribed; the integrator holds the force of a step until the next.
+  bool position_is_free_, holds_force_;
   bool has_row_ = false;
   StepRecord last_;  ///< the step before, without its contacts
-  std::vector<std::uint32_t> rendered_,
-      last_rendered_;  ///< sorted shell indices of the rendered contacts of this step and the step before
+  /// Sorted shell indices of the rendered contacts of this step and the step before.
+  std::vector<std::uint32_t> rendered_, last_rendered_;
   EnergyBalance balance_;
   double kinetic_at_start_ = 0.0, unexplained_ = 0.0;  ///< unexplained_: sum of Works::unexplained
   double created_sum_ = 0.0, created_max_ = 0.0, residual_max_ = 0.0;
@@ -131,8 +131,8 @@ class PassivityObserver final : public MetricObserver {
  private:
   struct Extremes {
     bool rows = false;  ///< there was a step with a force or a moment
-    double energy_min =
-        0.0;  ///< smallest E of a step [J]; negative if the rendering gave more energy than it had received
+    /// Smallest E of a step [J]; negative if the rendering gave more energy than it had received.
+    double energy_min = 0.0;
     double time_of_min = 0.0;  ///< time of the first step with this E [s]
     double energy_end = 0.0;   ///< E of the last step [J], valid after the end of the trial
     double net_created() const noexcept { return energy_min >= 0.0 ? 0.0 : -energy_min; }

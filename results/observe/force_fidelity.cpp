@@ -180,7 +180,7 @@ void ForceFidelityObserver::tell(Section& s) const {
   s.metric("direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", direction_rows_);
   s.metric("force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
            per(direction_error_, direction_rows_), Better::less);
-  const double interval = dt_ * static_cast<double>(every_);  // time between kept rows
+  const double interval = dt_ * static_cast<double>(every_);  // time between kept samples
   const auto lag = lag_between(kept_reference_, kept_rendered_, interval, kMostLag);
   s.metric("force_lag_s", "s",
            "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "

@@ -92,12 +92,14 @@ double maximum_in(const Function& f, double low, double high, double best, doubl
     const double r = (best - second) * (top - f_third), s = (best - third) * (top - f_second);
     const double p = std::copysign(1.0, r - s) * ((best - third) * s - (best - second) * r);
     const double q = 2.0 * std::abs(s - r);
+    // Take the parabola's vertex if it is well inside and the steps shrink, otherwise a golden section.
     const bool parabola = std::abs(p) < std::abs(0.5 * q * last_step) && p > q * (low - best) && p < q * (high - best);
     last_step = parabola ? step : (best < middle ? high : low) - best;
     step = parabola ? p / q : kGolden * last_step;
     if (parabola && std::min(best + step - low, high - best - step) < 2.0 * kAngleTolerance)
       step = std::copysign(kAngleTolerance, middle - best);
     if (std::abs(step) < kAngleTolerance) step = std::copysign(kAngleTolerance, step);
+    // Narrow the interval and keep the three best points.
     const double x = best + step, f_x = f(x);
     if (f_x >= top) {
       (x < best ? high : low) = best;
@@ -121,6 +123,7 @@ double maximum_in(const Function& f, double low, double high, double best, doubl
 double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose) {
   assert(pose.axis.z() <= 0.0);
   const Side side(block, tool, pose);
+  // Compute the depth of each line.
   std::array<double, kSamples> depth{};
   for (std::size_t i = 0; i < kSamples; ++i) depth[i] = side.deepest(kTurns[i]);
   double largest = std::max(0.0, *std::max_element(depth.begin(), depth.end()));

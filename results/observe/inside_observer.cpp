@@ -36,7 +36,7 @@ constexpr double kCheckDepth = 0.8;
 /// The core ends where the axis is closer than this to the body's surface [half widths], as in a bent body.
 constexpr double kThinnest = 0.05;
 constexpr std::size_t kCoreSamples = 256;  ///< samples of the tool's thickness along the axis
-constexpr std::size_t kMaxSegments = 8;    ///< of the core inside the solid at one time
+constexpr std::size_t kMaxSegments = 8;    ///< segments of the core inside the solid at one time
 constexpr double kMaxSteps = 256.0;        ///< steps in which the path of one time step is followed through a solid
 
 SolidSide side_of(const SurfaceDistance& phi) noexcept {
@@ -164,6 +164,7 @@ double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double
     const SurfaceDistance phi = solid_->at(point);
     const SolidSide side = side_of(phi);
     nearest = std::min(nearest, std::abs(phi.value));
+    // Begin, extend or end a segment.
     if (side == SolidSide::inside) {
       if (before != SolidSide::inside) {
         if (segments_.size() == kMaxSegments) break;
@@ -182,6 +183,7 @@ double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double
     if (!(s > far_end_)) break;
     before = side;
     last = point;
+    // Move along the axis by the distance to the surface.
     s = std::max(far_end_, s - std::max(std::abs(phi.value), kCoreStep * width_));
   }
   return 0.5 * nearest;  // between two evaluated points the surface may be half as far
@@ -197,6 +199,7 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) n
     const auto position_at = [&](double s) { return Vec3(position + s * axis); };
     if (next.face_low && next.face_high && are_opposed(*next.face_low, *next.face_high))
       through(position_at(next.high), position_at(next.low), true);
+    // Find the segment of the last check that overlaps this segment.
     const Segment* previous = nullptr;
     for (Segment& old : last_segments_) {
       if (old.low > next.high || next.low > old.high) continue;
@@ -222,6 +225,7 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) n
     next.entered_high = away_high ? std::min(previous->entered_high, next.high) : next.high;
   }
   if (!continues_) return;
+  // Check the segments that are no longer inside.
   for (const Segment& old : last_segments_) {
     if (old.continued) continue;
     const Vec3 middle = position + 0.5 * (old.entered_low + old.entered_high) * axis;
@@ -331,12 +335,15 @@ void InsideObserver::march(const Vec3& point, double length, double time) noexce
 void InsideObserver::update_side(const Vec3& point, const SurfaceDistance& phi, double time) noexcept {
   const double step = kNormalsOver * tool_->half_width();
   const SolidSide before = std::exchange(side_, side_of(phi));
+  // Record the side in the first and in the last step.
   if (!began_) passage_.began_inside = side_ == SolidSide::inside;
   passage_.ends_inside = side_ == SolidSide::inside;
+  // Entry: remember the normal of the face.
   if (side_ == SolidSide::inside && before == SolidSide::outside) {
     entry_normal_ = solid_->gradient(outside_, step);
     if (!passage_.left) passage_.entered = point;
   }
+  // Exit by an opposed face: the front point has passed through.
   if (side_ == SolidSide::outside && before == SolidSide::inside && entry_normal_ &&
       are_opposed(*entry_normal_, solid_->gradient(point, step)) && !passage_.left) {
     passage_.left = {time, point};

@@ -23,6 +23,7 @@ void TargetMetricsObserver::fail_rest() {
 
 void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
   const TargetTask& task = *record.task;
+  // If a target has ended, convert its sums to means.
   if (task.results().size() > ended()) {
     TargetRow row = current_;
     row.target = ended();
@@ -34,6 +35,7 @@ void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
     rows_.push_back(row);
     current_ = {.subject = row.subject, .trial = row.trial};
   }
+  // Add the step to the sums of the current target.
   if (task.finished() || !task.logs(record.tool.pose.position)) return;
   ++current_.rows_on_target;
   current_.model_force += record.force.rendered.norm();
@@ -75,6 +77,7 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
   struct Values {
     ValuesOfSubjects success, time, force, speed;
   };
+  // Collect the values of each target position by subject.
   std::map<std::size_t, Values> places;
   for (const TargetRow& row : rows) {
     Values& at = places[row.result.place];
@@ -84,6 +87,7 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
     at.force[row.subject].push_back(row.model_force);
     at.speed[row.subject].push_back(row.speed);
   }
+  // Average over the subjects.
   std::vector<PlaceMetrics> metrics;
   for (const auto& [place, at] : places) {
     metrics.push_back(

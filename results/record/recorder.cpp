@@ -322,6 +322,7 @@ RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std
     ContactBuffer& contacts = *copy;
     assert(record.rendered->size() <= contacts.capacity());
     contacts.assign(*record.rendered);
+    // Continue the updates to each requested number and write the ratios.
     Mat3 S = shaping.start(contacts);
     int done = 0;
     for (const int m : iterations) {

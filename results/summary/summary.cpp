@@ -49,16 +49,19 @@ ordered_json vector_json(const Metric* xyz) {
 /// become arrays.
 void add_metrics(ordered_json& json, const MetricList& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
+    // Find the object of the metric's section.
     std::string_view name = list[i].name;
     const std::string section(name.substr(0, name.find('.')));
     const bool in_section = section.size() < name.size() && json.contains(section);
     ordered_json* object = &json[in_section ? section : "metrics"];
     if (in_section) name.remove_prefix(section.size() + 1);
+    // Write a vector as one array.
     if (name.ends_with(".x")) {
       (*object)[std::string(name.substr(0, name.size() - 2))] = vector_json(&list[i]);
       i += 2;
       continue;
     }
+    // Create nested objects for dots in the name.
     for (std::size_t dot; (dot = name.find('.')) != std::string_view::npos; name.remove_prefix(dot + 1))
       object = &(*object)[std::string(name.substr(0, dot))];
     (*object)[std::string(name)] = cell_json(list[i].value);
@@ -115,6 +118,7 @@ ordered_json summary_json(const Result& run) {
     json["diagnosis"] = ordered_json::array();
     for (const Diagnosed& finding : *run.diagnosis) json["diagnosis"].push_back(finding_json(finding));
   }
+  // Create the sections first, to fix their order.
   json["metrics"] = ordered_json::object();
   for (const auto& [section, members] : run.sections.items()) {
     json[section] = ordered_json::object();

@@ -65,7 +65,7 @@ struct RunTiming {
 /// End of a run and its outcome.
 struct RunEnd {
   Outcome outcome = Outcome::completes;
-  std::uint64_t rows = 0;  ///< number of observed rows
+  std::uint64_t rows = 0;  ///< number of observed steps
   Divergence divergence;   ///< valid if the outcome is `diverges`
 };
 
@@ -73,10 +73,10 @@ struct RunEnd {
 struct Result {
   std::string name;                ///< name of the scenario
   std::string algorithm;           ///< registered name of the algorithm
-  RunEnd end;                      ///< of several trials, the worst outcome and the rows of all trials
+  RunEnd end;                      ///< of several trials: the worst outcome, and the steps of all trials
   bool expected = false;           ///< the run met all expectations of the scenario
   std::vector<std::string> unmet;  ///< expectations that the run did not meet
-  double duration = 0.0;           ///< simulated time: rows x dt [s]
+  double duration = 0.0;           ///< simulated time: number of steps times dt [s]
   /// All metrics, in the order of the columns of a sweep's table. A scenario's `expect` can bound them. First the
   /// metrics of every run under their own names; then the coordinates of the final position, such as
   /// "final_position_m.x"; then the metrics of the sections, such as "energy.created_sum_J" or
@@ -98,7 +98,7 @@ struct Result {
 };
 
 /// Returns summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers
-/// that do not exist (a ratio without contact, the final position without rows) or are not finite are null.
+/// that do not exist (a ratio without contact, the final position without steps) or are not finite are null.
 nlohmann::ordered_json summary_json(const Result& run);
 
 /// Returns the shape of a tool for drawings: half width, reach and outline [m]. The scenario's fields do not
