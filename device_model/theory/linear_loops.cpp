@@ -186,16 +186,8 @@ static Eigen::MatrixXd mechanics_step(const HandleMechanicsConfig& m, double dt)
 }
 
 Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
-  enum {
-    kTool,
-    kToolVelocity,
-    kCarriage,
-    kCarriageVelocity,
-    kHandle,
-    kHandleVelocity,
-    // Indices of the state.
-    kCommands
-  };
+  // Indices of the state.
+  enum { kTool, kToolVelocity, kCarriage, kCarriageVelocity, kHandle, kHandleVelocity, kCommands };
   const auto delay = static_cast<Eigen::Index>(servo.delay);
   const Eigen::Index n = kCommands + delay;
   const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
