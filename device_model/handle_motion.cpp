@@ -289,28 +289,28 @@ void ElasticMotion::apply(Axis& axis, const Transition& transition) noexcept {
 /// check, so that a change is not found again at once.
 double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept {
   const std::vector<Transition>& transitions = axis.sticks ? stretch.sticking : stretch.moving;
-  const auto share = [](std::size_t level) { return std::ldexp(1.0, -static_cast<int>(level)); };
+  const auto fraction_of = [](std::size_t level) { return std::ldexp(1.0, -static_cast<int>(level)); };
   const std::size_t last = transitions.size() - 1;
   // Take the first step without a check.
   if (skip > 0) {
     std::size_t level = std::min(stretch.first + skip, last);
-    while (level < last && share(level) > left) ++level;
+    while (level < last && fraction_of(level) > left) ++level;
     apply(axis, transitions[level]);
-    left = std::max(0.0, left - share(level));
+    left = std::max(0.0, left - fraction_of(level));
   }
   for (std::size_t level = stretch.first; left > 0.0;) {
-    while (level < last && share(level) > left) ++level;
+    while (level < last && fraction_of(level) > left) ++level;
     // Take the longest step that fits and has no change.
     if (!changes(axis, transitions[level].map * axis.z)) {
       apply(axis, transitions[level]);
-      left = std::max(0.0, left - share(level));
+      left = std::max(0.0, left - fraction_of(level));
       continue;
     }
     // Bisect the time of the change.
     while (++level <= last) {
       if (changes(axis, transitions[level].map * axis.z)) continue;
       apply(axis, transitions[level]);
-      left -= share(level);
+      left -= fraction_of(level);
     }
     if (!axis.sticks) axis.z[kMotorSpeed] = 0.0;
     // Motors that just started must not stick again: the force on them still equals c, up to rounding.

@@ -116,12 +116,12 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
     for (const LowPassMode& mode : modes) {
       const Eigen::Index at = next;
       next += is_pair(mode) ? 2 : 1;
-      const double t = mode.gain.real(), turned = mode.gain.imag();
-      A.row(at) = (1.0 - t) * unit(at) + (t * mode.residue.real() - turned * mode.residue.imag()) * u;
+      const double gain = mode.gain.real(), gain_imaginary = mode.gain.imag();
+      A.row(at) = (1.0 - gain) * unit(at) + (gain * mode.residue.real() - gain_imaginary * mode.residue.imag()) * u;
       if (is_pair(mode)) {
-        A.row(at) += turned * unit(at + 1);
-        A.row(at + 1) =
-            (1.0 - t) * unit(at + 1) - turned * unit(at) + (t * mode.residue.imag() + turned * mode.residue.real()) * u;
+        A.row(at) += gain_imaginary * unit(at + 1);
+        A.row(at + 1) = (1.0 - gain) * unit(at + 1) - gain_imaginary * unit(at) +
+                        (gain * mode.residue.imag() + gain_imaginary * mode.residue.real()) * u;
       }
       output += A.row(at);
     }
@@ -161,12 +161,12 @@ std::span<const AttachedHand> hand_family() {
 }
 
 double worst_hand_edge(SampledLoop loop) {
-  double least = kInfinity;
+  double smallest = kInfinity;
   for (const AttachedHand& hand : hand_family()) {
     loop.hand = hand;
-    least = std::min(least, eigenvalue_edge(loop));
+    smallest = std::min(smallest, eigenvalue_edge(loop));
   }
-  return least;
+  return smallest;
 }
 
 /// Returns the map of one step of carriage and handle by the implicit midpoint rule (HandleMechanics). The columns
@@ -240,7 +240,8 @@ struct PassivityAt {
 };
 
 PassivityAt passivity_at(const SampledLoop& loop, double theta) {
-  const double d = loop.device.delay_samples, turn = (d + 1.0) * theta, late = (d + 0.5) * theta;
+  const double d = loop.device.delay_samples, full_delay_angle = (d + 1.0) * theta,
+               half_delay_angle = (d + 0.5) * theta;
   const auto response = [theta](const std::vector<LowPassMode>& modes) {
     std::complex<double> sum = modes.empty() ? 1.0 : 0.0;
     for (const LowPassMode& mode : modes) sum += mode.response(theta);
@@ -248,27 +249,28 @@ PassivityAt passivity_at(const SampledLoop& loop, double theta) {
   };
   const std::complex<double> F = response(velocity_modes(loop)), G = response(position_modes(loop));
   // Uses 1 - e = 2 j sin(theta/2) e^(1/2) and (1 - e)^2 = -2 (1 - cos theta) e
-  return {loop.period * (G.real() * math::sin(late) - G.imag() * math::cos(late)) / (2.0 * math::sin(0.5 * theta)),
-          -(F.real() * math::cos(turn) + F.imag() * math::sin(turn))};
+  return {loop.period * (G.real() * math::sin(half_delay_angle) - G.imag() * math::cos(half_delay_angle)) /
+              (2.0 * math::sin(0.5 * theta)),
+          -(F.real() * math::cos(full_delay_angle) + F.imag() * math::sin(full_delay_angle))};
 }
 
 /// Returns the smallest value of f between two angles: evaluates a grid, then refines it eight times around the
 /// best point.
 template <class Function>
 double minimum(Function f, double low, double high, int points) {
-  double least = kInfinity;
+  double smallest = kInfinity;
   for (int zoom = 0; zoom < 8; ++zoom) {
     const double step = (high - low) / points;
     double best = low;
     for (int i = 0; i <= points; ++i) {
       const double at = low + step * i, value = f(at);
-      if (value < least) least = value, best = at;
+      if (value < smallest) smallest = value, best = at;
     }
     low = std::max(low, best - step);
     high = std::min(high, best + step);
     points = 16;
   }
-  return least;
+  return smallest;
 }
 
 /// Passivity with a delay: the condition bounds K from above at angles where p > 0 and from below where p < 0.
@@ -289,8 +291,8 @@ std::optional<double> passive_with_delay(const SampledLoop& loop) {
 std::optional<double> gil_hulin(const SampledLoop& loop) {
   constexpr double kLowDamping = 0.15;
   const double damping = loop.total_damping() + loop.wall_damping;
-  const double late = loop.period * (1.0 + loop.device.delay_samples);
-  if (loop.device.transmission || !differentiates(loop) || damping * late / loop.moving_mass() > kLowDamping)
+  const double delay = loop.period * (1.0 + loop.device.delay_samples);
+  if (loop.device.transmission || !differentiates(loop) || damping * delay / loop.moving_mass() > kLowDamping)
     return std::nullopt;
   return std::max(0.0, damping / (loop.period * (0.5 + loop.device.delay_samples)));
 }

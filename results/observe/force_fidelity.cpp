@@ -24,7 +24,7 @@ namespace {
 /// Largest number of kept samples. It limits the correlation to about 1e8 products, so that it does not take longer
 /// than the run.
 constexpr std::uint64_t kMaxKept = 1u << 17;
-constexpr double kKeptInterval = 5e-4;  ///< time between kept samples, at least about this [s]
+constexpr double kKeptInterval = 5e-4;  ///< time between kept samples, about this or longer [s]
 
 /// Returns Pearson's correlation coefficient over all components of two signals of equal length; nothing if one of
 /// them does not vary.
@@ -40,8 +40,8 @@ std::optional<double> correlation(std::span<const Vec3> early, std::span<const V
     late_square += b.squaredNorm();
   }
   // Ignore a variation that may be rounding error.
-  const double least = 1e-24 * n * (early_mean.squaredNorm() + late_mean.squaredNorm());
-  if (!(early_square > least && late_square > least)) return std::nullopt;
+  const double rounding = 1e-24 * n * (early_mean.squaredNorm() + late_mean.squaredNorm());
+  if (!(early_square > rounding && late_square > rounding)) return std::nullopt;
   return both / std::sqrt(early_square * late_square);
 }
 
@@ -57,11 +57,11 @@ struct Peak {
 /// peak.
 std::vector<Peak> largest_peaks(const std::vector<double>& found) {
   constexpr double kDip = 0.1, kSamePeak = 0.01;
-  const double least = std::ranges::max(found) - kDip;
+  const double threshold = std::ranges::max(found) - kDip;
   std::vector<Peak> peaks;
   for (auto from = found.begin(); from != found.end();) {
-    from = std::find_if(from, found.end(), [least](double value) { return value >= least; });
-    const auto to = std::find_if(from, found.end(), [least](double value) { return value < least; });
+    from = std::find_if(from, found.end(), [threshold](double value) { return value >= threshold; });
+    const auto to = std::find_if(from, found.end(), [threshold](double value) { return value < threshold; });
     if (from == to) break;
     const auto top = std::max_element(from, to);
     Peak peak{static_cast<double>(top - found.begin()) - 0.5 * static_cast<double>(found.size() - 1), *top,

@@ -145,10 +145,11 @@ std::optional<TipPosition> ideal_place(const BlockWithHole& block, double tool_r
   if (!(tilt > 0.0 && tilt < std::numbers::pi / 2)) return std::nullopt;
   const double R = block.hole_diameter / 2, r = tool_radius;
   const double cosine = math::cos(tilt), sine = math::sin(tilt);
-  const TipPosition place{-R + r * cosine, (r * (1.0 + cosine * cosine) - 2.0 * R * cosine) / sine};
-  const bool edge_in_hole = place.height + r * sine<0.0, above_bottom = place.height - r * sine> - block.hole_depth;
+  const TipPosition position{-R + r * cosine, (r * (1.0 + cosine * cosine) - 2.0 * R * cosine) / sine};
+  const bool edge_in_hole =
+      position.height + r * sine<0.0, above_bottom = position.height - r * sine> - block.hole_depth;
   if (!edge_in_hole || !above_bottom) return std::nullopt;
-  return place;
+  return position;
 }
 
 IdealTrajectoryObserver::IdealTrajectoryObserver(const BlockWithHole& block, const Cylinder& tool, std::uint64_t every)

@@ -379,8 +379,8 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
   const std::vector<PoseSamples::Sample>& parts = deepest_.all();
   if (parts.empty()) return 0.0;
   const double width = tool_->half_width();
-  const auto search = [&](const ToolPose& pose, double way) {
-    const double tolerance = InsideSearch::kTolerance - way / width;
+  const auto search = [&](const ToolPose& pose, double max_motion) {
+    const double tolerance = InsideSearch::kTolerance - max_motion / width;
     depths.max = std::max(depths.max, search_.depth(pose, depths.max.value_or(0.0), tolerance));
   };
   const auto depth_threshold = [&] { return depths.max_bound() + InsideSearch::kTolerance * width; };
@@ -391,17 +391,18 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
   const auto bounded = [&](std::size_t first, std::size_t end) {
     const ToolPose& pose = parts[(first + end) / 2].pose;
     Segment s{first, end, 0.0, 0.0};
-    double moved = 0.0, turned = 0.0;
+    double displacement = 0.0, axis_change = 0.0;
     for (std::size_t i = first; i < end; ++i) {
       const PoseSamples::Sample& sample = parts[i];
-      moved = std::max(moved, sample.max_motion + (sample.pose.position - pose.position).norm());
-      turned = std::max(turned, sample.max_motion / tool_->reach() + (sample.pose.axis - pose.axis).norm());
+      displacement = std::max(displacement, sample.max_motion + (sample.pose.position - pose.position).norm());
+      axis_change = std::max(axis_change, sample.max_motion / tool_->reach() + (sample.pose.axis - pose.axis).norm());
       s.max_motion = std::max(s.max_motion, sample.max_motion + tool_->moved_at_most(pose, sample.pose));
     }
     const bool last = end - first == 1;
-    s.bound = last || (moved < kSharedBound * width && turned < kSharedBound)
-                  ? bound.at(pose, moved, turned, depth_threshold(), last && s.max_motion > kSamePose * width)
-                  : bound.roughly_at(pose, moved, turned);
+    s.bound =
+        last || (displacement < kSharedBound * width && axis_change < kSharedBound)
+            ? bound.at(pose, displacement, axis_change, depth_threshold(), last && s.max_motion > kSamePose * width)
+            : bound.roughly_at(pose, displacement, axis_change);
     return s;
   };
   const std::size_t max_evaluations = solid_->bytes() > 0 ? kMaxEvaluations : kMaxClosedFormEvaluations;

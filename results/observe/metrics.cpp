@@ -132,8 +132,8 @@ std::uint64_t MetricsObserver::state_hash() const noexcept {
 }
 
 void MetricsObserver::tell(Section& s) const {
-  tell_motion_and_force(s);
-  tell_contacts(s);
+  report_motion_and_force(s);
+  report_contacts(s);
   s.metric("speed_max_m_per_s", "m/s", "largest speed of the tip's centre", std::sqrt(speed_max_squared_));
   s.metric("explicit_friction_limit_N", "N",
            "largest ||f_spring|| whose friction the explicit integrator steps stably, (B_max - mu_s) / mu_f",
@@ -151,7 +151,7 @@ void MetricsObserver::tell(Section& s) const {
            reduction_ ? reduction_->step_max() : std::nullopt, Better::less);
 }
 
-void MetricsObserver::tell_motion_and_force(Section& s) const {
+void MetricsObserver::report_motion_and_force(Section& s) const {
   s.metric("force_max_N", "N", "largest ||f|| of a row", std::sqrt((before_ + now_).force_max_squared), Better::less);
   s.metric("force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||, landings included",
            std::sqrt(force_step_max_squared_), Better::less);
@@ -169,7 +169,7 @@ void MetricsObserver::tell_motion_and_force(Section& s) const {
            depth_max_, Better::less);
 }
 
-void MetricsObserver::tell_contacts(Section& s) const {
+void MetricsObserver::report_contacts(Section& s) const {
   const TrialContact all = before_ + now_;
   s.metric("ratio_min", "1",
            "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in units "

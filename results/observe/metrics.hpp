@@ -105,8 +105,8 @@ class MetricsObserver final : public MetricObserver {
   void add_motion(const Vec3& position, const Vec3& v) noexcept;
   ForceChange add_force(const RenderedForce& force) noexcept;
   void add_contacts(const StepRecord& record, const ForceChange& change) noexcept;
-  void tell_motion_and_force(Section& section) const;
-  void tell_contacts(Section& section) const;
+  void report_motion_and_force(Section& section) const;
+  void report_contacts(Section& section) const;
 
   std::uint64_t stride_;
   std::uint64_t trials_ = 0;  ///< number of trials begun so far
