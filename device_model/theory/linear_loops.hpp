@@ -118,8 +118,8 @@ struct AdmittanceLoop {
   double hand_damping = 0.0;    ///< b of the hand [N s/m]
 
   /// Returns the matrix that maps the state at one step to the state at the next. The state is
-  ///   (x, T v of the virtual mass, of the carriage, of the handle, T^2/M of the servo's delayed commands, newest
-  ///   first)
+  ///   (x and T v of the virtual mass, of the carriage, of the handle; T^2/M times the servo's delayed commands)
+  /// with the time step T, the virtual mass M and the newest command first. All components are in metres.
   Eigen::MatrixXd state_matrix() const;
 };
 

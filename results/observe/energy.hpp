@@ -99,7 +99,7 @@ class EnergyLedger final : public MetricObserver {
   void add_event(const StepRecord& now, double created) noexcept;
 
   double mass_, dt_;
-  /// The position is not prescribed; the integrator holds the force of a step until the next.
+  /// True if the position is not prescribed; true if the integrator holds the force of a step until the next step.
   bool position_is_free_, holds_force_;
   bool has_row_ = false;
   StepRecord last_;  ///< the step before, without its contacts
