@@ -10,17 +10,19 @@
 
 namespace hapbench {
 
-/// Input force limiting (thesis 2.7, C.4.4): scales the measured force [N] down to the limit, if there is one and its
-/// norm exceeds it. Once the hand pushes harder, the virtual tool penetrates no further, which feels infinitely stiff.
+/// Input-force limiter (thesis 2.7, C.4.4): returns the measured force [N], scaled down to norm `limit` [N] if its
+/// norm exceeds `limit`. Without a limit, returns the measured force unchanged. While the limiter acts, a harder
+/// push of the hand does not push the virtual tool deeper, so the surface feels infinitely stiff.
 inline Vec3 limit_input_force(const Vec3& measured, std::optional<double> limit) noexcept {
   const double length = limit ? measured.norm() : 0.0;
   return !limit || length <= *limit ? measured : Vec3(measured * (*limit / length));
 }
 
-/// A device without dynamics: it measures the force of the hand exactly, and its handle is the tool.
+/// A device without dynamics. It measures the hand's force exactly, and its handle has the position and velocity of
+/// the virtual tool.
 class IdealDevice final : public Device {
  public:
-  /// force_limit: threshold f_th of the input-force limiter [N]; none: no limit.
+  /// `force_limit`: threshold f_th of the input-force limiter [N]; empty: no limit.
   explicit IdealDevice(std::optional<double> force_limit) : force_limit_(force_limit) {}
 
   void reset(const ToolState& tool) noexcept override { handle_ = {tool.pose.position, tool.velocity}; }
@@ -35,29 +37,30 @@ class IdealDevice final : public Device {
   HandleState handle_;
 };
 
-/// Errors that the force sensor adds to the hand's force (thesis 3.5; the noise is our addition).
+/// Errors that the force sensor adds to the hand's force (thesis 3.5). The noise is not in the thesis.
 struct ForceSensorConfig {
-  double weight = 0.7;           ///< weight of the dummy drill, read along `down` [N]
-  Vec3 down = {0.0, 0.0, -1.0};  ///< unit vector
-  bool compensated = true;       ///< the weight is subtracted before the limiter
-  double noise = 0.0;            ///< standard deviation of each component in each sample [N]
-  std::uint64_t seed = 1;        ///< seed of the noise
+  double weight = 0.7;           ///< weight of the dummy drill [N]; the sensor measures it along `down`
+  Vec3 down = {0.0, 0.0, -1.0};  ///< direction of gravity, unit vector in the world frame
+  bool compensated = true;       ///< true if the weight is subtracted before the limiter
+  double noise = 0.0;            ///< standard deviation of the noise of each force component [N]; 0: no noise
+  std::uint64_t seed = 1;        ///< seed of the noise's random numbers
 
   bool operator==(const ForceSensorConfig&) const = default;
 };
 
-/// The force sensor under the handle: f_meas = f_hand + weight + noise.
+/// The force sensor under the handle: f_meas = f_hand + weight + noise. One instance holds the state of one run.
 ///
-/// The thesis logs f_meas including the weight, and its limit of 2 N acts at 2.7 N of the logged force (3.5, Fig. 6),
-/// so the weight must be subtracted first. With `compensated = false`, which is the literal reading of 2.7, the weight
-/// pulls the virtual tool down, and the limit acts at 2 N of f_meas.
+/// With `compensated = true` (default) the weight is subtracted before the limiter: the thesis logs f_meas with the
+/// weight included, and its limit of 2 N acts at a logged force of 2.7 N (3.5, Fig. 6). With `compensated = false`,
+/// the literal meaning of thesis 2.7, the weight pulls the virtual tool down and the limit acts at f_meas = 2 N.
 class ForceSensor {
  public:
   explicit ForceSensor(const ForceSensorConfig& config) : config_(config), random_(config.seed) {}
 
+  /// Restarts the random numbers of the noise.
   void reset() noexcept { random_ = Random(config_.seed); }
 
-  /// f_meas of the next sample [N].
+  /// Returns f_meas of the next sample [N]. Draws new noise in each call.
   Vec3 read(const Vec3& hand_force) noexcept {
     Vec3 force = hand_force + config_.weight * config_.down;
     if (config_.noise > 0.0) {
@@ -66,7 +69,7 @@ class ForceSensor {
     return force;
   }
 
-  /// The part of a reading that drives the virtual mass, before the limiter [N].
+  /// Returns the part of the measured force that drives the virtual mass [N], before the limiter.
   Vec3 compensated(const Vec3& measured) const noexcept {
     return config_.compensated ? Vec3(measured - config_.weight * config_.down) : measured;
   }
@@ -76,30 +79,32 @@ class ForceSensor {
   Random random_;
 };
 
-/// Parameters of the control loop that makes the carriage follow the virtual tool. The thesis gives the saturation
-/// (C.4.4); the other values are our choice.
+/// Parameters of the control loop that makes the carriage follow the virtual tool. The thesis gives only the
+/// saturation (C.4.4); the other values are our estimates.
 struct PositionServoConfig {
-  double stiffness = 40000.0;  ///< force per position error [N/m]
-  double damping = 160.0;      ///< force per velocity error [N s/m]
-  double max_force = 30.0;     ///< the actuators saturate at this norm [N]
-  std::size_t delay = 1;       ///< from the command to the force [samples]
+  double stiffness = 40000.0;  ///< proportional gain: force per position error [N/m]
+  double damping = 160.0;      ///< derivative gain: force per velocity error [N s/m]
+  double max_force = 30.0;     ///< norm of the force at which the actuators saturate [N]
+  std::size_t delay = 1;       ///< delay from the servo's command to the actuators' force [samples]
 
   bool operator==(const PositionServoConfig&) const = default;
 };
 
-/// A proportional-derivative position servo with saturation and a delay of whole samples. Allocates in the constructor.
+/// Proportional-derivative position servo with saturation and a delay of whole samples. Allocates only in the
+/// constructor.
 class PositionServo {
  public:
   explicit PositionServo(const PositionServoConfig& config)
       : config_(config), commands_(config.delay + 1, Vec3::Zero()) {}
 
-  /// Clears the delay line: the servo starts from rest.
+  /// Sets all delayed commands to zero: the servo starts from rest.
   void reset() noexcept {
     for (Vec3& command : commands_) command.setZero();
     next_ = 0;
   }
 
-  /// Computes the command of this sample and returns the force of the actuators during it [N].
+  /// Computes the servo's command for this sample and returns the actuators' force during this sample [N], which is
+  /// the command of `delay` samples ago. `position` [m] and `velocity` [m/s] are of the carriage.
   Vec3 force(const ToolState& reference, const Vec3& position, const Vec3& velocity) noexcept {
     Vec3 command =
         config_.stiffness * (reference.pose.position - position) + config_.damping * (reference.velocity - velocity);
@@ -112,47 +117,52 @@ class PositionServo {
 
  private:
   PositionServoConfig config_;
-  std::vector<Vec3> commands_;
-  std::size_t next_ = 0;
+  std::vector<Vec3> commands_;  ///< ring buffer of the last `delay` + 1 commands [N]
+  std::size_t next_ = 0;        ///< index of the slot for the next command
 };
 
-/// The moving parts of the device: a carriage driven by the actuators and the handle, which an elastic structure
-/// connects to it. The thesis gives none of these values; the mass of the handle is that of the weight it compensates
-/// (0.7 N).
+/// Moving parts of the device: a carriage that the actuators drive, and the handle. A spring and a damper model the
+/// elastic structure between them. The thesis gives none of these values; the handle's mass is the mass whose
+/// weight the sensor compensates (0.7 N).
 struct HandleMechanicsConfig {
-  double carriage_mass = 0.25;            ///< [kg]
-  double handle_mass = 0.07;              ///< [kg]
-  double friction = 2.0;                  ///< viscous, on the carriage [N s/m]
-  double structure_stiffness = 200000.0;  ///< between carriage and handle, the inverse of the compliance [N/m]
-  double structure_damping = 40.0;        ///< between carriage and handle [N s/m]
+  double carriage_mass = 0.25;  ///< [kg]
+  double handle_mass = 0.07;    ///< [kg]
+  double friction = 2.0;        ///< viscous friction of the carriage [N s/m]
+  /// Stiffness between carriage and handle (the inverse of the compliance) [N/m].
+  double structure_stiffness = 200000.0;
+  double structure_damping = 40.0;  ///< damping between carriage and handle [N s/m]
 
   bool operator==(const HandleMechanicsConfig&) const = default;
 };
 
-/// Two masses connected by a spring and a damper, independently in each axis, integrated by the implicit midpoint rule,
-/// which is stable for every step and here keeps the energy balance exactly. Gravity is assumed to be compensated.
+/// Two masses connected by a spring and a damper, independently in each axis. Integrated by the implicit midpoint
+/// rule, which is stable for every step size and conserves the energy balance of this linear system exactly.
+/// Gravity is assumed to be compensated.
 class HandleMechanics {
  public:
   explicit HandleMechanics(const HandleMechanicsConfig& config) : config_(config) {}
 
-  /// Places carriage and handle at the tool, with the tool's velocity and the structure unstretched.
+  /// Sets carriage and handle to the tool's position and velocity, so the spring is unstretched. Clears the work
+  /// sums.
   void reset(const ToolState& tool) noexcept {
     carriage_ = handle_ = {tool.pose.position, tool.velocity};
     work_ = {.stored = -stored()};
   }
 
-  /// One step of dt seconds under constant forces of the hand (on the handle) and the actuators (on the carriage) [N].
+  /// Advances by `dt` [s] under constant forces [N]: `hand` acts on the handle, `actuator` on the carriage.
   void advance(const Vec3& hand, const Vec3& actuator, double dt) noexcept {
-    // Midpoint velocities w solve, with the stretch s = x_c - x_h and a = k dt / 2 + c,
+    // The midpoint velocities w_c (carriage) and w_h (handle) solve, in each axis, with the elongation s = x_c -
+    // x_h and a = k dt / 2 + c,
     //
     //   (2 m_c / dt + b + a) w_c - a w_h = u - k s + 2 m_c / dt v_c
     //   -a w_c + (2 m_h / dt + a) w_h    = f + k s + 2 m_h / dt v_h
     //
-    // in each axis. Then x += w dt and v = 2 w - v.
+    // Here m is mass, b friction, k and c stiffness and damping of the structure, u and f the forces of actuators
+    // and hand. Then x += w dt and v = 2 w - v.
     const double inertia_c = 2.0 * config_.carriage_mass / dt, inertia_h = 2.0 * config_.handle_mass / dt;
     const double a = config_.structure_stiffness * dt / 2.0 + config_.structure_damping;
     const double cc = inertia_c + config_.friction + a, hh = inertia_h + a;
-    const double determinant = cc * hh - a * a;  // positive: a sum of products of positive terms
+    const double determinant = cc * hh - a * a;  // positive, because all terms of the expanded product are
     const Vec3 tension = config_.structure_stiffness * (carriage_.position - handle_.position);
     const Vec3 right_c = actuator - tension + inertia_c * carriage_.velocity;
     const Vec3 right_h = hand + tension + inertia_h * handle_.velocity;
@@ -169,6 +179,7 @@ class HandleMechanics {
 
   const HandleState& carriage() const noexcept { return carriage_; }
   const HandleState& handle() const noexcept { return handle_; }
+  /// Returns the works of all forces since the reset and the change of the stored energy since the reset [J].
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
@@ -181,7 +192,7 @@ class HandleMechanics {
   HandleMechanicsConfig config_;
   HandleState carriage_;
   HandleState handle_;
-  DeviceEnergy work_;  ///< `stored`: minus what was at the reset
+  DeviceEnergy work_;  ///< works since the reset; `stored` holds minus the energy stored at the reset [J]
 };
 
 struct AdmittanceDeviceConfig {
@@ -191,11 +202,11 @@ struct AdmittanceDeviceConfig {
   HandleMechanicsConfig mechanics;
 };
 
-/// The trainer's admittance-control device (thesis 2.7, 3.1, Fig. 3, C.5, C.6):
+/// Admittance-control device of the dental trainer (thesis 2.7, 3.1, Fig. 3, C.5, C.6):
 ///
 ///   hand -> sensor -> limiter -> [ virtual mass ] -> position servo -> carriage -> structure -> handle -> hand
 ///
-/// The virtual mass is the simulation's tool; the servo follows it one step behind the force that moved it.
+/// The simulation integrates the virtual mass; the servo follows it one step behind the force that moved it.
 class AdmittanceDevice final : public Device {
  public:
   explicit AdmittanceDevice(const AdmittanceDeviceConfig& config)

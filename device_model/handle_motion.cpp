@@ -11,12 +11,13 @@
 namespace hapbench {
 namespace {
 
-/// Terms decrease as 4^-n / n! for S, P and V and as 1 / n! for the integrals, so twenty suffice for both.
-constexpr double kLargest = 0.25;
+/// Largest argument of the power series [rad] and number of its terms. For arguments up to 1/4, the n-th term
+/// decreases as 4^-n / n! for S, P and V and as 1 / n! for the integrals, so twenty terms reach rounding accuracy.
+constexpr double kMaxStep = 0.25;
 constexpr int kTerms = 20;
 
-/// The power series in time of S and V, whose derivatives are V and -damping V - stiffness S, and of p = S^2, q = S V
-/// and r = V^2, whose integrals are Z, S^2 / 2 and W.
+/// Returns the solution by power series in time: of S and V, whose derivatives are V and -damping V - stiffness S,
+/// and of the products p = S^2, q = S V and r = V^2, whose integrals are Z, S^2 / 2 and W.
 FreeMotion by_series(const MotionLaw& law, double time) noexcept {
   FreeMotion m{.time = time, .V = 0.0};
   double S = 0.0, V = 1.0, p = 0.0, q = 0.0, r = 1.0;
@@ -38,10 +39,10 @@ FreeMotion by_series(const MotionLaw& law, double time) noexcept {
   return m;
 }
 
-/// The solution after twice the time of `m`.
+/// Returns the solution after twice the time of `m`.
 FreeMotion doubled(const MotionLaw& law, const FreeMotion& m) noexcept {
   const double k = law.stiffness, S2 = m.S * m.S;
-  const double left = 1.0 - k * m.P;  // share of g left at the place where g alone has led
+  const double left = 1.0 - k * m.P;  // fraction of g that remains at the position P g
   return {.time = 2.0 * m.time,
           .S = m.S * (m.V + left),
           .P = m.P * (1.0 + left) + S2,
@@ -54,15 +55,15 @@ FreeMotion doubled(const MotionLaw& law, const FreeMotion& m) noexcept {
 
 FreeMotion free_motion(const MotionLaw& law, double time) noexcept {
   int doublings = 0;
-  for (double size = (law.damping + std::sqrt(law.stiffness)) * time; size > kLargest; size *= 0.5) ++doublings;
+  for (double size = (law.damping + std::sqrt(law.stiffness)) * time; size > kMaxStep; size *= 0.5) ++doublings;
   FreeMotion motion = by_series(law, std::ldexp(time, -doublings));
   for (; doublings > 0; --doublings) motion = doubled(law, motion);
   motion.time = time;
   return motion;
 }
 
-// With a = damping / 2 and n = g - a v the velocity is e^(-a t) (v cosh(d t) + n sinh(d t) / d), d^2 = a^2 - stiffness,
-// or the same with cosine and sine.
+// With a = damping / 2, n = g - a v and d^2 = a^2 - stiffness, the velocity is e^(-a t) (v cosh(d t) + n sinh(d t)
+// / d). If d^2 < 0, cosine and sine with w = sqrt(-d^2) replace cosh and sinh.
 double time_of_rest(const MotionLaw& law, double v, double g) noexcept {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double a = 0.5 * law.damping, n = g - a * v, square = a * a - law.stiffness;
@@ -73,15 +74,15 @@ double time_of_rest(const MotionLaw& law, double v, double g) noexcept {
   }
   const double t = -v / n, d = std::sqrt(square);
   if (!(t > 0.0) || d * t >= 1.0) return kNever;
-  // For small arguments the quotient is t to rounding, and d may be zero.
+  // For small d t the quotient equals t to rounding accuracy. This also avoids the division by d = 0.
   return d * t < 1e-8 ? t : math::atanh(d * t) / d;
 }
 
-HeldHandle::HeldHandle(const ImpedanceDeviceConfig& device, const AttachedHand& hand)
+HandleMotionBase::HandleMotionBase(const ImpedanceDeviceConfig& device, const AttachedHand& hand)
     : viscous_(device.viscous), coulomb_(device.coulomb), hand_(hand) {}
 
 HandleMotion::HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand)
-    : HeldHandle(device, hand),
+    : HandleMotionBase(device, hand),
       handle_mass_(device.handle_mass),
       mass_(device.handle_mass + hand.mass),
       law_{(device.viscous + hand.damping) / mass_, hand.stiffness / mass_} {}
@@ -92,59 +93,63 @@ void HandleMotion::reset(const HandleState& handle) noexcept {
   take_hand(Vec3::Zero());
 }
 
-void HandleMotion::advance(const Vec3& motors, const FreeMotion& stretch) noexcept {
+void HandleMotion::advance(const Vec3& motors, const FreeMotion& interval) noexcept {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (coulomb_ == 0.0) {
-      move(axis, motors[axis], 0.0, stretch);
+      move(axis, motors[axis], 0.0, interval);
     } else {
-      advance_with_friction(axis, motors[axis], stretch);
+      advance_with_friction(axis, motors[axis], interval);
     }
   }
 }
 
-/// Force of the hand on the handle at its position, if it were at rest [N].
-double HandleMotion::hand_at_rest(Eigen::Index axis) const noexcept {
-  return push_[axis] - hand_.stiffness * (handle_.position[axis] - origin_[axis]);
+/// Returns the hand's force on the handle at its current position, as if the handle were at rest [N].
+double HandleMotion::hand_force_if_at_rest(Eigen::Index axis) const noexcept {
+  return hand_force_at_rest_[axis] - hand_.stiffness * (handle_.position[axis] - origin_[axis]);
 }
 
-void HandleMotion::advance_with_friction(Eigen::Index axis, double motors, const FreeMotion& stretch) noexcept {
+void HandleMotion::advance_with_friction(Eigen::Index axis, double motors, const FreeMotion& interval) noexcept {
   double& v = handle_.velocity[axis];
-  for (double left = stretch.time; left > 0.0;) {
-    const double force = motors + hand_at_rest(axis);
-    if (v == 0.0 && std::abs(force) <= coulomb_) return;  // sticks until a force changes
+  for (double remaining = interval.time; remaining > 0.0;) {
+    const double force = motors + hand_force_if_at_rest(axis);
+    if (v == 0.0 && std::abs(force) <= coulomb_) return;  // the handle sticks until a force changes
     const double friction = std::copysign(coulomb_, v == 0.0 ? -force : -v);
-    const double stops = time_of_rest(law_, v, (force + friction) / mass_);
-    if (!(stops < left)) return move(axis, motors, friction, left == stretch.time ? stretch : free_motion(law_, left));
-    move(axis, motors, friction, free_motion(law_, stops));
+    const double stop_time = time_of_rest(law_, v, (force + friction) / mass_);
+    if (!(stop_time < remaining))
+      return move(axis, motors, friction, remaining == interval.time ? interval : free_motion(law_, remaining));
+    move(axis, motors, friction, free_motion(law_, stop_time));
     v = 0.0;
-    left -= stops;
+    remaining -= stop_time;
   }
 }
 
-/// Precondition: the velocity keeps its sign, if there is friction.
-void HandleMotion::move(Eigen::Index axis, double motors, double friction, const FreeMotion& by) noexcept {
-  const double hand = hand_at_rest(axis), v = handle_.velocity[axis];
+/// Moves one axis and adds up the works of all forces. Precondition: if there is friction, the velocity keeps its
+/// sign.
+void HandleMotion::move(Eigen::Index axis, double motors, double friction, const FreeMotion& motion) noexcept {
+  const double hand = hand_force_if_at_rest(axis), v = handle_.velocity[axis];
   const double g = (motors + hand + friction) / mass_;
-  const double way = v * by.S + g * by.P, after = v * by.V + g * by.S;
-  const double squares = v * v * by.W + v * g * by.S * by.S + g * g * by.Z;  // integral of the squared velocity
-  handle_.position[axis] += way;
+  const double displacement = v * motion.S + g * motion.P, after = v * motion.V + g * motion.S;
+  // Integral of the squared velocity.
+  const double squares = v * v * motion.W + v * g * motion.S * motion.S + g * g * motion.Z;
+  handle_.position[axis] += displacement;
   handle_.velocity[axis] = after;
-  work_.actuator += motors * way;
-  work_.hand += hand * way - 0.5 * hand_.stiffness * way * way - hand_.damping * squares -
+  work_.actuator += motors * displacement;
+  work_.hand += hand * displacement - 0.5 * hand_.stiffness * displacement * displacement - hand_.damping * squares -
                 0.5 * hand_.mass * (after * after - v * v);
-  work_.dissipated += friction * way - viscous_ * squares;
+  work_.dissipated += friction * displacement - viscous_ * squares;
 }
 
-using PieceMatrix = ElasticMotion::Matrix;
+using TransitionMatrix = ElasticMotion::Matrix;
 
-// The longest piece is kLargest radians of the fastest motion.
-constexpr std::size_t kFinest = 40;  ///< halvings of such a piece, which locate a change
-constexpr std::size_t kGrain = 12;   ///< halvings of the least that passes after a change before the next
-constexpr std::size_t kMostHalvings = 52;
+// The longest step of the search for stops is kMaxStep radians of the fastest mode.
+constexpr std::size_t kChangeHalvings = 40;  ///< halvings of this step, to locate the time of a change
+constexpr std::size_t kSkipHalvings = 12;    ///< halvings that give the shortest time between two changes
+constexpr std::size_t kMaxHalvings = 52;     ///< of a period: the bits of a double's mantissa
 
-/// Integral of u^T form u over the time, u the state that moves with `rates`, by the power series in time.
-static PieceMatrix integral(const PieceMatrix& rates, const PieceMatrix& form, double time) {
-  PieceMatrix term = form * time, sum = term;
+/// Returns the matrix M of z^T M z, the integral of u^T form u over `time`, where u(0) = z and u' = rates u. Power
+/// series in time.
+static TransitionMatrix integral(const TransitionMatrix& rates, const TransitionMatrix& form, double time) {
+  TransitionMatrix term = form * time, sum = term;
   for (int n = 2; n <= kTerms; ++n) {
     term = ((rates.transpose() * term + term * rates) * (time / n)).eval();
     sum += term;
@@ -152,8 +157,9 @@ static PieceMatrix integral(const PieceMatrix& rates, const PieceMatrix& form, d
   return sum;
 }
 
-static PieceMatrix exponential(const PieceMatrix& rates, double time) {
-  PieceMatrix term = PieceMatrix::Identity(), sum = term;
+/// Returns the matrix exponential of rates * time, by the power series.
+static TransitionMatrix exponential(const TransitionMatrix& rates, double time) {
+  TransitionMatrix term = TransitionMatrix::Identity(), sum = term;
   for (int n = 1; n <= kTerms; ++n) {
     term = (term * rates * (time / n)).eval();
     sum += term;
@@ -161,18 +167,20 @@ static PieceMatrix exponential(const PieceMatrix& rates, double time) {
   return sum;
 }
 
-static ElasticMotion::Piece doubled(const ElasticMotion::Piece& p) {
+/// Returns the solution after twice the time of `p`.
+static ElasticMotion::Transition doubled(const ElasticMotion::Transition& p) {
   return {p.map * p.map, p.dissipated + p.map.transpose() * p.dissipated * p.map,
           p.hand + p.map.transpose() * p.hand * p.map};
 }
 
 ElasticMotion::ElasticMotion(const ImpedanceDeviceConfig& device, const Transmission& transmission,
                              const AttachedHand& hand)
-    : HeldHandle(device, hand),
+    : HandleMotionBase(device, hand),
       transmission_(transmission),
       motor_mass_(transmission.motor_share * device.handle_mass),
       handle_mass_((1.0 - transmission.motor_share) * device.handle_mass) {}
 
+/// Returns the matrix A of the motion z' = A z.
 ElasticMotion::Matrix ElasticMotion::rates(bool sticking) const {
   const double k = transmission_.stiffness, d = transmission_.damping, m = motor_mass_,
                mass = handle_mass_ + hand_.mass;
@@ -187,6 +195,7 @@ ElasticMotion::Matrix ElasticMotion::rates(bool sticking) const {
 }
 
 ElasticMotion::Stretch ElasticMotion::stretch(double time) const {
+  // Quadratic forms of the dissipated powers.
   Matrix dissipated = Matrix::Zero(), hand = Matrix::Zero();
   const double d = transmission_.damping;
   dissipated(kMotorSpeed, kMotorSpeed) = viscous_ + d;
@@ -194,22 +203,24 @@ ElasticMotion::Stretch ElasticMotion::stretch(double time) const {
   dissipated(kMotorSpeed, kHandleSpeed) = dissipated(kHandleSpeed, kMotorSpeed) = -d;
   hand(kHandleSpeed, kHandleSpeed) = hand_.damping;
 
+  // Halve the interval until it is a small fraction of the fastest mode's period.
   Stretch stretch;
   const Matrix moving = rates(false);
   double size = (-moving(kMotorSpeed, kMotorSpeed) - moving(kHandleSpeed, kHandleSpeed) +
                  std::sqrt(-moving(kMotorSpeed, kMotor) - moving(kHandleSpeed, kHandle))) *
                 time;
-  for (; size > kLargest && stretch.first < kMostHalvings; size *= 0.5) ++stretch.first;
+  for (; size > kMaxStep && stretch.first < kMaxHalvings; size *= 0.5) ++stretch.first;
+  // Compute the shortest steps by power series and the longer ones by doubling.
   const auto halved = [&](const Matrix& law) {
-    const std::size_t halvings = coulomb_ == 0.0 ? 0 : std::min(kFinest, kMostHalvings - stretch.first);
-    std::vector<Piece> pieces(stretch.first + halvings + 1);
-    for (std::size_t i = pieces.size(); i-- > 0;) {
+    const std::size_t halvings = coulomb_ == 0.0 ? 0 : std::min(kChangeHalvings, kMaxHalvings - stretch.first);
+    std::vector<Transition> transitions(stretch.first + halvings + 1);
+    for (std::size_t i = transitions.size(); i-- > 0;) {
       const double part = std::ldexp(time, -static_cast<int>(i));
-      pieces[i] = i < stretch.first
-                      ? doubled(pieces[i + 1])
-                      : Piece{exponential(law, part), integral(law, dissipated, part), integral(law, hand, part)};
+      transitions[i] = i < stretch.first ? doubled(transitions[i + 1])
+                                         : Transition{exponential(law, part), integral(law, dissipated, part),
+                                                      integral(law, hand, part)};
     }
-    return pieces;
+    return transitions;
   };
   stretch.moving = halved(moving);
   if (coulomb_ > 0.0) stretch.sticking = halved(rates(true));
@@ -226,14 +237,14 @@ void ElasticMotion::advance(const Vec3& motors, const Stretch& stretch) noexcept
   for (Eigen::Index i = 0; i < 3; ++i) {
     Axis axis{.z = {}, .motors = motors[i]};
     axis.z << motor_.position[i] - origin_[i], motor_.velocity[i], handle_.position[i] - origin_[i],
-        handle_.velocity[i], motors[i], push_[i];
-    if (axis.z.isZero(0.0)) continue;  // rests, and nothing pushes
+        handle_.velocity[i], motors[i], hand_force_at_rest_[i];
+    if (axis.z.isZero(0.0)) continue;  // the axis is at rest and without any force
     if (coulomb_ == 0.0) {
-      take(axis, stretch.moving[0]);
+      apply(axis, stretch.moving[0]);
     } else {
-      start(axis, true);
+      set_friction(axis, true);
       double left = advance_to_change(axis, stretch, 1.0, 0);
-      while (left > 0.0) left = advance_to_change(axis, stretch, left, kGrain);
+      while (left > 0.0) left = advance_to_change(axis, stretch, left, kSkipHalvings);
     }
     motor_.position[i] = origin_[i] + axis.z[kMotor];
     motor_.velocity[i] = axis.z[kMotorSpeed];
@@ -242,62 +253,68 @@ void ElasticMotion::advance(const Vec3& motors, const Stretch& stretch) noexcept
   }
 }
 
-/// Force on the motors at `z`, if they were at rest, without their friction [N].
-double ElasticMotion::on_resting_motors(const Axis& axis, const State& z) const noexcept {
+/// Returns the force on the motors at `z` without their friction, as if the motors were at rest [N].
+double ElasticMotion::force_on_resting_motors(const Axis& axis, const State& z) const noexcept {
   return axis.motors - transmission_.stiffness * (z[kMotor] - z[kHandle]) + transmission_.damping * z[kHandleSpeed];
 }
 
-/// Chooses whether the motors stick, if they may, and which way their friction points.
-void ElasticMotion::start(Axis& axis, bool may_stick) const noexcept {
-  const double v = axis.z[kMotorSpeed], force = on_resting_motors(axis, axis.z);
+/// Decides whether the motors stick, which requires `may_stick`, and sets the direction of their friction.
+void ElasticMotion::set_friction(Axis& axis, bool may_stick) const noexcept {
+  const double v = axis.z[kMotorSpeed], force = force_on_resting_motors(axis, axis.z);
   axis.sticks = may_stick && v == 0.0 && std::abs(force) <= coulomb_;
   axis.friction = axis.sticks ? 0.0 : std::copysign(coulomb_, v == 0.0 ? -force : -v);
-  axis.z[kForce] = axis.motors + axis.friction;
+  axis.z[kMotorForce] = axis.motors + axis.friction;
 }
 
-/// True where the motors have turned round or broken loose by `next`.
+/// Returns true if the motors have reversed or started to move by the state `next`.
 bool ElasticMotion::changes(const Axis& axis, const State& next) const noexcept {
-  if (axis.sticks) return std::abs(on_resting_motors(axis, next)) > coulomb_;
+  if (axis.sticks) return std::abs(force_on_resting_motors(axis, next)) > coulomb_;
   return next[kMotorSpeed] * axis.friction > 0.0;
 }
 
-void ElasticMotion::take(Axis& axis, const Piece& piece) noexcept {
-  const State z = axis.z, next = piece.map * z;
-  const double k = hand_.stiffness, way = next[kMotor] - z[kMotor];
-  work_.actuator += axis.motors * way;
-  work_.dissipated += axis.friction * way - z.dot(piece.dissipated * z);
-  work_.hand += z[kPush] * (next[kHandle] - z[kHandle]) -
-                0.5 * k * (next[kHandle] * next[kHandle] - z[kHandle] * z[kHandle]) - z.dot(piece.hand * z) -
+/// Advances one axis by a transition and adds up the works of all forces.
+void ElasticMotion::apply(Axis& axis, const Transition& transition) noexcept {
+  const State z = axis.z, next = transition.map * z;
+  const double k = hand_.stiffness, displacement = next[kMotor] - z[kMotor];
+  work_.actuator += axis.motors * displacement;
+  work_.dissipated += axis.friction * displacement - z.dot(transition.dissipated * z);
+  work_.hand += z[kHandForce] * (next[kHandle] - z[kHandle]) -
+                0.5 * k * (next[kHandle] * next[kHandle] - z[kHandle] * z[kHandle]) - z.dot(transition.hand * z) -
                 0.5 * hand_.mass * (next[kHandleSpeed] * next[kHandleSpeed] - z[kHandleSpeed] * z[kHandleSpeed]);
   axis.z = next;
 }
 
-/// Advances by at most a share `left` of the stretch, until the motors stop or break loose, and returns the share that
-/// is left then. `skip`: halvings of the first piece, within which they are not looked at, that is taken first.
+/// Advances by at most the fraction `left` of the interval, until the motors stop or start to move. Returns the
+/// fraction that remains then. If `skip` > 0, a first step of `skip` halvings of the search step is taken without a
+/// check, so that a change is not found again at once.
 double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept {
-  const std::vector<Piece>& pieces = axis.sticks ? stretch.sticking : stretch.moving;
-  const auto share = [](std::size_t level) { return std::ldexp(1.0, -static_cast<int>(level)); };
-  const std::size_t last = pieces.size() - 1;
+  const std::vector<Transition>& transitions = axis.sticks ? stretch.sticking : stretch.moving;
+  const auto fraction_of = [](std::size_t level) { return std::ldexp(1.0, -static_cast<int>(level)); };
+  const std::size_t last = transitions.size() - 1;
+  // Take the first step without a check.
   if (skip > 0) {
     std::size_t level = std::min(stretch.first + skip, last);
-    while (level < last && share(level) > left) ++level;
-    take(axis, pieces[level]);
-    left = std::max(0.0, left - share(level));
+    while (level < last && fraction_of(level) > left) ++level;
+    apply(axis, transitions[level]);
+    left = std::max(0.0, left - fraction_of(level));
   }
   for (std::size_t level = stretch.first; left > 0.0;) {
-    while (level < last && share(level) > left) ++level;
-    if (!changes(axis, pieces[level].map * axis.z)) {
-      take(axis, pieces[level]);
-      left = std::max(0.0, left - share(level));
+    while (level < last && fraction_of(level) > left) ++level;
+    // Take the longest step that fits and has no change.
+    if (!changes(axis, transitions[level].map * axis.z)) {
+      apply(axis, transitions[level]);
+      left = std::max(0.0, left - fraction_of(level));
       continue;
     }
+    // Bisect the time of the change.
     while (++level <= last) {
-      if (changes(axis, pieces[level].map * axis.z)) continue;
-      take(axis, pieces[level]);
-      left -= share(level);
+      if (changes(axis, transitions[level].map * axis.z)) continue;
+      apply(axis, transitions[level]);
+      left -= fraction_of(level);
     }
     if (!axis.sticks) axis.z[kMotorSpeed] = 0.0;
-    start(axis, !axis.sticks);  // where motors break loose, the force is c, to rounding
+    // Motors that just started must not stick again: the force on them still equals c, up to rounding.
+    set_friction(axis, !axis.sticks);
     return left;
   }
   return 0.0;
@@ -310,7 +327,8 @@ double ElasticMotion::stored() const noexcept {
 
 namespace {
 
-/// x = v S + a P and x' = v + (a - rate v) S after a time, for x'' = a - rate x'.
+/// Coefficients of the motion x'' = a - rate x' after a time: x = v S + a P and x' = v + (a - rate v) S, v the
+/// initial velocity.
 struct Coast {
   double S, P;
 };
@@ -318,7 +336,7 @@ struct Coast {
 Coast coast(double rate, double time) noexcept {
   const double z = rate * time;
   if (z < 0.05) {
-    // The next terms are below 1e-14 of the sums.
+    // Power series; the omitted terms are below 1e-14 of the sum.
     const double P =
         0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z * (1.0 / 120 - z * (1.0 / 720 - z * (1.0 / 5040 - z / 40320)))));
     return {time * (1.0 - z * P), time * time * P};
@@ -327,15 +345,16 @@ Coast coast(double rate, double time) noexcept {
   return {S, (time - S) / rate};
 }
 
-/// State of the axis, accelerations in place of forces.
+/// One axis of a logged handle. All forces are divided by the mass.
 struct Axis {
-  double rate, grip;
-  double x, v;
+  double rate, coulomb;  ///< b / m [1/s], c / m [m/s^2]
+  double x, v;           ///< position [m], velocity [m/s]
 
+  /// Advances a handle at rest: it sticks, or starts to move in the direction of `push`.
   void leave_rest(double push, double time) noexcept {
     v = 0.0;
-    if (std::abs(push) <= grip || time <= 0.0) return;
-    const double net = push - std::copysign(grip, push);
+    if (std::abs(push) <= coulomb || time <= 0.0) return;
+    const double net = push - std::copysign(coulomb, push);
     const Coast by = coast(rate, time);
     x += net * by.P;
     v = net * by.S;
@@ -343,17 +362,17 @@ struct Axis {
 
   void advance(double push, double time) noexcept {
     if (v == 0.0) return leave_rest(push, time);
-    const double net = push - std::copysign(grip, v);
+    const double net = push - std::copysign(coulomb, v);
     const Coast by = coast(rate, time);
     const double after = v + (net - rate * v) * by.S;
-    if (grip == 0.0 || after * v >= 0.0) {
+    if (coulomb == 0.0 || after * v >= 0.0) {
       x += v * by.S + net * by.P;
       v = after;
       return;
     }
-    const double without = v / (rate * v - net);  // when it stops, were there no viscous friction to change on the way
-    const double share = rate * without,
-                 stops = share > 1e-9 ? 2.0 * math::atanh(share / (2.0 - share)) / rate : without;
+    const double undamped = v / (rate * v - net);  // time to stop if the deceleration stayed constant
+    const double decay = rate * undamped,
+                 stops = decay > 1e-9 ? 2.0 * math::atanh(decay / (2.0 - decay)) / rate : undamped;
     const Coast to_stop = coast(rate, stops);
     x += v * to_stop.S + net * to_stop.P;
     leave_rest(push, time - stops);
@@ -366,11 +385,12 @@ void simulate_log(const LoggedHandle& handle, std::span<const double> times, std
                   std::span<double> positions) noexcept {
   Axis axis{handle.viscous / handle.mass, handle.coulomb / handle.mass, 0.0, handle.velocity};
   double push = handle.offset / handle.mass;
-  std::size_t next = 0;  // the force that arrives next
+  std::size_t next = 0;  // index of the next force to take effect
   for (std::size_t k = 0; k < times.size(); ++k) {
     positions[k] = axis.x;
     if (k + 1 == times.size()) break;
     double now = times[k];
+    // Advance piecewise between the times at which forces take effect.
     for (; times[next] + handle.delay < times[k + 1]; ++next) {
       const double arrives = times[next] + handle.delay;
       if (arrives > now) axis.advance(push, arrives - now), now = arrives;

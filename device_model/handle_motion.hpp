@@ -11,19 +11,21 @@ namespace hapbench {
 
 struct ImpedanceDeviceConfig;
 
-/// How the force of a hand answers the motion of the handle between samples:
+/// Impedance of a hand: how its force changes with the handle's motion between two samples,
 ///
 ///   f_hand = f_k - stiffness (x - x_k) - damping (x' - x'_k) - mass x''
 ///
-/// with the force f_k at the sample: a mass, fixed to the handle, on a spring and a damper towards a target with the
-/// position and velocity of the sample. All are zero for a hand whose force is sampled and held.
+/// where f_k, x_k and x'_k are the force, position and velocity at sample k. This is a mass fixed to the handle,
+/// with a spring and a damper to a target that keeps the position and velocity of the sample. All fields are zero
+/// for a hand whose force is sampled and held.
 struct AttachedHand {
   double mass = 0.0;       ///< [kg]
   double stiffness = 0.0;  ///< [N/m]
   double damping = 0.0;    ///< [N s/m]
 };
 
-/// A body on a spring and a damper under a constant force, per unit of its mass and relative to its initial position:
+/// A body on a spring and a damper under a constant force; damping, stiffness and the constant acceleration g =
+/// force / mass are per unit of mass. Position x is relative to the initial position:
 ///
 ///   x'' = g - damping x' - stiffness x,   x(0) = 0,   x'(0) = v
 struct MotionLaw {
@@ -31,7 +33,8 @@ struct MotionLaw {
   double stiffness = 0.0;  ///< [1/s^2], >= 0
 };
 
-/// The exact solution of a MotionLaw after `time`:
+/// Coefficients of the exact solution of a MotionLaw after `time`, for an initial velocity v and a constant
+/// acceleration g (force / mass):
 ///
 ///   x = v S + g P,   x' = v V + g S,   integral of x'^2 = v^2 W + v g S^2 + g^2 Z
 struct FreeMotion {
@@ -40,151 +43,163 @@ struct FreeMotion {
   double W = 0.0, Z = 0.0;
 };
 
-/// Solves the law for a time [s] by the power series of a fraction of it, which is then doubled. The relative error is
-/// a few roundings for any damping, stiffness and time, in oscillation as well as in creep. Takes about 0.1 us.
+/// Returns the solution of `law` after `time` [s]: a power series for a small fraction of the time, which is then
+/// doubled repeatedly. The relative error is a few roundings for any damping, stiffness and time, in oscillation
+/// and in creep. Takes about 0.1 us.
 FreeMotion free_motion(const MotionLaw& law, double time) noexcept;
 
-/// The first time after the start at which the velocity is zero [s], by the closed form; infinity if there is none.
+/// Returns the first time after the start at which the velocity is zero [s]; infinity if there is none. `v`:
+/// initial velocity [m/s]; `g`: constant acceleration [m/s^2], force / mass. In closed form.
 double time_of_rest(const MotionLaw& law, double v, double g) noexcept;
 
-/// Common base of the two motions of a handle: the friction of the device and the force of the hand.
-class HeldHandle {
+/// Base of HandleMotion and ElasticMotion: holds the device's friction and the hand's force.
+class HandleMotionBase {
  public:
-  /// Takes the force of the hand at a sample [N], which holds until the next call.
+  /// Sets the hand's force at the current sample [N]. It stays valid until the next call; between samples it
+  /// changes with the motion according to AttachedHand.
   void take_hand(const Vec3& force) noexcept {
     origin_ = handle_.position;
-    push_ = force + hand_.damping * handle_.velocity;
+    hand_force_at_rest_ = force + hand_.damping * handle_.velocity;
   }
   const HandleState& handle() const noexcept { return handle_; }
 
  protected:
-  HeldHandle(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
+  HandleMotionBase(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
 
-  double viscous_, coulomb_;
+  double viscous_, coulomb_;  ///< friction of the device: coefficient [N s/m] and force [N]
   AttachedHand hand_;
   HandleState handle_;
-  Vec3 origin_ = Vec3::Zero();  ///< position of the handle at the sample [m]
-  Vec3 push_ = Vec3::Zero();    ///< force of the hand on a handle at rest there [N]
-  DeviceEnergy work_;           ///< `stored`: minus what was at the reset
+  Vec3 origin_ = Vec3::Zero();              ///< position of the handle at the last sample [m]
+  Vec3 hand_force_at_rest_ = Vec3::Zero();  ///< hand's force on a handle at rest at origin_ [N]
+  DeviceEnergy work_;  ///< works since the reset; `stored` holds minus the energy stored at the reset [J]
 };
 
-/// A handle with friction under held forces, in each axis separately and without discretisation error:
+/// Motion of a handle with friction under forces that are constant between samples, in each axis separately and
+/// without discretisation error:
 ///
 ///   m x'' = f - b x' - c sign(x') + f_hand
 ///
-/// with m = handle_mass, b = viscous, c = coulomb of the device. Coulomb friction is exact: the closed form gives the
-/// instant at which the handle stops. There it sticks while the other forces sum up to at most c, and otherwise leaves
-/// in their direction. A step has at most 2 + w T / pi stops, w the angular frequency of a hand with a spring.
-class HandleMotion : public HeldHandle {
+/// with m = handle_mass, b = viscous, c = coulomb of the device, and the force f of the motors. Coulomb friction is
+/// exact: a closed form gives the instant at which the handle stops. The handle then sticks as long as the sum of
+/// the other forces is at most c, and otherwise starts to move in their direction. A step of T seconds has at most
+/// 2 + w T / pi stops, where w is the angular frequency of the handle on the hand's spring.
+class HandleMotion : public HandleMotionBase {
  public:
   HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
 
-  /// Law of the motion between stops; `advance` takes the free_motion of it.
+  /// Returns the law of motion between stops. The argument of `advance` is made from it: free_motion(law(), time).
   const MotionLaw& law() const noexcept { return law_; }
 
   void reset(const HandleState& handle) noexcept;
-  /// Advances by `stretch.time` under a constant force of the motors [N]. Allocates nothing.
-  void advance(const Vec3& motors, const FreeMotion& stretch) noexcept;
+  /// Advances by `interval.time` under a constant force of the motors [N]. Precondition: `interval` was made from
+  /// law(). Allocates nothing.
+  void advance(const Vec3& motors, const FreeMotion& interval) noexcept;
 
-  /// Energy of the handle without the mass of a fixed hand, whose inertia is part of the hand's work.
+  /// Returns the energy balance since the reset. The mass of an attached hand does not count as stored: its inertia
+  /// is part of the hand's work.
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
-  void advance_with_friction(Eigen::Index axis, double motors, const FreeMotion& stretch) noexcept;
-  double hand_at_rest(Eigen::Index axis) const noexcept;
+  void advance_with_friction(Eigen::Index axis, double motors, const FreeMotion& interval) noexcept;
+  double hand_force_if_at_rest(Eigen::Index axis) const noexcept;
   double stored() const noexcept { return 0.5 * handle_mass_ * handle_.velocity.squaredNorm(); }
-  void move(Eigen::Index axis, double motors, double friction, const FreeMotion& by) noexcept;
+  void move(Eigen::Index axis, double motors, double friction, const FreeMotion& motion) noexcept;
 
   double handle_mass_;
-  double mass_;  ///< handle and hand [kg]
+  double mass_;  ///< sum of handle and hand [kg]
   MotionLaw law_;
 };
 
-/// An elastic transmission of an impedance device: a spring and a damper between its motors and its handle.
+/// Elastic transmission of an impedance device: a spring and a damper between motors and handle.
 struct Transmission {
-  double motor_share = 0.5;   ///< of the device's mass on the motors' side, between 0 and 1
-  double stiffness = 10'000;  ///< k [N/m]
-  double damping = 1.0;       ///< d [N s/m]
+  double motor_share = 0.5;   ///< fraction of the device's mass on the motors' side, in (0, 1)
+  double stiffness = 10'000;  ///< k between motors and handle [N/m]
+  double damping = 1.0;       ///< d between motors and handle [N s/m]
 };
 
-/// Motors and handle as two masses on an elastic transmission under held forces, in each axis separately and without
-/// discretisation error:
+/// Motion of motors and handle as two masses on an elastic transmission, under forces that are constant between
+/// samples, in each axis separately and without discretisation error:
 ///
 ///   m_m x_m'' = f - b x_m' - c sign(x_m') - k (x_m - x_h) - d (x_m' - x_h')
 ///   m_h x_h'' = f_hand                    + k (x_m - x_h) + d (x_m' - x_h')
 ///
-/// with m_m = motor_share handle_mass and m_h the rest of it. Friction acts on the motors' side, f_hand on the handle,
-/// as in HandleMotion. With Coulomb friction the motors stop, stick while the other forces sum up to at most c, and
-/// leave. No closed form gives these instants; they are located to rounding between points a quarter radian of the
-/// fastest motion apart, so that two of them within such a piece may be overlooked.
-class ElasticMotion : public HeldHandle {
+/// Indices m and h denote motors and handle: m_m = motor_share handle_mass, m_h is the remaining mass. Friction (b,
+/// c) and the motors' force f act on the motors' side, the hand's force on the handle, as in HandleMotion. With
+/// Coulomb friction the motors stop, stick as long as the sum of the other forces is at most c, and then start to
+/// move. No closed form gives these instants. They are located to rounding accuracy by bisection between points
+/// that are a quarter radian of the fastest mode apart, so two changes between neighbouring points may be missed.
+class ElasticMotion : public HandleMotionBase {
  public:
-  /// (x_m, v_m, x_h, v_h, forces on motors and handle), positions relative to the handle's at the sample.
+  /// (x_m, v_m, x_h, v_h, force on the motors, force on the handle). Positions are relative to the handle's
+  /// position at the sample.
   using State = Eigen::Matrix<double, 6, 1>;
   using Matrix = Eigen::Matrix<double, 6, 6>;
 
-  /// The exact solution after a time: the map of the state, and as forms of it the energies [J] that viscous friction
-  /// and the damper take, and that the hand's damper does.
-  struct Piece {
+  /// Exact solution after a fixed time, for the initial state z: the final state is `map` z. Viscous friction and
+  /// the transmission's damper dissipate z^T `dissipated` z [J]; the hand's damper dissipates z^T `hand` z [J].
+  struct Transition {
     Matrix map, dissipated, hand;
   };
-  /// A time, halved again and again, with moving and with sticking motors. Takes about a millisecond to make.
+  /// Solutions for an interval and for its repeated halvings (entry i: 2^-i of the interval), with moving and with
+  /// sticking motors. Takes about a millisecond to compute.
   struct Stretch {
-    std::vector<Piece> moving, sticking;
-    std::size_t first = 0;  ///< the longest piece within which motors are not looked at
+    std::vector<Transition> moving, sticking;
+    std::size_t first = 0;  ///< index of the longest step that the search for stops takes
   };
 
   ElasticMotion(const ImpedanceDeviceConfig& device, const Transmission& transmission, const AttachedHand& hand);
 
+  /// Computes the solutions for an interval of `time` [s], the argument of `advance`.
   Stretch stretch(double time) const;
 
   void reset(const HandleState& handle) noexcept;
-  /// Advances by the stretch's time under a constant force of the motors [N]. Allocates nothing.
+  /// Advances by the interval of `stretch` under a constant force of the motors [N]. Allocates nothing.
   void advance(const Vec3& motors, const Stretch& stretch) noexcept;
 
-  /// The motors' side, which the encoder measures.
+  /// Position and velocity on the motors' side, which the encoder measures.
   const HandleState& motor() const noexcept { return motor_; }
-  /// As HandleMotion::energy; `stored` counts both masses and the spring.
+  /// Like HandleMotion::energy; `stored` includes both masses and the spring.
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
-  enum : Eigen::Index { kMotor, kMotorSpeed, kHandle, kHandleSpeed, kForce, kPush };  ///< of the state
+  enum : Eigen::Index { kMotor, kMotorSpeed, kHandle, kHandleSpeed, kMotorForce, kHandForce };  ///< of State
 
-  /// One axis under the force of the motors [N].
+  /// State of one axis.
   struct Axis {
     State z;
-    double motors;
-    double friction = 0.0;  ///< on the motors [N]; 0 while they stick
-    bool sticks = false;
+    double motors;          ///< force of the motors, without friction [N]
+    double friction = 0.0;  ///< Coulomb friction on the motors [N]; 0 while they stick
+    bool sticks = false;    ///< the motors are at rest, held by friction
   };
 
   Matrix rates(bool sticking) const;
-  void start(Axis& axis, bool may_stick) const noexcept;
+  void set_friction(Axis& axis, bool may_stick) const noexcept;
   bool changes(const Axis& axis, const State& next) const noexcept;
-  double on_resting_motors(const Axis& axis, const State& z) const noexcept;
-  void take(Axis& axis, const Piece& piece) noexcept;
+  double force_on_resting_motors(const Axis& axis, const State& z) const noexcept;
+  void apply(Axis& axis, const Transition& transition) noexcept;
   double advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept;
   double stored() const noexcept;
 
   Transmission transmission_;
-  double motor_mass_, handle_mass_;  ///< without the hand's [kg]
+  double motor_mass_, handle_mass_;  ///< masses of the device, without the hand's mass [kg]
   HandleState motor_;
 };
 
-/// One axis of an impedance device in open loop, as HandleMotion moves it: m x'' = u(t - delay) + offset - b x' - c
-/// sign(x').
+/// Model of one axis of an impedance device in open loop, with the friction of HandleMotion: m x'' = u(t - delay) +
+/// offset - b x' - c sign(x'), where u is the commanded force.
 struct LoggedHandle {
-  double mass = 1.0;      ///< m, of all that moves [kg]
+  double mass = 1.0;      ///< m, total moving mass [kg]
   double viscous = 0.0;   ///< b [N s/m]
   double coulomb = 0.0;   ///< c [N]
-  double delay = 0.0;     ///< from a row of the log to its force [s]
-  double offset = 0.0;    ///< a constant force besides the commands [N]
-  double velocity = 0.0;  ///< at the first time [m/s]
+  double delay = 0.0;     ///< from the time of a command to its force [s]
+  double offset = 0.0;    ///< constant force in addition to the commands [N]
+  double velocity = 0.0;  ///< initial velocity [m/s]
 };
 
-/// Simulates a log: the positions [m] at `times` [s] of a handle that starts at 0, under forces [N] that are commanded
-/// at these times, arrive late and are held; before the first arrives there is none. Exact, stops and rests included.
-/// Precondition: times increase, and there are as many forces, times and positions. Takes 20 ns for each time.
+/// Simulates a log. Computes the `positions` [m] at `times` [s] of a handle that starts at 0. Each of `forces` [N]
+/// is commanded at the time with the same index, acts `handle.delay` later and is then held; before the first force
+/// acts, only the offset acts. Exact, including stops and rests. Precondition: `times` increase, and all spans have
+/// the same length. Takes 20 ns for each time.
 void simulate_log(const LoggedHandle& handle, std::span<const double> times, std::span<const double> forces,
                   std::span<double> positions) noexcept;
 

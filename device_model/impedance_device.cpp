@@ -10,7 +10,8 @@ namespace hapbench {
 
 using Complex = std::complex<double>;
 
-/// A pole of the filter of cut-off 1 rad/s; the k-th in the upper half of the plane, the last of an odd order real.
+/// Returns a pole of the Butterworth filter with cutoff 1 rad/s: the k-th pole in the upper half of the complex
+/// plane. The last pole of an odd order is real.
 static Complex unit_pole(std::size_t k, std::size_t order) {
   if (2 * k + 1 == order) return {-1.0, 0.0};
   const auto [sine, cosine] =
@@ -18,30 +19,32 @@ static Complex unit_pole(std::size_t k, std::size_t order) {
   return {-sine, cosine};
 }
 
-/// e^z - 1, to rounding also for small z.
+/// Returns e^z - 1, accurate also for small z.
 static Complex exponential_minus_one(const Complex& z) {
   const double grown = math::expm1(z.real()), half = math::sin(0.5 * z.imag());
   return {grown - 2.0 * (1.0 + grown) * half * half, (1.0 + grown) * math::sin(z.imag())};
 }
 
-// H(s) is the product of p_i / (p_i - s), which is the sum of share_i p_i / (p_i - s).
+// H(s) is the product of p_i / (p_i - s), which is the sum of residue_i p_i / (p_i - s).
 std::vector<LowPassMode> low_pass_modes(const LowPassFilter& filter, double dt) {
+  // List the poles of the upper half plane, then their conjugates.
   std::vector<Complex> poles;
   const std::size_t order = filter.order, upper = (order + 1) / 2;
   for (std::size_t k = 0; k < upper; ++k) poles.push_back(unit_pole(k, order));
   for (std::size_t k = 0; k < order / 2; ++k) poles.push_back(std::conj(poles[k]));
+  // Compute the residue of each pole, and the gain of its mode.
   std::vector<LowPassMode> modes;
   for (std::size_t i = 0; i < upper; ++i) {
     const bool is_real = poles[i].imag() == 0.0;
-    Complex share = is_real ? 1.0 : 2.0;
+    Complex residue = is_real ? 1.0 : 2.0;
     for (std::size_t j = 0; j < order; ++j) {
       if (j == i) continue;
-      const Complex apart = poles[j] - poles[i];
-      share *= poles[j] * std::conj(apart) / std::norm(apart);
+      const Complex difference = poles[j] - poles[i];
+      residue *= poles[j] * std::conj(difference) / std::norm(difference);
     }
-    const double angle = -2.0 * std::numbers::pi * filter.cutoff * dt;  // negative, as in expm1(-2 pi f T)
-    const Complex taken = -exponential_minus_one(-angle * poles[i]);
-    modes.push_back(is_real ? LowPassMode{share.real(), -math::expm1(angle)} : LowPassMode{share, taken});
+    const double angle = -2.0 * std::numbers::pi * filter.cutoff * dt;  // -2 pi f T, negative
+    const Complex gain = -exponential_minus_one(-angle * poles[i]);
+    modes.push_back(is_real ? LowPassMode{residue.real(), -math::expm1(angle)} : LowPassMode{residue, gain});
   }
   return modes;
 }
@@ -50,30 +53,30 @@ std::complex<double> LowPassMode::response(double theta) const {
   const auto [sine, cosine] = math::sine_cosine(theta);
   const Complex back(cosine, -sine);
   const auto of = [&back](const Complex& s, const Complex& t) { return t * s / (1.0 - (1.0 - t) * back); };
-  return 0.5 * (of(share, taken) + of(std::conj(share), std::conj(taken)));
+  return 0.5 * (of(residue, gain) + of(std::conj(residue), std::conj(gain)));
 }
 
 SampledLowPass::SampledLowPass(const LowPassFilter& filter, double dt) {
   for (const LowPassMode& mode : low_pass_modes(filter, dt)) {
     terms_.push_back({.mode = mode});
-    passes_all_ = passes_all_ && mode.taken == 1.0;
+    is_identity_ = is_identity_ && mode.gain == 1.0;
   }
 }
 
 void SampledLowPass::settle_at(const Vec3& value) noexcept {
   for (Term& term : terms_) {
-    term.real = term.mode.share.real() * value;
-    term.imaginary = term.mode.share.imag() * value;
+    term.real = term.mode.residue.real() * value;
+    term.imaginary = term.mode.residue.imag() * value;
   }
 }
 
 Vec3 SampledLowPass::filter(const Vec3& sample) noexcept {
-  if (passes_all_) return sample;
+  if (is_identity_) return sample;
   Vec3 output = Vec3::Zero();
   for (auto& [mode, real, imaginary] : terms_) {
-    const Vec3 to_real = mode.share.real() * sample - real, to_imaginary = mode.share.imag() * sample - imaginary;
-    real += mode.taken.real() * to_real - mode.taken.imag() * to_imaginary;
-    imaginary += mode.taken.real() * to_imaginary + mode.taken.imag() * to_real;
+    const Vec3 to_real = mode.residue.real() * sample - real, to_imaginary = mode.residue.imag() * sample - imaginary;
+    real += mode.gain.real() * to_real - mode.gain.imag() * to_imaginary;
+    imaginary += mode.gain.real() * to_imaginary + mode.gain.imag() * to_real;
     output += real;
   }
   return output;
@@ -93,6 +96,7 @@ Vec3 VelocityFilter::read(const Vec3& position) noexcept {
   samples_[next_] = position;
   next_ = (next_ + 1) % samples_.size();
   known_ = std::min(known_ + 1, samples_.size());
+  // Estimate the velocity by the configured method.
   if (const auto* window = std::get_if<AdaptiveWindowFilter>(&config_)) {
     const double noise = window->noise;
     return {end_fit(0, noise), end_fit(1, noise), end_fit(2, noise)};
@@ -101,9 +105,11 @@ Vec3 VelocityFilter::read(const Vec3& position) noexcept {
   return low_pass_ ? low_pass_->filter(difference) : difference;
 }
 
+/// Returns the velocity of one axis by adaptive windowing [m/s].
 double VelocityFilter::end_fit(Eigen::Index axis, double noise) const noexcept {
   const double now = sample(0)[axis];
-  double rise = 0.0;  // of the line per sample
+  double rise = 0.0;  // rise of the fitted line per sample [m]
+  // Lengthen the window while the line through its ends fits all samples in it.
   for (std::size_t n = 1; n < known_; ++n) {
     const double longer = (now - sample(n)[axis]) / static_cast<double>(n);
     for (std::size_t i = 1; i < n; ++i) {
@@ -114,17 +120,19 @@ double VelocityFilter::end_fit(Eigen::Index axis, double noise) const noexcept {
   return rise / dt_;
 }
 
-/// Every component as the nearest multiple of `step`, halves away from zero; `v` itself for the step 0.
+/// Returns `v` with each component rounded to the nearest multiple of `step`, halves away from zero; `v` itself if
+/// step is 0.
 static Vec3 rounded_to(const Vec3& v, double step) noexcept {
   if (step == 0.0) return v;
   return {std::round(v.x() / step) * step, std::round(v.y() / step) * step, std::round(v.z() / step) * step};
 }
 
-// The ring holds the commands of this period, of the whole periods of the delay, and one more for a fraction of it.
+// The ring buffer holds the command of this period, the commands of the whole periods of the delay, and one more
+// for its fraction.
 ForcePath::ForcePath(const ImpedanceDeviceConfig& config, double dt)
     : config_(config),
-      largest_change_(config.force_slew.value_or(0.0) * dt),
-      switch_part_(config.delay_samples - std::floor(config.delay_samples)),
+      max_change_(config.force_slew.value_or(0.0) * dt),
+      switch_fraction_(config.delay_samples - std::floor(config.delay_samples)),
       commands_(static_cast<std::size_t>(config.delay_samples) + 2, Vec3::Zero()) {}
 
 void ForcePath::reset() noexcept {
@@ -139,14 +147,15 @@ HeldForce ForcePath::hold(const Vec3& rendered) noexcept {
   return {commands_[next_], commands_[(next_ + 1) % commands_.size()]};
 }
 
+/// Applies resolution, saturation and slew limit to a rendered force [N].
 Vec3 ForcePath::command(const Vec3& rendered) const noexcept {
   Vec3 force = rounded_to(rendered, config_.force_step);
-  if (const auto& most = config_.force_max) {
-    if (const double norm = force.norm(); norm > *most) force *= *most / norm;
+  if (const auto& limit = config_.force_max) {
+    if (const double norm = force.norm(); norm > *limit) force *= *limit / norm;
   }
   if (config_.force_slew) {
     const Vec3 change = force - last_;
-    if (const double norm = change.norm(); norm > largest_change_) force = last_ + change * (largest_change_ / norm);
+    if (const double norm = change.norm(); norm > max_change_) force = last_ + change * (max_change_ / norm);
   }
   return force;
 }
@@ -184,6 +193,7 @@ Vec3 ImpedanceDevice::read_position() noexcept {
 }
 
 void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexcept {
+  // Move the handle over the period; the motors' force may change within it.
   const HeldForce motors = path_.hold(rendered);
   const auto advance = [&](auto& motion, const auto& before, const auto& after) {
     motion.take_hand(hand_force);
@@ -193,6 +203,7 @@ void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexce
   elastic_ ? advance(elastic_->parts, elastic_->before, elastic_->after) : advance(motion_, before_, after_);
   sampled_.position = read_position();
   sampled_.velocity = filter_.read(sampled_.position);
+  // Filter the rendered position only; the velocity uses the unfiltered position.
   if (position_filter_) sampled_.position = position_filter_->filter(sampled_.position);
 }
 
@@ -204,15 +215,15 @@ constexpr SourcedNumber chai(double value) {
 constexpr SourcedNumber sheet(double value) {
   return {value, kFromDataSheet};
 }
-// An estimate of an unpublished number, and the factors that bound it (kPresetRanges). They are wide: no measured
-// friction of these devices was found, and a paddle whose motor's data sheet says 0.04 N s/m took 3 to 4
-// (scenarios/library/validation).
+// Factors that bound an estimate of an unpublished value (kPresetRanges). They are wide because we found no
+// measured friction of these devices; a paddle whose motor has 0.04 N s/m in its data sheet was measured to have 3
+// to 4 N s/m (scenarios/library/validation).
 struct Factors {
   double low, high;
 };
 constexpr Factors kMass = {1.0 / 1.3, 1.3}, kViscous = {1.0, 10.0}, kCoulomb = {0.0, 2.0}, kEncoder = {0.5, 2.0};
-constexpr SourcedNumber ours(double value, const Factors& may_be) {
-  return {value, kOurEstimate, may_be.low * value, may_be.high * value};
+constexpr SourcedNumber ours(double value, const Factors& range) {
+  return {value, kOurEstimate, range.low * value, range.high * value};
 }
 
 constexpr DevicePreset kPresets[] = {

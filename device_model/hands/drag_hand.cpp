@@ -7,12 +7,15 @@
 
 namespace hapbench {
 
-constexpr int kPasses = 3;
-/// Sine of the angle between direction and normal below which a path ends. Its square is the share of a step by which a
-/// path must advance along the direction; beyond the edge of a surface the nearest place is that edge.
-constexpr double kLeastProgress = 0.1;
+/// Number of projections onto the local plane; see SmoothedSurface::nearest.
+constexpr int kProjections = 3;
+/// A path ends where the sine of the angle between its direction and the normal falls below this value. A step must
+/// also advance by at least the square of this value, as a fraction of the step's length: beyond the border of a
+/// surface, all projections coincide with the border.
+constexpr double kMinProgress = 0.1;
 
-/// Calls visit(i) for the sorted points in the cells of the grid that the cube around the centre meets.
+/// Calls visit(i) for the points i in those grid cells that intersect the cube with the given centre and half width
+/// [m].
 template <class Visit>
 static void for_each_near(const GridIndex& grid, const Vec3& centre, double half, const Visit& visit) {
   const Box cube{centre - Vec3::Constant(half), centre + Vec3::Constant(half)};
@@ -23,13 +26,13 @@ static void for_each_near(const GridIndex& grid, const Vec3& centre, double half
 
 std::size_t SmoothedSurface::nearest_point(const Vec3& at) const {
   std::size_t nearest = 0;
-  double least2 = std::numeric_limits<double>::infinity();
-  // Ends when the box contains the whole ball around `at` that has the nearest point found on its surface.
-  for (double half = distance_to(shell_.bounds(), at) + grid_.cell_size(); least2 > half * half; half *= 2.0) {
+  double min_distance2 = std::numeric_limits<double>::infinity();
+  // Double the box until it contains the ball around `at` whose radius is the distance of the nearest point found.
+  for (double half = distance_to(shell_.bounds(), at) + grid_.cell_size(); min_distance2 > half * half; half *= 2.0) {
     for_each_near(grid_, at, half, [&](std::size_t i) {
       const double distance2 = (Vec3(grid_.x()[i], grid_.y()[i], grid_.z()[i]) - at).squaredNorm();
-      if (distance2 >= least2) return;
-      least2 = distance2;
+      if (distance2 >= min_distance2) return;
+      min_distance2 = distance2;
       nearest = grid_.shell_indices()[i];
     });
   }
@@ -38,29 +41,31 @@ std::size_t SmoothedSurface::nearest_point(const Vec3& at) const {
 
 SurfacePoint SmoothedSurface::nearest(const Vec3& at) const {
   const SurfacePoint start = shell_.point(nearest_point(at));
-  SurfacePoint before = start, place = start;
-  for (int pass = 0; pass < kPasses; ++pass) {
+  SurfacePoint before = start, projection = start;
+  for (int iteration = 0; iteration < kProjections; ++iteration) {
+    // Average the neighbours of the last projection.
     double weights = 0.0;
     Vec3 centre = Vec3::Zero(), normal = Vec3::Zero();
-    for_each_near(grid_, place.position, radius_, [&](std::size_t i) {
+    for_each_near(grid_, projection.position, radius_, [&](std::size_t i) {
       const SurfacePoint point = shell_.point(grid_.shell_indices()[i]);
-      const double nearness = 1.0 - (point.position - place.position).squaredNorm() / (radius_ * radius_);
+      const double nearness = 1.0 - (point.position - projection.position).squaredNorm() / (radius_ * radius_);
       if (nearness <= 0.0 || point.normal.dot(start.normal) <= 0.0) return;
       const double weight = nearness * nearness;
       weights += weight;
       centre += weight * point.position;
       normal += weight * point.normal;
     });
+    // Project `at` onto the plane through their centre.
     if (!(weights > 0.0)) return before;
     normal.normalize();
     centre /= weights;
-    before = place;
-    place = {at - normal.dot(at - centre) * normal, normal};
+    before = projection;
+    projection = {at - normal.dot(at - centre) * normal, normal};
   }
-  return place;
+  return projection;
 }
 
-/// Interpolates between unit vectors.
+/// Interpolates linearly between unit vectors and normalises the result.
 static Vec3 between(const Vec3& a, const Vec3& b, double fraction) {
   return unit_or(a + fraction * (b - a), a);
 }
@@ -69,58 +74,62 @@ static SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, double
   return {a.position + fraction * (b.position - a.position), between(a.normal, b.normal, fraction)};
 }
 
-SurfacePath::SurfacePath(const SmoothedSurface& surface, std::span<const SurfacePoint> places)
-    : radius_(surface.radius()), spacing_(spacing(radius_)), entries_{places.front()} {
+SurfacePath::SurfacePath(const SmoothedSurface& surface, std::span<const SurfacePoint> points)
+    : radius_(surface.radius()), spacing_(spacing(radius_)), entries_{points.front()} {
+  // Choose an equal spacing.
   double total = 0.0;
-  for (std::size_t i = 1; i < places.size(); ++i) total += (places[i].position - places[i - 1].position).norm();
-  const auto pieces = static_cast<std::size_t>(std::ceil(total / spacing_));
-  if (pieces > 0) spacing_ = total / static_cast<double>(pieces);
+  for (std::size_t i = 1; i < points.size(); ++i) total += (points[i].position - points[i - 1].position).norm();
+  const auto intervals = static_cast<std::size_t>(std::ceil(total / spacing_));
+  if (intervals > 0) spacing_ = total / static_cast<double>(intervals);
+  // Interpolate entries along the polyline.
   double left = spacing_;  // distance to the next entry
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    const double leg = (places[i].position - places[i - 1].position).norm();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double leg = (points[i].position - points[i - 1].position).norm();
     double done = 0.0;
-    for (; leg - done >= left && entries_.size() < pieces; left = spacing_) {
+    for (; leg - done >= left && entries_.size() < intervals; left = spacing_) {
       done += left;
-      entries_.push_back(between(places[i - 1], places[i], done / leg));
+      entries_.push_back(between(points[i - 1], points[i], done / leg));
     }
     left -= leg - done;
   }
-  entries_.resize(pieces + 1, places.back());
+  entries_.resize(intervals + 1, points.back());
+  // Sample the normals to both sides of the path.
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const auto& [place, normal] = entries_[i];
+    const auto& [point, normal] = entries_[i];
     const Vec3 leftwards = normal.cross(direction(static_cast<double>(i) * spacing_));
     Normals& row = normals_.emplace_back();
     for (std::size_t k = 0; k < row.size(); ++k) {
-      const double aside = (static_cast<double>(k) - static_cast<double>(kSide)) * radius_;
-      row[k] = k == kSide ? normal : surface.nearest(place + aside * leftwards).normal;
+      const double sideways = (static_cast<double>(k) - static_cast<double>(kSide)) * radius_;
+      row[k] = k == kSide ? normal : surface.nearest(point + sideways * leftwards).normal;
     }
   }
 }
 
 SurfacePath SurfacePath::over(const SmoothedSurface& surface, std::span<const Vec3> points) {
   const double step = spacing(surface.radius());
-  std::vector<SurfacePoint> places = {surface.nearest(points.front())};
+  std::vector<SurfacePoint> projections = {surface.nearest(points.front())};
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Vec3 leg = points[i] - points[i - 1];
-    const double pieces = std::max(1.0, std::ceil(leg.norm() / step));
-    for (double k = 1.0; k <= pieces; ++k) places.push_back(surface.nearest(points[i - 1] + (k / pieces) * leg));
+    const double intervals = std::max(1.0, std::ceil(leg.norm() / step));
+    for (double k = 1.0; k <= intervals; ++k)
+      projections.push_back(surface.nearest(points[i - 1] + (k / intervals) * leg));
   }
-  return {surface, places};
+  return {surface, projections};
 }
 
-/// Places on the surface from `first` along the unit vector `forward`, `step` apart.
+/// Returns positions on the surface from `first` along the unit vector `forward`, at distances of `step` [m].
 static std::vector<SurfacePoint> walk(const SmoothedSurface& surface, const SurfacePoint& first, const Vec3& forward,
                                       double length, double step) {
-  std::vector<SurfacePoint> places = {first};
+  std::vector<SurfacePoint> points = {first};
   for (double done = 0.0; done < length; done += step) {
-    const SurfacePoint& here = places.back();
+    const SurfacePoint& here = points.back();
     const Vec3 within = forward - here.normal.dot(forward) * here.normal;
-    if (within.norm() < kLeastProgress) break;
+    if (within.norm() < kMinProgress) break;
     const SurfacePoint next = surface.nearest(here.position + step * within.normalized());
-    if (forward.dot(next.position - here.position) < kLeastProgress * kLeastProgress * step) break;
-    places.push_back(next);
+    if (forward.dot(next.position - here.position) < kMinProgress * kMinProgress * step) break;
+    points.push_back(next);
   }
-  return places;
+  return points;
 }
 
 SurfacePath SurfacePath::along(const SmoothedSurface& surface, const Vec3& start, const Vec3& direction,
@@ -128,10 +137,11 @@ SurfacePath SurfacePath::along(const SmoothedSurface& surface, const Vec3& start
   const Vec3 forward = direction.normalized();
   const double step = spacing(surface.radius());
   const SurfacePoint first = surface.nearest(start);
-  std::vector<SurfacePoint> places = walk(surface, first, forward, length, step);
-  // If it was found from far above a rough surface, the first place may lie off it, and the first step leads back.
-  if (places.size() == 1) places = walk(surface, surface.nearest(first.position), forward, length, step);
-  return {surface, places};
+  std::vector<SurfacePoint> points = walk(surface, first, forward, length, step);
+  // A first projection from far above a rough surface may lie off the surface, and then the first step leads back.
+  // Project it once more.
+  if (points.size() == 1) points = walk(surface, surface.nearest(first.position), forward, length, step);
+  return {surface, points};
 }
 
 SurfacePath::Position SurfacePath::position(double s) const noexcept {
@@ -147,9 +157,9 @@ SurfacePoint SurfacePath::at(double s) const noexcept {
 
 Vec3 SurfacePath::normal_near(const Vec3& x, double s) const noexcept {
   const auto [before, after, fraction] = position(s);
-  const auto& [place, normal] = between(entries_[before], entries_[after], fraction);
-  const double aside = normal.cross(direction(s)).dot(x - place) / radius_;
-  const double column = std::clamp(aside + static_cast<double>(kSide), 0.0, 2.0 * static_cast<double>(kSide));
+  const auto& [point, normal] = between(entries_[before], entries_[after], fraction);
+  const double sideways = normal.cross(direction(s)).dot(x - point) / radius_;
+  const double column = std::clamp(sideways + static_cast<double>(kSide), 0.0, 2.0 * static_cast<double>(kSide));
   const auto right = std::min(static_cast<std::size_t>(column), 2 * kSide - 1);
   const auto across = [&](const Normals& row) {
     return between(row[right], row[right + 1], column - static_cast<double>(right));
@@ -160,16 +170,16 @@ Vec3 SurfacePath::normal_near(const Vec3& x, double s) const noexcept {
 Vec3 SurfacePath::direction(double s) const noexcept {
   const double here = std::clamp(s, 0.0, length());
   const Vec3 normal = at(here).normal;
-  const Vec3 way = at(here + radius_).position - at(here - radius_).position;
-  const Vec3 within = way - normal.dot(way) * normal;
+  const Vec3 chord = at(here + radius_).position - at(here - radius_).position;
+  const Vec3 within = chord - normal.dot(chord) * normal;
   const double norm = within.norm();
   return norm > 0.0 ? Vec3(within / norm) : normal.unitOrthogonal();
 }
 
 Vec3 DragHand::force(double t, const HandView& view) noexcept {
   const auto& [x, v] = view.handle;
-  // Moves half of the way to the foot of the perpendicular on the path. It arrives in a few steps and stays there on
-  // bent paths, on which the whole way would overshoot.
+  // Move `nearest_` by half the distance to the foot of the perpendicular on the path. It converges in a few steps;
+  // moving the full distance would overshoot on curved paths.
   nearest_ += 0.5 * path_->direction(nearest_).dot(x - path_->at(nearest_).position);
   nearest_ = std::clamp(nearest_, 0.0, path_->length());
   const Vec3 n = path_->normal_near(x, nearest_);

@@ -14,16 +14,17 @@
 
 namespace hapbench {
 
-/// How a hand that means to rest moves. Physiological tremor has its power at 8 to 12 Hz (T. Novak, K. M. Newell,
-/// Neuroscience Letters 641, 2017); a finger's amplitude is about 30 um with the arm at rest, twice that with the hand
-/// and four to five times with the arm held out (W. Growdon et al., Electromyogr. Clin. Neurophysiol. 40(5), 2000).
+/// Involuntary motion of a hand that tries to rest. Physiological tremor has its power at 8 to 12 Hz (T. Novak, K.
+/// M. Newell, Neuroscience Letters 641, 2017). A finger's amplitude is about 30 um with the arm at rest, twice as
+/// large with the hand held out, and four to five times as large with the arm held out (W. Growdon et al.,
+/// Electromyogr. Clin. Neurophysiol. 40(5), 2000).
 struct TremorConfig {
-  Vec3 rms = {30e-6, 30e-6, 30e-6};  ///< of each axis [m]
-  double low = 8.0, high = 12.0;     ///< band [Hz]
+  Vec3 rms = {30e-6, 30e-6, 30e-6};  ///< root mean square of the displacement in each axis [m]
+  double low = 8.0, high = 12.0;     ///< frequency band [Hz]
 };
 
-/// A displacement in that band: tones with random frequency and phase, one in each of equal parts of the band, so that
-/// it is the same function of time for every time step.
+/// Random displacement within a frequency band: a sum of tones with random frequency and phase, with one tone in
+/// each of kTones equal parts of the band. It is a function of time alone, so it does not depend on the time step.
 class Tremor {
  public:
   Tremor(const TremorConfig& config, std::uint64_t seed) {
@@ -39,7 +40,7 @@ class Tremor {
     }
   }
 
-  /// Displacement and its velocity at a time [s].
+  /// Returns displacement [m] and velocity [m/s] at time t [s].
   HandleState at(double t) const noexcept {
     HandleState state;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -64,7 +65,7 @@ class Tremor {
 /// A hand that pushes with a scripted force, independent of the handle's motion.
 class ForceHand final : public Hand {
  public:
-  /// Components x, y, z in the world frame [N] over time; without force nobody holds the handle.
+  /// `force`: components x, y, z in the world frame [N] over time. Empty profiles: nobody holds the handle.
   explicit ForceHand(std::array<Profile, 3> force = {}) : force_(std::move(force)) {}
 
   Vec3 force(double t, const HandView&) noexcept override { return {force_[0](t), force_[1](t), force_[2](t)}; }
@@ -76,7 +77,7 @@ class ForceHand final : public Hand {
 /// A hand that pushes with a scripted force in one direction.
 class PushHand final : public Hand {
  public:
-  /// `direction` is a unit vector in the world frame, `force` its multiple over time [N].
+  /// `direction`: unit vector in the world frame. `force`: signed force along it over time [N].
   PushHand(Profile force, const Vec3& direction) : force_(std::move(force)), direction_(direction) {}
 
   Vec3 force(double t, const HandView&) noexcept override { return force_(t) * direction_; }
@@ -86,11 +87,11 @@ class PushHand final : public Hand {
   Vec3 direction_;
 };
 
-/// A hand that holds the handle towards a scripted target like a spring and a damper:
-/// f = k (x_target - x_handle) + b (v_target - v_handle). A tremor moves the target.
+/// A hand that pulls the handle towards a scripted target with a spring and a damper: f = k (x_target - x_handle) +
+/// b (v_target - v_handle). A tremor displaces the target.
 class ImpedanceHand final : public Hand {
  public:
-  /// Stiffness [N/m], damping [N s/m], and the target's x, y, z [m] over time.
+  /// Stiffness k [N/m], damping b [N s/m], and the target's x, y, z [m] over time.
   ImpedanceHand(double stiffness, double damping, std::array<Profile, 3> target, std::optional<Tremor> tremor = {})
       : stiffness_(stiffness), damping_(damping), target_(std::move(target)), tremor_(std::move(tremor)) {}
 
@@ -112,7 +113,8 @@ class ImpedanceHand final : public Hand {
   std::optional<Tremor> tremor_;
 };
 
-/// Unit vector at `angle` [rad] from -z, towards +x turned by `azimuth` [rad] about z. Exactly -z at angle 0.
+/// Returns the unit vector at `angle` [rad] from -z, tilted towards +x turned by `azimuth` [rad] about z. Exactly
+/// -z at angle 0.
 inline Vec3 push_direction(double angle, double azimuth) {
   return {math::sin(angle) * math::cos(azimuth), math::sin(angle) * math::sin(azimuth), -math::cos(angle)};
 }

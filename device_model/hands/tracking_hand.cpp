@@ -9,8 +9,8 @@
 namespace hapbench {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-/// Range of the tilt [rad]: the wrist neither lays the tool flat nor turns it past upright.
-constexpr double kLeastTilt = 0.0, kMostTilt = 1.4;
+/// Range of the tilt from vertical [rad]: the wrist does not turn the tool past upright and does not lay it flat.
+constexpr double kMinTilt = 0.0, kMaxTilt = 1.4;
 
 TrackingHand::TrackingHand(const Subject& subject, TargetTask task, double initial_tilt, double dt, std::uint64_t seed)
     : subject_(subject),
@@ -26,7 +26,7 @@ TrackingHand::TrackingHand(const Subject& subject, TargetTask task, double initi
 
 void TrackingHand::reset() noexcept {
   task_.reset();
-  std::fill(seen_.begin(), seen_.end(), Seen{});
+  std::fill(seen_.begin(), seen_.end(), Display{});
   next_ = 0;
   started_ = false;
   random_ = Random(seed_);
@@ -36,45 +36,52 @@ void TrackingHand::reset() noexcept {
 }
 
 Vec3 TrackingHand::force(double, const HandView& view) noexcept {
+  // Update the task and respond to the delayed display.
   if (!started_) intended_ = view.handle.position;
   started_ = true;
   task_.advance(view.tool.position, view.spring_force.z(), view.model_force.z(), dt_);
-  follow(look(view));
-  const Vec3 reach = Vec3::Constant(subject_.max_force / subject_.stiffness);  // beyond it the arm yields
+  follow(delayed_display(view));
+  // Limit the spring force and add motor noise.
+  // Distance at which the hand's force reaches its limit.
+  const Vec3 reach = Vec3::Constant(subject_.max_force / subject_.stiffness);
   intended_ = intended_.cwiseMax(view.handle.position - reach).cwiseMin(view.handle.position + reach);
-  for (double& component : force_noise_) component = coloured(component);
+  for (double& component : force_noise_) component = next_noise(component);
   return subject_.stiffness * (intended_ - view.handle.position) - subject_.damping * view.handle.velocity +
          subject_.motor_noise * force_noise_;
 }
 
-/// Stores the present display and returns the one that the subject sees now, a reaction delay late. Before the first
-/// one arrives that is "on target, nothing pressed".
-TrackingHand::Seen TrackingHand::look(const HandView& view) noexcept {
-  Seen& now = seen_[next_];
+/// Stores the current display and returns the display of one reaction delay ago. Until the first stored display is
+/// that old, returns "on target, no force on the gauge".
+TrackingHand::Display TrackingHand::delayed_display(const HandView& view) noexcept {
+  Display& now = seen_[next_];
   now.error = task_.finished() ? Vec3(Vec3::Zero()) : task_.error(view.tool.position);
   now.gauge = task_.reading();
   next_ = (next_ + 1) % seen_.size();
   return seen_[next_];
 }
 
-void TrackingHand::follow(const Seen& seen) noexcept {
-  const auto within = [](double rate, double most) { return std::clamp(rate, -most, most); };
+/// Moves the intended position and the wrist in response to a display.
+void TrackingHand::follow(const Display& seen) noexcept {
+  const auto limited = [](double rate, double limit) { return std::clamp(rate, -limit, limit); };
   const double follow_rate = kTwoPi * subject_.bandwidth;
+  // Follow the target: the hand on the panel, the wrist with the height meter.
   if (task_.rules().display == TargetDisplay::panel) {
-    intended_.x() += within(follow_rate * seen.error.x(), subject_.max_speed) * dt_;
-    intended_.y() += within(follow_rate * seen.error.y(), subject_.max_speed) * dt_;
+    intended_.x() += limited(follow_rate * seen.error.x(), subject_.max_speed) * dt_;
+    intended_.y() += limited(follow_rate * seen.error.y(), subject_.max_speed) * dt_;
   } else {
-    const double turn = within(follow_rate * seen.error.z() / subject_.height_per_tilt, subject_.max_turn);
-    wrist_ = std::clamp(wrist_ + turn * dt_, kLeastTilt, kMostTilt);
-    tilt_noise_ = coloured(tilt_noise_);
+    const double turn = limited(follow_rate * seen.error.z() / subject_.height_per_tilt, subject_.max_turn);
+    wrist_ = std::clamp(wrist_ + turn * dt_, kMinTilt, kMaxTilt);
+    tilt_noise_ = next_noise(tilt_noise_);
     tilt_ = wrist_ + subject_.tilt_noise * tilt_noise_;
   }
+  // Correct the pressing force.
   const double press_rate = kTwoPi * subject_.press_bandwidth / subject_.stiffness;
-  intended_.z() -= within(press_rate * (subject_.press - seen.gauge), subject_.max_speed) * dt_;
+  intended_.z() -= limited(press_rate * (subject_.press - seen.gauge), subject_.max_speed) * dt_;
 }
 
-/// The next sample of noise of unit variance with the hand's bandwidth.
-double TrackingHand::coloured(double state) noexcept {
+/// Returns the next sample of first-order low-pass noise with unit variance and the hand's bandwidth, given the
+/// last sample `state`.
+double TrackingHand::next_noise(double state) noexcept {
   return noise_memory_ * state + std::sqrt(1.0 - noise_memory_ * noise_memory_) * random_.normal();
 }
 

@@ -18,19 +18,22 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
 
 namespace {
 
-/// Range of K T^2 / m. For smaller values the eigenvalues are so close to 1 that rounding decides.
-constexpr double kLeastEdge = 1e-8;
-constexpr double kNoEdge = 1e6;
-constexpr double kNever = std::numeric_limits<double>::infinity();
+/// Range of K T^2 / m that is searched for the limit. For smaller values the eigenvalues are so close to 1 that
+/// rounding decides.
+constexpr double kMinLimit = 1e-8;
+constexpr double kMaxLimit = 1e6;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Indices of the state of a SampledLoop.
+/// Indices of a SampledLoop's state.
 enum { kPosition, kVelocity, kLastPosition, kModes };
 
+/// Returns true if the mode belongs to a pair of complex poles.
 bool is_pair(const LowPassMode& mode) {
-  return mode.taken.imag() != 0.0;
+  return mode.gain.imag() != 0.0;
 }
 
-/// The matrix of motion_rate with (x, T v) of the motors and then of the handle, on a transmission.
+/// Returns motion_rate for an elastic transmission; the state is (x, T v) of the motors, (x, T v) of the handle and
+/// the scaled force.
 Eigen::MatrixXd elastic_motion_rate(const SampledLoop& loop, const Transmission& transmission) {
   const double T = loop.period, motor = transmission.motor_share * loop.device.handle_mass,
                handle = loop.moving_mass() - motor, k = transmission.stiffness * T * T, d = transmission.damping * T;
@@ -42,8 +45,9 @@ Eigen::MatrixXd elastic_motion_rate(const SampledLoop& loop, const Transmission&
   return rate;
 }
 
-/// The matrix A of the motion dz/ds = A z over the share s of the period, with z = (x, T v, T^2/m f) and a constant
-/// force f. Here and below sizes are dynamic, so that the compiler meets the matrix exponential once.
+/// Returns the matrix A of the motion dz/ds = A z, where s is time in periods, z = (x, T v, T^2/m f) and the force
+/// f is constant. Sizes here and below are dynamic, so that the compiler instantiates the matrix exponential only
+/// once.
 Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
   if (loop.device.transmission) return elastic_motion_rate(loop, *loop.device.transmission);
   const double m = loop.moving_mass(), T = loop.period;
@@ -53,20 +57,21 @@ Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
   return rate;
 }
 
-/// Puts the motion over a period into the rows and columns `body` of the map A, under the force `before` for a share
-/// `part` of it and `after` for the rest.
-void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, double part, const Eigen::MatrixXd& rate,
+/// Writes the motion over one period into the rows of the map A that belong to the state components `body`. The
+/// force is `before` for the fraction `fraction` of the period and `after` for the rest; both are row vectors over
+/// the state.
+void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, double fraction, const Eigen::MatrixXd& rate,
                 const Eigen::RowVectorXd& before, const Eigen::RowVectorXd& after) {
   const auto n = static_cast<Eigen::Index>(body.size());
-  const Eigen::MatrixXd first = (rate * part).exp(), second = (rate * (1.0 - part)).exp();
+  const Eigen::MatrixXd first = (rate * fraction).exp(), second = (rate * (1.0 - fraction)).exp();
   Eigen::MatrixXd moving = Eigen::MatrixXd::Zero(n, A.cols());
   for (Eigen::Index i = 0; i < n; ++i) moving.col(body[static_cast<std::size_t>(i)]) = first.col(i).head(n);
-  if (part > 0.0) moving += first.col(n).head(n) * before;
+  if (fraction > 0.0) moving += first.col(n).head(n) * before;
   const Eigen::MatrixXd next = second.topLeftCorner(n, n) * moving + second.col(n).head(n) * after;
   for (Eigen::Index i = 0; i < n; ++i) A.row(body[static_cast<std::size_t>(i)]) = next.row(i);
 }
 
-/// The modes of the low-passes of the velocity and of the position; empty without such a filter.
+/// Return the modes of the low-pass filters of velocity and position; empty without such a filter.
 std::vector<LowPassMode> velocity_modes(const SampledLoop& loop) {
   const auto* filter = std::get_if<LowPassFilter>(&loop.device.velocity_filter);
   return filter != nullptr ? low_pass_modes(*filter, loop.period) : std::vector<LowPassMode>{};
@@ -91,6 +96,7 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
   const Eigen::Index whole = static_cast<Eigen::Index>(std::floor(delay));
   const double part = delay - static_cast<double>(whole);
   const Eigen::Index kept = whole + (part > 0.0 ? 1 : 0);
+  // Count the state components of filters, delayed forces and transmission.
   std::vector<LowPassMode> velocity = velocity_modes(*this);
   if (velocity.empty()) velocity.push_back({1.0, 1.0});
   const std::vector<LowPassMode> position = position_modes(*this);
@@ -103,33 +109,35 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
   const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
 
-  // The output of a filter with the input `u`; its states are the next ones.
+  // Adds a filter with the input `u` to A, in the next free state components. Returns its output as a row vector.
   Eigen::Index next = kModes;
   const auto filtered = [&](const std::vector<LowPassMode>& modes, const Eigen::RowVectorXd& u) {
     Eigen::RowVectorXd output = Eigen::RowVectorXd::Zero(n);
     for (const LowPassMode& mode : modes) {
       const Eigen::Index at = next;
       next += is_pair(mode) ? 2 : 1;
-      const double t = mode.taken.real(), turned = mode.taken.imag();
-      A.row(at) = (1.0 - t) * unit(at) + (t * mode.share.real() - turned * mode.share.imag()) * u;
+      const double gain = mode.gain.real(), gain_imaginary = mode.gain.imag();
+      A.row(at) = (1.0 - gain) * unit(at) + (gain * mode.residue.real() - gain_imaginary * mode.residue.imag()) * u;
       if (is_pair(mode)) {
-        A.row(at) += turned * unit(at + 1);
-        A.row(at + 1) =
-            (1.0 - t) * unit(at + 1) - turned * unit(at) + (t * mode.share.imag() + turned * mode.share.real()) * u;
+        A.row(at) += gain_imaginary * unit(at + 1);
+        A.row(at + 1) = (1.0 - gain) * unit(at + 1) - gain_imaginary * unit(at) +
+                        (gain * mode.residue.imag() + gain_imaginary * mode.residue.real()) * u;
       }
       output += A.row(at);
     }
     return output;
   };
+  // The wall's force as a row vector over the state.
   const Eigen::RowVectorXd measured = unit(kPosition);
   A.row(kLastPosition) = measured;
   Eigen::RowVectorXd force = -(wall_damping * T / m) * filtered(velocity, measured - unit(kLastPosition));
   force -= stiffness * T * T / m * (position.empty() ? measured : filtered(position, measured));
-  // The force of `age` samples ago.
+  // Returns the force rendered `age` samples ago.
   const auto force_of = [&](Eigen::Index age) -> Eigen::RowVectorXd {
     return age == 0 ? force : unit(forces + age - 1);
   };
 
+  // Motion over the period under the delayed forces, then shift of the delay line.
   const Eigen::RowVectorXd before = part > 0.0 ? force_of(whole + 1) : Eigen::RowVectorXd();
   std::vector<Eigen::Index> body = {kPosition, kVelocity};
   if (device.transmission) body.insert(body.end(), {n - 2, n - 1});
@@ -140,29 +148,29 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
 
 double eigenvalue_edge(SampledLoop loop) {
   const double unit = loop.moving_mass() / (loop.period * loop.period);
-  return first_edge(kLeastEdge * unit, kNoEdge * unit, [&loop](double K) {
+  return first_edge(kMinLimit * unit, kMaxLimit * unit, [&loop](double K) {
     loop.stiffness = K;
     return loop.state_matrix();
   });
 }
 
 std::span<const AttachedHand> hand_family() {
-  static constexpr AttachedHand kFamily[] = {{},           {0.1, 100.0},  {0.1, 300.0}, {0.1, 1000.0}, {0.2, 100.0},
-                                             {0.2, 300.0}, {0.2, 1000.0}, {0.5, 100.0}, {0.5, 300.0},  {0.5, 1000.0}};
-  return kFamily;
+  static constexpr AttachedHand kHands[] = {{},           {0.1, 100.0},  {0.1, 300.0}, {0.1, 1000.0}, {0.2, 100.0},
+                                            {0.2, 300.0}, {0.2, 1000.0}, {0.5, 100.0}, {0.5, 300.0},  {0.5, 1000.0}};
+  return kHands;
 }
 
 double worst_hand_edge(SampledLoop loop) {
-  double least = kNever;
+  double smallest = kInfinity;
   for (const AttachedHand& hand : hand_family()) {
     loop.hand = hand;
-    least = std::min(least, eigenvalue_edge(loop));
+    smallest = std::min(smallest, eigenvalue_edge(loop));
   }
-  return least;
+  return smallest;
 }
 
-/// Carriage and handle after a step of the implicit midpoint rule (HandleMechanics). The columns belong to
-/// (x_c, v_c, x_h, v_h) and to constant forces on carriage and handle.
+/// Returns the map of one step of carriage and handle by the implicit midpoint rule (HandleMechanics). The columns
+/// belong to the state (x_c, v_c, x_h, v_h) and to constant forces on carriage and handle.
 static Eigen::MatrixXd mechanics_step(const HandleMechanicsConfig& m, double dt) {
   const double k = m.structure_stiffness, c = m.structure_damping;
   Eigen::MatrixXd rate(4, 4);
@@ -178,16 +186,19 @@ static Eigen::MatrixXd mechanics_step(const HandleMechanicsConfig& m, double dt)
 }
 
 Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
-  enum { kTool, kToolVelocity, kCarriage, kCarriageVelocity, kHandle, kHandleVelocity, kCommands };  // of the state
+  // Indices of the state.
+  enum { kTool, kToolVelocity, kCarriage, kCarriageVelocity, kHandle, kHandleVelocity, kCommands };
   const auto delay = static_cast<Eigen::Index>(servo.delay);
   const Eigen::Index n = kCommands + delay;
   const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
 
+  // Virtual mass under the forces of hand and wall.
   const Eigen::RowVectorXd hand = -hand_stiffness * unit(kHandle) - hand_damping * unit(kHandleVelocity);
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
   A.block<2, 2>(kTool, kTool) = tool.step_matrix();
   A.middleRows<2>(kTool) += tool.input_step() * hand;
 
+  // Carriage and handle under the delayed servo force and the hand's force.
   const Eigen::RowVectorXd command = servo.stiffness * (A.row(kTool) - unit(kCarriage)) +
                                      servo.damping * (A.row(kToolVelocity) - unit(kCarriageVelocity));
   const Eigen::RowVectorXd actuator = delay == 0 ? command : unit(kCommands + delay - 1);
@@ -197,6 +208,7 @@ Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
 
   for (Eigen::Index i = 0; i < delay; ++i) A.row(kCommands + i) = i == 0 ? command : unit(kCommands + i - 1);
 
+  // Scale all components to metres.
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
   for (const Eigen::Index velocity : {kToolVelocity, kCarriageVelocity, kHandleVelocity}) scale[velocity] = tool.dt;
   scale.tail(delay).setConstant(tool.dt * tool.dt / tool.M);
@@ -205,9 +217,11 @@ Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
 
 namespace {
 
-// An elastic transmission is part of the hand, which the conditions of passivity leave open; others count on one mass.
+// The passivity conditions hold for every passive hand, and an elastic transmission counts as part of the hand. The
+// other conditions assume a single mass.
 
-/// True if the velocity is the difference of positions (or a window, which is not linear) and neither is filtered.
+/// Returns true if neither position nor velocity is filtered by a low-pass. An adaptive window, which is not
+/// linear, counts as the plain difference.
 bool differentiates(const SampledLoop& loop) {
   return velocity_modes(loop).empty() && !loop.device.position_filter;
 }
@@ -217,8 +231,8 @@ std::optional<double> colgate_schenkel(const SampledLoop& loop) {
   return std::max(0.0, 2.0 * (loop.device.viscous - std::abs(loop.wall_damping)) / loop.period);
 }
 
-/// The condition b > K p + B r at one angle theta = omega T, with e = exp(-j theta) and the filters F of the velocity
-/// and G of the position:
+/// Coefficients of the passivity condition b > K p + B r at one angle theta = omega T. With e = exp(-j theta) and
+/// the filters F of the velocity and G of the position:
 ///
 ///   p = T/2 Re{(1 - e) G e^d} / (1 - cos theta),   r = 1/2 Re{(1 - e)^2 F e^d} / (1 - cos theta)
 struct PassivityAt {
@@ -226,56 +240,59 @@ struct PassivityAt {
 };
 
 PassivityAt passivity_at(const SampledLoop& loop, double theta) {
-  const double d = loop.device.delay_samples, turn = (d + 1.0) * theta, late = (d + 0.5) * theta;
+  const double d = loop.device.delay_samples, full_delay_angle = (d + 1.0) * theta,
+               half_delay_angle = (d + 0.5) * theta;
   const auto response = [theta](const std::vector<LowPassMode>& modes) {
     std::complex<double> sum = modes.empty() ? 1.0 : 0.0;
     for (const LowPassMode& mode : modes) sum += mode.response(theta);
     return sum;
   };
   const std::complex<double> F = response(velocity_modes(loop)), G = response(position_modes(loop));
-  // 1 - e = 2 j sin(theta/2) e^(1/2) and (1 - e)^2 = -2 (1 - cos theta) e
-  return {loop.period * (G.real() * math::sin(late) - G.imag() * math::cos(late)) / (2.0 * math::sin(0.5 * theta)),
-          -(F.real() * math::cos(turn) + F.imag() * math::sin(turn))};
+  // Uses 1 - e = 2 j sin(theta/2) e^(1/2) and (1 - e)^2 = -2 (1 - cos theta) e
+  return {loop.period * (G.real() * math::sin(half_delay_angle) - G.imag() * math::cos(half_delay_angle)) /
+              (2.0 * math::sin(0.5 * theta)),
+          -(F.real() * math::cos(full_delay_angle) + F.imag() * math::sin(full_delay_angle))};
 }
 
-/// The least value of a function between two angles, on a grid and then on ever finer grids around its best point.
+/// Returns the smallest value of f between two angles: evaluates a grid, then refines it eight times around the
+/// best point.
 template <class Function>
-double least_value(Function f, double low, double high, int points) {
-  double least = kNever;
+double minimum(Function f, double low, double high, int points) {
+  double smallest = kInfinity;
   for (int zoom = 0; zoom < 8; ++zoom) {
     const double step = (high - low) / points;
     double best = low;
     for (int i = 0; i <= points; ++i) {
       const double at = low + step * i, value = f(at);
-      if (value < least) least = value, best = at;
+      if (value < smallest) smallest = value, best = at;
     }
     low = std::max(low, best - step);
     high = std::min(high, best + step);
     points = 16;
   }
-  return least;
+  return smallest;
 }
 
-/// The condition bounds K from above where p > 0, from below where p < 0.
+/// Passivity with a delay: the condition bounds K from above at angles where p > 0 and from below where p < 0.
 std::optional<double> passive_with_delay(const SampledLoop& loop) {
   const double d = loop.device.delay_samples;
   if (d != std::floor(d)) return std::nullopt;
   const auto bound = [&loop](double theta, bool above) {
     const auto [p, r] = passivity_at(loop, theta);
-    return (above ? p > 0.0 : p < 0.0) ? (loop.device.viscous - loop.wall_damping * r) / std::abs(p) : kNever;
+    return (above ? p > 0.0 : p < 0.0) ? (loop.device.viscous - loop.wall_damping * r) / std::abs(p) : kInfinity;
   };
-  constexpr double kFirst = 1e-6;  // 0 / 0 at 0; the function is even and smooth there
+  constexpr double kFirst = 1e-6;  // starts above 0, where the formula is 0 / 0; the function is even and smooth there
   const int points = 256 * (1 + static_cast<int>(d));
-  const double most = least_value([&](double t) { return bound(t, true); }, kFirst, std::numbers::pi, points);
-  const double least = -least_value([&](double t) { return bound(t, false); }, kFirst, std::numbers::pi, points);
-  return most > std::max(0.0, least) ? most : 0.0;
+  const double highest = minimum([&](double t) { return bound(t, true); }, kFirst, std::numbers::pi, points);
+  const double lowest = -minimum([&](double t) { return bound(t, false); }, kFirst, std::numbers::pi, points);
+  return highest > std::max(0.0, lowest) ? highest : 0.0;
 }
 
 std::optional<double> gil_hulin(const SampledLoop& loop) {
   constexpr double kLowDamping = 0.15;
   const double damping = loop.total_damping() + loop.wall_damping;
-  const double late = loop.period * (1.0 + loop.device.delay_samples);
-  if (loop.device.transmission || !differentiates(loop) || damping * late / loop.moving_mass() > kLowDamping)
+  const double delay = loop.period * (1.0 + loop.device.delay_samples);
+  if (loop.device.transmission || !differentiates(loop) || damping * delay / loop.moving_mass() > kLowDamping)
     return std::nullopt;
   return std::max(0.0, damping / (loop.period * (0.5 + loop.device.delay_samples)));
 }

@@ -12,30 +12,33 @@
 #include "device_model/impedance_device.hpp"
 #include "sim/loop/integrators/table.hpp"
 
-/// The loops of device, hand and wall, whose step is a linear map of their state, and where they become unstable.
+/// Linear models of the closed loop of device, hand and wall: one step is a linear map of the state. Computes where
+/// these loops become unstable.
 namespace hapbench {
 
-/// The eigenvalues of a square matrix, in no particular order.
+/// Returns the eigenvalues of a square matrix, in no particular order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
-/// True if no eigenvalue leaves the unit circle by more than rounding, for entries of comparable size.
+/// Returns true if no eigenvalue is outside the unit circle by more than rounding. Precondition: the entries are of
+/// comparable size.
 inline bool is_stable_step(const Eigen::MatrixXd& A) {
   return std::sqrt(eigenvalues(A).cwiseAbs2().maxCoeff()) <= 1.0 + 1e-13;
 }
 
-/// The largest value from `least` to `most` up to which the step `step_matrix(value)` is stable, with a relative error
-/// of 1e-11; zero if `least` is unstable, infinite if all values are stable.
+/// Returns the stability limit: the largest value in [`lowest`, `highest`] up to which the step
+/// `step_matrix(value)` is stable, with a relative error of 1e-11. Returns zero if `lowest` is unstable, infinity
+/// if all values are stable.
 ///
-/// Values a tenth apart are tried from `least` on, and the first unstable one is bisected against the last stable one.
-/// An unstable range that begins and ends within a tenth is overlooked.
+/// Tests values that increase by a factor of 1.1 from `lowest` on, then bisects between the last stable and the
+/// first unstable value. Misses an unstable range that lies between two neighbouring values.
 template <class StepMatrix>
-double first_edge(double least, double most, StepMatrix step_matrix) {
+double first_edge(double lowest, double highest, StepMatrix step_matrix) {
   constexpr double kNext = 1.1, kPrecision = 1e-11;
   const auto stable = [&](double value) { return is_stable_step(step_matrix(value)); };
-  double low = 0.0, high = least;
+  double low = 0.0, high = lowest;
   for (; stable(high); high *= kNext) {
     low = high;
-    if (kNext * high > most) return std::numeric_limits<double>::infinity();
+    if (kNext * high > highest) return std::numeric_limits<double>::infinity();
   }
   if (low == 0.0) return 0.0;
   while (high / low > 1.0 + kPrecision) {
@@ -45,84 +48,88 @@ double first_edge(double least, double most, StepMatrix step_matrix) {
   return low;
 }
 
-/// The loop of an impedance device at a wall, as a linear system along one axis in SI units, without saturation,
-/// Coulomb friction, and steps of encoder and force. A handle m x'' = f - b x', with or without a hand, moves freely
-/// between samples. At sample k the wall answers
+/// Linear model of an impedance device at a virtual wall, along one axis in SI units. Saturation, Coulomb friction
+/// and the resolution of encoder and force are left out. The handle, m x'' = f - b x', with or without a hand,
+/// moves freely between samples. At sample k the wall renders the force
 ///
 ///   f_k = -K y_k - B w_k,   w_k = F((y_k' - y_{k-1}') / T)
 ///
-/// which is held on the handle from t_k + d T for one period. y' is the position with the sensor's noise, y that
-/// through the position filter, F the low-pass of the velocity filter. The springs of the wall act to both sides. With
-/// an elastic transmission y, b and the force are the motors', and the hand is at the handle, a second mass.
+/// which acts on the handle from t_k + d T for one period. y' is the measured position with the sensor's noise, y
+/// is y' after the position filter, and F is the low-pass of the velocity filter. The wall acts for positive and
+/// negative y (bilateral contact). With an elastic transmission, y, b and the force belong to the motors, and the
+/// hand to the handle, a second mass.
 struct SampledLoop {
-  ImpedanceDeviceConfig device;  ///< with m, b, d and the velocity filter
-  AttachedHand hand;             ///< zeros: no hand
+  ImpedanceDeviceConfig device;  ///< contains m, b, d and the filters
+  AttachedHand hand;             ///< all zero: no hand
   double period = 0.001;         ///< T [s]
   double stiffness = 0.0;        ///< K of the wall [N/m]
   double wall_damping = 0.0;     ///< B of the wall [N s/m]
 
-  double moving_mass() const { return device.handle_mass + hand.mass; }   ///< handle and hand [kg]
-  double total_damping() const { return device.viscous + hand.damping; }  ///< handle and hand [N s/m]
-  /// Says which property of the device the linear system does not have; null if none.
+  double moving_mass() const { return device.handle_mass + hand.mass; }   ///< mass of handle and hand [kg]
+  double total_damping() const { return device.viscous + hand.damping; }  ///< damping of handle and hand [N s/m]
+  /// Returns a text that names the properties of the device that are not linear; null if there are none.
   const char* nonlinearity() const;
 
-  /// The map of the state at sample k to that at k + 1,
+  /// Returns the matrix that maps the state at sample k to the state at sample k + 1. The state is
   ///   (x_k, T v_k, y'_{k-1}, modes of T w_{k-1} and of y_{k-1}, T^2/m f_{k-1}, T^2/m f_{k-2}, …),
-  /// with the true velocity v of the handle, the moving mass m and as many forces as are on their way; a pair of poles
-  /// has two components, a real pole or none has one. With a transmission x and v are the motors', and those of the
-  /// handle are the last two components. All components are in metres, so that the eigenvalues are exact to rounding.
-  /// The motion between samples is exact (matrix exponential).
+  /// with the true velocity v of the handle, the moving mass m and the forces that are still delayed. A pair of
+  /// complex poles has two state components, a real pole or a missing filter one component (velocity) or none
+  /// (position). With a transmission, x and v belong to the motors, and the handle's x and T v are the last two
+  /// components. All components are in metres, so that rounding does not disturb the eigenvalues. The motion
+  /// between samples is exact (matrix exponential).
   Eigen::MatrixXd state_matrix() const;
 };
 
-/// The largest K up to which the loop is stable (first_edge), with its other parameters. Zero if there is none above
-/// 1e-8 m / T^2. Takes about 0.5 ms.
+/// Returns the largest wall stiffness K [N/m] up to which the loop is stable (first_edge), with its other
+/// parameters. Returns zero if this K is below 1e-8 m / T^2. Takes about 0.5 ms.
 double eigenvalue_edge(SampledLoop loop);
 
-/// Typical hands (100 to 1000 N/m, 0.1 to 0.5 kg), and no hand. They add no damping, because a hand that does is safer.
+/// Returns a set of typical hands (100 to 1000 N/m, 0.1 to 0.5 kg); the first entry is no hand. The hands have no
+/// damping, because damping of the hand only raises the limit.
 std::span<const AttachedHand> hand_family();
 
-/// The smallest eigenvalue_edge of the loop with each hand of the family in place of its own.
+/// Returns the smallest eigenvalue_edge over hand_family(), with each hand in turn in place of the loop's own hand.
 double worst_hand_edge(SampledLoop loop);
 
-/// A limit from the literature of the stiffness K that an impedance device can render. In the texts, b is the damping
-/// of the handle, m the moving mass, t_d = d T.
+/// A limit from the literature on the stiffness K that an impedance device can render. In the texts, b is the
+/// damping of the handle, m the moving mass, B the wall's damping, T the period and t_d = d T the delay.
 struct StiffnessLimit {
-  const char* name;  ///< name of its column and its curve
-  const char* formula;
-  const char* source;
-  const char* applies;  ///< conditions
-  /// The largest K [N/m], whatever the loop's own K is. No value if the limit does not apply, zero if it allows no K,
-  /// infinity if it allows every K.
+  const char* name;     ///< name of the table column and of the curve
+  const char* formula;  ///< in terms of the symbols above
+  const char* source;   ///< citation, or "derived"
+  const char* applies;  ///< conditions under which the limit is valid
+  /// Returns the largest K [N/m]; the loop's stiffness is ignored. Returns nothing if the limit does not apply,
+  /// zero if it allows no K, infinity if it allows every K.
   std::optional<double> (*largest)(const SampledLoop& loop);
 };
 
-/// The table of limits, which everything that draws or writes limits reads.
+/// Returns the table of limits. Every plot and table of limits is made from it.
 std::span<const StiffnessLimit> stiffness_limits();
 
-/// The loop of an AdmittanceDevice at a wall, as a linear system along one axis, while neither the limiter of the input
-/// nor the servo saturates and the contact lasts. In each step the hand's force f = -k x_h - b v_h at the row drives
-/// the handle and the virtual mass, which the wall holds; the servo then follows the mass.
+/// Linear model of an AdmittanceDevice at a virtual wall along one axis, valid while neither the input-force
+/// limiter nor the servo saturates and the contact lasts. In each step the hand's force f = -k x_h - b v_h drives
+/// the handle and the virtual mass, and the wall's spring acts on the virtual mass; the servo then follows the
+/// virtual mass.
 struct AdmittanceLoop {
-  SpringDamper tool;  ///< the virtual mass at the wall, with time step and integrator
+  SpringDamper tool;  ///< virtual mass at the wall, time step and integrator
   PositionServoConfig servo;
   HandleMechanicsConfig mechanics;
-  double hand_stiffness = 0.0;  ///< k [N/m]
-  double hand_damping = 0.0;    ///< b [N s/m]
+  double hand_stiffness = 0.0;  ///< k of the hand [N/m]
+  double hand_damping = 0.0;    ///< b of the hand [N s/m]
 
-  /// The map of the state at one row to that at the next,
-  ///   (x, T v of the virtual mass, of the carriage, of the handle, T^2/M of the servo's delayed commands, last first)
-  /// with the time step T and the virtual mass M, all in metres.
+  /// Returns the matrix that maps the state at one step to the state at the next. The state is
+  ///   (x and T v of the virtual mass, of the carriage, of the handle; T^2/M times the servo's delayed commands)
+  /// with the time step T, the virtual mass M and the newest command first. All components are in metres.
   Eigen::MatrixXd state_matrix() const;
 };
 
-/// Eigenvalues of the matrices of longer delays take seconds [samples].
+/// Largest delay for which eigenvalues are computed [samples]; with longer delays they would take seconds.
 inline constexpr double kLongestLoopDelay = 200.0;
 
-/// Device, hand and wall as a linear loop, as it is while nothing saturates and the contact lasts.
+/// Linear loop of device, hand and wall, valid while nothing saturates and the contact lasts.
 struct DeviceLoop {
   std::variant<SampledLoop, AdmittanceLoop> loop;
-  std::string no_theory;  ///< why the loop's eigenvalues do not tell its stability; empty where they do
+  std::string no_theory;  ///< why the eigenvalues do not decide the stability; empty if they do
 
   Eigen::MatrixXd state_matrix() const {
     return std::visit([](const auto& linear) { return linear.state_matrix(); }, loop);

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Large enough that the cost of system calls is negligible, small enough for the second-level cache.
+/// Buffer size [bytes]: large enough that system calls cost little, small enough for the second-level cache.
 constexpr std::size_t kBufferSize = 0x10000;
 
 std::error_code last_error() {
@@ -25,8 +25,8 @@ fs::path temporary_of(const fs::path& target) {
   return target.parent_path() / ("." + target.filename().string() + ".tmp");
 }
 
-/// True when the path leads to the open file.
-bool leads_to(const fs::path& path, int descriptor) {
+/// Returns true if the path refers to the open file.
+bool refers_to(const fs::path& path, int descriptor) {
   struct stat there {
   }, here{};
   return ::stat(path.c_str(), &there) == 0 && ::fstat(descriptor, &here) == 0 && there.st_ino == here.st_ino &&
@@ -39,10 +39,10 @@ AtomicFile::AtomicFile(fs::path target)
     : target_(std::move(target)),
       temporary_(temporary_of(target_)),
       buffer_(std::make_unique_for_overwrite<char[]>(kBufferSize)) {
-  // Renaming over a device or a pipe would replace it.
+  // Reject devices and pipes as a target, because the renaming would replace them.
   if (std::error_code unknown; fs::exists(target_, unknown) && !fs::is_regular_file(target_, unknown))
     throw IoError("write", target_, std::make_error_code(std::errc::not_supported));
-  // Another writer may rename the file between its opening and its locking; then there is none by this name any more.
+  // Open and lock the temporary file. Another writer may rename it between our open and our lock; then open again.
   int descriptor = -1;
   do {
     descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
@@ -53,9 +53,9 @@ AtomicFile::AtomicFile(fs::path target)
       throw IoError("write, because it is being written,", target_,
                     std::make_error_code(std::errc::device_or_resource_busy));
     }
-  } while (!leads_to(temporary_, descriptor));
+  } while (!refers_to(temporary_, descriptor));
   std::setvbuf(file_.get(), buffer_.get(), _IOFBF, kBufferSize);
-  if (::ftruncate(descriptor, 0) != 0) error_ = last_error();  // what a killed process left
+  if (::ftruncate(descriptor, 0) != 0) error_ = last_error();  // removes the bytes of a killed process
 }
 
 AtomicFile::~AtomicFile() {
@@ -70,7 +70,8 @@ void AtomicFile::append(std::string_view bytes) noexcept {
 void AtomicFile::complete() {
   assert(file_);
   if (!error_ && std::fflush(file_.get()) != 0) error_ = last_error();
-  // Network file systems report late errors on close; closing a duplicate asks for them and keeps the lock.
+  // Network file systems report late errors on close. Closing a duplicate of the descriptor checks for them and
+  // keeps the lock.
   if (!error_) {
     const int duplicate = ::dup(::fileno(file_.get()));
     if (duplicate < 0 || ::close(duplicate) != 0) error_ = last_error();
@@ -107,7 +108,7 @@ void FileSet::commit() {
     if (::unlink(name.c_str()) != 0 && errno != ENOENT && errno != ENOTDIR) throw IoError("remove", name, last_error());
   }
   for (AtomicFile& file : files_) file.rename();
-  for (const fs::path& name : removed_) ::unlink(temporary_of(name).c_str());  // which a killed process left
+  for (const fs::path& name : removed_) ::unlink(temporary_of(name).c_str());  // a killed process may have left it
 }
 
 void write_file_atomically(const fs::path& target, std::string_view contents) {

@@ -11,65 +11,72 @@
 
 namespace hapbench {
 
-/// A result file could not be written. The message says what was tried, on which file, and why it failed.
+/// Error in writing a result file. The message contains the failed operation, the file and the reason.
 class IoError : public std::runtime_error {
  public:
-  /// `attempt` completes "cannot …", e.g. "write".
+  /// `attempt` completes "cannot …", for example "write".
   IoError(const std::string& attempt, const std::filesystem::path& path, const std::error_code& reason)
       : std::runtime_error("cannot " + attempt + " " + path.string() + ": " + reason.message()) {}
 };
 
 class FileSet;
 
-/// A file that appears under its final name complete or not at all: bytes go to a hidden temporary beside it,
-/// .NAME.tmp, which `commit` gives the final name. It is locked (flock) while it is written: a second writer is
-/// refused. What a killed process left is overwritten by the next writer. Not safe against a power cut: fsync would
-/// cost milliseconds for each of the thousands of files of a sweep, whose rows can be computed again.
+/// A file that appears under its final name either complete or not at all. Bytes go to a hidden temporary file in
+/// the same directory, .NAME.tmp, which `commit` renames. The temporary file is locked (flock) while it is open, so
+/// a second writer gets an error. The next writer overwrites a temporary file that a killed process left. Not safe
+/// against a power failure: fsync would cost milliseconds for each of the thousands of files of a sweep, whose rows
+/// can be computed again.
 class AtomicFile {
  public:
-  /// Opens the temporary. The directory must exist. Throws IoError, also when the file is being written.
+  /// Opens the temporary file. Precondition: the directory exists. Throws IoError, also if another writer has the
+  /// file open.
   explicit AtomicFile(std::filesystem::path target);
-  /// Without `commit`: removes the temporary, leaves what is at the target.
+  /// If `commit` was not called: removes the temporary file and leaves an existing target unchanged.
   ~AtomicFile();
   AtomicFile(AtomicFile&& other) = default;
   AtomicFile& operator=(AtomicFile&&) = delete;
 
-  /// Adds bytes through a buffer. Allocates nothing. Keeps the first error for `commit` and drops bytes after it.
+  /// Appends bytes through a buffer. Allocates nothing. After an error, drops all bytes; `commit` throws the first
+  /// error.
   void append(std::string_view bytes) noexcept;
 
-  /// Completes the file and renames it, which replaces an existing target, or leaves that to a set of files. Throws
-  /// IoError for the first error so far (a full disk, say), and then leaves nothing behind. Call once, last.
+  /// Completes the file and renames it, which replaces an existing target. With `together`, hands the file over to
+  /// this set, which does both later. Throws IoError with the first error so far (such as a full disk) and removes
+  /// the temporary file then. Call once, last.
   void commit(FileSet* together = nullptr);
 
  private:
   friend FileSet;
 
-  /// Writes what is left, so that nothing but the renaming can fail any more. Throws IoError as `commit` does.
+  /// Writes the buffered bytes, so that only the renaming can still fail. Throws IoError like `commit`.
   void complete();
+  /// Throws the first error, if any, and removes the temporary file then.
   void throw_error();
   void rename();
   void discard() noexcept;
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
-  std::unique_ptr<char[]> buffer_;  ///< of the file
+  std::unique_ptr<char[]> buffer_;  ///< stdio buffer of file_
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_{nullptr, std::fclose};
   std::error_code error_;
 };
 
-/// Files that replace earlier ones together: when one of them cannot be written, all earlier ones stay. A killed
-/// process leaves a mixture if it dies between the first and the last renaming, which takes microseconds a file; the
-/// file that was taken last, such as a summary, tells then, since it is the last to come.
+/// A set of files that replace their earlier versions together: if one file cannot be written, all earlier versions
+/// stay. If the process is killed between the first and the last renaming, which takes microseconds a file, a
+/// mixture of old and new files remains. The file added last, such as a summary, is renamed last, so its presence
+/// shows that the set is complete.
 class FileSet {
  public:
-  /// The file gets its final name with the others.
+  /// Adds a file, which gets its final name in `commit`.
   void take(AtomicFile file) { files_.push_back(std::move(file)); }
-  /// The whole contents of a file. Throws IoError.
+  /// Adds a file with these contents. Throws IoError.
   void write(const std::filesystem::path& target, std::string_view contents) {
     files_.emplace_back(target).append(contents);
   }
-  /// The file, if there is one, goes when the others are complete and before any comes; they come in the order taken.
+  /// Marks an existing file for removal in `commit`: after all files are complete and before the first is renamed.
   void remove(std::filesystem::path file) { removed_.push_back(std::move(file)); }
+  /// Completes all files, removes the marked files and renames the files in the order in which they were added.
   /// Throws IoError. Call once, last.
   void commit();
 
@@ -78,7 +85,7 @@ class FileSet {
   std::vector<std::filesystem::path> removed_;
 };
 
-/// The whole contents at once. Throws IoError.
+/// Writes a file with these contents through AtomicFile. Throws IoError.
 void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
 
 }  // namespace hapbench

@@ -8,7 +8,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Writes strings, integers, booleans and null as nlohmann does; bytes that are not UTF-8 become U+FFFD.
+/// Appends a plain value. Strings, integers, booleans and null are written as nlohmann::json does; bytes that are
+/// not UTF-8 become U+FFFD.
 void write_plain(std::string& out, const ordered_json& value) {
   if (!value.is_number_float()) {
     out += value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
@@ -19,12 +20,14 @@ void write_plain(std::string& out, const ordered_json& value) {
   }
 }
 
+/// Appends a value that starts at a column of `indent` spaces.
 void write(std::string& out, const ordered_json& value, std::size_t indent) {
   if (!value.is_structured() || value.empty()) return write_plain(out, value);
   const bool is_object = value.is_object();
   const auto is_plain = [](const ordered_json& item) { return item.is_primitive(); };
   const bool one_line = !is_object && std::all_of(value.begin(), value.end(), is_plain);
   const std::string end_of_line = one_line ? "" : "\n" + std::string(indent, ' ');
+  // Write the items, separated by commas, with line breaks unless it is an array of plain values.
   out += is_object ? '{' : '[';
   const char* separator = "";
   for (const auto& [key, item] : value.items()) {
@@ -41,7 +44,7 @@ void write(std::string& out, const ordered_json& value, std::size_t indent) {
   out += is_object ? '}' : ']';
 }
 
-/// Columns or metrics as JSON.
+/// Returns columns or metrics as a JSON array of names, units and meanings.
 template <class Entries>
 ordered_json entries_json(const Entries& entries) {
   ordered_json json = ordered_json::array();

@@ -15,11 +15,12 @@
 #include <variant>
 #include <vector>
 
-/// The numbers in result files, columns of CSV files and metrics of summary.json: names, units, meanings and texts.
+/// The values in result files (columns of CSV files and metrics of summary.json): names, units, meanings and text
+/// format.
 namespace hapbench {
 
-/// A number as text, without allocation: integers in decimal, doubles as the shortest decimal that reads back as the
-/// same double ("0.1", "1e-05", "-0", "inf", "nan").
+/// A number as text, without allocation. Integers are decimal. Doubles are the shortest decimal that reads back as
+/// the same double ("0.1", "1e-05", "-0", "inf", "nan").
 class NumberText {
  public:
   template <class Number>
@@ -29,46 +30,47 @@ class NumberText {
         static_cast<std::size_t>(std::to_chars(text_.data(), text_.data() + text_.size(), value).ptr - text_.data());
   }
 
-  operator std::string_view() const noexcept { return {text_.data(), size_}; }  // NOLINT: it is a text
+  operator std::string_view() const noexcept { return {text_.data(), size_}; }  // NOLINT: implicit on purpose
 
  private:
   std::array<char, 32> text_{};  // the longest shortest double has 24 characters, an integer of 64 bits 20
   std::size_t size_ = 0;
 };
 
-/// The text of a result file: keys in their order, two spaces of indentation, arrays of plain values on one line, a
-/// final newline. Doubles are as in NumberText, but null where they are not finite.
+/// Returns the text of a JSON result file: keys in insertion order, two spaces of indentation, arrays of plain
+/// values on one line, a final newline. Doubles are written like NumberText, but null if they are not finite.
 std::string json_text(const nlohmann::ordered_json& value);
 
-/// A column of a result file: what its header, `hapbench describe` and columns.json say of it.
+/// A column of a result file, as documented by its header, `hapbench describe` and columns.json.
 struct Column {
   const char* name;
   const char* unit;     ///< "1" for pure numbers and counts, empty for text
-  const char* meaning;  ///< in a sentence without its full stop; f is f_render, the force on the tool
+  const char* meaning;  ///< one sentence without a full stop; f is f_render, the rendered force on the tool
 };
 
-/// A kind of CSV file among the results.
+/// Documentation of one CSV result file.
 struct ResultTable {
-  const char* file;   ///< its name
-  std::string holds;  ///< what a line is, and when it is written
+  const char* file;   ///< file name
+  std::string holds;  ///< content of a line, and when the file is written
   std::vector<Column> columns;
 };
 
-/// The header line without its end: the names, separated by commas.
+/// Returns the header line without a line break: the column names, separated by commas.
 inline std::string header_of(std::span<const Column> columns) {
   std::string header;
   for (const Column& column : columns) header += (header.empty() ? "" : ",") + std::string(column.name);
   return header;
 }
 
-/// The first columns of most tables of rows.
+/// First columns of most tables that have a line per recorded row.
 inline constexpr Column kStepColumn = {"step", "1", "row number k, from 0"};
 inline constexpr Column kTimeColumn = {"time_s", "s", "time of the row, k times the time step"};
 
-/// One cell of a table: nothing (empty in CSV, null in JSON), a count, a number, true or false, or text.
+/// One cell of a table: empty (an empty cell in CSV, null in JSON), a count, a number, a boolean, or text.
 using Cell = std::variant<std::monostate, std::uint64_t, double, bool, std::string>;
 
-/// The cell of a number, a count, a truth, a text, one of them that need not exist, or of what is a cell already.
+/// Returns the cell that holds a number, count, boolean or text, or an optional of these. An empty optional gives
+/// an empty cell; a Cell is returned unchanged.
 template <class Value>
 Cell cell_of(const Value& value) {
   if constexpr (requires { value.has_value(); }) {
@@ -83,21 +85,22 @@ Cell cell_of(const Value& value) {
 }
 
 nlohmann::ordered_json cell_json(const Cell& cell);
-/// A cell of a CSV file before it is quoted (csv_cell); empty for nothing.
+/// Returns the text of a cell in a CSV file before quoting (see csv_cell); an empty string for an empty cell.
 std::string cell_text(const Cell& cell);
 
-/// The direction in which a metric gets better, all else equal. Most have none: a position, a count, a work.
+/// Direction in which a metric improves, all else equal. Most metrics have none, such as a position, a count or a
+/// work.
 enum class Better { none, less, more };
 
-/// A number of a run, by name.
+/// A named number that describes a run.
 struct Metric {
-  std::string name;     ///< dots lead into sections, as in "gentle.rows"
+  std::string name;     ///< dots separate sections, as in "gentle.rows"
   const char* unit;     ///< "1" for pure numbers and counts
-  const char* meaning;  ///< what it says and how it is computed; ||.|| is the Euclidean norm, f is f_render
-  Cell value;           ///< a count or a number; nothing where it does not exist (a ratio without contact)
+  const char* meaning;  ///< definition and computation; ||.|| is the Euclidean norm, f is f_render
+  Cell value;           ///< a count or a number; empty if it does not exist (such as a ratio without contact)
   Better better = Better::none;
-  double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance, as `within` gives them
-  bool bounded = false;                   ///< has a tolerance where it has a value
+  double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance; see `within`
+  bool bounded = false;                   ///< `within` has set a tolerance
 
   /// Sets the tolerance: `relative` |value| + `absolute` [unit of the value].
   Metric& within(double relative_part, double absolute_part) {
@@ -106,11 +109,12 @@ struct Metric {
     absolute = absolute_part;
     return *this;
   }
-  /// How far the value may be off; empty if that is not known or there is no value.
+  /// Returns the largest error of the value [unit of the value]; empty if the error is unknown or there is no
+  /// value.
   std::optional<double> tolerance() const;
 };
 
-/// The value of a metric: a number that is not finite is none.
+/// Returns a number as the value of a metric; empty if it is not finite.
 inline Cell metric_value(std::unsigned_integral auto count) {
   return std::uint64_t{count};
 }
@@ -122,29 +126,30 @@ Cell metric_value(const std::optional<Given>& given) {
   return given ? metric_value(*given) : Cell();
 }
 
-/// A value that need not exist.
+/// Returns `value` if it exists, otherwise nothing.
 template <class Value>
 std::optional<Value> if_any(bool exists, Value value) {
   return exists ? std::optional(value) : std::nullopt;
 }
 
-/// The metrics of a run or of a part of it, in the order of summary.json.
+/// The metrics of a run or of one section, in the order of summary.json.
 using MetricList = std::vector<Metric>;
 
-/// The metric of that name; null when there is none.
+/// Returns the metric with this name; null if there is none.
 const Metric* find_metric(const MetricList& list, std::string_view name);
-/// The value of that name, if there is such a metric.
+/// Returns the value of the metric with this name; an empty cell if there is none.
 Cell value_of(const MetricList& list, std::string_view name);
-/// A count or a number as a number.
+/// Returns a count or a number as a double; empty for all other cells.
 std::optional<double> number_of(const Cell& value);
-/// The value of that name as a number; empty without such a metric or without a value.
+/// Returns the value of the metric with this name as a double; empty without such a metric or without a value.
 inline std::optional<double> number_of(const MetricList& list, std::string_view name) {
   return number_of(value_of(list, name));
 }
-/// A text as a cell of a CSV file: in quotes where it has a comma, a quote or an end of a line (RFC 4180).
+/// Returns a text as a cell of a CSV file, in quotes if it contains a comma, a quote or a line break (RFC 4180).
 std::string csv_cell(std::string_view text);
 
-/// columns.json, for other programs: the columns of each file and the metrics of summary.json by name, unit, meaning.
+/// Returns columns.json, which documents the results for other programs: name, unit and meaning of each column of
+/// each table and of each metric of summary.json.
 nlohmann::ordered_json columns_json(std::span<const ResultTable> tables, const MetricList& metrics);
 
 }  // namespace hapbench

@@ -20,29 +20,29 @@
 
 namespace hapbench {
 
-/// Several cells of a row.
+/// A range of several cells of a row; a text is one cell and not a range.
 template <class Values>
 concept CellRange = requires(const Values& values) {
   values.begin();
 }
 &&!std::convertible_to<Values, std::string_view>;
 
-/// A comma-separated table with a header line, written by rows into an AtomicFile (RFC 4180, lines end in "\n"), with
-/// numbers as in NumberText. Allocates in the constructor only; about 30 ns a number.
+/// Writes a comma-separated table with a header line, row by row, into an AtomicFile. Format: RFC 4180 with "\n" as
+/// line break; numbers as in NumberText. Allocates only in the constructor; about 30 ns a number.
 class CsvWriter {
  public:
-  /// `header` is the first line, column names separated by commas. Throws IoError.
+  /// `header`: first line, column names separated by commas. Throws IoError.
   CsvWriter(std::filesystem::path file, std::string_view header)
       : file_(std::move(file)), columns_(static_cast<std::size_t>(std::ranges::count(header, ',')) + 1) {
-    constexpr std::size_t kLongestNumber = 25;  // with its comma
+    constexpr std::size_t kLongestNumber = 25;  // including its comma
     row_.reserve(columns_ * kLongestNumber + 1);
     file_.append(header);
     file_.append("\n");
   }
 
-  /// One row: numbers, Vec3 (three cells), text (quoted if it must be), std::optional<double> (an empty cell for none),
-  /// std::span of numbers or of optional ones (a cell each, perhaps none).
-  /// Precondition: as many cells as the header has columns. Errors are kept for `finish`.
+  /// Writes one row. Arguments: a number, a Vec3 (three cells), a text (quoted if necessary), a
+  /// std::optional<double> (an empty cell if it has no value), or a std::span of numbers or optionals (a cell each;
+  /// may be empty). Precondition: as many cells as the header has columns. `finish` throws the first error.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
     (put(cells), ...);
@@ -55,7 +55,8 @@ class CsvWriter {
     end_row();
   }
 
-  /// Puts the table under its final name, or leaves that to a set of files. Throws IoError, also for earlier rows.
+  /// Gives the table its final name; with `together`, this set of files does so later. Throws IoError, also for
+  /// errors in earlier rows.
   void finish(FileSet* together = nullptr) { file_.commit(together); }
 
  private:
@@ -66,7 +67,7 @@ class CsvWriter {
   void put(const CellRange auto& values) noexcept {
     for (const auto& value : values) put(value);
   }
-  /// Begins the next cell of the row; what is added to it is the cell.
+  /// Begins the next cell of the row and returns the string to which its text is appended.
   std::string& cell() noexcept { return cells_++ > 0 ? row_ += ',' : row_; }
   void end_row() noexcept {
     assert(cells_ == columns_);
@@ -78,12 +79,12 @@ class CsvWriter {
 
   AtomicFile file_;
   std::size_t columns_;
-  std::size_t cells_ = 0;  ///< of the row being written
-  std::string row_;        ///< so far
+  std::size_t cells_ = 0;  ///< number of cells in the current row so far
+  std::string row_;        ///< text of the current row so far
 };
 
-/// A table of numbers in memory with the same rows as the CSV file; an empty cell is NaN. It grows by memory pages of
-/// its own and not on the heap, so that a recorded step allocates nothing.
+/// A table of numbers in memory, with the same rows as the CSV file; an empty cell is NaN. It grows by its own
+/// memory pages and not on the heap, so recording a step makes no heap allocation.
 class MemoryTable {
  public:
   explicit MemoryTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
@@ -91,24 +92,26 @@ class MemoryTable {
   MemoryTable(const MemoryTable&) = delete;
   MemoryTable& operator=(const MemoryTable&) = delete;
 
-  /// Adds a row of cells as CsvWriter::row, without text. Without memory it is lost, and require_complete throws.
+  /// Adds a row like CsvWriter::row, but without text. If memory is exhausted, the row is lost and require_complete
+  /// throws.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
     if (!reserve(columns_.size())) return;
     (put(cells), ...);
   }
 
-  /// Throws std::bad_alloc when a row was lost.
+  /// Throws std::bad_alloc if a row was lost.
   void require_complete() const {
     if (!complete_) throw std::bad_alloc();
   }
 
   const std::vector<Column>& columns() const { return columns_; }
   std::size_t rows() const { return size_ / columns_.size(); }
-  /// Row after row.
+  /// All numbers, row by row.
   std::span<const double> numbers() const { return {data_, size_}; }
 
  private:
+  /// Makes room for `more` numbers. Returns false if memory is exhausted.
   bool reserve(std::size_t more) noexcept;
   void put(double value) noexcept { data_[size_++] = value; }
   void put(std::unsigned_integral auto value) noexcept { put(static_cast<double>(value)); }
@@ -121,18 +124,18 @@ class MemoryTable {
 
   std::vector<Column> columns_;
   double* data_ = nullptr;
-  std::size_t size_ = 0;      ///< numbers
-  std::size_t capacity_ = 0;  ///< numbers
-  bool complete_ = true;
+  std::size_t size_ = 0;      ///< count of numbers in the table
+  std::size_t capacity_ = 0;  ///< numbers that fit into the pages
+  bool complete_ = true;      ///< no row was lost
 };
 
-/// The destination of a table of numbers: a CSV file, or memory (never null, outlives the writer).
+/// Destination of a table of numbers: a CSV file, or a table in memory (never null, outlives the writer).
 using TableTarget = std::variant<std::filesystem::path, MemoryTable*>;
 
-/// Writes a table of numbers row by row. Allocates in the constructor only.
+/// Writes a table of numbers, row by row. Allocates only in the constructor.
 class TableWriter {
  public:
-  /// A table in memory has the same `columns`. Throws IoError.
+  /// Precondition: a table in memory has the same `columns`. Throws IoError.
   TableWriter(const TableTarget& target, std::span<const Column> columns) {
     if (const auto* file = std::get_if<std::filesystem::path>(&target))
       csv_.emplace(*file, header_of(columns));
@@ -140,13 +143,13 @@ class TableWriter {
       memory_ = std::get<MemoryTable*>(target);
   }
 
-  /// As CsvWriter::row, for numeric cells only.
+  /// Writes one row like CsvWriter::row; numeric cells only.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
     memory_ != nullptr ? memory_->row(cells...) : csv_->row(cells...);
   }
 
-  /// As CsvWriter::finish. Throws IoError or, for a row that memory has lost, std::bad_alloc.
+  /// Like CsvWriter::finish. Throws IoError, or std::bad_alloc if a row was lost in memory.
   void finish(FileSet* together = nullptr) {
     memory_ != nullptr ? memory_->require_complete() : csv_->finish(together);
   }

@@ -23,9 +23,9 @@ double MagnitudeHistogram::quantile(double p) const noexcept {
   return 0.5 * (edge(kFirst + bin - 1) + edge(kFirst + bin));
 }
 
-// Prototype: one section s^2 / (s^2 + s/Q + 1) per conjugate pole pair, 1/Q = 2 cos(pi/8) and 2 cos(3 pi/8). Setting
-// s = (1 - z^-1) / (k (1 + z^-1)) with k = tan(pi fc / fs) and multiplying out gives, with n = 1 / (1 + k/Q + k^2):
-// a1 = 2 n (k^2 - 1), a2 = n (1 - k/Q + k^2), b0 = n, b1 = -2n, b2 = n.
+// The analogue prototype has a section s^2 / (s^2 + s/Q + 1) for each pair of complex poles, with 1/Q = 2 cos(pi/8)
+// and 2 cos(3 pi/8). Substituting s = (1 - z^-1) / (k (1 + z^-1)), where k = tan(pi fc / fs), gives with n = 1 / (1
+// + k/Q + k^2): a1 = 2 n (k^2 - 1), a2 = n (1 - k/Q + k^2), b0 = n, b1 = -2n, b2 = n.
 HighPass::HighPass(double cutoff, double sampling_rate) {
   assert(0.0 < cutoff && cutoff < 0.5 * sampling_rate);
   const double k = math::tan(std::numbers::pi * cutoff / sampling_rate);
@@ -51,8 +51,8 @@ Vec3 HighPass::filter(const Vec3& sample) noexcept {
   return x;
 }
 
-// At rest the first section turns the constant x into 0, so that b0 x + s1 = 0 and s2 = b2 x; the second one sees
-// zeros. Only doublings and sign changes are involved: the zero is exact.
+// In steady state the first section maps the constant x to 0, so b0 x + s1 = 0 and s2 = b2 x; the input of the
+// second section is zero. Only doublings and sign changes are involved, so the output is exactly zero.
 void HighPass::settle_at(const Vec3& value) noexcept {
   biquads_[0].s1 = -(biquads_[0].b0 * value);
   biquads_[0].s2 = biquads_[0].b0 * value;
@@ -62,7 +62,7 @@ void HighPass::settle_at(const Vec3& value) noexcept {
 namespace {
 
 std::uint64_t rows_in(double time, double dt) noexcept {
-  // The bound exceeds every possible number of rows and fits the integer.
+  // The bound exceeds every possible number of steps and fits into the integer.
   return static_cast<std::uint64_t>(std::min(std::round(time / dt), 0x1p62));
 }
 
@@ -96,18 +96,18 @@ std::optional<double> Vibration::rms(std::optional<std::uint64_t> rows) const no
 void LastQuarterVibration::begin() noexcept {
   of_earlier_trials_ = value();
   quarter_ = 0;
-  vibration_.count_anew();
+  vibration_.restart_count();
 }
 
 void LastQuarterVibration::add(std::uint64_t step, const Vec3& velocity) noexcept {
   if (steps_ == 0) return;
   const std::uint64_t quarter = step * 4 / steps_;
-  if (quarter != std::exchange(quarter_, quarter)) vibration_.count_anew();
+  if (quarter != std::exchange(quarter_, quarter)) vibration_.restart_count();
   vibration_.add(step, velocity);
 }
 
 std::optional<double> LastQuarterVibration::value() const noexcept {
-  return std::max(of_earlier_trials_, vibration_.rms());  // an empty optional is less than any number
+  return std::max(of_earlier_trials_, vibration_.rms());  // an empty optional compares less than any number
 }
 
 void JudgedRows::touch(std::uint64_t step) noexcept {
@@ -132,7 +132,7 @@ void ContactForces::begin() noexcept {
 
 ContactForces::Phase ContactForces::phase_of_next_row(bool in_contact) noexcept {
   if (in_contact) {
-    // Without a settling time, one row without contact suffices.
+    // Without a settling time, one step without contact is enough.
     const bool first_touch = rows_away_ >= settling_rows_ && (rows_away_ > 0 || !touched_);
     rows_away_ = 0;
     if (first_touch) {
@@ -156,7 +156,8 @@ Vec3 ContactForces::filtered(const Vec3& force, Phase phase) noexcept {
   }
   if (!filtering_) return Vec3::Zero();
   if (rows_away_ <= settling_rows_) return high_pass_->filter(force);
-  // After a long time without contact the output has decayed; denormal numbers would be slow.
+  // After a long time without contact the output has decayed. Set it to zero, because denormal numbers would be
+  // slow.
   if (rows_away_ == settling_rows_ + 1) high_pass_->settle_at(Vec3::Zero());
   return Vec3::Zero();
 }
@@ -166,6 +167,7 @@ ContactForces::Phase ContactForces::add(const Vec3& force, const ForceChange& ch
   const double above_cutoff_squared = high_pass_ ? filtered(force, phase).squaredNorm() : 0.0;
   if (phase == Phase::away) return phase;
 
+  // Add the step to the statistics of its phase.
   const double squared = force.squaredNorm();
   if (phase == Phase::landing) {
     ++landing_rows_;
@@ -204,7 +206,7 @@ void ContactForces::tell(Section& s) const {
            if_any(is_settled, std::sqrt(max_squared_)));
   s.metric("force_step_p99_N", "N",
            "99 % of the rows in settled contact have at most this force step ||f_k - f_(k-1)||; within 0.8 %",
-           // The middle of the highest bin may exceed all numbers in it.
+           // The middle of a bin can exceed all numbers in it, so limit it to the maximum.
            if_any(is_settled, std::min(steps_.quantile(0.99), std::sqrt(step_max_squared_))), Better::less)
       .within(MagnitudeHistogram::kRelativeError, MagnitudeHistogram::kLeast);
   s.metric("settled_force_step_max_N", "N", "largest force step ||f_k - f_(k-1)|| of the rows in settled contact",

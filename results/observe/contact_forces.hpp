@@ -10,26 +10,28 @@
 
 namespace hapbench {
 
-/// Quantiles of numbers >= 0 in constant memory, by a shift and an increment each. A bin is the exponent and the first
-/// five bits of the mantissa of the number's square (norms come as squares): 32 bins to a factor of two.
+/// Histogram for quantiles of numbers >= 0, in constant memory. A bin is given by the exponent and the first five
+/// bits of the mantissa of the number's square, so there are 32 bins per factor of two of the square. Squares,
+/// because norms are computed as squares.
 class MagnitudeHistogram {
  public:
-  /// Largest relative error of a quantile between kLeast and kMost: half a bin of sqrt(33 / 32) - 1 = 1.55 %.
+  /// Largest relative error of a quantile between kLeast and kMost: half a bin width of sqrt(33 / 32) - 1 = 1.55 %.
   static constexpr double kRelativeError = 0.0078;
-  static constexpr double kLeast = 0x1p-30;  ///< smaller numbers count as 0
-  static constexpr double kMost = 0x1p20;    ///< numbers from here on count as infinite
+  static constexpr double kLeast = 0x1p-30;  ///< numbers below this value count as 0
+  static constexpr double kMost = 0x1p20;    ///< numbers from this value on count as infinite
 
-  /// Counts the number whose square this is. Precondition: square >= 0; at most 2^32 - 1 numbers in all.
+  /// Counts the number whose square is `square`. Precondition: square >= 0; at most 2^32 - 1 numbers in total.
   void add_square(double square) noexcept { ++counts_[bin_of(square)]; }
 
-  /// The smallest number that at least the share p of all do not exceed; 0 without numbers. Precondition: 0 < p <= 1.
+  /// Returns the p-quantile by nearest rank: the smallest number that is not exceeded by at least the fraction p of
+  /// all numbers. Returns 0 without numbers. Precondition: 0 < p <= 1.
   double quantile(double p) const noexcept;
 
  private:
   static constexpr int kDroppedBits = 52 - 5;
   static constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(kLeast * kLeast) >> kDroppedBits;
   static constexpr std::uint64_t kEnd = std::bit_cast<std::uint64_t>(kMost * kMost) >> kDroppedBits;
-  static constexpr std::size_t kBins = kEnd - kFirst + 2;  ///< including one for smaller and one for larger numbers
+  static constexpr std::size_t kBins = kEnd - kFirst + 2;  ///< including one bin for smaller and one for larger numbers
 
   static std::size_t bin_of(double square) noexcept {
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(square) >> kDroppedBits;
@@ -39,9 +41,10 @@ class MagnitudeHistogram {
   std::array<std::uint32_t, kBins> counts_{};
 };
 
-/// A Butterworth high pass of fourth order for a sampled vector signal, component by component: two biquads, from the
-/// analogue prototype by the bilinear transform with the cutoff prewarped. Its gain is exactly 1/2 (-3 dB) at the
-/// cutoff: |H(f)|^2 = 1 / (1 + (tan(pi fc / fs) / tan(pi f / fs))^8), 0 at f = 0 and 1 at half the sampling rate fs.
+/// Fourth-order Butterworth high-pass filter of a sampled vector signal, component by component. Two biquads, made
+/// from the analogue prototype by the bilinear transform with prewarped cutoff. The gain at the cutoff is exactly
+/// 1/sqrt(2) (-3 dB): |H(f)|^2 = 1 / (1 + (tan(pi fc / fs) / tan(pi f / fs))^8), which is 0 at f = 0 and 1 at half
+/// the sampling rate fs.
 class HighPass {
  public:
   /// Cutoff and sampling rate [Hz]. Precondition: 0 < cutoff < sampling_rate / 2.
@@ -49,11 +52,11 @@ class HighPass {
 
   /// Filters one sample.
   Vec3 filter(const Vec3& sample) noexcept;
-  /// Sets the state to that of a constant past input `value`: the output is exactly zero until the input changes.
+  /// Sets the steady state of a constant input `value`: the output is exactly zero until the input changes.
   void settle_at(const Vec3& value) noexcept;
 
  private:
-  /// y = b0 (1 - 2 z^-1 + z^-2) / (1 + a1 z^-1 + a2 z^-2) x, transposed direct form II.
+  /// Second-order section y = b0 (1 - 2 z^-1 + z^-2) / (1 + a1 z^-1 + a2 z^-2) x in transposed direct form II.
   struct Biquad {
     double b0 = 0.0, a1 = 0.0, a2 = 0.0;
     Vec3 s1 = Vec3::Zero(), s2 = Vec3::Zero();
@@ -61,23 +64,26 @@ class HighPass {
   std::array<Biquad, 2> biquads_;
 };
 
-/// Motion and force above this frequency count as vibration [Hz]: voluntary hand movement stays below about 10 Hz, and
-/// the sense of touch is most sensitive well above.
+/// Motion and force above this frequency count as vibration [Hz]. Voluntary hand movement stays below about 10 Hz,
+/// and the sense of touch is most sensitive well above 30 Hz.
 inline constexpr double kVibrationCutoff = 30.0;
 
-/// The high-pass at kVibrationCutoff for a sample each `dt` seconds; nothing at a sampling rate of 60 Hz or less.
+/// Returns the high-pass filter at kVibrationCutoff for a sample each `dt` seconds; nothing at a sampling rate of
+/// 60 Hz or less.
 std::optional<HighPass> vibration_filter(double dt);
 
-/// The mean square of a signal behind that high-pass.
+/// Mean square of a signal after the high-pass filter at kVibrationCutoff.
 class Vibration {
  public:
-  /// Rows are `dt` seconds apart.
+  /// `dt`: time step [s].
   explicit Vibration(double dt) : high_pass_(vibration_filter(dt)) {}
-  /// Adds a row; the first, 0, of a trial sets the filter at rest. Rows that do not count are only filtered.
+  /// Adds step number `row` of a trial; row 0 sets the filter to the steady state of `signal`. If `counts` is
+  /// false, the sample is filtered but not added to the mean.
   void add(std::uint64_t row, const Vec3& signal, bool counts = true) noexcept;
-  /// Forgets the rows so far, but not what the filter has of them.
-  void count_anew() noexcept { rows_ = 0, sum_ = 0.0; }
-  /// Over the rows that count, or as if there were so many; none at 60 Hz or less and without rows. And its root.
+  /// Restarts the mean, but keeps the filter's state.
+  void restart_count() noexcept { rows_ = 0, sum_ = 0.0; }
+  /// Return the mean square and its root. The sum is divided by the number of counted samples, or by `rows` if
+  /// given. Nothing at 60 Hz or less, and nothing without samples.
   std::optional<double> mean_square(std::optional<std::uint64_t> rows = {}) const noexcept;
   std::optional<double> rms(std::optional<std::uint64_t> rows = {}) const noexcept;
 
@@ -87,15 +93,16 @@ class Vibration {
   double sum_ = 0.0;
 };
 
-/// Root mean square of the handle's speed behind that high-pass in the last quarter of a run.
+/// Root mean square of the handle's velocity above kVibrationCutoff in the last quarter of a run [m/s].
 class LastQuarterVibration {
  public:
-  /// The run has `steps` rows, `dt` seconds apart.
+  /// The run has `steps` steps of `dt` seconds.
   LastQuarterVibration(std::uint64_t steps, double dt) : steps_(steps), vibration_(dt) {}
-  /// Begins another trial of the run.
+  /// Begins the next trial of the run.
   void begin() noexcept;
   void add(std::uint64_t step, const Vec3& velocity) noexcept;
-  /// Over the quarter that was begun last, of several trials the largest [m/s]; none at 60 Hz or less and without rows.
+  /// Returns the root mean square over the current quarter of the run; the largest value if there were several
+  /// trials. Nothing at 60 Hz or less, and nothing without samples.
   std::optional<double> value() const noexcept;
 
  private:
@@ -104,15 +111,17 @@ class LastQuarterVibration {
   std::optional<double> of_earlier_trials_;
 };
 
-/// The rows by which a run is judged: from a quarter of the time between first touch and end on; where the script
-/// repeats, so many whole periods before the end as begin there or later, if one does.
+/// The steps by which the end of a run is evaluated. They end with the run and begin after the first quarter of the
+/// time between first touch and end. If the script repeats, they begin later, so that they contain whole periods
+/// only (if at least one whole period fits).
 class JudgedRows {
  public:
-  /// The run has `steps` rows, its script a period of so many rows; 0: it does not repeat.
+  /// The run has `steps` steps. `period`: period of the script [steps]; 0: it does not repeat.
   JudgedRows(std::uint64_t steps, double period) : steps_(steps), period_(period) {}
+  /// Reports contact in a step; only the first call has an effect.
   void touch(std::uint64_t step) noexcept;
   bool contain(std::uint64_t step) const noexcept { return begin_ && step >= *begin_; }
-  /// The first of them; none before the first touch.
+  /// First evaluated step; empty before the first touch.
   const std::optional<std::uint64_t>& begin() const noexcept { return begin_; }
   std::uint64_t end() const noexcept { return steps_; }
 
@@ -122,42 +131,45 @@ class JudgedRows {
   std::optional<std::uint64_t> begin_;
 };
 
-/// Settled contact shorter than this has no metrics [s]: one period of the cutoff, the slowest vibration. Otherwise a
-/// run that hammers, and so hardly settles, would look the calmest.
-inline constexpr double kLeastSettled = 1.0 / kVibrationCutoff;
+/// Settled contact shorter than this has no metrics [s]: one period of the vibration cutoff. Without this minimum,
+/// a run that hammers on the surface and hardly settles would seem to vibrate least.
+inline constexpr double kMinSettledTime = 1.0 / kVibrationCutoff;
 
-/// Separates a landing, whose impact is much the same under every algorithm, from the contact that follows. A first
-/// touch is a row in contact after at least the settling time without, or since the start; the rows within the settling
-/// time after it are its landing, the other rows in contact are settled. Times are rounded to whole rows.
+/// Separates landings from settled contact, because the impact of a landing is similar under every algorithm. A
+/// first touch is a step in contact after at least the settling time without contact, or since the start. The steps
+/// within the settling time after a first touch are a landing; all other steps in contact are settled contact.
+/// Times are rounded to whole steps.
 struct SettlingRule {
-  /// If given [s], all rows before are landing, and all rows in contact from then on are settled.
+  /// If given [s]: all steps before this time are a landing, and all steps in contact from this time on are
+  /// settled.
   std::optional<double> from;
   double time = 0.05;  ///< settling time [s]
 };
 
-/// The difference between a row's force and that of the row before.
+/// Difference between the forces of a step and of the step before.
 struct ForceChange {
-  double squared = 0.0;   ///< ||f_k - f_(k-1)||^2 [N^2]; 0 in the first row
-  bool reverses = false;  ///< their inner product is negative
+  double squared = 0.0;   ///< ||f_k - f_(k-1)||^2 [N^2]; 0 in the first step
+  bool reverses = false;  ///< the inner product of f_k and f_(k-1) is negative
 };
 
-/// Sorts the rows of a run into landing, settled contact and the rest, and adds up their forces. Constant memory; a few
-/// nanoseconds a row. The high-pass starts anew after each landing, at rest, so that the impact does not ring in it.
+/// Classifies the steps of a run as landing, settled contact or away, and accumulates force statistics of each
+/// class. Constant memory; a few nanoseconds a step. The high-pass filter restarts at steady state after each
+/// landing, so that the impact does not make it ring.
 class ContactForces {
  public:
   enum class Phase { away, landing, settled };
 
-  /// `dt`: time from row to row [s], > 0.
+  /// `dt`: time step [s], > 0.
   ContactForces(double dt, const SettlingRule& rule);
 
-  /// Begins another trial, in which nothing has been touched yet.
+  /// Begins the next trial, without contact so far.
   void begin() noexcept;
-  /// Adds the next row and returns its phase.
+  /// Adds the next step and returns its phase. `force`: rendered force [N].
   Phase add(const Vec3& force, const ForceChange& change, bool in_contact) noexcept;
   void tell(Section& section) const;
 
-  /// True with as much settled contact as its metrics need, kLeastSettled.
-  bool has_settled() const noexcept { return settled() >= kLeastSettled; }
+  /// Returns true if settled contact lasted for at least kMinSettledTime.
+  bool has_settled() const noexcept { return settled() >= kMinSettledTime; }
 
  private:
   Phase phase_of_next_row(bool in_contact) noexcept;
@@ -166,18 +178,19 @@ class ContactForces {
 
   double dt_;
   std::uint64_t settling_rows_;
-  std::optional<std::uint64_t> settled_from_;  ///< the rule's `from`, as a row
-  std::optional<HighPass> high_pass_;          ///< nothing when the sampling rate is too low
-  bool filtering_ = false, touched_ = false;   ///< in this trial: the high-pass has started; there was contact
-  std::uint64_t row_ = 0, landing_end_ = 0;    ///< the next row, and the first after the last landing
-  std::uint64_t rows_away_;                    ///< since the last contact
+  std::optional<std::uint64_t> settled_from_;  ///< the rule's `from` as a step number
+  std::optional<HighPass> high_pass_;          ///< empty if the sampling rate is too low
+  bool filtering_ = false, touched_ = false;   ///< in this trial: the high-pass filter is running; there was contact
+  std::uint64_t row_ = 0, landing_end_ = 0;    ///< next step; first step after the last landing
+  std::uint64_t rows_away_;                    ///< steps since the last contact
 
   std::uint64_t landings_ = 0, landing_rows_ = 0, settled_rows_ = 0;
-  double landing_max_squared_ = 0.0, landing_step_max_squared_ = 0.0;  ///< as below, of landings
-  double max_squared_ = 0.0, step_max_squared_ = 0.0;  ///< of settled rows: largest ||f||^2, ||f_k - f_(k-1)||^2 [N^2]
-  double sum_ = 0.0, above_cutoff_squares_ = 0.0;      ///< of ||f|| [N]; of ||high-passed f||^2 [N^2]
-  MagnitudeHistogram steps_;                           ///< ||f_k - f_(k-1)||
-  std::uint64_t reversals_ = 0;                        ///< f_k with a negative inner product with f_(k-1)
+  double landing_max_squared_ = 0.0, landing_step_max_squared_ = 0.0;  ///< as below, for landings
+  /// In settled contact: largest ||f||^2, ||f_k - f_(k-1)||^2 [N^2].
+  double max_squared_ = 0.0, step_max_squared_ = 0.0;
+  double sum_ = 0.0, above_cutoff_squares_ = 0.0;  ///< sums of ||f|| [N] and ||high-passed f||^2 [N^2]
+  MagnitudeHistogram steps_;                       ///< ||f_k - f_(k-1)||
+  std::uint64_t reversals_ = 0;                    ///< steps whose f_k has a negative inner product with f_(k-1)
 };
 
 }  // namespace hapbench

@@ -9,23 +9,23 @@
 #include "results/observe/metric_observer.hpp"
 #include "sim/contact/contact_schedule.hpp"
 
-/// Metrics of contacts and of what is between them and the force on the tool.
+/// Metrics of contacts and of the processing steps between contacts and the force on the tool.
 namespace hapbench {
 
-/// How old the contacts are that a run uses: the time from a query to the rows in which its answer serves. Counts the
-/// rows of each age, for which `begin` allocates a number for each row of the trial, for a million at most.
+/// Measures the age of the contacts that a run uses: the time from a contact query to the steps that use its
+/// result. Counts the steps of each age. `begin` allocates a counter for each step of the trial, at most a million.
 class ContactAgeObserver final : public MetricObserver {
  public:
   /// Precondition: the source of the trial's contacts has a schedule.
   void begin(const TrialParts& trial) override {
-    constexpr std::uint64_t kMostAges = 1'000'000;
+    constexpr std::uint64_t kMaxAges = 1'000'000;
     *this = {};
     schedule_ = trial.simulation.source->schedule();
     dt_ = trial.config.dt;
-    rows_of_age_.resize(std::min(trial.config.steps, kMostAges) + 1);
+    rows_of_age_.resize(std::min(trial.config.steps, kMaxAges) + 1);
   }
   void on_step(const StepRecord& record) noexcept override {
-    asked_ = schedule_->asked;
+    requested_ = schedule_->asked;
     lost_ = schedule_->lost;
     const ContactSchedule::Query* query = schedule_->used();
     if (query == nullptr) return;
@@ -39,12 +39,13 @@ class ContactAgeObserver final : public MetricObserver {
     s.metric("age_p95_s", "s", "95 % of the rows use contacts found at most so long before", age_of_rank(0.95));
     s.metric("age_max_s", "s", "largest time from the query of contacts to a row that uses them",
              if_any(rows_ > 0, dt_ * static_cast<double>(oldest_)));
-    s.metric("asked", "1", "times that contacts were asked for, lost ones included", asked_);
-    s.metric("lost_share", "1", "share of these that were lost", per(lost_, asked_));
+    s.metric("asked", "1", "times that contacts were asked for, lost ones included", requested_);
+    s.metric("lost_share", "1", "share of these that were lost", per(lost_, requested_));
   }
 
  private:
-  /// The age that this share of the rows does not exceed: that of the nearest rank.
+  /// Returns the age [s] that the fraction `share` of the steps does not exceed, by nearest rank; nothing without
+  /// steps.
   std::optional<double> age_of_rank(double share) const noexcept {
     if (rows_ == 0) return std::nullopt;
     auto left = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(rows_)));
@@ -56,13 +57,14 @@ class ContactAgeObserver final : public MetricObserver {
   const ContactSchedule* schedule_ = nullptr;
   double dt_ = 0.0;
   std::uint64_t rows_ = 0, oldest_ = 0;
-  std::uint64_t asked_ = 0, lost_ = 0;
-  std::vector<std::uint64_t> rows_of_age_;  ///< by samples; the last entry also counts all older ones
+  std::uint64_t requested_ = 0, lost_ = 0;
+  /// Number of steps for each age in time steps; the last entry also counts all older contacts.
+  std::vector<std::uint64_t> rows_of_age_;
 };
 
-/// Observes the lost torque (thesis Fig. 1), tau = sum r_i x f_i about the tip centre, where f_i is the contribution of
-/// contact i to f_spring (SpringState::moment) and r_i its place relative to the tip centre. A device of three degrees
-/// of freedom renders sum f_i and no torque. Constant memory, a nanosecond a row.
+/// Observes the lost torque (thesis Fig. 1), tau = sum r_i x f_i about the tip centre. f_i is the part of f_spring
+/// due to contact i (SpringState::moment), r_i the contact's position relative to the tip centre. A device with
+/// three degrees of freedom renders sum f_i but no torque. Constant memory, a nanosecond a step.
 class LostTorqueObserver final : public MetricObserver {
  public:
   void begin(const TrialParts&) override { *this = {}; }
@@ -88,7 +90,8 @@ class LostTorqueObserver final : public MetricObserver {
   double max_squared_ = 0.0;
 };
 
-/// Counts whether dry friction (algorithms/stages/damping_and_limits.hpp) sticks or slides. Constant memory.
+/// Counts the steps in which dry friction (algorithms/stages/damping_and_limits.hpp) sticks or slides. Constant
+/// memory.
 class FrictionObserver final : public MetricObserver {
  public:
   void begin(const TrialParts& trial) override {
@@ -116,7 +119,7 @@ class FrictionObserver final : public MetricObserver {
   Friction last_ = Friction::none;
 };
 
-/// Reads how much a force stage changes the force of its algorithm, from the algorithm's work in every row.
+/// Measures how much a force stage changes the force of its algorithm, from the algorithm's work counters.
 class ForceStageObserver final : public MetricObserver {
  public:
   void begin(const TrialParts& trial) override {

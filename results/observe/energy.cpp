@@ -8,7 +8,7 @@
 namespace hapbench {
 namespace {
 
-/// The number of elements of the sorted list `a` that are not in the sorted list `b`.
+/// Returns the number of elements of the sorted list `a` that are missing in the sorted list `b`.
 std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) noexcept {
   const auto is_missing = [&b](std::uint32_t i) { return !std::ranges::binary_search(b, i); };
   return static_cast<std::size_t>(std::ranges::count_if(a, is_missing));
@@ -18,7 +18,7 @@ std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::
 
 EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
                            const IntegratorEntry& integrator)
-    : mass_(mass), dt_(dt), free_(position_is_free), row_force_moves_(integrator.holds_force) {
+    : mass_(mass), dt_(dt), position_is_free_(position_is_free), holds_force_(integrator.holds_force) {
   last_rendered_.reserve(capacity);
   rendered_.reserve(capacity);
 }
@@ -30,9 +30,11 @@ void EnergyLedger::begin(const TrialParts& trial) {
 }
 
 void EnergyLedger::on_step(const StepRecord& record) noexcept {
+  // Sort the indices of the rendered contacts, to compare them with the step before.
   const auto& index = record.rendered->index;
   rendered_.assign(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(record.rendered->size()));
   std::sort(rendered_.begin(), rendered_.end());
+  // Update the stored energies, and from the second step on the works.
   balance_.kinetic = record.handle_moves_tool ? 0.0 : 0.5 * mass_ * record.tool.velocity.squaredNorm();
   balance_.stored = record.springs.energy;
   if (has_row_) {
@@ -46,39 +48,41 @@ void EnergyLedger::on_step(const StepRecord& record) noexcept {
   std::swap(last_rendered_, rendered_);
 }
 
-EnergyLedger::Works EnergyLedger::works(const Vec3& spring, const Vec3& rendered, const Vec3& way) const noexcept {
-  return {.input = last_.hand.input.dot(way),
-          .hand = last_.hand_force.dot(way),
-          .actuator = (last_.hand.input - last_.hand_force).dot(way),
-          .spring = spring.dot(way),
-          .damping = (rendered - spring).dot(way)};
+EnergyLedger::Works EnergyLedger::works(const Vec3& spring, const Vec3& rendered,
+                                        const Vec3& displacement) const noexcept {
+  return {.input = last_.hand.input.dot(displacement),
+          .hand = last_.hand_force.dot(displacement),
+          .actuator = (last_.hand.input - last_.hand_force).dot(displacement),
+          .spring = spring.dot(displacement),
+          .damping = (rendered - spring).dot(displacement)};
 }
 
 EnergyLedger::Works EnergyLedger::works_until(const StepRecord& now) const noexcept {
   const Vec3 velocities = last_.tool.velocity + now.tool.velocity;
   const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
   if (now.handle_moves_tool) return works(last_.force.spring, last_.force.rendered, moved);
-  if (free_ && row_force_moves_) return works(last_.force.spring, last_.force.rendered, 0.5 * velocities * dt_);
+  if (position_is_free_ && holds_force_) return works(last_.force.spring, last_.force.rendered, 0.5 * velocities * dt_);
   Works w =
       works(0.5 * (last_.force.spring + now.force.spring), 0.5 * (last_.force.rendered + now.force.rendered), moved);
-  if (!free_) return w;
+  if (!position_is_free_) return w;
   const double kinetic = 0.5 * mass_ * (now.tool.velocity - last_.tool.velocity).dot(velocities);
-  w.left = kinetic - w.input - w.spring - w.damping;
+  w.unexplained = kinetic - w.input - w.spring - w.damping;
   return w;
 }
 
 void EnergyLedger::add_step(const StepRecord& now) noexcept {
+  // Add the works on the tool; what they do not explain belongs to integrator, script or rounding.
   EnergyBalance& b = balance_;
   const Works w = works_until(now);
   b.input += w.input;
   b.spring += w.spring;
   b.damping += w.damping;
-  b.integration += w.left;
-  left_ += w.left;
-  const double left = b.kinetic - kinetic_at_start_ - b.input - b.spring - b.damping - left_;
-  const bool free = free_ && !now.handle_moves_tool;
-  (free ? b.residual : b.script) = left;
-  if (free) residual_max_ = std::max(residual_max_, std::abs(left));
+  b.integration += w.unexplained;
+  unexplained_ += w.unexplained;
+  const double unexplained = b.kinetic - kinetic_at_start_ - b.input - b.spring - b.damping - unexplained_;
+  const bool free = position_is_free_ && !now.handle_moves_tool;
+  (free ? b.residual : b.script) = unexplained;
+  if (free) residual_max_ = std::max(residual_max_, std::abs(unexplained));
   if (now.device) {
     b.device = now.device;
     b.hand = now.device->hand;
@@ -88,14 +92,15 @@ void EnergyLedger::add_step(const StepRecord& now) noexcept {
     b.actuator += w.actuator;
   }
 
+  // Find the created energy, and keep the largest events.
   const double created = created_in_step(now, w.spring);
   b.created += created;
   if (created > 0.0) created_sum_ += created;
   created_max_ = std::max(created_max_, created);
-  if (created > events_.back().created) note_event(now, created);
+  if (created > events_.back().created) add_event(now, created);
 }
 
-/// Returns the created energy of a step [J] and adds the works of translation and rotation to the balance.
+/// Returns the created energy of a step [J]. Adds the works of translation and rotation to the balance.
 double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) noexcept {
   const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
   const Vec3 turned = turn(last_.tool.pose, now.tool.pose);
@@ -106,7 +111,7 @@ double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) 
   return now.springs.energy - last_.springs.energy - translation - rotation;
 }
 
-void EnergyLedger::note_event(const StepRecord& now, double created) noexcept {
+void EnergyLedger::add_event(const StepRecord& now, double created) noexcept {
   events_.back() = {.step = now.step,
                     .time = now.time,
                     .created = created,

@@ -21,11 +21,13 @@ std::optional<Vec3> ReferenceForce::at(double t) const noexcept {
 
 namespace {
 
-/// Limits the correlation to about 1e8 products, so that it does not take longer than the run.
-constexpr std::uint64_t kMostKept = 1u << 17;
-constexpr double kFinestLag = 5e-4;  // [s]
+/// Largest number of kept samples. It limits the correlation to about 1e8 products, so that it does not take longer
+/// than the run.
+constexpr std::uint64_t kMaxKept = 1u << 17;
+constexpr double kKeptInterval = 5e-4;  ///< time between kept samples, about this or longer [s]
 
-/// Pearson's coefficient over all components of two signals of equal length; none when either does not vary.
+/// Returns Pearson's correlation coefficient over all components of two signals of equal length; nothing if one of
+/// them does not vary.
 std::optional<double> correlation(std::span<const Vec3> early, std::span<const Vec3> late) {
   const double n = static_cast<double>(early.size());
   const auto mean = [n](auto of) { return Vec3(std::accumulate(of.begin(), of.end(), Vec3(0.0, 0.0, 0.0)) / n); };
@@ -37,33 +39,34 @@ std::optional<double> correlation(std::span<const Vec3> early, std::span<const V
     early_square += a.squaredNorm();
     late_square += b.squaredNorm();
   }
-  // A variation that may be rounding does not count.
-  const double least = 1e-24 * n * (early_mean.squaredNorm() + late_mean.squaredNorm());
-  if (!(early_square > least && late_square > least)) return std::nullopt;
+  // Ignore a variation that may be rounding error.
+  const double rounding = 1e-24 * n * (early_mean.squaredNorm() + late_mean.squaredNorm());
+  if (!(early_square > rounding && late_square > rounding)) return std::nullopt;
   return both / std::sqrt(early_square * late_square);
 }
 
 /// A maximum of the correlation.
 struct Peak {
-  double shift = 0.0;  ///< [samples]
+  double shift = 0.0;  ///< shift at the maximum [samples]
   double value = 0.0;
   bool inside = false;  ///< not at an end of the range
 };
 
-/// The peaks as high as the greatest one, to kSamePeak, of the correlations at the shifts -m … m. Two peaks are told
-/// apart by a dip of kDip between them, so that noise on a peak does not split it.
-std::vector<Peak> greatest_peaks(const std::vector<double>& found) {
+/// Returns the peaks of the correlations at the shifts -m … m whose height is within kSamePeak of the highest peak.
+/// Two maxima count as separate peaks only if the correlation dips by kDip between them, so noise does not split a
+/// peak.
+std::vector<Peak> largest_peaks(const std::vector<double>& found) {
   constexpr double kDip = 0.1, kSamePeak = 0.01;
-  const double least = std::ranges::max(found) - kDip;
+  const double threshold = std::ranges::max(found) - kDip;
   std::vector<Peak> peaks;
   for (auto from = found.begin(); from != found.end();) {
-    from = std::find_if(from, found.end(), [least](double value) { return value >= least; });
-    const auto to = std::find_if(from, found.end(), [least](double value) { return value < least; });
+    from = std::find_if(from, found.end(), [threshold](double value) { return value >= threshold; });
+    const auto to = std::find_if(from, found.end(), [threshold](double value) { return value < threshold; });
     if (from == to) break;
     const auto top = std::max_element(from, to);
     Peak peak{static_cast<double>(top - found.begin()) - 0.5 * static_cast<double>(found.size() - 1), *top,
               top != found.begin() && top != found.end() - 1};
-    if (peak.inside) {  // of the parabola through the top and its neighbours
+    if (peak.inside) {  // refine by the parabola through the top and its neighbours
       const double below = *(top - 1), above = *(top + 1), curvature = below - 2.0 * *top + above;
       const double part = curvature < 0.0 ? 0.5 * (below - above) / curvature : 0.0;
       peak.shift += part;
@@ -72,18 +75,20 @@ std::vector<Peak> greatest_peaks(const std::vector<double>& found) {
     peaks.push_back(peak);
     from = to;
   }
-  double greatest = 0.0;
-  for (const Peak& peak : peaks) greatest = std::max(greatest, peak.value);
-  std::erase_if(peaks, [greatest](const Peak& peak) { return peak.value < greatest - kSamePeak; });
+  double largest = 0.0;
+  for (const Peak& peak : peaks) largest = std::max(largest, peak.value);
+  std::erase_if(peaks, [largest](const Peak& peak) { return peak.value < largest - kSamePeak; });
   return peaks;
 }
 
 }  // namespace
 
-std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt, double most) {
+std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
+                               double max_lag) {
   const std::size_t n = std::min(early.size(), late.size());
   // At least half of the samples must overlap.
-  const auto reach = static_cast<std::ptrdiff_t>(std::min(std::round(most / dt), static_cast<double>(n / 2)));
+  const auto reach = static_cast<std::ptrdiff_t>(std::min(std::round(max_lag / dt), static_cast<double>(n / 2)));
+  // Compute the correlation at each shift.
   std::vector<double> found;
   for (std::ptrdiff_t shift = -reach; shift <= reach; ++shift) {
     const auto by = static_cast<std::size_t>(std::abs(shift));
@@ -93,7 +98,8 @@ std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector
     if (!coefficient) return std::nullopt;
     found.push_back(*coefficient);
   }
-  const std::vector<Peak> peaks = greatest_peaks(found);
+  // Of equally high peaks, take the peak nearest to 0; the distance to the next is the period.
+  const std::vector<Peak> peaks = largest_peaks(found);
   const Peak* nearest = nullptr;
   for (const Peak& peak : peaks) {
     if (peak.inside && (nearest == nullptr || std::abs(peak.shift) < std::abs(nearest->shift))) nearest = &peak;
@@ -101,8 +107,8 @@ std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector
   if (nearest == nullptr) return std::nullopt;
   Lag lag{nearest->shift * dt, {}};
   for (const Peak& peak : peaks) {
-    const double apart = std::abs(peak.shift - nearest->shift) * dt;
-    if (&peak != nearest && (!lag.period || apart < *lag.period)) lag.period = apart;
+    const double distance = std::abs(peak.shift - nearest->shift) * dt;
+    if (&peak != nearest && (!lag.period || distance < *lag.period)) lag.period = distance;
   }
   return lag;
 }
@@ -110,7 +116,7 @@ std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector
 ForceFidelityObserver::ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps)
     : force_(&reference), dt_(dt) {
   every_ = std::max<std::uint64_t>(
-      {1, (steps + kMostKept - 1) / kMostKept, static_cast<std::uint64_t>(std::floor(kFinestLag / dt))});
+      {1, (steps + kMaxKept - 1) / kMaxKept, static_cast<std::uint64_t>(std::floor(kKeptInterval / dt))});
   const auto kept = static_cast<std::size_t>(steps / every_ + 1);
   kept_reference_.reserve(kept);
   kept_rendered_.reserve(kept);
@@ -123,29 +129,30 @@ void ForceFidelityObserver::begin(const TrialParts& trial) {
 void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   at_row_ = force_->at(record.time);
   if (!at_row_) return;
-  const Vec3 &wanted = *at_row_, &rendered = record.force.rendered;
-  const Vec3 error = rendered - wanted;
-  const double norm = wanted.norm(), rendered_norm = rendered.norm();
-  const Vec3 line = unit_or(wanted, Vec3::Zero());
-  const Vec3 normal = unit_or(record.force.spring, line);
+  const Vec3 &reference = *at_row_, &rendered = record.force.rendered;
+  const Vec3 error = rendered - reference;
+  const double norm = reference.norm(), rendered_norm = rendered.norm();
+  const Vec3 direction = unit_or(reference, Vec3::Zero());
+  const Vec3 normal = unit_or(record.force.spring, direction);
   const double along = normal.dot(error);
   ++rows_;
   reference_ += norm * norm;
   error_ += error.squaredNorm();
   normal_ += along * along;
   tangential_ += (error - along * normal).squaredNorm();
-  const double load = std::max(0.0, normal.dot(wanted));
+  // Sums for the least-squares friction coefficient.
+  const double load = std::max(0.0, normal.dot(reference));
   loads_ += load * load;
-  drag_ += load * (wanted - load * normal).norm();
-  across_ += (rendered - line.dot(rendered) * line).squaredNorm();
+  drag_ += load * (reference - load * normal).norm();
+  across_ += (rendered - direction.dot(rendered) * direction).squaredNorm();
   rendered_ += rendered_norm * rendered_norm;
-  if (norm > kLeastForce && rendered_norm > kLeastForce) {
+  if (norm > kMinForce && rendered_norm > kMinForce) {
     ++direction_rows_;
-    // Near 0, the cosine alone would lose half its digits.
-    direction_error_ += math::atan2(wanted.cross(rendered).norm(), wanted.dot(rendered));
+    // atan2, because near 0 the arc cosine would lose half of the digits.
+    direction_error_ += math::atan2(reference.cross(rendered).norm(), reference.dot(rendered));
   }
   if (record.step % every_ == 0 && kept_reference_.size() < kept_reference_.capacity()) {
-    kept_reference_.push_back(wanted);
+    kept_reference_.push_back(reference);
     kept_rendered_.push_back(rendered);
   }
 }
@@ -173,15 +180,15 @@ void ForceFidelityObserver::tell(Section& s) const {
   s.metric("direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", direction_rows_);
   s.metric("force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
            per(direction_error_, direction_rows_), Better::less);
-  const double apart = dt_ * static_cast<double>(every_);  // time between kept rows
-  const auto lag = lag_between(kept_reference_, kept_rendered_, apart, kMostLag);
+  const double interval = dt_ * static_cast<double>(every_);  // time between kept samples
+  const auto lag = lag_between(kept_reference_, kept_rendered_, interval, kMostLag);
   s.metric("force_lag_s", "s",
            "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
            "0.1 s; of equally great ones, as of a periodic force, that nearest to 0; empty where it is greatest at "
            "the ends of this range or where a force does not vary; told to half the time between the rows that "
            "are compared",
            lag ? std::optional(lag->time) : std::nullopt)
-      .within(0.0, 0.5 * apart);
+      .within(0.0, 0.5 * interval);
   s.metric("force_lag_period_s", "s",
            "the lag is known up to multiples of this only: spacing of equally great correlations (to 0.01); none "
            "where the lag is unambiguous",

@@ -13,49 +13,55 @@
 
 namespace hapbench {
 
-/// The force on the tool that the rendered one is to match [N]: measured with a stroke, or an ideal rendering's.
+/// Reference for the rendered force on the tool [N]: measured together with a stroke, or the force of an ideal
+/// rendering.
 class ReferenceForce {
  public:
   struct Sample {
     double time = 0.0;  ///< [s], strictly increasing from sample to sample
     Vec3 force = Vec3::Zero();
   };
-  using Ideal = std::array<Profile, 3>;  ///< x, y, z over time
+  using Ideal = std::array<Profile, 3>;  ///< x, y, z of the force over time
 
-  /// Measured. Precondition: there is a sample, and times increase.
+  /// Measured force. Precondition: at least one sample, and times increase.
   explicit ReferenceForce(std::vector<Sample> samples) : force_(std::move(samples)) {}
   explicit ReferenceForce(Ideal ideal) : force_(std::move(ideal)) {}
 
-  /// The force at a time [s]: linear between samples; nothing before the first and after the last. O(log n).
+  /// Returns the force at time t [s], interpolated linearly between samples; nothing before the first sample and
+  /// after the last. Cost: O(log n).
   std::optional<Vec3> at(double t) const noexcept;
 
  private:
   std::variant<std::vector<Sample>, Ideal> force_;
 };
 
-/// Directions are compared where both forces exceed this [N].
-inline constexpr double kLeastForce = 0.1;
-/// Largest lag that is searched for, in both directions [s].
+/// Directions of two forces are compared if both exceed this value [N]; weaker forces have no meaningful direction.
+inline constexpr double kMinForce = 0.1;
+/// Largest lag that is searched, positive or negative [s].
 inline constexpr double kMostLag = 0.1;
 
-/// The time by which one signal follows another.
+/// Time lag of a signal behind another signal.
 struct Lag {
-  double time = 0.0;             ///< [s]
-  std::optional<double> period;  ///< distance to the next equally good answer [s], as of periodic signals
+  double time = 0.0;             ///< lag [s], > 0 if the signal is late
+  std::optional<double> period;  ///< distance to the next equally good lag [s], for periodic signals
 };
 
-/// The time by which `late` follows `early`: the shift with the greatest correlation (Pearson's over all components of
-/// the overlapping samples), refined by a parabola; of equally great ones, to 0.01, that nearest to 0. Nothing when
-/// a signal does not vary, or the greatest value is at the end of the range +-`most` [s]. `dt` [s]. O(n most / dt).
-std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt, double most);
+/// Returns the lag of `late` behind `early`: the shift with the largest correlation (Pearson, over all components
+/// of the overlapping samples), refined by a parabola. If several shifts have equally large correlations, within
+/// 0.01, the shift nearest to 0. Returns nothing if a signal does not vary, or if the maximum is at an end of the
+/// range +-`max_lag` [s]. `dt`: time between samples [s]. Cost: O(n max_lag / dt).
+std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
+                               double max_lag);
 
-/// Deviation of the rendered force f from the reference force f_m over the rows that have one (the evaluation of
-/// Ruffaldi et al. 2006). The normal n of a row is that of f_spring, before damping and friction; where nothing is
-/// rendered, that of f_m. Allocates nothing in a row, which takes about 50 ns.
+/// Measures the deviation of the rendered force f from the reference force f_m in the steps that have one
+/// (evaluation of Ruffaldi et al. 2006). The normal n of a step is the direction of f_spring, the force before
+/// damping and friction; if f_spring is zero, the direction of f_m. Allocates nothing during the run; about 50 ns a
+/// step.
 class ForceFidelityObserver final : public MetricObserver {
  public:
   ForceFidelityObserver() = default;
-  /// As `begin` does. `reference` must outlive it. `dt`: time from row to row [s]; `steps`: the most rows.
+  /// Sets the same values as `begin`. Precondition: `reference` outlives this object. `dt`: time step [s]; `steps`:
+  /// largest number of steps.
   ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps);
 
   /// Precondition: the trial has a reference.
@@ -63,21 +69,21 @@ class ForceFidelityObserver final : public MetricObserver {
   void on_step(const StepRecord& record) noexcept override;
   void tell(Section& section) const override;
 
-  /// f_m at the last row; nothing where nothing was measured.
+  /// f_m in the last step [N]; empty if none was measured.
   const std::optional<Vec3>& reference() const noexcept { return at_row_; }
 
  private:
   const ReferenceForce* force_ = nullptr;
   double dt_ = 0.0;
-  std::uint64_t every_ = 1;  ///< every so many rows, one is kept for the lag
+  std::uint64_t every_ = 1;  ///< every_-th steps are kept for the lag
   std::optional<Vec3> at_row_;
   std::uint64_t rows_ = 0, direction_rows_ = 0;
-  double direction_error_ = 0.0;  ///< sum of angles [rad]
-  /// Sums of squares [N^2]: of f_m, of f, of the part of f across f_m (all of f where f_m is zero), of the error, of
-  /// its parts along and across n.
+  double direction_error_ = 0.0;  ///< sum of the angles between f and f_m [rad]
+  /// Sums of squares [N^2]: of f_m, of f, of the component of f perpendicular to f_m (all of f if f_m is zero), of
+  /// the error f - f_m, and of the error's components along n and perpendicular to n.
   double reference_ = 0.0, rendered_ = 0.0, across_ = 0.0, error_ = 0.0, normal_ = 0.0, tangential_ = 0.0;
-  double loads_ = 0.0, drag_ = 0.0;  ///< sums of N^2 and N |f_t| of f_m, N its normal part [N^2]
-  std::vector<Vec3> kept_reference_, kept_rendered_;
+  double loads_ = 0.0, drag_ = 0.0;  ///< sums of N^2 and N |f_t| [N^2]; N, f_t: normal and tangential part of f_m
+  std::vector<Vec3> kept_reference_, kept_rendered_;  ///< f_m and f of every every_-th step, for the lag
 };
 
 }  // namespace hapbench

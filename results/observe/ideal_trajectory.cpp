@@ -28,7 +28,7 @@ const std::array<Turn, kSamples> kTurns = [] {
   return turns;
 }();
 
-/// The side of the tool as straight lines, one for each angle about its axis.
+/// The side surface of the tool as straight lines, one for each angle about its axis.
 class Side {
  public:
   Side(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose)
@@ -41,7 +41,7 @@ class Side {
         radius_(block.hole_diameter / 2),
         block_(block) {}
 
-  /// Depth of the deepest point of a line [m], negative when all of it is outside.
+  /// Returns the depth of the deepest point of a line [m], negative if the whole line is outside.
   double deepest(const Turn& turn) const {
     const Vec3 end = tip_ + turn.cosine * e1_ + turn.sine * e2_;
     const double deep = depth(end), up_to_cone = to_cone(end);
@@ -50,7 +50,7 @@ class Side {
   double deepest(double angle) const { return deepest({math::cos(angle), math::sin(angle)}); }
 
  private:
-  /// Depth below the block's surface, negative outside [m]. In the block it is the exact distance.
+  /// Returns the depth below the block's surface [m], negative outside. Inside the block it is the exact distance.
   double depth(const Vec3& q) const {
     const double out = std::sqrt(q.x() * q.x() + q.y() * q.y()) - radius_, below = -block_.hole_depth - q.z();
     const double hole = out > 0.0 && below > 0.0 ? std::sqrt(out * out + below * below) : std::max(out, below);
@@ -58,15 +58,17 @@ class Side {
                      block_.size.y() / 2 - std::abs(q.y())});
   }
 
-  /// How far up the line from its end in the tip the cone rho - R = -z is [m]; 0 when the end is not within the cone.
+  /// Returns the distance from the line's end at the tip, up the line, to the cone rho - R = -z [m]; 0 if the end
+  /// is not within the cone.
   double to_cone(const Vec3& end) const {
-    // Squared, rho = R - z is steepness s^2 + 2 b s + c = 0; its smallest positive root is the one where R - z > 0.
+    // The square of rho = R - z is steepness s^2 + 2 b s + c = 0. The smallest positive root is the root with R - z
+    // > 0.
     const double height = radius_ - end.z();
     const double c = end.head<2>().squaredNorm() - height * height;
     if (height <= 0.0 || c >= 0.0) return 0.0;
     const double b = end.head<2>().dot(up_.head<2>()) + height * up_.z();
     const double root = std::sqrt(b * b - steepness_ * c);
-    return b < 0.0 ? (root - b) / steepness_ : -c / (b + root);  // no difference of near numbers
+    return b < 0.0 ? (root - b) / steepness_ : -c / (b + root);  // avoids a difference of nearly equal numbers
   }
 
   Vec3 tip_, up_, e1_, e2_;
@@ -74,27 +76,30 @@ class Side {
   const BlockWithHole& block_;
 };
 
-/// Largest value of f in [low, high], if it has one hill there, by Brent's method (R. P. Brent, Algorithms for
-/// Minimization without Derivatives, 1973, chapter 5): the vertex of the parabola through the three best points so far,
-/// or a golden section where that does not lie well inside. `best`: a point between, with its value `top`.
+/// Returns the maximum of f in [low, high], if f has a single maximum there, by Brent's method (R. P. Brent,
+/// Algorithms for Minimization without Derivatives, 1973, chapter 5). A step goes to the vertex of the parabola
+/// through the three best points so far, or, if the vertex is not well inside the interval, by golden section.
+/// `best`: start point in the interval; `top`: its value.
 template <class Function>
-double top_of_hill(const Function& f, double low, double high, double best, double top) {
+double maximum_in(const Function& f, double low, double high, double best, double top) {
   constexpr double kGolden = 2.0 - std::numbers::phi;
   double second = best, third = best, f_second = top, f_third = top;
   double step = 0.0, last_step = 0.0;
   for (;;) {
     const double middle = 0.5 * (low + high);
     if (std::abs(best - middle) + 0.5 * (high - low) <= 2.0 * kAngleTolerance) return top;
-    // The vertex lies p / q from the best point.
+    // The vertex of the parabola is at best + p / q.
     const double r = (best - second) * (top - f_third), s = (best - third) * (top - f_second);
     const double p = std::copysign(1.0, r - s) * ((best - third) * s - (best - second) * r);
     const double q = 2.0 * std::abs(s - r);
+    // Take the parabola's vertex if it is well inside and the steps shrink, otherwise a golden section.
     const bool parabola = std::abs(p) < std::abs(0.5 * q * last_step) && p > q * (low - best) && p < q * (high - best);
     last_step = parabola ? step : (best < middle ? high : low) - best;
     step = parabola ? p / q : kGolden * last_step;
     if (parabola && std::min(best + step - low, high - best - step) < 2.0 * kAngleTolerance)
       step = std::copysign(kAngleTolerance, middle - best);
     if (std::abs(step) < kAngleTolerance) step = std::copysign(kAngleTolerance, step);
+    // Narrow the interval and keep the three best points.
     const double x = best + step, f_x = f(x);
     if (f_x >= top) {
       (x < best ? high : low) = best;
@@ -118,10 +123,12 @@ double top_of_hill(const Function& f, double low, double high, double best, doub
 double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose) {
   assert(pose.axis.z() <= 0.0);
   const Side side(block, tool, pose);
+  // Compute the depth of each line.
   std::array<double, kSamples> depth{};
   for (std::size_t i = 0; i < kSamples; ++i) depth[i] = side.deepest(kTurns[i]);
   double largest = std::max(0.0, *std::max_element(depth.begin(), depth.end()));
-  // Neighbouring lines are at most radius * step apart, so their depths differ by no more.
+  // Search near each line that is deeper than its neighbours. Neighbouring lines are at most radius * step apart,
+  // so their depths differ by no more.
   const double reach = tool.radius() * kStep;
   for (std::size_t i = 0; i < kSamples; ++i) {
     const double before = depth[(i + kSamples - 1) % kSamples], after = depth[(i + 1) % kSamples];
@@ -129,19 +136,20 @@ double interpenetration(const BlockWithHole& block, const Cylinder& tool, const 
       continue;
     const double angle = static_cast<double>(i) * kStep;
     const auto at = [&side](double x) { return side.deepest(x); };
-    largest = std::max(largest, top_of_hill(at, angle - kStep, angle + kStep, angle, depth[i]));
+    largest = std::max(largest, maximum_in(at, angle - kStep, angle + kStep, angle, depth[i]));
   }
   return largest;
 }
 
-std::optional<TipPlace> ideal_place(const BlockWithHole& block, double tool_radius, double tilt) {
+std::optional<TipPosition> ideal_place(const BlockWithHole& block, double tool_radius, double tilt) {
   if (!(tilt > 0.0 && tilt < std::numbers::pi / 2)) return std::nullopt;
   const double R = block.hole_diameter / 2, r = tool_radius;
   const double cosine = math::cos(tilt), sine = math::sin(tilt);
-  const TipPlace place{-R + r * cosine, (r * (1.0 + cosine * cosine) - 2.0 * R * cosine) / sine};
-  const bool edge_in_hole = place.height + r * sine<0.0, above_bottom = place.height - r * sine> - block.hole_depth;
+  const TipPosition position{-R + r * cosine, (r * (1.0 + cosine * cosine) - 2.0 * R * cosine) / sine};
+  const bool edge_in_hole =
+      position.height + r * sine<0.0, above_bottom = position.height - r * sine> - block.hole_depth;
   if (!edge_in_hole || !above_bottom) return std::nullopt;
-  return place;
+  return position;
 }
 
 IdealTrajectoryObserver::IdealTrajectoryObserver(const BlockWithHole& block, const Cylinder& tool, std::uint64_t every)

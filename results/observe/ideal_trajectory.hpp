@@ -11,47 +11,51 @@
 
 namespace hapbench {
 
-/// True interpenetration of a flat-tipped cylinder with the block [m]: the depth below the block's surface of the
-/// tool's deepest point, from the exact shapes and not from a shell; 0 when they do not overlap. Valid for a tool that
-/// touches the hole and the top face around it; the block's other edges are ignored.
+/// Returns the true interpenetration of a flat-tipped cylinder with the block [m]: the depth below the block's
+/// surface of the tool's deepest point, computed from the exact shapes and not from a point shell; 0 if they do not
+/// overlap. Valid for a tool that touches the hole and the top face around it; the block's other edges are ignored.
 ///
-/// Near the hole the depth is min(D, -z), D the signed distance from the hole without its mouth: a convex function,
-/// equal to rho - R above the hole's bottom. Along each straight line of the tool's side, going up from the tip, -z
-/// falls, so that the deepest point is the line's end in the tip or where D = -z, on the cone of 45 degrees that opens
-/// downwards from the rim. (Inside the tip's flat no point is deepest: a horizontal way out of it keeps z, and D does
-/// not fall both ways.) Depths of lines differ by at most radius * angle between them: of 64 lines round the tool, the
-/// angles about those deeper than their neighbours are searched to 1e-8 rad, for a depth to about 1e-11 m. About 2 us.
-/// Precondition: the tool does not point upwards, axis.z <= 0.
+/// Method: near the hole the depth is min(D, -z), where D is the signed distance from the hole without its mouth. D
+/// is a convex function, equal to rho - R above the hole's bottom (rho: distance from the hole's axis, R: hole
+/// radius). Along each straight line on the tool's side, going up from the tip, -z falls. So the deepest point of a
+/// line is its end at the tip, or the point with D = -z, on the 45-degree cone that opens downwards from the rim.
+/// (The deepest point is never inside the tip's flat face: a horizontal displacement keeps z, and D does not fall
+/// in both directions.) The depths of two lines differ by at most radius * angle between them. Of 64 lines around
+/// the tool, the angles near lines deeper than their neighbours are searched to 1e-8 rad, which gives a depth
+/// accurate to about 1e-11 m. Takes about 2 us. Precondition: the tool does not point upwards, axis.z <= 0.
 double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose);
 
-/// Position of the tip's centre in the vertical plane through the hole's axis in which the tool leans.
-struct TipPlace {
-  double lateral = 0.0;  ///< from the hole's axis, towards where the tool leans [m]
-  double height = 0.0;   ///< above the hole's mouth, so negative in the hole [m]
+/// Position of the tip centre in the vertical plane through the hole's axis in which the tool leans.
+struct TipPosition {
+  double lateral = 0.0;  ///< distance from the hole's axis, positive in the direction in which the tool leans [m]
+  double height = 0.0;   ///< height above the hole's mouth, negative in the hole [m]
 };
 
-/// The ideal trajectory of thesis 3.6: a flat-tipped cylinder of radius r, like the thesis's drill, tilted by alpha in
-/// a hole of radius R, touches the wall with the lower edge of its tip and the opposite rim with its side:
+/// Returns the tip position of the ideal trajectory (thesis 3.6). A flat-tipped cylinder of radius r, like the
+/// thesis's drill, is tilted by alpha in a hole of radius R. It touches the wall with the lower edge of its tip and
+/// the opposite rim with its side:
 ///
 ///   lateral = -R + r cos(alpha),  height = (r (1 + cos^2 alpha) - 2 R cos(alpha)) / sin(alpha)
 ///
-/// Returns nothing if there is no such contact: the tip's edge above the mouth, or its other edge below the hole's
-/// bottom, or no tilt in (0, pi / 2).
-std::optional<TipPlace> ideal_place(const BlockWithHole& block, double tool_radius, double tilt);
+/// Returns nothing if this contact does not exist: the tip's lower edge is above the mouth, the tip reaches below
+/// the hole's bottom, or the tilt is outside (0, pi / 2).
+std::optional<TipPosition> ideal_place(const BlockWithHole& block, double tool_radius, double tilt);
 
-/// Hands that push with less than this force are gentle [N]: the thesis divides its figure 7 there.
+/// Hand forces below this value count as gentle, all others as firm [N]. The thesis divides its figure 7 at this
+/// force.
 inline constexpr double kGentleForce = 2.0;
 
-/// Deviation of one row from the ideal trajectory.
+/// Deviation of one step from the ideal trajectory.
 struct TrajectoryError {
-  double tilt = 0.0;  ///< [rad]
-  TipPlace actual;
-  TipPlace ideal;
+  double tilt = 0.0;  ///< angle between the axes of tool and hole [rad]
+  TipPosition actual;
+  TipPosition ideal;
   double interpenetration = 0.0;  ///< true depth of the tool in the block [m]
-  double hand_force = 0.0;        ///< norm [N]
+  double hand_force = 0.0;        ///< norm of the hand's force [N]
 };
 
-/// Compares rows 0, every, 2 every, … with the ideal trajectory and the exact hole. Allocates nothing; about 2 us each.
+/// Compares steps 0, every, 2 every, … with the ideal trajectory and the exact hole. Allocates nothing; about 2 us
+/// for a compared step.
 class IdealTrajectoryObserver final : public MetricObserver {
  public:
   /// Precondition: every > 0.
@@ -61,12 +65,14 @@ class IdealTrajectoryObserver final : public MetricObserver {
   void begin(const TrialParts& trial) override;
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Error of the last row; nothing where the ideal trajectory does not exist or the row is not compared.
+  /// Deviation in the last step; empty if the ideal trajectory does not exist at its tilt, or if the step is not
+  /// compared.
   const std::optional<TrajectoryError>& error() const noexcept { return error_; }
   void tell(Section& section) const override;
 
  private:
-  /// Sums and extremes of a length over rows [m, m^2]; the extremes are not finite without rows.
+  /// Sums [m, m^2] and extremes [m] of a length over the compared steps; without steps, the extremes are not
+  /// finite.
   struct Spread {
     double sum = 0.0, squares = 0.0;
     double min = std::numeric_limits<double>::infinity(), max = -std::numeric_limits<double>::infinity();
@@ -78,7 +84,8 @@ class IdealTrajectoryObserver final : public MetricObserver {
       max = std::max(max, value);
     }
   };
-  /// Sums over the compared rows of one kind of hand: actual minus ideal place, and the interpenetration.
+  /// Statistics over the compared steps with gentle or with firm hand force: actual minus ideal position, and
+  /// interpenetration.
   struct Errors {
     std::uint64_t rows = 0;
     Spread height, lateral, interpenetration;
@@ -96,8 +103,8 @@ class IdealTrajectoryObserver final : public MetricObserver {
   Cylinder tool_;
   std::uint64_t every_;
   std::optional<TrajectoryError> error_;
-  Errors gentle_, firm_;                  ///< of hands below kGentleForce, and of the rest
-  std::uint64_t rows_without_ideal_ = 0;  ///< tilts at which the ideal trajectory does not exist
+  Errors gentle_, firm_;                  ///< of hand forces below kGentleForce, and of the others
+  std::uint64_t rows_without_ideal_ = 0;  ///< compared steps at whose tilt the ideal trajectory does not exist
 };
 
 }  // namespace hapbench

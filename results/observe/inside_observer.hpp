@@ -14,74 +14,78 @@ namespace hapbench {
 
 class MetricsObserver;
 
-/// How deep the tool was in the environment, in a trial or in several.
+/// Depths of the tool in the environment, in one or several trials.
 struct InsideDepths {
-  std::optional<double> max;    ///< of any point of the tool in any row [m]
-  std::vector<double> settled;  ///< of rows in settled contact [m]
-  /// How much `max` and `settled` may be too low, on top of InsideSearch::kTolerance of them [m].
+  std::optional<double> max;    ///< largest depth of any point of the tool in any step [m]
+  std::vector<double> settled;  ///< depths of the tool in some steps in settled contact [m]
+  /// Largest amount by which `max` and `settled` may be too small, in addition to the fraction
+  /// InsideSearch::kTolerance of them [m].
   double max_within = 0.0, settled_within = 0.0;
-  std::uint64_t rows = 0;  ///< with the tip centre where the inside is known
-  std::uint64_t centre_inside = 0;
+  std::uint64_t rows = 0;           ///< steps in which the side of the tip centre is known
+  std::uint64_t centre_inside = 0;  ///< steps with the tip centre inside
 
   std::optional<double> settled_median() const;
-  /// The deepest that a row can be whose deepest point was looked for [m].
-  double searched_max() const { return (1.0 + InsideSearch::kTolerance) * max.value_or(0.0); }
-  /// Adds the depths of another trial.
+  /// Largest depth that a searched step can have, given `max` and the search's tolerance [m].
+  double max_bound() const { return (1.0 + InsideSearch::kTolerance) * max.value_or(0.0); }
+  /// Merges the depths of another trial into these.
   void add(const InsideDepths& trial);
-  /// Tells the metrics; `has_settled`: settled contact was long enough for those of it.
+  /// Reports the metrics. `has_settled`: settled contact was long enough for its metrics.
   void tell(Section& section, bool has_settled) const;
 };
 
-/// How the tool passed the surface in a run: by its tip centre, and by the foremost place of its core, half the tool's
-/// width within the body behind its tip (of a ball the tip centre, of a flat tip half a width behind it). By the rest
-/// of its core: CorePassage.
+/// Passage of the tool through the surface in a run, detected by two points: the tip centre, and the core's front
+/// point, which lies within the body half the tool's width behind the tip (the tip centre of a ball; half a width
+/// behind the tip centre of a flat tip). CorePassage detects passages of the rest of the core.
 struct Passage {
   struct Event {
     double time;  ///< [s]
     Vec3 place;   ///< [m]
   };
-  std::optional<Event> deep;               ///< when the tip centre first was deeper than the half width
-  double deepest = 0.0, last_depth = 0.0;  ///< of the tip centre in any row, within 2 %, and in the last one [m]
-  bool began_inside = false, ends_inside = false;  ///< that place, in the first and in the last row
-  /// When that place first left the solid on another side than it came, and where it had entered: the surface faces the
-  /// other way there, by more than a right angle.
+  std::optional<Event> deep;  ///< first step with the tip centre deeper than half the tool's width
+  /// Depth of the tip centre [m]: largest of all steps (within 2 %), and in the last step.
+  double deepest = 0.0, last_depth = 0.0;
+  bool began_inside = false, ends_inside = false;  ///< front point inside, in the first and in the last step
+  /// First step in which the front point left the solid on another side than it had entered: the surface normals at
+  /// entry and exit differ by more than 90 degrees. `entered` is the position of the entry.
   std::optional<Event> left;
   Vec3 entered = Vec3::Zero();  ///< [m]
 
   bool went_through() const noexcept { return deep || left || ends_inside; }
 };
 
-/// Distance from the tip centre back to the place half the tool's width within the body [m]; of a ball 0.
+/// Returns the distance from the tip centre back to the front point of the core, half the tool's width within the
+/// body [m]; 0 for a ball.
 double way_to_core(const ToolShape& tool);
 
-/// On which side of the surface a place is; unknown beyond the border of an open one.
+/// Side of the surface on which a point lies; unknown beyond the border of an open surface.
 enum class SolidSide { unknown, outside, inside };
 
-/// Finds a tool that goes through a wall, also one thinner than the tool: by its core, the part of its axis that is in
-/// its body, from the tip centre to the far end. While no contact is deep, the core of a flat tip begins 0.9 half
-/// widths behind the tip centre, because its tip centre is in the surface at any depth. The core has gone through when
-/// it crosses the solid from face to face at one time, the faces looking away from each other, or when a part of it
-/// comes out by a face that looks away from the one by which it had entered. A row costs a look, some 20 distances
-/// along the axis, only while a contact is deep (looks_from_) or the way of a row long, once the core has moved by its
-/// distance from the surface, and before the first passage. Allocates when constructed.
+/// Detects a tool that passes through a wall, also a wall thinner than the tool. It follows the core: the part of
+/// the tool's axis within the body, from the tip centre to the far end. While no contact is deep, the core of a
+/// flat tip begins 0.9 half widths behind the tip centre, because the tip centre is in the surface at any depth.
+/// The core has passed if it crosses the solid from face to face at one time, with faces of opposed normals, or if
+/// a part of it leaves by a face opposed to the face by which it entered. A step needs a check (about 20 distances
+/// along the axis) only before the first passage, while a contact is deeper than check_depth_ or the tool moves
+/// far, and once the core has moved by its distance from the surface. Allocates only in the constructor.
 class CorePassage {
  public:
   struct Event {
     double time;         ///< [s]
     Vec3 entered, left;  ///< [m]
-    bool at_once;        ///< from face to face
+    bool at_once;        ///< true if the core crossed from face to face at one time
   };
 
   CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> solid);
 
-  /// A row: its deepest contact, and how far the tip centre or a place near it moved [m].
+  /// Adds a step. `deepest_contact`: depth of its deepest contact [m]. `moved`: distance that the tip centre or a
+  /// point near it moved since the step before [m].
   void add(const ToolPose& pose, double deepest_contact, double moved, double time) noexcept {
     if (event_) return;
-    if (deepest_contact >= looks_from_ || moved > looks_from_way_) {
-      look(pose, deepest_contact, time);
+    if (deepest_contact >= check_depth_ || moved > check_displacement_) {
+      check_core(pose, deepest_contact, time);
     } else {
-      free_way_ = 0.0;
-      follows_ = false;
+      free_distance_ = 0.0;
+      continues_ = false;
     }
     position_ = pose.position;
     axis_ = pose.axis;
@@ -91,94 +95,98 @@ class CorePassage {
   const std::optional<Event>& event() const noexcept { return event_; }
 
  private:
-  /// A stretch of the core that is inside, from `low` to `high` on the axis [m].
-  struct Stretch {
+  /// A segment of the core that is inside the solid, from `low` to `high` on the axis [m].
+  struct Segment {
     double low, high;
-    std::optional<Vec3> face_low, face_high;  ///< outward normals where it ends at the surface
-    double deepest;                           ///< phi, the least [m]
-    Vec3 deepest_place;
-    /// The face by which it entered, where, and the part that did.
+    std::optional<Vec3> face_low, face_high;  ///< outward normals at the ends that lie at the surface
+    double deepest;                           ///< smallest signed distance phi [m], negative inside
+    Vec3 deepest_position;
+    /// Normal of the face by which the segment entered, position of the entry, and the part [m] that entered there.
     Vec3 normal = Vec3::Zero(), entered = Vec3::Zero();
-    double own_low = 0.0, own_high = 0.0;
-    bool goes_on = false;  ///< a stretch of the next look meets it
+    double entered_low = 0.0, entered_high = 0.0;
+    bool continued = false;  ///< a segment of the next check overlaps this segment
   };
 
-  void look(const ToolPose& pose, double deepest_contact, double time) noexcept;
-  double find_inside(const Vec3& position, const Vec3& axis, double front) noexcept;
+  void check_core(const ToolPose& pose, double deepest_contact, double time) noexcept;
+  double find_segments(const Vec3& position, const Vec3& axis, double front) noexcept;
   void compare(const Vec3& position, const Vec3& axis, double time) noexcept;
-  Vec3 normal_at(const Vec3& place) const noexcept;
+  Vec3 normal_at(const Vec3& point) const noexcept;
 
   std::shared_ptr<const Solid> solid_;
-  double width_;                        ///< half the tool's [m]
-  double far_;                          ///< the core's far end on the axis [m]
-  double shallow_;                      ///< where it begins while no contact is deep [m]
-  double looks_from_, looks_from_way_;  ///< depth of a contact, and way in a row [m]
+  double width_;                             ///< half width of the tool [m]
+  double far_end_;                           ///< coordinate of the core's far end on the axis [m]
+  double shallow_start_;                     ///< coordinate at which the core begins while no contact is deep [m]
+  double check_depth_, check_displacement_;  ///< a check needs a contact this deep or a step this long [m]
 
-  Vec3 position_ = Vec3::Zero(), axis_ = Vec3::Zero();  ///< in the row before
-  bool began_ = false, follows_ = false;                ///< there was a row before; it was also looked at
-  double free_way_ = 0.0;                               ///< of the core, on which nothing changes [m]
-  std::vector<Stretch> now_, inside_;                   ///< of this look and of the one before
+  Vec3 position_ = Vec3::Zero(), axis_ = Vec3::Zero();  ///< tip centre and axis in the step before
+  bool began_ = false, continues_ = false;         ///< there was a step before; the last check was in the step before
+  double free_distance_ = 0.0;                     ///< distance that the core can move without meeting the surface [m]
+  std::vector<Segment> segments_, last_segments_;  ///< segments of this check and of the last check
   std::optional<Event> event_;
 };
 
-/// Keeps poses of a run in a fixed memory: of some parts of equally many rows each the one with the largest key, and
-/// how far the others are from it.
+/// Keeps a fixed number of poses of a run. The run is divided into blocks of equally many steps. Each block keeps
+/// the pose with the largest key, and a bound on the distance of the block's other poses from it.
 class PoseSamples {
  public:
   struct Sample {
     ToolPose pose;
     double key;
-    double way = 0.0;  ///< the most by which a point of the tool is elsewhere in another row [m]
+    /// Upper bound of the distance of any point of the tool between this pose and the block's other poses [m].
+    double max_motion = 0.0;
   };
-  /// `most`: even. The tool must outlive the samples.
-  PoseSamples(std::size_t most, const ToolShape& tool) : most_(most), tool_(tool) { samples_.reserve(most); }
+  /// Precondition: `max_samples` is even, and the tool outlives this object.
+  PoseSamples(std::size_t max_samples, const ToolShape& tool) : max_samples_(max_samples), tool_(tool) {
+    samples_.reserve(max_samples);
+  }
   void add(const ToolPose& pose, double key) noexcept {
-    if (rows_left_ == 0) return begin_part(pose, key);
+    if (rows_left_ == 0) return begin_block(pose, key);
     --rows_left_;
-    Sample& part = samples_.back();
-    const double moved = tool_.moved_at_most(part.pose, pose);
-    if (key > part.key) {
-      part = {pose, key, part.way + moved};
-    } else if (moved > part.way) {
-      part.way = moved;
+    Sample& block = samples_.back();
+    const double moved = tool_.moved_at_most(block.pose, pose);
+    if (key > block.key) {
+      block = {pose, key, block.max_motion + moved};
+    } else if (moved > block.max_motion) {
+      block.max_motion = moved;
     }
   }
   const std::vector<Sample>& all() const noexcept { return samples_; }
 
  private:
-  std::size_t most_;
+  std::size_t max_samples_;
   const ToolShape& tool_;
   Sample joined(const Sample& a, const Sample& b) const noexcept;
-  void begin_part(const ToolPose& pose, double key) noexcept;
+  void begin_block(const ToolPose& pose, double key) noexcept;
 
   std::vector<Sample> samples_;
-  std::uint64_t rows_left_ = 0, rows_of_part_ = 1;  ///< rows to come of the last part
+  std::uint64_t rows_left_ = 0, rows_of_block_ = 1;  ///< steps still to come in the last block; steps of a block
 };
 
-/// Watches how deep the tool is in one trial. A row costs some ten nanoseconds: a point cannot pass the surface before
-/// it has moved by its distance, so that few rows need a look. The deepest point of the tool is looked for after the
-/// run, in the rows with the deepest contact or centre, in those that may be deeper still (InsideBound), and in some in
-/// settled contact; or in every `every`-th row. Does not allocate during the run.
+/// Observes how deep the tool is in the environment in one trial. A step costs about ten nanoseconds: a point
+/// cannot pass the surface before it has moved by its distance from it, so few steps need a check. The deepest
+/// point of the tool is searched after the run: in the steps with the deepest contact or tip centre, in the steps
+/// that may be deeper (InsideBound), and in some steps in settled contact. With `every` > 0 it is instead searched
+/// in each `every`-th step. Does not allocate during the run.
 class InsideObserver final : public Observer {
  public:
-  /// `metrics`, if given, observes before this and tells which rows are in settled contact. `every`: 0 where no row is
-  /// looked at during the run. `steps`: how many rows the run has.
+  /// `metrics`: if given, observes before this observer and knows which steps are in settled contact. `every`: 0:
+  /// no search during the run. `steps`: number of steps of the run.
   InsideObserver(std::shared_ptr<const ToolShape> tool, std::shared_ptr<const Solid> solid,
                  const MetricsObserver* metrics = nullptr, std::uint64_t every = 0, std::uint64_t steps = 0);
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Depth of the tool in the last row [m]; empty if unknown and in rows that are not looked at.
+  /// Depth of the tool in the last step [m]; empty if unknown, and in steps without a search.
   const std::optional<double>& depth() const noexcept { return depth_; }
   const Passage& passage() const noexcept { return passage_; }
   const CorePassage& core_passage() const noexcept { return core_passage_; }
-  /// After the run; looks for the deepest points.
+  /// Searches the deepest points and returns the depths. Call after the run.
   InsideDepths depths();
 
  private:
-  void look_at_tip(const StepRecord& record) noexcept;
-  void march(const Vec3& place, double length, double time) noexcept;
-  void note_core(const Vec3& place, const SurfaceDistance& phi, double time) noexcept;
+  void check_tip(const StepRecord& record) noexcept;
+  void march(const Vec3& point, double length, double time) noexcept;
+  void update_side(const Vec3& point, const SurfaceDistance& phi, double time) noexcept;
   double find_deepest(InsideDepths& depths);
 
   std::shared_ptr<const ToolShape> tool_;
@@ -189,18 +197,19 @@ class InsideObserver final : public Observer {
   std::optional<double> depth_;
   InsideDepths depths_;
   Passage passage_;
-  double back_;  ///< of the core behind the tip centre [m]
+  double back_;  ///< distance of the core's front point behind the tip centre [m]
 
   bool began_ = false;
-  Vec3 tip_looked_ = Vec3::Zero();  ///< where the tip centre's distance was last looked up
-  /// The square of the way from there that needs no look [m^2], with the core outside and inside.
+  Vec3 tip_checked_ = Vec3::Zero();  ///< position of the tip centre when its distance was last evaluated [m]
+  /// Squared distance from tip_checked_ within which no new evaluation is needed [m^2], with the core outside and
+  /// inside.
   double tip_free2_ = 0.0, tip_free2_inside_ = 0.0;
   SurfaceDistance tip_phi_;
-  Vec3 core_ = Vec3::Zero();  ///< in the row before
-  double free_way_ = 0.0;     ///< of the core, on which it cannot meet the surface [m]
+  Vec3 core_ = Vec3::Zero();    ///< the core's front point in the step before [m]
+  double free_distance_ = 0.0;  ///< distance that the front point can move without meeting the surface [m]
   SolidSide side_ = SolidSide::unknown;
-  Vec3 outside_ = Vec3::Zero();  ///< where the core was last seen outside
-  std::optional<Vec3> entry_normal_;
+  Vec3 outside_ = Vec3::Zero();       ///< last position of the front point outside [m]
+  std::optional<Vec3> entry_normal_;  ///< outward normal at the entry; empty while the front point is outside
   CorePassage core_passage_;
   PoseSamples deepest_, settled_;
 };

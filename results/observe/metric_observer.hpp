@@ -12,36 +12,37 @@ namespace hapbench {
 
 class ReferenceForce;
 
-/// A trial of a run before its first row. Nearly all runs have one trial.
+/// A trial of a run before its first step. Most runs have one trial.
 struct TrialParts {
   const SimulationConfig& config;
-  const SimulationParts& simulation;          ///< lives until the trial has ended
-  const ReferenceForce* reference = nullptr;  ///< null without; lives as long as the run
-  std::size_t subject = 0, trial = 0;         ///< of a tracking hand, from 0
+  const SimulationParts& simulation;          ///< valid until the trial ends
+  const ReferenceForce* reference = nullptr;  ///< null: no reference force; valid until the run ends
+  std::size_t subject = 0, trial = 0;         ///< numbers of subject and trial of a tracking hand, from 0
 };
 
-/// A quotient of counts or sums, such as a mean or a share. Of nothing it is not finite, and so no value of a metric.
+/// Returns part / whole, such as a mean or a fraction. If `whole` is 0 the result is not finite, so a metric has no
+/// value.
 inline double per(auto part, auto whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// Takes the metrics of an observer, in the order in which it tells them.
+/// Collects the metrics of an observer in a list, in the order of the calls of `metric`.
 class Section {
  public:
-  /// Adds to a list, with `name` and a dot in front of the metrics' names; an empty one adds nothing in front.
+  /// Appends to `list`. The metrics' names are prefixed with `name` and a dot; an empty `name` adds no prefix.
   Section(MetricList& list, std::string_view name) : list_(list), prefix_(name) {
     if (!prefix_.empty()) prefix_ += '.';
   }
 
-  /// A metric as Metric describes it. Its name, unit and meaning do not depend on the run. A value that is not finite
-  /// is none.
+  /// Appends a metric; the arguments are as in Metric. Name, unit and meaning must not depend on the run. A value
+  /// that is not finite is stored as no value.
   template <class Given>
   Metric& metric(const std::string& name, const char* unit, const char* meaning, const Given& value,
                  Better better = Better::none) {
     list_.push_back({prefix_ + name, unit, meaning, metric_value(value), better});
     return list_.back();
   }
-  /// The section of that name in this one.
+  /// Returns the subsection with this name.
   Section part(std::string_view name) const { return {list_, prefix_ + std::string(name)}; }
 
  private:
@@ -49,15 +50,17 @@ class Section {
   std::string prefix_;
 };
 
-/// An observer that tells what it saw as metrics of summary.json. `tell` is the one place that names and documents
-/// them: an observer that saw nothing tells the same list, which is the documentation.
+/// An observer that reports metrics of summary.json. `tell` is the only place that names and documents them: an
+/// observer without data reports the same list, which serves as documentation.
 class MetricObserver : public Observer {
  public:
-  /// Called before the first row of each trial. Differences between the last row of a trial and the first of the next
-  /// must not count: an observer whose numbers make sense over several trials goes on adding, any other starts anew.
+  /// Called before the first step of each trial. Differences between the last step of a trial and the first step of
+  /// the next must not count. An observer whose numbers are meaningful over several trials continues its sums; any
+  /// other observer starts anew.
   virtual void begin(const TrialParts& trial) = 0;
+  /// Reports all metrics. Called after the run, or without any run for documentation.
   virtual void tell(Section& section) const = 0;
-  /// Adds the members of its section in summary.json that are not metrics.
+  /// Adds those members of the observer's section in summary.json that are not metrics.
   virtual void add_members(nlohmann::ordered_json&) const {}
 };
 

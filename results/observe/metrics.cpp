@@ -17,11 +17,11 @@ std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator,
 
 namespace {
 
-/// Replaces `sorted` by the numbers in ascending order. Allocates nothing within its capacity.
+/// Sets `sorted` to the numbers in ascending order. Allocates nothing if they fit into its capacity.
 void sort_into(std::vector<std::uint32_t>& sorted, std::span<const std::uint32_t> numbers) noexcept {
   assert(numbers.size() <= sorted.capacity());
   sorted.assign(numbers.begin(), numbers.end());
-  if (!std::ranges::is_sorted(sorted)) std::ranges::sort(sorted);  // without a shuffle the order ascends as a rule
+  if (!std::ranges::is_sorted(sorted)) std::ranges::sort(sorted);  // usually ascending, unless the points were shuffled
 }
 
 }  // namespace
@@ -32,10 +32,10 @@ ReductionJumps::ReductionJumps(std::size_t capacity) {
 
 void ReductionJumps::add(const ContactBuffer& kept, double step_squared, bool settled) noexcept {
   const std::span<const std::uint32_t> now(kept.index.data(), kept.size());
-  // Most rows keep the same points in the same order.
+  // In most steps the same points are kept in the same order.
   if (std::ranges::equal(now, last_)) return;
 
-  // Compare the points without their order.
+  // Compare the sets of points.
   bool same = false;
   if (now.size() == last_.size()) {
     sort_into(sorted_now_, now);
@@ -91,7 +91,7 @@ void MetricsObserver::add_motion(const Vec3& position, const Vec3& v) noexcept {
 }
 
 ForceChange MetricsObserver::add_force(const RenderedForce& force) noexcept {
-  // The force before the first row is zero, so that this row reverses nothing.
+  // The force before the first step counts as zero, so the first step reverses nothing.
   ForceChange change;
   change.reverses = force.rendered.dot(last_force_) < 0.0;
   if (change.reverses) ++force_reversals_;
@@ -132,8 +132,8 @@ std::uint64_t MetricsObserver::state_hash() const noexcept {
 }
 
 void MetricsObserver::tell(Section& s) const {
-  tell_motion_and_force(s);
-  tell_contacts(s);
+  report_motion_and_force(s);
+  report_contacts(s);
   s.metric("speed_max_m_per_s", "m/s", "largest speed of the tip's centre", std::sqrt(speed_max_squared_));
   s.metric("explicit_friction_limit_N", "N",
            "largest ||f_spring|| whose friction the explicit integrator steps stably, (B_max - mu_s) / mu_f",
@@ -151,7 +151,7 @@ void MetricsObserver::tell(Section& s) const {
            reduction_ ? reduction_->step_max() : std::nullopt, Better::less);
 }
 
-void MetricsObserver::tell_motion_and_force(Section& s) const {
+void MetricsObserver::report_motion_and_force(Section& s) const {
   s.metric("force_max_N", "N", "largest ||f|| of a row", std::sqrt((before_ + now_).force_max_squared), Better::less);
   s.metric("force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||, landings included",
            std::sqrt(force_step_max_squared_), Better::less);
@@ -169,7 +169,7 @@ void MetricsObserver::tell_motion_and_force(Section& s) const {
            depth_max_, Better::less);
 }
 
-void MetricsObserver::tell_contacts(Section& s) const {
+void MetricsObserver::report_contacts(Section& s) const {
   const TrialContact all = before_ + now_;
   s.metric("ratio_min", "1",
            "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in units "

@@ -8,18 +8,21 @@
 namespace hapbench {
 namespace {
 
-/// Empty steps that are timed to measure the cost of timing: so many that the first, with cold caches, do not count.
+/// Number of empty steps timed to measure the time of a clock reading. There are enough that the first ones, with
+/// cold caches, do not affect the median.
 constexpr std::size_t kEmptySteps = 501;
 
 using Times = std::vector<std::uint64_t>;
 
-/// Percentile by nearest rank, in tenths of a percent so that the rank is exact. Precondition: sorted and not empty.
+/// Returns a percentile by nearest rank; `per_mille` is in tenths of a percent, so that the rank is exact.
+/// Precondition: sorted and not empty.
 std::uint64_t percentile(const Times& sorted, std::size_t per_mille) {
   const std::size_t rank = (sorted.size() * per_mille + 999) / 1000;
   return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
 
-/// Bin k holds the times of k binary digits: 0, 1, 2 … 3, 4 … 7 and so on. The clock counts up to 63 of them.
+/// Returns the histogram. Bin k counts the times with k binary digits: 0, 1, 2 … 3, 4 … 7 and so on, up to 63
+/// digits.
 std::vector<StepLatency::Bin> histogram(const Times& sorted) {
   std::array<std::uint64_t, std::numeric_limits<std::int64_t>::digits + 1> count = {};
   for (const std::uint64_t time : sorted) ++count[static_cast<std::size_t>(std::bit_width(time))];
@@ -32,6 +35,7 @@ std::vector<StepLatency::Bin> histogram(const Times& sorted) {
   return bins;
 }
 
+/// Returns the median of each of up to kSpans consecutive intervals.
 Times medians_over_time(std::span<const std::uint64_t> times) {
   const std::size_t spans = std::min(times.size(), StepLatency::kSpans);
   Times medians;
@@ -47,7 +51,7 @@ Times medians_over_time(std::span<const std::uint64_t> times) {
 
 }  // namespace
 
-// The buffer is filled with zeros, so that its pages exist before the first step.
+// Filling the buffer with zeros makes the operating system allocate its pages before the first step.
 StepTimes::StepTimes(std::size_t capacity) : times_(std::max(capacity, kEmptySteps)) {
   start();
   for (std::size_t i = 0; i < kEmptySteps; ++i) lap();
@@ -66,8 +70,8 @@ void StepTimes::lap() noexcept {
 }
 
 void StepSampler::on_step(const StepRecord& record) noexcept {
-  has_row_ = !has_row_;
-  if (has_row_) {
+  observing_ = !observing_;
+  if (observing_) {
     if (std::exchange(runs_, false)) times_.lap();
   } else if (record.step % every_ == 0) {
     runs_ = true;

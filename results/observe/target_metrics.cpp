@@ -23,6 +23,7 @@ void TargetMetricsObserver::fail_rest() {
 
 void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
   const TargetTask& task = *record.task;
+  // If a target has ended, convert its sums to means.
   if (task.results().size() > ended()) {
     TargetRow row = current_;
     row.target = ended();
@@ -34,6 +35,7 @@ void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
     rows_.push_back(row);
     current_ = {.subject = row.subject, .trial = row.trial};
   }
+  // Add the step to the sums of the current target.
   if (task.finished() || !task.logs(record.tool.pose.position)) return;
   ++current_.rows_on_target;
   current_.model_force += record.force.rendered.norm();
@@ -42,7 +44,7 @@ void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
 
 namespace {
 
-/// The values of one quantity at one place, by subject.
+/// Values of one quantity at one target position, by subject.
 using ValuesOfSubjects = std::map<std::size_t, std::vector<double>>;
 
 double mean_of(const std::vector<double>& values) {
@@ -62,7 +64,7 @@ SubjectMean over_subjects(const ValuesOfSubjects& subjects) {
   return result;
 }
 
-void tell_mean(Section s, const SubjectMean& m, const char* unit, const char* meaning, Better better = Better::none) {
+void report_mean(Section s, const SubjectMean& m, const char* unit, const char* meaning, Better better = Better::none) {
   const bool any = m.subjects > 0;
   s.metric("mean", unit, meaning, if_any(any, m.mean), better);
   s.metric("standard_error", unit, "standard error of that mean, over subjects", if_any(any, m.standard_error));
@@ -75,6 +77,7 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
   struct Values {
     ValuesOfSubjects success, time, force, speed;
   };
+  // Collect the values of each target position by subject.
   std::map<std::size_t, Values> places;
   for (const TargetRow& row : rows) {
     Values& at = places[row.result.place];
@@ -84,6 +87,7 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
     at.force[row.subject].push_back(row.model_force);
     at.speed[row.subject].push_back(row.speed);
   }
+  // Average over the subjects.
   std::vector<PlaceMetrics> metrics;
   for (const auto& [place, at] : places) {
     metrics.push_back(
@@ -100,15 +104,15 @@ void TargetMetricsObserver::tell(Section& s) const {
   }
   for (const PlaceMetrics& place : places) {
     const Section at = s.part(std::to_string(place.place));
-    tell_mean(at.part("success_rate"), place.success_rate, "1",
-              "share of the targets at this place that were removed, mean over subjects", Better::more);
-    tell_mean(at.part("completion_time_s"), place.completion_time, "s",
-              "time until a target at this place was removed or the limit was reached, mean over subjects",
-              Better::less);
-    tell_mean(at.part("model_force_N"), place.model_force, "N",
-              "mean ||f|| of the rows logged at a target of this place, mean over subjects");
-    tell_mean(at.part("speed_m_per_s"), place.speed, "m/s",
-              "mean speed of the handle in the rows logged at a target of this place, mean over subjects");
+    report_mean(at.part("success_rate"), place.success_rate, "1",
+                "share of the targets at this place that were removed, mean over subjects", Better::more);
+    report_mean(at.part("completion_time_s"), place.completion_time, "s",
+                "time until a target at this place was removed or the limit was reached, mean over subjects",
+                Better::less);
+    report_mean(at.part("model_force_N"), place.model_force, "N",
+                "mean ||f|| of the rows logged at a target of this place, mean over subjects");
+    report_mean(at.part("speed_m_per_s"), place.speed, "m/s",
+                "mean speed of the handle in the rows logged at a target of this place, mean over subjects");
   }
 }
 

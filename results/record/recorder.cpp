@@ -21,14 +21,15 @@
 namespace hapbench {
 namespace {
 
-/// Columns of trajectory.csv and what fills them in a row: a number, or a vector of as many.
+/// Columns of trajectory.csv and the function that returns their values in a step: a number, or a vector with a
+/// component per column.
 template <std::size_t n, class Cells>
 constexpr std::pair<std::array<Column, n>, Cells> filled(const Column (&columns)[n], Cells cells) {
   return {std::to_array(columns), cells};
 }
 
-/// The columns that every trajectory.csv has.
-constexpr auto kUsual = std::tuple{
+/// Columns that every trajectory.csv has.
+constexpr auto kCommonColumns = std::tuple{
     filled({kStepColumn}, [](const StepRecord& r) { return r.step; }),
     filled({kTimeColumn}, [](const StepRecord& r) { return r.time; }),
     filled({{"px_m", "m", "x of the tip's centre"},
@@ -72,7 +73,7 @@ constexpr auto kUsual = std::tuple{
     filled({{"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"}},
            [](const StepRecord& r) { return if_any(!r.rendered->empty(), r.ratio.max); })};
 
-/// w, x, y, z; of the two quaternions of one rotation the one with w >= 0.
+/// Returns the unit quaternion w, x, y, z of a rotation with w >= 0.
 std::array<double, 4> quaternion(const Mat3& rotation) noexcept {
   const Eigen::Quaterniond q(rotation);
   const double sign = q.w() < 0.0 ? -1.0 : 1.0;
@@ -118,17 +119,17 @@ constexpr TrajectoryGroup kGroups[] = {
        *cells = inside != nullptr ? inside->depth() : std::nullopt;
      }}};
 
-/// The columns of trajectory.csv with these fields.
+/// Returns the columns of trajectory.csv with these fields.
 std::vector<Column> trajectory_columns(const TrajectoryExtras& extras) {
   std::vector<Column> columns;
   const auto add = [&columns](const auto& more) { columns.insert(columns.end(), more.begin(), more.end()); };
-  std::apply([&](const auto&... part) { (add(part.first), ...); }, kUsual);
+  std::apply([&](const auto&... part) { (add(part.first), ...); }, kCommonColumns);
   for (const TrajectoryGroup& group : kGroups)
     if (extras.*group.is_wanted) add(group.columns);
   return columns;
 }
 
-/// trajectory.csv with all its columns, and which of them it has with which field.
+/// Returns the documentation of trajectory.csv: all columns, and the fields that add some of them.
 ResultTable whole_trajectory() {
   ResultTable whole{"trajectory.csv", "one line per recorded row, before the tool moves on", {}};
   TrajectoryExtras all;
@@ -279,7 +280,7 @@ RowSource trajectory_rows(const TrajectoryExtras& extras, const InsideObserver* 
       group->fill(record, inside, cells);
       cells += group->columns.size();
     }
-    std::apply([&](const auto&... part) { table.row(part.second(record)..., more); }, kUsual);
+    std::apply([&](const auto&... part) { table.row(part.second(record)..., more); }, kCommonColumns);
   };
   return source;
 }
@@ -321,6 +322,7 @@ RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std
     ContactBuffer& contacts = *copy;
     assert(record.rendered->size() <= contacts.capacity());
     contacts.assign(*record.rendered);
+    // Continue the updates to each requested number and write the ratios.
     Mat3 S = shaping.start(contacts);
     int done = 0;
     for (const int m : iterations) {

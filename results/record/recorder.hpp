@@ -9,7 +9,7 @@
 #include "results/io/table_writer.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// The tables that a run writes row by row. Everything is that before the integrator moves the tool.
+/// The tables that a run writes step by step. All values are those before the integrator moves the tool.
 namespace hapbench {
 
 class EnergyLedger;
@@ -18,41 +18,42 @@ class IdealTrajectoryObserver;
 class InsideObserver;
 struct TargetRow;
 
-/// The fields of a scenario's `record` that add columns to trajectory.csv.
+/// Fields of a scenario's `record` that add columns to trajectory.csv.
 struct TrajectoryExtras {
   bool pose = false;
   bool torque = false;
   bool inside = false;
 };
 
-/// One of these fields and its columns.
+/// A field of TrajectoryExtras and its columns.
 struct TrajectoryGroup {
   bool TrajectoryExtras::*is_wanted;
-  const char* field;   ///< its name
-  const char* effect;  ///< what it does
+  const char* field;   ///< name of the field
+  const char* effect;  ///< what the field does, for the documentation
   std::span<const Column> columns;
-  /// Writes a cell for each column. `inside` observes before the recorder; null without an inside.
+  /// Writes a value for each column to `cells`. `inside` observes before the recorder; null if the inside is
+  /// unknown.
   void (*fill)(const StepRecord& record, const InsideObserver* inside, std::optional<double>* cells);
-  bool wants_roll = false, wants_springs = false;  ///< as those of Observer
+  bool wants_roll = false, wants_springs = false;  ///< see the functions of Observer with the same names
 };
 
-/// All of them, in the order of their columns.
+/// Returns all groups, in the order of their columns.
 std::span<const TrajectoryGroup> trajectory_groups();
 
-/// Makes the lines of a table from the rows of a run.
+/// Makes the lines of a table from the steps of a run.
 struct RowSource {
   std::vector<Column> columns;
-  /// Writes the lines of one row, perhaps none. Allocates nothing.
+  /// Writes the lines of one step, which may be none. Allocates nothing.
   std::function<void(const StepRecord& record, TableWriter& table)> write;
-  /// As those of Observer.
+  /// See the functions of Observer with the same names.
   bool wants_ratio = false, wants_roll = false, wants_springs = false, wants_found = false;
 };
 
-/// An observer that writes one table, to a file or into memory. A file's lines are written during the run through a
-/// buffer of fixed size; a run that is interrupted before `finish` leaves none.
+/// An observer that writes one table, to a file or into memory. Lines are written to the file during the run
+/// through a buffer of fixed size. A run that is interrupted before `finish` leaves no file.
 class Recorder final : public Observer {
  public:
-  /// Keeps rows 0, every, 2 every, … Precondition: every > 0. Throws IoError.
+  /// Records steps 0, every, 2 every, … Precondition: every > 0. Throws IoError.
   Recorder(const TableTarget& target, RowSource source, std::uint64_t every = 1);
 
   bool wants_ratio() const noexcept override { return source_.wants_ratio; }
@@ -63,7 +64,7 @@ class Recorder final : public Observer {
     if (record.step % every_ == 0) source_.write(record, writer_);
   }
 
-  /// After the run: TableWriter::finish.
+  /// Completes the table (TableWriter::finish). Call after the run.
   void finish(FileSet* together = nullptr) { writer_.finish(together); }
 
  private:
@@ -72,41 +73,47 @@ class Recorder final : public Observer {
   std::uint64_t every_;
 };
 
-/// trajectory.csv: one line per row. `inside` as in TrajectoryGroup.
+/// Returns the source of trajectory.csv: one line per recorded step. `inside`: see TrajectoryGroup.
 RowSource trajectory_rows(const TrajectoryExtras& extras = {}, const InsideObserver* inside = nullptr);
-/// contacts.csv: one line per rendered contact, in the order in which the force law saw them.
+/// Returns the source of contacts.csv: one line per rendered contact, in the order of the force law's input.
 RowSource contact_rows();
-/// contact_trace.csv: one line per colliding point, in the order in which the search found them.
+/// Returns the source of contact_trace.csv: one line per colliding point, in the order in which the search found
+/// them.
 RowSource contact_trace_rows();
-/// stiffness_tensor.csv: one line per row.
+/// Returns the source of stiffness_tensor.csv: one line per recorded step.
 RowSource stiffness_rows();
 
-/// Stiffness shaping as two operations on padded contacts. They are parameters because this folder knows no force law.
+/// Stiffness shaping as two operations on padded contacts. They are parameters because this folder does not depend
+/// on any force law.
 struct ShapingOperations {
   /// Sets all weights to 1; returns the stiffness tensor S.
   Mat3 (*start)(ContactBuffer& contacts) noexcept = nullptr;
-  /// Updates the weights once, given the S of the present ones; returns the new S.
+  /// Updates the weights once, given the stiffness tensor S of the current weights; returns the new S.
   Mat3 (*update)(ContactBuffer& contacts, const Mat3& S) noexcept = nullptr;
 };
 
-/// ratios.csv: how the stiffness ratios of the rendered contacts converge with the number of shaping updates (thesis
-/// 3.4, Fig. 5), whatever law the run uses. For each row with contact, one line per number m >= 0 of updates from equal
-/// weights 1, in `iterations` in any order, duplicates once. O(n) per update; as many updates as the largest m.
-/// `capacity`: the most contacts a row can have.
+/// Returns the source of ratios.csv: how the stiffness ratios of the rendered contacts converge with the number of
+/// shaping updates (thesis 3.4, Fig. 5), whatever force law the run uses. For each recorded step with contact, one
+/// line per number m >= 0 of updates from equal weights 1. `iterations`: the numbers m in any order; duplicates are
+/// ignored. `capacity`: largest number of contacts in a step. Cost of a step: O(n) for each update, up to the
+/// largest m.
 RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std::size_t capacity);
 
-/// energy.csv: the energy balance, one line per row. The recorder must observe after `ledger`.
+/// Returns the source of energy.csv: the energy balance, one line per recorded step. Precondition: the recorder
+/// observes after `ledger`.
 RowSource energy_rows(const EnergyLedger& ledger);
-/// ideal_trajectory.csv: one line per row that `observer` compares and at whose tilt the ideal trajectory exists
-/// (thesis Fig. 7). The recorder must observe after `observer` and keep every row.
+/// Returns the source of ideal_trajectory.csv: one line per step that `observer` compares and at whose tilt the
+/// ideal trajectory exists (thesis Fig. 7). Precondition: the recorder observes after `observer` and records every
+/// step.
 RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer);
-/// force_reference.csv: reference force and error of the rendered one. The recorder must observe after `observer`.
+/// Returns the source of force_reference.csv: reference force and error of the rendered force. Precondition: the
+/// recorder observes after `observer`.
 RowSource force_reference_rows(const ForceFidelityObserver& observer);
 
-/// targets.csv: the result of every target of every subject's trials, in that order. Throws IoError.
+/// Writes targets.csv: the result of every target of every subject's trials, in this order. Throws IoError.
 void write_target_table(const TableTarget& target, const std::vector<TargetRow>& rows, FileSet* together = nullptr);
 
-/// The tables above with all their columns.
+/// Documentation of the tables above, with all columns.
 extern const ResultTable kTrajectoryTable, kContactTable, kContactTraceTable, kStiffnessTable, kRatioTable,
     kEnergyTable, kIdealTrajectoryTable, kForceReferenceTable, kTargetTable;
 

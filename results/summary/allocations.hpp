@@ -4,12 +4,13 @@
 
 namespace hapbench {
 
-/// The calling thread's count, for counting_malloc: a run stays on one thread while others may run.
+/// Number of heap allocations of the calling thread, which counting_malloc increments. It is thread-local because a
+/// run stays on one thread while other runs use other threads.
 inline constinit thread_local std::uint64_t allocations_of_thread = 0;
 
-/// Heap allocations of this thread from its construction on: malloc, calloc, realloc and the aligned ones, hence
-/// operator new and Eigen's allocator too, which call them. So summary.json states how many a step loop made (none),
-/// and tests count. 0 in programs other than hapbench and its tests, which link hapbench::counting_malloc.
+/// Counts the heap allocations of this thread since its construction: malloc, calloc, realloc and the aligned
+/// allocations. These include operator new and Eigen's allocator. summary.json reports the count of the step loop
+/// (which is zero). Always 0 in programs that do not link hapbench::counting_malloc; hapbench and its tests do.
 class AllocationCount {
  public:
   std::uint64_t value() const noexcept { return allocations_of_thread - start_; }

@@ -1,4 +1,4 @@
-// Replaces malloc in the program that links this by one that counts.
+// Replaces malloc in the program that links this file by a version that counts.
 #include <cerrno>
 #include <cstddef>
 
@@ -8,7 +8,7 @@ using hapbench::allocations_of_thread;
 
 #ifdef HAPBENCH_SANITIZED
 
-// AddressSanitizer and ThreadSanitizer own malloc and offer hooks instead.
+// AddressSanitizer and ThreadSanitizer replace malloc themselves and provide hooks for counting.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
                                                          void (*free_hook)(const volatile void*));
 
@@ -21,7 +21,7 @@ const int hooks_installed = __sanitizer_install_malloc_and_free_hooks(
 
 #else
 
-// glibc's allocator under its own names. free stays glibc's: what it frees came from there.
+// The internal names of glibc's allocator. free is not replaced, because all blocks still come from glibc.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);

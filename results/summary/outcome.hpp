@@ -8,34 +8,35 @@
 
 namespace hapbench {
 
-/// Outcomes of a run, ordered from best to worst. Several trials have the outcome of the worst trial. The engine
-/// reports why stepping ended early; after all steps, scenarios/run/outcome.hpp judges the outcome from the rows.
+/// Outcomes of a run, ordered from best to worst. A run of several trials has the outcome of its worst trial. The
+/// engine reports why stepping ended early; after all steps, scenarios/run/outcome.hpp decides the outcome from the
+/// recorded rows.
 enum class Outcome {
-  completes,        ///< all steps done, or the hand has finished its task
-  leaves_hole,      ///< by a StopRule
-  tool_horizontal,  ///< by a StopRule
-  not_dragged,      ///< all steps done, but a dragging hand did not move the tool
-  stuck,            ///< all steps done, but a dragged tool came to stand
-  no_contact,       ///< all steps done, but the tool never touched the environment
-  lost_contact,     ///< all steps done, but the tool left the environment
-  went_through,     ///< all steps done, but the tool passed the surface
-  diverges          ///< a value was not finite or left its bound
+  completes,        ///< all steps were executed, or the hand has finished its task
+  leaves_hole,      ///< stopped by a StopRule: the tip centre left the hole
+  tool_horizontal,  ///< stopped by a StopRule: the tool's axis became horizontal
+  not_dragged,      ///< all steps were executed, but a dragging hand did not move the tool
+  stuck,            ///< all steps were executed, but a dragged tool stopped moving
+  no_contact,       ///< all steps were executed, but the tool never touched the environment
+  lost_contact,     ///< all steps were executed, but the tool left the environment
+  went_through,     ///< all steps were executed, but the tool passed through the surface
+  diverges          ///< a value was not finite or exceeded its bound
 };
 
-/// The outcome of a run that nothing else is known of than how its stepping ended.
+/// Returns the outcome that follows from the end of stepping alone.
 Outcome outcome_of(Ending ending) noexcept;
 
-/// An outcome in words.
+/// Name and description of an outcome.
 struct OutcomeInfo {
-  std::string_view name;    ///< in files, as "completes"
-  const char* meaning;      ///< in a sentence without its full stop
-  bool is_failure = false;  ///< the numbers of such a run say nothing about the algorithm
+  std::string_view name;    ///< name in files, such as "completes"
+  const char* meaning;      ///< one sentence without a full stop
+  bool is_failure = false;  ///< true if the metrics of such a run do not characterise the algorithm
 };
 
-/// All outcomes, in the order of the enumeration.
+/// Returns all outcomes, in the order of the enumeration.
 std::span<const OutcomeInfo> outcome_infos() noexcept;
 std::string_view outcome_name(Outcome outcome) noexcept;
-/// Returns nothing if no outcome has that name.
+/// Returns the outcome with this name; nothing if there is none.
 std::optional<Outcome> outcome_named(std::string_view name) noexcept;
 
 }  // namespace hapbench

@@ -31,7 +31,7 @@ ordered_json divergence_json(const RunEnd& result) {
   return json;
 }
 
-/// The tolerances of the metrics that have one, by the full names of these.
+/// Returns the tolerances of all metrics that have one, by the metric's full name.
 ordered_json tolerances_json(const MetricList& list) {
   ordered_json json = ordered_json::object();
   for (const Metric& metric : list)
@@ -39,25 +39,29 @@ ordered_json tolerances_json(const MetricList& list) {
   return json;
 }
 
-/// The array of a vector whose coordinates are three metrics; null without values.
+/// Returns the array of a vector whose x, y and z are three consecutive metrics; null without values.
 ordered_json vector_json(const Metric* xyz) {
   if (std::holds_alternative<std::monostate>(xyz->value)) return nullptr;
   return {cell_json(xyz[0].value), cell_json(xyz[1].value), cell_json(xyz[2].value)};
 }
 
-/// Puts each metric into the object of its section or "metrics"; dots lead into nested objects, vectors become arrays.
+/// Adds each metric to the object of its section, or to "metrics". Dots in a name create nested objects; vectors
+/// become arrays.
 void add_metrics(ordered_json& json, const MetricList& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
+    // Find the object of the metric's section.
     std::string_view name = list[i].name;
     const std::string section(name.substr(0, name.find('.')));
     const bool in_section = section.size() < name.size() && json.contains(section);
     ordered_json* object = &json[in_section ? section : "metrics"];
     if (in_section) name.remove_prefix(section.size() + 1);
+    // Write a vector as one array.
     if (name.ends_with(".x")) {
       (*object)[std::string(name.substr(0, name.size() - 2))] = vector_json(&list[i]);
       i += 2;
       continue;
     }
+    // Create nested objects for dots in the name.
     for (std::size_t dot; (dot = name.find('.')) != std::string_view::npos; name.remove_prefix(dot + 1))
       object = &(*object)[std::string(name.substr(0, dot))];
     (*object)[std::string(name)] = cell_json(list[i].value);
@@ -114,6 +118,7 @@ ordered_json summary_json(const Result& run) {
     json["diagnosis"] = ordered_json::array();
     for (const Diagnosed& finding : *run.diagnosis) json["diagnosis"].push_back(finding_json(finding));
   }
+  // Create the sections first, to fix their order.
   json["metrics"] = ordered_json::object();
   for (const auto& [section, members] : run.sections.items()) {
     json[section] = ordered_json::object();

@@ -16,12 +16,12 @@
 
 namespace hapbench {
 
-/// Counted work of a run. Counts are exact and repeatable; times are in timing.json.
+/// Counts of the operations of a run. They are exact and reproducible; times are in timing.json.
 struct RunWork {
   SearchWork search;
-  std::uint64_t steps_skipped = 0;  ///< steps without any contact search
+  std::uint64_t steps_skipped = 0;  ///< steps without a contact search
   AlgorithmWork algorithm;
-  std::uint64_t allocations = 0;  ///< on the heap, inside the step loop
+  std::uint64_t allocations = 0;  ///< heap allocations inside the step loop
 
   RunWork& operator+=(const RunWork& other) noexcept {
     search += other.search;
@@ -32,82 +32,85 @@ struct RunWork {
   }
 };
 
-/// Something that may make the numbers of a run mislead; nothing is refused for it.
+/// A warning that the results of a run may be misleading. The run is not rejected.
 struct Warning {
-  std::string kind;     ///< what it is, in a word: the same for the same reason, whatever numbers the text has
-  std::string pointer;  ///< JSON pointer of the field that it is about; empty when it is about the run
-  std::string text;     ///< a sentence
+  std::string kind;     ///< identifier of the reason; does not depend on the numbers in the text
+  std::string pointer;  ///< JSON pointer of the field concerned; empty: the whole run
+  std::string text;     ///< one sentence
 
-  /// As results keep it, equal wherever the files lie.
+  /// Returns the warning as stored in results. Does not depend on the location of the files.
   std::string told() const { return pointer.empty() ? text : pointer + ": " + text; }
 
   bool operator==(const Warning&) const = default;
 };
 
-/// Something wrong with a run: a number beyond the threshold of a rule (scenarios/run/diagnosis.hpp).
+/// A finding of the diagnosis of a run: a number beyond the threshold of a rule (scenarios/run/diagnosis.hpp).
 struct Diagnosed {
-  std::string rule, number, unit;  ///< names of the rule and of its number; "1" for pure numbers
+  std::string rule, number, unit;  ///< name of the rule, name and unit of its number; unit "1": pure number
   double value = 0.0, threshold = 0.0;
-  std::string says, attempt;  ///< what is wrong, and what to try
+  std::string says, attempt;  ///< what is wrong, and what to change
 };
 
 /// Wall times of a run.
 struct RunTiming {
-  double shell = 0.0;                  ///< to make or fetch the environment's points [s]
-  double loop = 0.0;                   ///< of the step loop, observers included [s]
-  std::optional<StepLatency> latency;  ///< of single steps, observers included; nothing when they were not timed
-  /// Median and 99th percentile of the time of a step by itself, without observers and recorders [s] (StepSampler);
-  /// nothing without steps, and no 99th percentile of fewer than a hundred.
+  double shell = 0.0;                  ///< time to compute or load the environment's point shell [s]
+  double loop = 0.0;                   ///< time of the step loop, including observers [s]
+  std::optional<StepLatency> latency;  ///< of single steps, including observers; empty if not measured
+  /// Median and 99th percentile of the time of a step without observers and recorders [s] (StepSampler). Both are
+  /// empty without steps; the 99th percentile is empty for fewer than 100 steps.
   std::optional<double> step_p50 = {}, step_p99 = {};
   std::uint64_t preemptions = 0;  ///< involuntary context switches during the step loop
 };
 
-/// The end of a run, judged.
+/// End of a run and its outcome.
 struct RunEnd {
   Outcome outcome = Outcome::completes;
-  std::uint64_t rows = 0;  ///< rows observed
-  Divergence divergence;   ///< if the outcome is `diverges`
+  std::uint64_t rows = 0;  ///< number of observed steps
+  Divergence divergence;   ///< valid if the outcome is `diverges`
 };
 
 /// The result of a run, or of all trials of a tracking hand.
 struct Result {
-  std::string name;                ///< of the scenario
-  std::string algorithm;           ///< as registered
-  RunEnd end;                      ///< of several trials the worst, with the rows of all
-  bool expected = false;           ///< the run met all that the scenario expects
-  std::vector<std::string> unmet;  ///< expectations that it did not meet
-  double duration = 0.0;           ///< simulated time: rows x dt [s]
-  /// The numbers that a scenario's `expect` may bound and the table of a sweep holds, in this order: those of every run
-  /// under their own names, the final position's coordinates, as "final_position_m.x", then those of the sections, as
-  /// "energy.created_sum_J" or "targets.0.success_rate.mean".
+  std::string name;                ///< name of the scenario
+  std::string algorithm;           ///< registered name of the algorithm
+  RunEnd end;                      ///< of several trials: the worst outcome, and the steps of all trials
+  bool expected = false;           ///< the run met all expectations of the scenario
+  std::vector<std::string> unmet;  ///< expectations that the run did not meet
+  double duration = 0.0;           ///< simulated time: number of steps times dt [s]
+  /// All metrics, in the order of the columns of a sweep's table. A scenario's `expect` can bound them. First the
+  /// metrics of every run under their own names; then the coordinates of the final position, such as
+  /// "final_position_m.x"; then the metrics of the sections, such as "energy.created_sum_J" or
+  /// "targets.0.success_rate.mean".
   MetricList metrics;
-  /// The sections, passivity and others for which the scenario asks, each with an object of what is not a metric, such
-  /// as the events of the energy; null without sections.
+  /// The sections (passivity and the sections requested by the scenario), each an object of the members that are
+  /// not metrics, such as the events of the energy. Null without sections.
   nlohmann::ordered_json sections;
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
-  nlohmann::ordered_json tool;                      ///< tool_json of a tool that is not a cylinder; else null
-  std::vector<Warning> warnings;                    ///< about the files that the scenario names, then about the run
-  std::optional<std::vector<Diagnosed>> diagnosis;  ///< of a run that asked for it
+  nlohmann::ordered_json tool;                      ///< tool_json of a tool that is not a cylinder; null for a cylinder
+  std::vector<Warning> warnings;                    ///< first about the scenario's files, then about the run
+  std::optional<std::vector<Diagnosed>> diagnosis;  ///< empty if the diagnosis was not requested
   RunWork work;
-  std::vector<TargetRow> targets;  ///< of a tracking hand, all subjects and trials
+  std::vector<TargetRow> targets;  ///< targets of all subjects and trials of a tracking hand
   RunTiming timing;
   Provenance provenance;
-  std::string scenario_hash;    ///< of the effective scenario
-  bool replaces_other = false;  ///< its directory had the results of another scenario
+  std::string scenario_hash;    ///< hash of the effective scenario
+  bool replaces_other = false;  ///< the output directory contained results of another scenario
 };
 
-/// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers that do not
-/// exist (a ratio without contact, the final position without rows) or are not finite are null.
+/// Returns summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers
+/// that do not exist (a ratio without contact, the final position without steps) or are not finite are null.
 nlohmann::ordered_json summary_json(const Result& run);
 
-/// Shape of a tool that the scenario's fields do not show, for drawings: half width, reach and outline [m].
+/// Returns the shape of a tool for drawings: half width, reach and outline [m]. The scenario's fields do not
+/// contain it.
 nlohmann::ordered_json tool_json(const ToolShape& tool);
 
-/// A distribution for timing.json, in seconds; percentiles and maximum are null without steps.
+/// Returns a latency distribution for timing.json, in seconds; percentiles and maximum are null without steps.
 nlohmann::ordered_json step_latency_json(const StepLatency& latency);
 
-/// timing.json, separate from summary.json because no two runs take the same time. Names the build's instruction set
-/// and the CPU, which make times comparable. The mean is null without steps, the latency when steps were not timed.
+/// Returns timing.json. It is separate from summary.json because no two runs take the same time. It contains the
+/// build's instruction set and the CPU, on which the times depend. The mean is null without steps, the latency is
+/// null if steps were not timed.
 std::string timing_text(const Result& run);
 
 }  // namespace hapbench
