@@ -16,42 +16,49 @@
 #include "scenarios/program/layout.hpp"
 #include "scenarios/program/table.hpp"
 
-/// Tables of results: one list of columns gives the CSV file, the JSON, the printed table and what `describe` says.
+/// Tables of results. One list of columns gives the CSV file, the JSON, the printed table and the descriptions
+/// that `describe` prints.
 namespace hapbench {
 
-/// Where a column of a table is.
+/// The outputs that include a column of a table.
 struct Shown {
   bool csv = true, json = true, printed = false;
-  bool wide = false;         ///< printed with --wide only
+  bool wide = false;         ///< printed only with --wide
   std::string heading = {};  ///< above the printed column, in two lines at most; empty: its name
-  int digits = 4;            ///< significant ones of a number without a tolerance
+  int digits = 4;            ///< significant digits of a number without a tolerance
 };
 inline const Shown kOnlyJson = {.csv = false}, kOnlyCsv = {.json = false};
-/// Also printed, under a heading; not so when it is empty.
+/// Returns `where` with the column also printed under a heading. With an empty heading the column is not
+/// printed.
 Shown under(std::string heading, int digits = 4, Shown where = {});
-/// In no file; nor printed without a name.
+/// Returns the outputs of a column that is in no file and not in the JSON. It is printed unless its heading and
+/// name are empty. `wide`: printed only with --wide.
 Shown only_printed(bool wide = false);
-/// Nowhere unless the table has the column.
+/// Returns `where` if the table has the column; otherwise the column is in no output.
 Shown when(bool has_it, Shown where = {});
 
-/// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
+/// Returns a cell as text. A number has the digits that are significant at its tolerance, or `shown.digits`
+/// without a tolerance; an empty cell is "-".
 std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance);
 
-/// A table that `describe` knows; without a file one that is only printed.
+/// A table that `describe` explains. `file` is empty for a table that is only printed; `holds` describes its
+/// rows.
 struct DescribedTable {
   struct Entry {
-    std::string name, unit, meaning;  ///< no unit: text
+    std::string name, unit, meaning;  ///< an empty unit marks text
   };
   std::string file = {}, holds = {};
-  std::vector<Entry> columns = {};           ///< of the CSV file
-  std::vector<Table::Column> headings = {};  ///< of the printed table
+  std::vector<Entry> columns = {};           ///< columns of the CSV file
+  std::vector<Table::Column> headings = {};  ///< columns of the printed table
 };
-/// The columns of a table with rows of type `Row`: those that are always there, and those that depend on the question.
+/// The columns of a table with rows of type `Row`: fixed columns, and columns that depend on the command's
+/// options.
 template <class Row>
 class Columns {
  public:
   struct Entry : DescribedTable::Entry {
-    /// `get`: what a row has in the column, as a function of the row or a member of it (cell_of).
+    /// `get` returns the value of a row in this column: a function of the row, or a pointer to a member of the
+    /// row. cell_of() converts the value into a cell.
     template <class Get>
     Entry(std::string its_name, std::string its_unit, std::string its_meaning, Get get, Shown where = {},
           std::function<std::optional<double>(const Row&)> its_tolerance = {})
@@ -62,7 +69,7 @@ class Columns {
 
     std::function<Cell(const Row&)> cell;
     Shown shown;
-    std::function<std::optional<double>(const Row&)> tolerance;  ///< by how much the number may be wrong
+    std::function<std::optional<double>(const Row&)> tolerance;  ///< largest error of a row's number; empty if unknown
 
     const std::string& title() const { return shown.heading.empty() ? name : shown.heading; }
     bool is_printed(bool in_full) const { return shown.printed && !title().empty() && (in_full || !shown.wide); }
@@ -71,6 +78,7 @@ class Columns {
   Columns(std::initializer_list<Entry> entries = {}) : entries_(entries) {}
   void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
+  /// Writes the columns with `csv` to a CSV file, and adds the file to `files`.
   void write(const std::filesystem::path& file, std::span<const Row> rows, FileSet& files) const {
     std::string header;
     for (const Entry& entry : entries_)
@@ -86,6 +94,7 @@ class Columns {
     csv.finish(&files);
   }
 
+  /// Returns the columns with `json` as an object with a member for each column.
   Json json(const Row& row) const {
     Json object = Json::object();
     for (const Entry& entry : entries_)
@@ -98,7 +107,7 @@ class Columns {
     return list;
   }
 
-  /// The printed table, as wide as the layout; `rows`: rows, or references to them.
+  /// Returns the printed table in the width of the layout. `rows` has rows or references to rows.
   template <class Rows>
   std::string text(const Rows& rows, const Layout& layout) const {
     Table table{headings(layout.in_full())};
@@ -113,6 +122,7 @@ class Columns {
     return table.text(layout.width());
   }
 
+  /// Returns the columns of the printed table; `in_full` includes the columns for --wide.
   std::vector<Table::Column> headings(bool in_full = true) const {
     std::vector<Table::Column> headings;
     for (const Entry& entry : entries_)
@@ -121,6 +131,7 @@ class Columns {
     return headings;
   }
 
+  /// Returns the table as `describe` explains it, with all columns of the CSV file and all printed columns.
   DescribedTable described(std::string file = {}, std::string holds = {}) const {
     DescribedTable table{std::move(file), std::move(holds), {}, headings()};
     for (const Entry& entry : entries_)

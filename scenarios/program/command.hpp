@@ -12,19 +12,20 @@ namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
 }
 
-/// A thin front of CLI11, so that few sources compile that header.
+/// A thin wrapper of CLI11, so that few sources compile the large header of CLI11.
 namespace hapbench {
 
-/// How an option or an argument may be given; its variable says of what kind the value is.
+/// Rules for the values of an option or argument. The type of the bound variable sets the type of the value.
 struct Takes {
   bool required = false;
-  bool several = false;          ///< it may be given several times, each time with one value
-  bool comma_separated = false;  ///< several values in one word; white space around them does not count
-  std::optional<std::pair<std::int64_t, std::int64_t>> range = {};  ///< refuses numbers outside
-  std::vector<std::string> one_of = {};                             ///< refuses other words
+  bool several = false;          ///< may be given several times, each time with one value
+  bool comma_separated = false;  ///< has several values between commas; spaces around them are removed
+  std::optional<std::pair<std::int64_t, std::int64_t>> range = {};  ///< smallest and largest allowed number
+  std::vector<std::string> one_of = {};                             ///< allowed values; empty: every value
 };
 
-/// A subcommand that takes its options. The variables bound here are written, and must live, until the line is parsed.
+/// A subcommand to which options are added. Precondition: the bound variables live until the command line has
+/// been parsed, because parsing writes them.
 class Command {
  public:
   template <class... Values>
@@ -36,7 +37,8 @@ class Command {
   /// A name that begins with "--" is an option, another one an argument known by its place.
   void add(const std::string& name, Variable variable, const std::string& help, const Takes& takes = {});
   void flag(const std::string& name, bool& value, const std::string& help);
-  /// Refuses an option without another one, of which it has one at most. Precondition: both were added.
+  /// Makes parsing fail if `option` is given without `other`. An option can require one other option at most.
+  /// Precondition: both options were added.
   void needs(const std::string& option, const std::string& other);
   /// Text below the list of options: paragraphs, which are wrapped.
   void footer(const std::string& text);

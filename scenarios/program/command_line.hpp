@@ -16,14 +16,17 @@
 
 namespace hapbench {
 
-/// The program's command line, to which every command adds itself; `run` parses and runs the one that was chosen.
+/// The parser of the program's command line. Every command adds itself to it; run() parses the arguments and
+/// runs the selected command.
 class CommandLine {
  public:
-  /// The context must outlive the command line.
+  /// Adds all commands. Precondition: the context outlives the command line.
   explicit CommandLine(ProgramContext& context);
 
-  /// Adds a command and the options that `action` is called with when it is chosen; they live as long as the command
-  /// line, and their `output` is what its last options write. `when_stopped`: a note on its results after Ctrl-C.
+  /// Adds a command. Returns the command, for adding its options, and the option values, which live as long as
+  /// the command line. `action` is called with these values if the user selects the command; its member
+  /// `output` receives --quiet and --json. `when_stopped` is the note on the results that the program prints
+  /// after Ctrl-C.
   template <class Options>
   std::pair<Command, Options&> command(const std::string& name, const std::string& summary,
                                        int (*action)(const Options&, ProgramContext&),
@@ -39,9 +42,10 @@ class CommandLine {
     };
     return {add(name, summary, options->output, run, when_stopped), *options};
   }
-  /// Replaces a study by its words, loads the modules that the words and HAPBENCH_MODULE_PATH name, then runs the
-  /// command. Returns its exit status; for a success during which a law from outside failed, kUnexpectedOutcome. Throws
-  /// what the command throws, and InputError for a wrong usage and for modules.
+  /// Runs a command line. Replaces a study by its arguments, loads the modules that --module and
+  /// HAPBENCH_MODULE_PATH name, and runs the command. Returns the exit status of the command, but
+  /// kUnexpectedOutcome if the command succeeded while a loaded module failed. Throws InputError for wrong
+  /// usage and for modules that cannot be loaded, and every exception of the command.
   int run(const ProgramWords& words);
   const std::string& when_stopped() const { return when_stopped_; }
 
@@ -49,14 +53,15 @@ class CommandLine {
   Command add(const std::string& name, const std::string& summary, OutputOptions& output, std::function<int()> action,
               const std::string& when_stopped);
   void add_module_option(CLI::App& app);
-  /// The places of the words that are arguments of the command words[0]: neither options nor values of its options. A
-  /// word behind an unknown option may be its value and is left out. None without a command.
+  /// Returns the indices in `words` of the positional arguments of the command words[0], which are neither
+  /// options nor values of options. Skips an argument that follows an unknown option, because it may be its
+  /// value. Returns no indices without a command.
   std::vector<std::size_t> argument_places(const ProgramWords& words) const;
   int parse_and_run(ProgramWords words);
 
   ProgramContext& context_;
   std::shared_ptr<CLI::App> app_;
-  std::function<int()> action_;  ///< of the chosen command
+  std::function<int()> action_;  ///< action of the selected command
   std::string when_stopped_;
   std::vector<std::pair<CLI::App*, OutputOptions*>> outputs_;
   std::vector<std::string> modules_;

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-/// The list of the commands. Each is defined in a source file or folder of its own name.
+/// The list of the commands. Each command is defined in a source file or folder with the command's name.
 namespace hapbench {
 
 class CommandLine;
@@ -17,7 +17,7 @@ struct CommandGuide {
   std::string_view examples = {};         ///< a line each
 };
 
-/// Every command, in the order of the help.
+/// Returns all commands in the order of the program's help.
 std::span<const CommandGuide> command_guides();
 
 }  // namespace hapbench

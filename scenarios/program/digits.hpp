@@ -3,15 +3,18 @@
 #include <optional>
 #include <string>
 
-/// Numbers with the digits that their tolerance leaves them.
+/// Formats numbers with the digits that are significant at their tolerance. A tolerance is the largest error of
+/// a number, in its unit.
 namespace hapbench {
 
-/// A number with `digits` significant digits; "-" for NaN and infinities.
+/// Returns a number with `digits` significant digits; "-" for NaN and infinities.
 std::string significant(double value, int digits = 4);
-/// How many of `most` significant digits a tolerance leaves a number, one at least: down to its own leading one.
+/// Returns the number of digits of `value` from its leading digit down to the leading digit of the tolerance,
+/// from 1 to `most`. Returns `most` without a tolerance above 0, and for a value that is 0 or not finite.
 int deserved_digits(double value, const std::optional<double>& tolerance, int most);
-/// A number with the digits that its tolerance (> 0) leaves it: down to the tolerance's leading one, and without an
-/// exponent above 1e-4. `digits` significant ones where no tolerance is known, or it is larger than the number.
+/// Returns a number rounded to the decimal place of the leading digit of its tolerance, without an exponent for
+/// values of at least 1e-4. Returns `digits` significant digits if the tolerance is unknown, not above 0, or at
+/// least as large as the number.
 std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4);
 
 }  // namespace hapbench

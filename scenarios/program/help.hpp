@@ -13,11 +13,12 @@ namespace hapbench {
 
 inline constexpr const char* kProgramSummary = "an offline bench for haptic rendering";
 
-/// What the program prints without a command: the commands in their groups, and what to do first.
+/// Returns the text that the program prints without a command: the commands in their groups, and the first
+/// commands to try.
 std::string front_text(const Layout& layout);
-/// The answer of `hapbench --help`.
+/// Returns the text of `hapbench --help`.
 std::string program_help(const Layout& layout);
-/// The help of a command, as wide as prose is.
+/// Returns the help of a command in the layout's width of prose.
 std::string command_help(const CLI::App& command, const Layout& layout);
 
 }  // namespace hapbench

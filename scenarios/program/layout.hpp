@@ -6,21 +6,22 @@
 
 namespace hapbench {
 
-/// How wide the answer of a command is, and prose that is as wide.
+/// The width of printed text, and functions that wrap prose to it.
 class Layout {
  public:
-  /// `width`: of a line [characters]. `in_full`: also the columns of tables that only --wide shows.
+  /// `width` is the length of a line [characters]; npos: unlimited. `in_full` adds the table columns that only
+  /// --wide shows.
   explicit Layout(std::size_t width = std::string::npos, bool in_full = false) : width_(width), in_full_(in_full) {}
-  /// The width of standard output: COLUMNS of the environment, else that of the terminal; unbounded in a pipe or a
-  /// file, and `in_full`.
+  /// Returns the layout of standard output. Its width is the environment variable COLUMNS, or the width of the
+  /// terminal without this variable. The width is unlimited in a pipe or file and with `in_full`.
   static Layout of_output(bool in_full);
 
   std::size_t width() const { return width_; }
-  /// The width of prose: that of a line, but at most 100.
+  /// Returns the width of prose [characters]: width(), at most 100.
   std::size_t prose_width() const;
   bool in_full() const { return in_full_; }
 
-  /// hapbench::wrapped and hapbench::entry in the width of prose.
+  /// These call hapbench::wrapped() and hapbench::entry() with prose_width().
   std::string wrapped(std::string_view text, std::size_t indent = 2) const;
   std::string entry(std::string_view name, std::string_view meaning, std::size_t indent = 2,
                     std::size_t column = 26) const;

@@ -7,21 +7,23 @@
 
 namespace hapbench {
 
-/// Throws InputError about an option unless each of its names is among the valid ones and given once. `shown_by`: a
-/// command that shows the valid ones, see quoted_list.
+/// Throws InputError, with the option's name, unless every name is valid and given once. `shown_by` is the
+/// command that lists the valid names; quoted_list() uses it.
 void require_names(const std::string& option, const std::vector<std::string>& names,
                    const std::vector<std::string>& valid, std::string_view shown_by = {});
-/// Checks the same way and returns the names, where "all" alone stands for all of them.
+/// Returns the names that an option selects, where "all" alone stands for all names. Throws InputError like
+/// require_names().
 std::vector<std::string> chosen_names(const std::string& option, const std::vector<std::string>& given,
                                       const std::vector<std::string>& all, std::string_view shown_by = {});
 
-/// The algorithms of --algorithms.
+/// Returns the algorithms that --algorithms selects. Throws InputError.
 std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given);
 
-/// The metric to show: the one asked for, else the first of kDefaultMetrics. Throws InputError when it is not there.
+/// Returns the requested metric. Without a request, returns the first of kDefaultMetrics that `metrics` has, or
+/// its last entry. Throws InputError if the requested metric is not among `metrics`.
 std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for);
 
-/// The first texts, and behind them how many more there are.
-std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most);
+/// Returns the first `max_count` texts; if there are more, adds a text with the number of omitted texts.
+std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t max_count);
 
 }  // namespace hapbench

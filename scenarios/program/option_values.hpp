@@ -6,14 +6,16 @@
 
 #include "scenarios/analysis/stability/field_limit.hpp"
 
-/// Ranges, bounds and numbers as words of options have them.
+/// Parses ranges, bounds and numbers from values of options.
 namespace hapbench {
 
-/// "a:b"; none for an empty text. Throws InputError that names the option.
+/// Returns the range of a text "a:b" with numbers a < b; empty for an empty text. Throws InputError with the
+/// option's name.
 std::optional<Range> range_of(const char* option, const std::string& text);
-/// Adds "metric=most" or "metric=least:most", as given to --bound. Throws InputError.
+/// Adds the bound of a --bound value, "metric=max" or "metric=min:max", to `bounds`. Throws InputError.
 void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds);
-/// The number that an option was given. Throws InputError unless it is one from `least` to `most`.
+/// Returns the number in the text. Throws InputError with the option's name unless the number lies in [least,
+/// most].
 double number_between(const char* option, const std::string& text, double least, double most);
 
 }  // namespace hapbench

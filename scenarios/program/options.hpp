@@ -12,41 +12,42 @@
 
 namespace hapbench {
 
-/// --quiet, --json and --wide, options of every command.
+/// The options --quiet and --json, which every command has. --wide is in ProgramContext::in_full.
 struct OutputOptions {
-  bool quiet = false;  ///< nothing on standard output, no progress bar
-  bool json = false;   ///< JSON instead of tables on standard output
+  bool quiet = false;  ///< prints nothing on standard output and shows no progress bar
+  bool json = false;   ///< prints JSON instead of tables on standard output
 };
 
-/// An option that means the same in every command that has it.
+/// An option with one meaning in every command that has it.
 struct SharedOption {
   std::string_view name, help;
 };
-/// In the order of the help.
+/// Returns the shared options in the order of the help.
 std::span<const SharedOption> shared_options();
-/// The help of a shared option; empty for other options.
+/// Returns the help text of a shared option; empty for other options.
 std::string shared_option_help(const std::string& name);
 
-/// Options that most commands have.
+/// Values of the options that most commands have.
 struct CommonOptions {
   std::vector<std::string> overrides;
-  unsigned jobs = 0;  ///< 0: as many as this process may use
+  unsigned jobs = 0;  ///< simulations at once; 0: as many as this process may use threads
   std::string out;
   OutputOptions output;
 };
 
-// Each adds an option, add_common all three of CommonOptions.
+// The functions add_overrides, add_jobs, add_out and add_algorithms each add one option; add_common adds
+// --jobs, --out and --set.
 void add_overrides(Command& command, std::vector<std::string>& overrides);
 void add_jobs(Command& command, unsigned& jobs);
-/// `name`: of the folder below results/out without the option.
+/// `name` is the folder below results/out that the command uses without --out.
 void add_out(Command& command, std::string& out, const std::string& name);
-/// `otherwise`: those without the option.
+/// `otherwise` names the algorithms that the command uses without --algorithms.
 void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise);
 void add_common(Command& command, CommonOptions& options, const std::string& name);
 
-/// The threads of --jobs.
+/// Returns the number of threads that --jobs sets, or the number of available threads without it.
 unsigned threads_of(const CommonOptions& options);
-/// The threads of --jobs, and a progress bar behind `label` unless quiet.
+/// Returns job options with the threads of --jobs and, unless quiet, a progress bar after `label`.
 JobOptions job_options(const CommonOptions& options, const std::string& label, const ProgramContext& context);
 
 }  // namespace hapbench

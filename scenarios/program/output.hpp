@@ -10,22 +10,25 @@
 #include "scenarios/program/program_context.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 
-/// What commands print: on standard output and standard error, or for the host that the context names.
+/// Prints results and messages on standard output and standard error, or stores them in
+/// ProgramContext::captured if the context has it.
 namespace hapbench {
 
-/// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
+/// Prints `text`, wrapped to the width of the output. Prints `json` instead under --json, and nothing under
+/// --quiet.
 void print(const ProgramContext& context, const OutputOptions& options, const std::string& text, const Json& json);
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const ProgramContext& context, const std::vector<std::string>& warnings);
-/// Prints those about a scenario, given values first, then files, with the file of each in front.
+/// Prints the warnings about a scenario, each with its file in front: first the warnings about fields, then the
+/// warnings about the files that the scenario names.
 void print_warnings(const ProgramContext& context, const CheckedScenario& checked);
 /// Prints "hapbench: TEXT" on standard error.
 void print_note(const ProgramContext& context, std::string_view text);
 /// Prints "hapbench: error: TEXT" on standard error.
 void print_error(const ProgramContext& context, std::string_view text);
-/// Prints each fault of bad input as an error.
+/// Prints each fault of an InputError as an error line.
 void print_errors(const ProgramContext& context, const InputError& error);
-/// Prints "hapbench: error: TEXT" on standard error, whoever collects what commands print.
+/// Prints "hapbench: error: TEXT" on standard error, even if a host captures the output of commands.
 void write_error(std::string_view text);
 
 }  // namespace hapbench

@@ -12,28 +12,29 @@
 
 namespace hapbench {
 
-/// The output of a command.
+/// The captured output of a command.
 struct CapturedOutput {
-  std::string text;                           ///< of standard output
-  std::vector<std::string> warnings, errors;  ///< notes are among the warnings
+  std::string text;                           ///< text of standard output
+  std::vector<std::string> warnings, errors;  ///< lines of standard error; notes are among the warnings
 };
 
-/// What a command has of the program that runs it. `main` makes it, as does a host such as the Python module, and it is
-/// passed to whoever prints, names the program or creates folders of results. The loaded modules (load_module.hpp) and
-/// the signal to stop (stop_signal.hpp) belong to the process and are not in it; the comments there say why.
+/// State that a command shares with the program that runs it. The function main and hosts such as the Python
+/// module create it. It is passed to functions that print, that name the program, or that create result
+/// folders. Loaded modules (load_module.hpp) and the stop signal (stop_signal.hpp) are not part of it, because
+/// they belong to the process; these two headers give the reasons.
 struct ProgramContext {
-  std::filesystem::path program;       ///< file of the program, which printed commands and the Python packages name
-  CapturedOutput* captured = nullptr;  ///< collects what commands print, for a host that is not a terminal; null: none
-  bool in_full = false;                ///< the option --wide
-  const ProgressListener* progress = nullptr;  ///< hears of progress in place of the terminal; null: bars are drawn
-  LoadingGuard guard_loading = {};             ///< called before a law is loaded, for a host with threads of its own
-  NewDirectories directories = {};             ///< of results; those that are still empty leave with this object
+  std::filesystem::path program;       ///< executable file, named in printed commands and called by Python packages
+  CapturedOutput* captured = nullptr;  ///< receives printed text for a host without a terminal; null: text is printed
+  bool in_full = false;                ///< true with the option --wide
+  const ProgressListener* progress = nullptr;  ///< receives progress instead of the terminal; null: draws bars
+  LoadingGuard guard_loading = {};             ///< called before a module is loaded, for a host with threads of its own
+  NewDirectories directories = {};  ///< created result folders; the destructor removes those that are still empty
 
-  /// As wide as standard output is now.
+  /// Returns the layout of standard output at its current width.
   Layout layout() const;
 };
 
-/// The file of the program that this process runs; empty where the system does not tell.
+/// Returns the executable file of this process; empty if the system does not provide it.
 std::filesystem::path file_of_this_process();
 
 }  // namespace hapbench

@@ -5,10 +5,11 @@
 
 namespace hapbench {
 
-/// The words of a command line behind the program's name.
+/// The arguments of a command line after the program's name.
 using ProgramWords = std::vector<std::string>;
 
-/// Quotes words for a POSIX shell: those with anything but letters, digits and "_-./:=,+@%" in single quotes.
+/// Returns a command line for a POSIX shell. Arguments with characters other than letters, digits and
+/// "_-./:=,+@%" are in single quotes.
 std::string shell_line(const ProgramWords& words);
 
 }  // namespace hapbench

@@ -5,12 +5,15 @@
 #include "scenarios/program/program_context.hpp"
 #include "scenarios/program/program_words.hpp"
 
-/// Commands whose work packages in Python do.
+/// Commands that Python packages implement.
 namespace hapbench {
 
-/// Runs a command of a Python package, which takes every word behind the name, --help included.
+/// Runs a command of a Python package and returns its exit status. The package receives all arguments after the
+/// command's name, including --help. Unless a host captures the output, this process becomes the Python process
+/// and the call does not return.
 int run_python_command(const ProgramWords& words, ProgramContext& context);
-/// Draws the run in a folder into FILE.svg. Throws IoError, after the Python tool has said why on standard error.
+/// Draws the path of the tool of the run in `folder` into the SVG picture `file`. Throws IoError if the drawing
+/// tool fails; the tool then has printed the reason on standard error.
 void write_way(ProgramContext& context, const std::filesystem::path& folder, const std::filesystem::path& file,
                bool quiet);
 

@@ -15,18 +15,21 @@
 
 namespace hapbench {
 
-/// Collects an answer, and gives it at once: its files all together, then what is printed, or its JSON.
+/// Collects the results of a command. finish() publishes them together: it writes all files, then prints the
+/// text or the JSON.
 class Report {
  public:
   Report(const OutputOptions& output, std::filesystem::path folder, ProgramContext& context)
       : output_(output), folder_(std::move(folder)), context_(context) {}
-  /// Into the folder of --out, or results/out/`name`. Throws InputError unless it can be written to.
+  /// Creates a report whose files go to the folder of --out, or to results/out/`name` without --out. Throws
+  /// InputError if the folder cannot be written to.
   Report(const CommonOptions& options, const std::string& name, ProgramContext& context)
       : Report(options.output, results_directory(options.out, name), context) {
     require_writable_directory(context_, folder_);
   }
 
   const std::filesystem::path& folder() const { return folder_; }
+  /// Appends printed text.
   void say(std::string_view text) { text_ += text; }
   template <class Row>
   void write(const std::filesystem::path& file, const Columns<Row>& columns, const std::vector<Row>& rows) {
@@ -34,12 +37,13 @@ class Report {
   }
   FileSet& files() { return files_; }
   Json& json() { return json_; }
-  /// A row that failed, or whose answer is bad: the text is printed as an error, and becomes the exit status.
+  /// Records a failure. finish() prints the text as an error and returns `status`; the status of the last
+  /// failure counts.
   void fault(const std::string& text, int status) {
     faults_.push_back(text);
     status_ = status;
   }
-  /// The exit status. Throws IoError.
+  /// Commits the files, prints errors and results, and returns the exit status. Throws IoError.
   int finish() {
     files_.commit();
     for (const std::string& fault : faults_) print_error(context_, fault);

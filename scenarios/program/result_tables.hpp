@@ -6,7 +6,7 @@
 
 namespace hapbench {
 
-/// Every table among the results of this program, and those that are only printed, without a file.
+/// Returns all tables of result files, and the tables that are only printed, whose `file` is empty.
 std::vector<DescribedTable> result_tables();
 
 }  // namespace hapbench

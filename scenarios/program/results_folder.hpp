@@ -8,11 +8,11 @@
 
 namespace hapbench {
 
-/// `out`, or results/out/`name` when it is empty.
+/// Returns `out`, or results/out/`name` if `out` is empty.
 std::filesystem::path results_directory(const std::string& out, const std::string& name);
 
-/// Throws InputError, which names the option, unless results can be written to `directory`. Creates it, and removes it
-/// again if it is still empty when the context goes.
+/// Creates the directory. The context's destructor removes it again if it is still empty. Throws InputError,
+/// with the option's name, if results cannot be written to it.
 void require_writable_directory(ProgramContext& context, const std::filesystem::path& directory,
                                 const std::string& option = "--out");
 

@@ -6,11 +6,13 @@
 
 namespace hapbench {
 
-/// Runs the command of the words behind the program's name and returns the exit status. Says on standard error when a
-/// signal (stop_signal.hpp) stopped the work. Throws InputError, also for words that are no command, and IoError.
+/// Runs the command that the arguments name and returns the exit status. If a signal (stop_signal.hpp) stops
+/// the work, prints a note on standard error. Throws IoError, and InputError for bad input and for an unknown
+/// command.
 int run_program(const ProgramWords& words, ProgramContext& context);
 
-/// Does the same, but reports exceptions on standard error: exit status 2 for InputError, 1 for all others.
+/// Calls run_program() and reports exceptions on standard error. Returns exit status 2 for InputError and 1 for
+/// other exceptions.
 int run_program_to_exit(const ProgramWords& words, ProgramContext& context);
 
 }  // namespace hapbench

@@ -9,14 +9,14 @@
 #include "scenarios/program/columns.hpp"
 #include "scenarios/program/layout.hpp"
 
-/// Tables with a row for each run, as `run` and `compare` print and write them.
+/// Tables with a row for each run, which `run`, `compare` and `sweep` print.
 namespace hapbench {
 
-/// A printed column of a metric of runs.
+/// A printed column with a metric of runs.
 struct RunHeading {
   const char *title, *metric;
-  double factor = 1.0;  ///< from the metric's unit to the heading's
-  bool wide = true;     ///< printed with --wide only
+  double factor = 1.0;  ///< conversion factor from the metric's unit to the unit in the heading
+  bool wide = true;     ///< printed only with --wide
 };
 
 /// The figures that separate algorithms.
@@ -26,10 +26,12 @@ inline constexpr RunHeading kRunHeadings[] = {
     {"force step\n(99 %) [N]", "force_step_p99_N"},    {"vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0, false},
     {"reversals\n[1/s]", "force_reversals_per_s"},     {"deepest\ninside [mm]", "inside_max_m", 1e3, false}};
 
-/// A number, "-" for none, with the digits that its tolerance leaves it, three at most; `factor`: to the shown unit.
+/// Returns `factor` times the value with the digits that are significant at its tolerance, three at most; "-"
+/// without a value. `tolerance` is in the unit of `value`.
 std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor);
 
-/// Adds the columns of headings; `figure_of` gives what a row has of a metric by its name, a NumberWithError.
+/// Adds a column for each heading. figure_of(row, metric name) returns the row's value of the metric as
+/// NumberWithError.
 template <class Row, class Figure>
 void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Figure figure_of) {
   for (const RunHeading& heading : headings) {
@@ -41,27 +43,31 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
   }
 }
 
-/// The printed table of runs, of seven columns: names, how they ended and when, kRunHeadings. Of several algorithms in
-/// one scene also the vibration of the tool, which runs without settled contact also have. With --wide also the range
-/// of ratios, and what half of the steps take at most. `of_scenes`: of several, told apart by name.
+/// Returns the printed table of runs: names, outcome with its time, and the columns of kRunHeadings without
+/// `wide`. With --wide the table has all columns of kRunHeadings, the range of stiffness ratios and the median
+/// time of a step. `of_scenes`: the first column has the scenario. Without it, all runs belong to one scenario,
+/// and the table also has the vibration of the tool, which is defined for runs without settled contact too.
 std::string run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
 
-/// Its root is the vibration of the tool.
+/// Metric whose square root is the vibration of the tool.
 inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
 
-/// What 99 % of the steps take at most, in the slowest run, of which there is one; empty where all are too short.
+/// Returns a sentence with the 99th percentile of the time of a step in the slowest run. Returns an empty text
+/// if all runs are too short for it. Precondition: there is at least one run.
 std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
-/// A table of the rendered force against the reference, for the reports that have one.
+/// Returns a table that compares the rendered force with the reference force, for the runs with a reference.
+/// Returns an empty text if there are none.
 std::string fidelity_text(std::span<const Result> reports, const Layout& layout);
 
-/// The warnings about runs side by side, but for those that were known before: those of one kind once, in the words of
-/// the first run and with the names of the algorithms.
+/// Returns the warnings about runs, without the warnings that were printed before the runs. Warnings of one
+/// kind are merged into one line with the text of the first run and the names of the algorithms.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
-/// A number with the digits that its error leaves: one where the error is larger, six where it is 0, four if unknown.
+/// Returns a number with the digits that are significant at its error: one digit if the error is not smaller
+/// than the number, six digits if the error is 0, four if it is unknown.
 std::string number_text(double value, const std::optional<double>& error);
-/// The same with the error behind: "1.234 +- 0.005".
+/// Returns number_text() followed by the error: "1.234 +- 0.005".
 std::string with_error_text(double value, const std::optional<double>& error);
 
 /// Returns the tables that this command writes and prints, for `describe`.

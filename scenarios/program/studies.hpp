@@ -11,40 +11,45 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/program_words.hpp"
 
-/// Studies: questions as files. A study names a command, scenarios, and the command's options, and a command takes
-/// it in place of scenarios.
+/// Studies: command lines stored as JSON files. A study names a command, scenarios and the command's options.
+/// The user gives the study to the command instead of scenarios.
 ///
 ///   {"ask": "limit", "scenarios": ["wall_on_handle"], "summary": "K over B of a wall on an impedance device",
 ///    "between": [1e2, 1e5], "stable": "bounded",
 ///    "over": {"rendering.damping_N_s_per_m": {"from": 0.1, "to": 150, "count": 17, "log": true}}}
 ///
-/// Numbers, texts and true stand for themselves; two numbers of "between" for a range; a list for values separated by
-/// commas ("bound": for one option each); objects of "set", "over" and "vary" for fields by their paths, with a value,
-/// a list or a range with "from", "to", "count" and "log". A scenario that is a file is looked for next to the study
-/// first. "alone" is for scripts/reproduce: nothing runs at the same time as what is about time.
+/// Numbers, texts and true stand for themselves. A list of two numbers for "between" is a range. Other lists
+/// are values separated by commas; in "bound", each entry becomes an option of its own. The objects "set",
+/// "over" and "vary" map paths of fields to a value, a list, or a range with "from", "to", "count" and "log". A
+/// scenario file is searched next to the study first. "alone" is for scripts/reproduce: it runs nothing else at
+/// the same time as a study that measures time.
 namespace hapbench {
 
+/// A study in the folder scenarios/library/studies; `ask` is the command.
 struct BundledStudy {
   std::string name, ask, summary;
   std::filesystem::path file;
 };
-/// All of them, by name.
+/// Returns the bundled studies, sorted by name.
 std::vector<BundledStudy> bundled_studies();
 
-/// The words of a command line in which a study stood, and where in its file they come from.
+/// The arguments of a command line after a study was replaced by its content, and the lines of the study's file
+/// that they come from.
 struct StudyWords {
-  /// Replaces the first study behind the command by its scenarios and options; options that are given besides go before
-  /// those of the study. `words`: without the program's name. `arguments`: the places of the words that may name a
-  /// study, which are neither options nor values of options. Throws InputError for a study of another command.
+  /// Replaces the first study on a command line by its scenarios and options. An option of the command line
+  /// takes precedence over the same option of the study; options with an object in the study add up with it.
+  /// `words`: the command line without the program's name. `arguments`: indices of the positional arguments,
+  /// which may name a study. Returns empty without a study. Throws InputError for a study of another command.
   static std::optional<StudyWords> in(const ProgramWords& words, std::span<const std::size_t> arguments);
 
-  /// Returns the error with the line of the study in front that has the first of ErrorLocation::about_options; the
-  /// error itself if the study has none of them.
+  /// Returns the error with the study's file and line in front. The line is where the study gives the first of
+  /// ErrorLocation::about_options that it has. Returns the error unchanged if the study has none of these
+  /// options.
   InputError located(const InputError& error) const;
 
   std::filesystem::path file;
   ProgramWords words;
-  std::map<std::string, std::size_t> lines;  ///< of options, as "--over"
+  std::map<std::string, std::size_t> lines;  ///< line of each option in `file`; the keys are like "--over"
 };
 
 }  // namespace hapbench

@@ -8,17 +8,19 @@
 /// Prose for the terminal.
 namespace hapbench {
 
-/// Breaks lines of more than `width` characters at blanks, never within a word; continuations are indented by two more
-/// blanks.
+/// Returns the text with lines of more than `width` characters broken at spaces, never within a word.
+/// Continuation lines are indented by two more spaces.
 std::string fitted(std::string_view text, std::size_t width);
 
-/// The text in bold where the stream is a terminal, unless NO_COLOR is set or TERM is "dumb".
+/// Returns the text in bold if the stream is a terminal, NO_COLOR is not set and TERM is not "dumb".
 std::string bold(std::FILE* stream, std::string_view text);
 
-/// Prose of at most `width` characters a line, each behind `indent` blanks; line breaks stay.
+/// Returns prose with lines of at most `width` characters, indented by `indent` spaces. Keeps the line breaks
+/// of the text.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width);
 
-/// A name behind `indent` blanks with its meaning beside it, from `column` on, or below it where the name is too long.
+/// Returns a name, indented by `indent` spaces, with its meaning beside it from `column` on. If the name is too
+/// long, the meaning begins on the next line.
 std::string entry(std::string_view name, std::string_view meaning, std::size_t indent, std::size_t column,
                   std::size_t width);
 

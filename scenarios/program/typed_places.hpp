@@ -7,7 +7,8 @@
 
 namespace hapbench {
 
-/// The error with what was typed as the place of each fault in a field that --set gave, and not the scene's file.
+/// Returns the error with a new location for each fault in a field that --set gave: the option as typed instead
+/// of the scene's file. `overrides` are the values of --set.
 InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides);
 
 }  // namespace hapbench

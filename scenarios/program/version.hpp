@@ -4,8 +4,8 @@
 
 namespace hapbench {
 
-/// The version and the commit of the program in a line; as JSON also what it was built from and what a version
-/// promises.
+/// Returns a line with the version and the commit of the program. `as_json`: returns a JSON object that also
+/// has the build settings and the compatibility guarantees.
 std::string version_text(bool as_json);
 
 }  // namespace hapbench

@@ -10,17 +10,19 @@
 /// The tables of `compare`.
 namespace hapbench {
 
-/// A line of comparison.csv: a run, and the number of its repetition.
+/// A row of comparison.csv: a run and the number of its seed, from 0.
 struct ComparedRun {
   std::uint64_t seed;
   const Result& run;
 };
 
-/// Without times, so that equal comparisons give equal bytes; several seeds get a column in front.
+/// Returns the columns of comparison.csv, without times, so that equal comparisons give identical files.
+/// `seeds`: there are several seeds; the first column then has the seed.
 Columns<ComparedRun> comparison_columns(bool seeds);
-/// league.csv, a row for each scenario, algorithm and metric; `seeds`: there are several.
+/// Returns the columns of league.csv, which has a row for each scenario, algorithm and metric. `seeds`: there
+/// are several seeds; the printed table then has the spread.
 Columns<Standing> league_columns(bool seeds);
-/// The table of the algorithms over all scenarios and metrics.
+/// Returns the columns of the table of the algorithms over all scenarios and metrics.
 Columns<LawStanding> law_columns();
 /// Returns the tables that this command writes and prints, for `describe`.
 std::vector<DescribedTable> league_tables();

@@ -9,14 +9,17 @@
 #include "scenarios/program/layout.hpp"
 #include "scenarios/program/report.hpp"
 
-/// How sure the numbers of `compare` are, and which order of laws is larger than that.
+/// Errors of the numbers of `compare`, and which differences between laws are larger than these errors.
 namespace hapbench {
 
-/// Reports a table of the numbers of a scenario with their errors, and a sentence on each metric that it shows; `all`:
-/// also of metrics that the table of runs shows with --wide only, or not.
+/// Reports a table of the metrics of a scenario with their errors, and a sentence on the order of the laws by
+/// each metric in the table. `all` includes metrics that the table of runs shows only with --wide or not at
+/// all. The JSON always has all metrics.
 void report_errors(const League& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report,
                    const Layout& layout);
-/// Which laws vibrate less by more than hands feel; where one has no settled contact, by the vibration of the tool.
+/// Returns a sentence with the order of the laws by vibration, as far as the differences exceed what a hand can
+/// feel. Compares the vibration of the force; if a law without failures has no settled contact, compares the
+/// vibration of the tool.
 std::string vibration_text(const League& league, const Layout& layout);
 
 }  // namespace hapbench

@@ -6,10 +6,11 @@
 #include "scenarios/batch/ranking.hpp"
 #include "scenarios/program/layout.hpp"
 
-/// What `compare` prints of a league.
+/// The printed ranking of `compare`.
 namespace hapbench {
 
-/// The standings, best first, the algorithms over all of them, and what that says.
+/// Returns the ranking in each scenario by each metric, the table of the algorithms over all scenarios and
+/// metrics, and sentences that summarize them.
 std::string league_text(const League& league, const Layout& layout);
 
 }  // namespace hapbench

@@ -2,7 +2,7 @@
 
 #include "scenarios/program/command_line.hpp"
 
-/// The command `describe`, which explains the index and what lies in the folders beside the program.
+/// The command `describe`, which explains the names of the program and of the files installed beside it.
 namespace hapbench {
 
 void add_describe(CommandLine& line);

@@ -10,19 +10,21 @@
 
 namespace hapbench {
 
-/// What `describe` answers for one meaning of a name.
+/// The output of `describe` for one meaning of a name.
 struct Description {
-  std::string text;  ///< empty for a schema, which is JSON however it is asked for
+  std::string text;  ///< printed text; empty for a schema, which is always printed as JSON
   Json json;
 };
-/// The meanings of a name, of which there is one, as one: their texts one after the other, their JSON as an array.
+/// Joins the meanings of a name: their texts in sequence, their JSON as an array. Returns a single meaning
+/// unchanged. Precondition: there is at least one meaning.
 Description joined(const std::vector<Description>& meanings);
 
-/// The text of a thing that is described by its JSON: name, unit and kind in its first line, below it what it is, and
-/// its other members by their names; an array of objects is a list of such things.
+/// Returns the text of an entry that is described by its JSON. The first line has the name, unit and kind. The
+/// prose and the other members follow, each with its key. A member that is an array of objects becomes a list
+/// of such entries. `indent`: spaces in front of each line.
 std::string thing_text(const Json& thing, const Layout& layout, std::size_t indent = 0);
 
-/// The description of a thing by its JSON.
+/// Returns the entry's text and JSON as a description.
 Description thing_description(const Json& thing, const Layout& layout);
 
 }  // namespace hapbench

@@ -9,18 +9,21 @@
 /// The descriptions of the fields of scenario files.
 namespace hapbench {
 
-/// The field at that path, of the first type that has it where types choose the fields; null when there is none.
+/// Returns the field at a dotted path; null if there is none. If several types of an object have the field,
+/// returns the field of the first type.
 const FieldGuide* find_field(const std::string& path);
 
-/// The field at that path, once for each group of types that share it.
+/// Describes the field at a dotted path, with one description for each group of types that share the field's
+/// schema.
 Description describe_field(const std::string& path, const Layout& layout);
-/// The field rendering.algorithm.
+/// Describes the field rendering.algorithm.
 Description describe_algorithms(const Layout& layout);
-/// A function of time.
+/// Describes values that are functions of time (profiles).
 Description describe_profile(const Layout& layout);
-/// All fields of a scenario file.
+/// Describes all fields of a scenario file.
 Description describe_scenario_fields(const Layout& layout);
-/// The types among which fields choose, those that are the same in several fields once.
+/// Adds the types that fields choose from, such as the types of an environment. A type with one schema in
+/// several fields is added once.
 void add_types(Index& index, const Layout& layout);
 
 }  // namespace hapbench

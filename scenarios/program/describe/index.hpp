@@ -8,23 +8,24 @@
 #include "scenarios/program/describe/description.hpp"
 #include "scenarios/program/layout.hpp"
 
-/// The index of names that users meet. `describe` lists those of some kinds and explains each, and refusals take the
-/// nearest name from it. Every part is made of the table of its kind, so that a new entry there is known here.
+/// The index of the names that users meet. `describe` lists some kinds of names and explains each name, and
+/// error messages suggest the nearest name. Each part of the index is made from the table that defines its
+/// kind, so that a new entry of that table appears here too.
 namespace hapbench {
 
 /// A name with one of its meanings.
 struct Named {
-  std::string kind;  ///< such as "algorithm"; of a type the field that chooses it, such as "environment"
+  std::string kind;  ///< such as "algorithm"; for a type of a field: the field, such as "environment"
   std::string name;
-  std::string summary;  ///< what a list says of it; may be empty for kinds that no list has
+  std::string summary;  ///< description in lists; may be empty for kinds without a list
   std::function<Description()> describe;
-  Json more = Json::object();  ///< what a list's JSON has besides: of a scenario its group, of a claim its verdict
+  Json more = Json::object();  ///< further members in a list's JSON: the group of a scenario, the verdict on a claim
 };
-/// Names with their meanings.
+/// Names with their meanings, in the order of the lists of `describe`.
 using Index = std::vector<Named>;
 
-/// Everything that `describe` can describe without the folders beside the program, in the order of its lists: from
-/// models and presets to words and headings.
+/// Returns the names that are defined in the program itself, without the files installed beside it: from models
+/// and presets to printed words and headings.
 Index program_index(const Layout& layout);
 
 }  // namespace hapbench

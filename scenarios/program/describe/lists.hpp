@@ -15,14 +15,14 @@ struct DescribeOptions {
   OutputOptions output;
 };
 
-/// The kinds that lists have, in their order.
+/// Returns the kinds of names that have lists, in the order of the lists.
 std::span<const char* const> listed_kinds();
-/// The name of a kind's list: "depth_models".
+/// Returns the name of a kind's list: "depth_models" for the kind "depth model".
 std::string list_name(const std::string& kind);
-/// True for the name of a kind's list. All metrics are told by a section of that name.
+/// Returns true for the name of a kind's list, except "metrics", which describe_metrics() explains in full.
 bool is_kind(const std::string& name);
-/// Lists what is of a kind or a group, or of each kind but the many metrics and claims the names. Returns the exit
-/// status.
+/// Prints the entries of a kind or group, or with --grep the entries with a text. Without a name and --grep,
+/// prints only the names of each kind, without the many metrics, claims and terms. Returns the exit status.
 int list(const DescribeOptions& options, ProgramContext& context);
 
 }  // namespace hapbench

@@ -6,11 +6,13 @@
 #include "scenarios/program/describe/description.hpp"
 #include "scenarios/program/layout.hpp"
 
-/// The places of the thesis: figures, tables and sections.
+/// Lookup of the thesis by figure, table and section.
 namespace hapbench {
 
-/// The bundled scenarios and claims that name a place, as "A.2", "Fig. A.2", "Table A.1" or "section 3.4", or a part of
-/// it, as 3.4.1 or Fig. 2c. None when the name is no place's. Throws InputError for a place that nothing names.
+/// Returns the bundled scenarios and claims whose source names a location of the thesis or a part of it, and
+/// the location's pictures. `name` is, for example, "A.2", "Fig. A.2", "Table A.1" or "section 3.4"; 3.4.1 is a
+/// part of section 3.4, and Fig. 2c a part of Fig. 2. Returns empty if `name` has no such form. Throws
+/// InputError if no scenario, claim or picture belongs to the location.
 std::optional<Description> describe_place(const std::string& name, const Layout& layout);
 
 }  // namespace hapbench

@@ -6,20 +6,21 @@
 #include "scenarios/program/describe/index.hpp"
 #include "scenarios/program/layout.hpp"
 
-/// The descriptions of names that results and printed tables have: metrics, files, columns, words, headings.
+/// Descriptions of the names in results and printed tables: metrics, files, columns, words, headings.
 namespace hapbench {
 
-/// All metrics of summary.json.
+/// Describes all metrics of summary.json.
 Description describe_metrics(const Layout& layout);
-/// A table by its columns.
+/// Describes a result file by its columns.
 Description describe_table(const DescribedTable& table, const Layout& layout);
-/// All files of tables.
+/// Describes all result files that are tables.
 Description describe_tables(const Layout& layout);
-/// The words that the program prints.
+/// Describes all words that the program prints, such as outcomes and verdicts.
 Description describe_words(const Layout& layout);
-/// Adds metrics as terms.
+/// Adds the metrics of summary.json.
 void add_metric_terms(Index& index, const Layout& layout);
-/// The columns of all files, those of one name and meaning once.
+/// Adds the columns of all files. Columns with equal names and meanings share an entry, which lists their
+/// files.
 void add_columns(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout);
 /// Adds the words that the program prints.
 void add_words(Index& index, const Layout& layout);

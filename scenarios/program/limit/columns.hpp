@@ -8,10 +8,11 @@
 /// The tables of `limit`.
 namespace hapbench {
 
-/// Columns of the runs that are on neither side of the limit as their neighbours are; the second is the former name.
+/// Name of the column with the runs that are unstable within the stable interval or stable outside of it, and
+/// the column's former name.
 inline constexpr const char *kInconsistent = "inconsistent_runs", *kAstray = "astray";
 
-/// A line of limit_runs.csv.
+/// A row of limit_runs.csv: a run and the case that it belongs to.
 struct LimitRunRow {
   const LimitRow& limit;
   JudgedValue run;
@@ -19,10 +20,11 @@ struct LimitRunRow {
   operator const LimitRow&() const { return limit; }  // NOLINT: what it has of the case
 };
 
-/// The columns of limit.csv; before the last what the literature says of a wall on an impedance device. `table`, here
-/// and below: none for all columns that there may be, for `describe`.
+/// Returns the columns of limit.csv. They include the published closed-form limits of a wall on an impedance
+/// device if a case has them. `table` selects the columns that apply, here and below; null: all columns, for
+/// `describe`.
 Columns<LimitRow> limit_columns(const LimitTable* table);
-/// The columns of limit_runs.csv.
+/// Returns the columns of limit_runs.csv.
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table);
 /// Returns the tables that this command writes and prints, for `describe`.
 std::vector<DescribedTable> limit_tables();

@@ -10,7 +10,7 @@
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/program/options.hpp"
 
-/// The question of `limit`: from options to cases, each with what is asked of it.
+/// Turns the options of `limit` into cases, each with the question for its stability limit.
 namespace hapbench {
 
 /// The options of `limit`.
@@ -23,40 +23,43 @@ struct LimitOptions : CommonOptions {
   std::vector<std::string> algorithms, devices, friction, over;
 };
 
-/// The answer of a case, and what it was: a line of limit.csv.
+/// A case with its question and answer: a row of limit.csv.
 struct LimitRow {
   FieldLimit limit = {};
-  std::vector<std::string> axis_values = {};  ///< of LimitTable::cases
-  const ComparedDevice* device = nullptr;     ///< none: the scene's own
-  Scenario scenario = {};                     ///< as it is asked for, with its own value of the field
+  std::vector<std::string> axis_values = {};  ///< value of each axis of LimitTable::cases
+  const ComparedDevice* device = nullptr;     ///< null: the scene's device
+  Scenario scenario = {};  ///< the scenario with overrides, device and axis values, and its current value of the field
   LimitQuestion asked = {};
-  /// The limit over that of the first scene and algorithm, all else equal, and the same of K lambda_max(S), the
-  /// stiffness that the hand meets; empty where either has no limit.
+  /// The limit divided by the limit of the reference case, which has the first scene and algorithm and is equal
+  /// in all else; and the same ratio of K lambda_max(S), the rendered stiffness. S is the normalized stiffness
+  /// tensor. Empty if one of the two cases has no limit.
   std::optional<double> stiffness_ratio = {}, rendered_ratio = {};
 
   const std::string& scene() const { return axis_values[axis_values.size() - 2]; }
   const std::string& algorithm() const { return scenario.rendering.algorithm; }
 };
 
-/// The cases of a question, and their answers.
+/// The cases of a command line, and their answers.
 struct LimitTable {
-  std::vector<ComparedDevice> devices;  ///< empty: each scene's own
-  /// The axes are the device, the fields of --over, the scene and the algorithm; all but the fields are named.
+  std::vector<ComparedDevice> devices;  ///< empty: each scene's device
+  /// The axes are, in this order: the device, each field of --over, the scene and the algorithm.
   Cases cases;
   std::vector<LimitRow> rows = {};
 
   const LimitRow& first() const { return rows.front(); }
-  /// The fields of --over: axes 1 to this one.
+  /// Number of fields of --over, which are the axes 1 to over().
   std::size_t over() const { return cases.axes().size() - 3; }
-  /// Scenes times algorithms: as many rows follow each other with all else equal.
+  /// Number of scenes times number of algorithms. Each block of columns() successive rows is equal in all else.
   std::size_t columns() const { return cases.axes()[over() + 1].size() * cases.axes()[over() + 2].size(); }
-  /// True where a table of rows and columns shows the limits, and not one of every number.
+  /// True if a grid shows the limits, with rows for devices or values of --over. Otherwise each number of the
+  /// few limits is printed.
   bool is_grid() const { return !devices.empty() || over() > 0; }
 };
 
-/// A table without rows. The axis of --device has no field's name, which it leaves to --over. Throws InputError.
+/// Returns a table with all cases but without rows. The device axis has no field, so that --over may vary
+/// fields of the device. Throws InputError.
 LimitTable asked_table(const LimitOptions& options);
-/// The case of that number. Warnings that are not among them yet are added.
+/// Returns case i without its answer. Adds warnings to `warnings` that are not in it yet. Throws InputError.
 LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
                    std::vector<std::string>& warnings);
 

@@ -6,14 +6,15 @@
 #include "scenarios/program/layout.hpp"
 #include "scenarios/program/limit/question.hpp"
 
-/// What `limit` prints.
+/// The printed text of `limit`.
 namespace hapbench {
 
-/// The answer in words: the linear edge, or the edge in runs, and what was tried between.
+/// Returns the answer as a clause: linear limit, simulated limit, and the number of verification samples.
+/// `resolution` is the relative width of the bisection.
 std::string limit_answer(const FieldLimit& found, double resolution);
-/// What a run has to do to be stable.
+/// Returns the condition under which a run counts as stable.
 std::string rule_text(const StabilityRule& rule, const Scenario& scenario);
-/// The questions, the answers, the table of the rows and the notes on it.
+/// Returns the questions, the answers, the table of the rows and the notes on it.
 std::string limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout);
 
 }  // namespace hapbench

@@ -6,23 +6,23 @@
 
 #include "scenarios/input/json_file.hpp"
 
-/// What `new` can start.
+/// The kinds of scenes that `new` can start from.
 namespace hapbench {
 
 /// A kind of scene to start from.
 struct StartKind {
   std::string name, summary;
-  std::string source;  ///< what it is made from: "mesh", "shell" or "stroke"; empty for nothing
+  std::string source;  ///< kind of the source file: "mesh", "shell" or "stroke"; empty: no source file
   bool is_source_optional;
-  Json scene;  ///< with what does not depend on the source
+  Json scene;  ///< the fields that do not depend on the source
 };
 
 inline constexpr double kStartStep = 0.0005;  ///< time step of the scenes [s]
 
-/// The kinds of scenarios/library/starts.json, in the order in which they are shown. Throws InputError without that
-/// file.
+/// Returns the kinds of scenarios/library/starts.json, in the order in which they are listed. Throws InputError
+/// if the file is missing.
 const std::vector<StartKind>& start_kinds();
-/// Throws InputError for an unknown name.
+/// Returns the kind of this name. Throws InputError for an unknown name.
 const StartKind& kind_named(const std::string& name);
 
 }  // namespace hapbench

@@ -6,7 +6,8 @@
 
 namespace hapbench {
 
-/// The meaning of each field that a scenario has, by its path; objects come before their fields.
+/// Returns an object with the meaning of each field in a scenario, by the field's dotted path. Objects come
+/// before their fields.
 Json field_meanings(const Json& scenario);
 
 }  // namespace hapbench

@@ -17,11 +17,12 @@ struct NewOptions {
   OutputOptions output;
 };
 
-/// The point of a word such as "0.01,0,0" [m]. Throws InputError that names the option.
+/// Returns the point of a text such as "0.01,0,0" [m]. Throws InputError with the option's name.
 Vec3 place_in(const char* option, const std::string& text);
-/// The length of a word such as "12mm" [m]. Throws InputError that names the option.
+/// Returns the length of a text such as "12mm" [m]. Throws InputError with the option's name.
 double length_in(const char* option, const std::string& text);
-/// Throws InputError for options that the kind lacks or has no use for, and for files that are not there.
+/// Throws InputError if the kind requires an option that is missing, if an option does not apply to the kind,
+/// and if a file does not exist.
 void check_options(const NewOptions& options, const StartKind& kind);
 
 }  // namespace hapbench

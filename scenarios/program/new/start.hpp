@@ -14,12 +14,12 @@ namespace hapbench {
 /// A scenario to start from.
 struct StartedScene {
   Json scene;                      ///< content of the scenario file
-  std::vector<std::string> notes;  ///< sizes and choices, a line each
+  std::vector<std::string> notes;  ///< sizes and choices that were made, one line each
   std::vector<std::string> warnings;
 };
 
-/// The start of that kind for a file in `directory`. Throws InputError when a file of the options cannot be used. Takes
-/// seconds for a large mesh.
+/// Returns the scene of a kind, for a scenario file in `directory`. Throws InputError if a file of the options
+/// cannot be used. Cost: seconds for a large mesh.
 StartedScene started_scene(const StartKind& kind, const NewOptions& options, const std::filesystem::path& directory);
 
 }  // namespace hapbench

@@ -7,23 +7,25 @@
 
 #include "scenarios/analysis/tuning/tune.hpp"
 
-/// The answer of `tune`.
+/// The results of `tune`.
 namespace hapbench {
 
-/// A question and its answer, by law.
+/// A question and its answer for each law.
 struct Tuning {
   TuneQuestion question;
-  std::string scene;  ///< name of the scene, with that of the device
-  TuneRanges ranges;  ///< of the first law
+  std::string scene;  ///< name of the scene, followed by the name of the device
+  TuneRanges ranges;  ///< search ranges of the first law
   std::vector<TunedLaw> laws;
-  std::vector<const TunedLaw*> ranking;  ///< those with a choice, best first
-  std::size_t runs = 0;                  ///< simulations in all
+  std::vector<const TunedLaw*> ranking;  ///< laws with a feasible choice, best first
+  std::size_t runs = 0;                  ///< number of simulations over all laws
 };
 
-/// Best is the least settled depth, where the scene has none the largest K lambda_max.
+/// Returns the laws with a choice, best first. The best law has the smallest settled depth (inside_settled_m);
+/// in scenes without this metric it has the largest rendered stiffness K lambda_max.
 std::vector<const TunedLaw*> ranking_of(const std::vector<TunedLaw>& laws);
 
-/// A margin of a choice: its column, its name in JSON and in words, and the largest that is searched.
+/// A stability margin of a choice: its column in tune.csv, its heading, its JSON key, its printed text, and the
+/// largest value that the search covers.
 struct Margin {
   const char *column, *unit, *meaning, *heading, *key, *words;
   std::optional<double> TuneMargins::*of;
@@ -37,7 +39,7 @@ inline constexpr Margin kMargins[] = {
     {"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one", "",
      "damping_ratio", "least damped mode {}", &TuneMargins::damping_ratio, 2.0}};
 
-/// With the digits that the search leaves it.
+/// Returns the chosen stiffness K with the digits that the resolution of the search leaves.
 std::string stiffness_text(const TuneTrial& choice);
 
 }  // namespace hapbench

@@ -8,9 +8,9 @@
 /// The tables of `tune`.
 namespace hapbench {
 
-/// The columns of tune.csv, a row for each law.
+/// Returns the columns of tune.csv, which has a row for each law.
 Columns<TunedLaw> tuned_columns();
-/// The columns of tune_trials.csv.
+/// Returns the columns of tune_trials.csv, which has a row for each setting that was evaluated.
 Columns<TuneTrial> trial_columns();
 /// Returns the tables that this command writes and prints, for `describe`.
 std::vector<DescribedTable> tune_tables();

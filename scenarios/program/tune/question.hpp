@@ -7,19 +7,20 @@
 #include "scenarios/analysis/tuning/tune.hpp"
 #include "scenarios/program/options.hpp"
 
-/// The question of `tune`.
+/// Turns the options of `tune` into a question.
 namespace hapbench {
 
 /// The options of `tune`.
 struct TuneOptions : CommonOptions {
   std::string scenario, device, damping_ratio, mass;
   std::vector<std::string> algorithms, bounds, family;
-  TuneQuestion question;  ///< as far as options are its members
+  TuneQuestion question;  ///< the members that options set directly
 };
 
-/// The question about the scene of a file. Throws InputError.
+/// Returns the question for the scene in a file. Throws InputError.
 TuneQuestion tune_question(const TuneOptions& options, const std::filesystem::path& file);
-/// Puts the device of that name into the question, none for an empty one. Returns " on NAME". Throws InputError.
+/// Adds the overrides of the named device to the question and returns " on NAME". Returns an empty text and
+/// keeps the question if the name is empty. Throws InputError.
 std::string device_text(const std::string& name, TuneQuestion& question);
 
 }  // namespace hapbench

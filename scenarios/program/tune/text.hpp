@@ -5,10 +5,11 @@
 #include "scenarios/program/layout.hpp"
 #include "scenarios/program/tune/answer.hpp"
 
-/// What `tune` prints.
+/// The printed text of `tune`.
 namespace hapbench {
 
-/// The question, the recommendation, the table of the laws, and why a law has no choice.
+/// Returns the question, the recommendation, the table of the laws, and the reason why a law has no feasible
+/// choice.
 std::string tuning_text(const Tuning& tuning, const Layout& layout);
 
 }  // namespace hapbench

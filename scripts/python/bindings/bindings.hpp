@@ -8,18 +8,19 @@
 #include <limits>
 #include <vector>
 
-/// The parts of the compiled module.
+/// Declarations that the sources of the compiled Python module share.
 namespace hapbench {
 
-/// A numpy array with `width` numbers for each contact, of which Python gets a view of the first rows. Precondition of
-/// everything: the interpreter is held.
+/// A numpy array with `width` numbers for each contact (1: scalars, 3: vectors). Python receives a view of its
+/// first rows, one row for each current contact. Precondition of all members: the interpreter lock is held.
 class ContactArray {
  public:
-  using Columns = std::array<const double*, 3>;  ///< the first `width` of them count
+  using Columns = std::array<const double*, 3>;  ///< only the first `width` pointers are used
 
   ContactArray(std::size_t capacity, pybind11::ssize_t width) : width_(width), numbers_(shape(capacity)) {}
 
-  /// The view of the first n rows, filled from the columns; reused while n stays the same.
+  /// Copies n values of each column and returns a view of the first n rows. The view object is reused while n
+  /// stays the same. Precondition: n is at most the capacity.
   const pybind11::object& filled(std::size_t n, const Columns& columns) {
     double* out = numbers_.mutable_data();
     for (std::size_t i = 0; i < n; ++i) {
@@ -44,14 +45,16 @@ class ContactArray {
   std::size_t rows_ = std::numeric_limits<std::size_t>::max();
 };
 
-/// Keeps an error of Python, unless one is kept already, and stops all work. Precondition: the interpreter is held.
+/// Stores a Python error, unless an error is already stored, and stops all simulations of this process.
+/// Precondition: the interpreter lock is held.
 void stop_work_by(const pybind11::error_already_set& error);
 
-/// True from an error of Python to the end of the work that it stops. Precondition: the interpreter is held.
+/// Returns true from a Python error until the last call that it stopped has returned. Precondition: the
+/// interpreter lock is held.
 bool is_work_stopped();
 
-/// Runs `call` with the interpreter held, unless work is stopped. An exception becomes a Python error and stops all
-/// work. Returns whether `call` ended without one.
+/// Runs `call` while holding the interpreter lock, unless work is stopped. An exception becomes a Python error
+/// and stops all work. Returns true if `call` was run and returned without an exception.
 template <class Call>
 bool runs_in_python(const Call& call) noexcept {
   const pybind11::gil_scoped_acquire held;
@@ -68,10 +71,10 @@ bool runs_in_python(const Call& call) noexcept {
   return false;
 }
 
-/// True while a call is under way. Precondition: the interpreter is held.
+/// Returns true while a call from Python is computing. Precondition: the interpreter lock is held.
 bool is_work_under_way();
 
-/// Adds the function that makes an algorithm of a Python function.
+/// Adds the Python function add_force_law(), which makes an algorithm from a Python callable.
 void bind_force_laws(pybind11::module_& module);
 
 }  // namespace hapbench
