@@ -14,13 +14,14 @@ namespace {
 
 constexpr const char *kPresets = "impedance", *kFile = ".json";  ///< the type of all presets, and the end of files
 
-/// The devices of a name, a type or a file; none of an unknown name.
+/// Returns the devices that a name, a type or a file selects; empty for an unknown name.
 std::vector<ComparedDevice> devices_named(const std::string& name) {
   if (name.ends_with(kFile)) return {device_of_file(name)};
   std::vector<ComparedDevice> found;
   for (const ComparedDevice& device : compared_devices()) {
     if (name == "all" || name == device.name || (name == kPresets && device.published_stiffness))
       found.push_back(device);
+    // A name with [soft] or [stiff] is one end of the range of unpublished parameters.
     for (const ComparedDevice& end : with_unpublished_numbers(device))
       if (name == end.name) found.push_back(end);
   }
@@ -30,10 +31,12 @@ std::vector<ComparedDevice> devices_named(const std::string& name) {
 }  // namespace
 
 std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given) {
+  // Reject unknown names. Files and names with [soft] or [stiff] are checked below.
   std::vector<std::string> plain = given, all = names_of(compared_devices(), &ComparedDevice::name);
   std::erase_if(plain, [](const std::string& name) { return name.ends_with(kFile) || name.ends_with(']'); });
   all.insert(all.begin(), {"FILE.json", kPresets});
   chosen_names("--device", plain, all, "hapbench describe presets");
+  // Collect the devices of each name.
   std::vector<ComparedDevice> chosen;
   for (const std::string& name : given) {
     const std::vector<ComparedDevice> found = devices_named(name);
@@ -41,6 +44,7 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
       fail_in_option("--device", fmt::format("got \"{}\"; allowed: a preset with [soft] or [stiff] behind it", name));
     chosen.insert(chosen.end(), found.begin(), found.end());
   }
+  // Reject a second device with the same name.
   std::set<std::string> names;
   for (const ComparedDevice& device : chosen) {
     if (names.insert(device.name).second) continue;

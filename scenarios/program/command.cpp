@@ -17,7 +17,7 @@ void Command::add(const std::string& name, Variable variable, const std::string&
   if (takes.several) option->allow_extra_args(false)->take_all();
   if (takes.comma_separated)
     option->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
-  // CLI11's own checks word the errors differently, and show in the help.
+  // The checks of CLI11 word their errors differently and add text to the help.
   const auto problem = [range = takes.range, words = takes.one_of](const std::string& word) -> std::string {
     std::int64_t number = 0;
     if (range && !(CLI::detail::lexical_cast(word, number) && number >= range->first && number <= range->second))

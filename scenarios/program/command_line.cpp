@@ -24,13 +24,15 @@ namespace hapbench {
 
 namespace {
 
+/// Loads the modules of --module, then the modules in the folders of HAPBENCH_MODULE_PATH.
 void load_modules(const std::vector<std::string>& files, const LoadingGuard& guard) {
   for (const std::string& file : files) load_law(file, guard);
   constexpr const char* kFolders = "HAPBENCH_MODULE_PATH";
   if (const char* folders = std::getenv(kFolders)) load_laws_in(kFolders, folders, guard);
 }
 
-/// Makes a success fail when a module failed: its runs count as diverged, which by itself need not be a failure.
+/// Returns the exit status, changed from success to kUnexpectedOutcome if a module failed. A failed module
+/// makes its runs count as diverged, which alone need not be a failure. Prints the first failure.
 int status_with_faults(int status, ProgramContext& context) {
   const ModuleFaults faults = take_module_faults();
   if (faults.count == 0) return status;
@@ -40,14 +42,14 @@ int status_with_faults(int status, ProgramContext& context) {
   return status == kSuccess ? kUnexpectedOutcome : status;
 }
 
-/// The command of that name; null for none.
+/// Returns the command of this name; null if there is none.
 const CLI::App* command_named(const CLI::App& program, const std::string& name) {
   const std::vector<const CLI::App*> found =
       program.get_subcommands([&name](const CLI::App* command) { return command->get_name() == name; });
   return found.empty() ? nullptr : found.front();
 }
 
-/// True for an option that takes a value, and for an unknown one, which may.
+/// Returns true for an option that takes a value, and for an unknown option, which may take one.
 bool takes_next_word(const CLI::App& command, const std::string& option) {
   const CLI::Option* found = command.get_option_no_throw(option);
   return found == nullptr || found->get_items_expected_min() > 0;
@@ -65,10 +67,10 @@ CommandLine::CommandLine(ProgramContext& context)
     if (command.add != nullptr) {
       command.add(*this);
     } else {
-      app_->add_subcommand(std::string(command.name));  // of a Python package, which reads its words
+      app_->add_subcommand(std::string(command.name));  // a Python package parses its arguments
     }
   }
-  // Behind the options that each command has added.
+  // The shared output options come after the options that each command has added.
   for (const auto& [app, output] : outputs_) {
     app->add_flag("--quiet", output->quiet, shared_option_help("--quiet"));
     app->add_flag("--json", output->json, shared_option_help("--json"));
@@ -76,7 +78,7 @@ CommandLine::CommandLine(ProgramContext& context)
   }
 }
 
-/// The program and each command have it, so that it may stand before or behind the command.
+/// The program and each command have the option --module, so that it may stand before or after the command.
 void CommandLine::add_module_option(CLI::App& app) {
   const auto add = [this](const std::vector<std::string>& files) {
     modules_.insert(modules_.end(), files.begin(), files.end());
@@ -103,7 +105,7 @@ std::vector<std::size_t> CommandLine::argument_places(const ProgramWords& words)
   std::vector<std::size_t> places;
   const CLI::App* command = words.empty() ? nullptr : command_named(*app_, words[0]);
   if (command == nullptr) return places;
-  bool are_options_over = false;  // behind "--"
+  bool are_options_over = false;  // true after "--"
   for (std::size_t i = 1; i < words.size(); ++i) {
     const std::string& word = words[i];
     if (are_options_over || !word.starts_with("-")) {
@@ -132,10 +134,11 @@ int CommandLine::parse_and_run(ProgramWords words) {
     fmt::print("{}", front_text(context_.layout()));
     return kSuccess;
   }
+  // Commands of Python packages parse their own arguments.
   const auto guide = std::ranges::find(command_guides(), words[0], &CommandGuide::name);
   if (guide != command_guides().end() && guide->add == nullptr) return run_python_command(words, context_);
   try {
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    std::reverse(words.begin(), words.end());  // CLI11 expects the arguments in reverse order
     app_->parse(std::move(words));
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
@@ -148,8 +151,9 @@ int CommandLine::parse_and_run(ProgramWords words) {
   } catch (const CLI::ParseError& error) {
     throw usage_error(error, *app_);
   }
+  // Load the modules, then run the selected command.
   load_modules(modules_, context_.guard_loading);
-  take_module_faults();  // forgets those of an earlier command of this process
+  take_module_faults();  // discards failures of an earlier command of this process
   return status_with_faults(action_(), context_);
 }
 

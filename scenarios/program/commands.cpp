@@ -16,7 +16,7 @@ namespace hapbench {
 
 namespace {
 
-/// In the order of the help.
+/// The commands in the order of the help.
 constexpr CommandGuide kCommands[] = {
     {"make", "new", "a scene to start from", add_new,
      "new\n"

@@ -47,24 +47,28 @@ struct ConvergeOptions : CommonOptions {
   std::string to;
 };
 
+/// The run of one level, and its processor time [s].
 struct LevelRun {
   Result result;
   double seconds = 0.0;
 };
 
+/// A row of converge_levels.csv: one metric at one level.
 struct LevelRow {
   std::string metric, value, outcome;
   std::optional<double> result, order, error;
   double seconds;
-  std::optional<double> share = {};  ///< the error relative to the finest result, as the grid convergence index
+  std::optional<double> share = {};  ///< estimated error divided by the finest result
 };
 
+/// The convergence of one metric over all levels.
 struct ConvergeStudy : Convergence {
   std::string metric, field;
   double formal_order;
   std::vector<LevelRow> levels;
 };
 
+/// Evaluates the convergence of a metric over the runs of all levels.
 ConvergeStudy studied(const LevelSweep& levels, const std::vector<LevelRun>& runs, const std::string& metric) {
   std::vector<LevelResult> results;
   for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i].result, metric));
@@ -78,7 +82,7 @@ ConvergeStudy studied(const LevelSweep& levels, const std::vector<LevelRun>& run
   return study;
 }
 
-/// `study`: what is printed, whose field and metric stand above the columns.
+/// Returns the columns of the levels. `study` provides the field and metric for the printed headings.
 Columns<LevelRow> level_columns(const ConvergeStudy& study) {
   using Row = LevelRow;
   const auto value = [](const Row& r) { return finite_number(r.value); };
@@ -104,7 +108,8 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
            under("run s", 2, kOnlyJson)}};
 }
 
-/// Times in a file of their own: the others are the same bytes in every run.
+/// Returns the columns of the times. They have a file of their own, because all other files are identical in
+/// every run.
 Columns<LevelRow> time_columns() {
   return {{"value", "by field", "value of the field that is refined", &LevelRow::value},
           {"seconds", "s", "processor time of the run", &LevelRow::seconds}};
@@ -142,7 +147,7 @@ Json study_json(const ConvergeStudy& study) {
   return json;
 }
 
-/// How far an observed order can be believed.
+/// States how far an observed order is reliable.
 std::string order_text(const ConvergeStudy& study) {
   const auto is_known = [](const auto& error) { return error.has_value(); };
   if (std::ranges::count_if(study.errors, is_known) == 3) return "of three levels alone";
@@ -162,8 +167,9 @@ std::string verdict_text(const ConvergeStudy& study) {
                      number_text(high, high - low));
 }
 
-/// The coarsest level whose error and those of all finer ones are below, and what it costs.
+/// Names the coarsest level from which on the relative errors of all levels are below `most`, and its cost.
 std::string enough_text(const ConvergeStudy& study, double most) {
+  // Find the first level from which on all errors are below the bound.
   const std::vector<LevelRow>& levels = study.levels;
   std::size_t first = levels.size();
   while (first > 0 && levels[first - 1].share && *levels[first - 1].share < most) --first;
@@ -176,6 +182,7 @@ std::string enough_text(const ConvergeStudy& study, double most) {
                                study.order ? "" : " by what the levels show",
                                first == 0 ? ", the coarsest that was tried" : cost);
   }
+  // Otherwise extrapolate the required value of the field by the observed order.
   const LevelRow& finest = levels.back();
   if (!study.asymptotic || !finest.share) return below + "no level is known to be";
   const double finer = math::pow(*finest.share / most, 1.0 / *study.order);
@@ -183,6 +190,8 @@ std::string enough_text(const ConvergeStudy& study, double most) {
                              *finite_number(finest.value) / finer);
 }
 
+/// Returns the relative error of a text such as "1%" or "0.01". Throws InputError unless it lies between 0 and
+/// 1.
 double share_of(const std::string& text) {
   const bool percent = text.ends_with('%');
   const auto number = finite_number(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
@@ -192,13 +201,15 @@ double share_of(const std::string& text) {
   return share;
 }
 
-/// The time that this thread had of its processor, which other processes share without lengthening it.
+/// Returns the processor time of this thread [s]. Unlike wall time it does not include waiting for other
+/// processes.
 double processor_seconds() {
   timespec now{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// Runs a scene and measures the processor time of the run, without the preparation of its point shell.
 LevelRun run_of(const CheckedScenario& scene) {
   const auto shell = make_shell(scene.scenario(), scene.files());
   const double before = processor_seconds();
@@ -206,14 +217,15 @@ LevelRun run_of(const CheckedScenario& scene) {
   return {std::move(result), processor_seconds() - before};
 }
 
-/// The levels of a scene's field. Throws InputError where it has none.
+/// Returns the levels for refining the field. Throws InputError if the scene has no such number.
 LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenario) {
-  const CheckedScenario scene = checked(load_scenario(scenario, options.overrides));  // the plan tells its warnings
+  // Warnings of this scenario are returned by plan_sweep().
+  const CheckedScenario scene = checked(load_scenario(scenario, options.overrides));
   const LoadedScenario& loaded = scene.loaded();
   if (current_value(loaded.scenario, options.field).is_null()) {
     std::vector<std::string> given = options.overrides;
     given.push_back(options.field + "=1");
-    load_scenario(scenario, given);  // a field that does not exist, or takes no number, says so itself
+    load_scenario(scenario, given);  // throws if the field does not exist or takes no number
   }
   return with_file(loaded, [&] {
     return level_sweep(loaded, options.field, static_cast<std::size_t>(options.levels), options.ratio);
@@ -222,7 +234,7 @@ LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenari
 
 int converge(const ConvergeOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
-  // All input is checked before anything runs or is written.
+  // Check all input before anything runs or is written.
   if (!(options.ratio > 1.0 && options.ratio <= kLargestRatio))
     fail_in_option("--ratio", fmt::format("got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
   const auto most = options.to.empty() ? std::nullopt : std::optional(share_of(options.to));
@@ -236,10 +248,12 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   require_names("--metric", metrics, plan.metrics, "hapbench describe metrics");
   print_warnings(context, plan.warnings);
   Report report(options, "converge_" + file.stem().string(), context);
+  // Run all levels.
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(checked(plan.cases.load(i))); });
   report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().result.name,
                          levels.axis.path, levels.axis.values.front(), levels.ratio, levels.formal_order));
+  // Evaluate each metric.
   std::vector<ConvergeStudy> studies;
   std::vector<LevelRow> rows;
   for (const std::string& metric : metrics) {

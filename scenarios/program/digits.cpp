@@ -24,6 +24,7 @@ std::string deserved(double value, const std::optional<double>& tolerance, int d
   if (!tolerance || !(*tolerance > 0.0 && *tolerance < size) || !std::isfinite(size)) return significant(value, digits);
   const int last = static_cast<int>(std::floor(math::log10(*tolerance)));
   if (size < 1e-4 || last < -12) return significant(value, deserved_digits(value, tolerance, 12));
+  // Round to the decimal place of the tolerance's leading digit.
   const double unit = math::pow(10.0, last);
   return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
 }

@@ -12,9 +12,10 @@ namespace hapbench {
 
 namespace {
 
-/// A narrower output would not hold a name and its meaning.
+/// Smallest width [characters] in which a name and its meaning fit beside each other.
 constexpr std::size_t kNarrowest = 40;
 
+/// Returns COLUMNS, or the width of the terminal; npos if standard output is not a terminal.
 std::size_t output_width() {
   const char* columns = std::getenv("COLUMNS");
   if (const long given = columns == nullptr ? 0 : std::atol(columns); given > 0)

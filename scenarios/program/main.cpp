@@ -20,10 +20,11 @@
 
 namespace {
 
-/// Says which exception nobody caught. oneTBB throws in threads of its own when it can start no further ones.
+/// Terminate handler: reports the uncaught exception and exits. oneTBB throws in its own threads if it cannot
+/// start further threads.
 [[noreturn]] void end_with_a_reason() {
   static std::atomic_flag said;
-  while (said.test_and_set()) ::pause();  // another thread ends the process
+  while (said.test_and_set()) ::pause();  // only the first thread reports; it ends the process
   std::string what = "an exception of no known type";
   try {
     if (const auto uncaught = std::current_exception()) std::rethrow_exception(uncaught);
@@ -38,17 +39,18 @@ namespace {
 
 std::atomic<bool> main_has_returned{false};
 
-/// A module that calls exit does not end the program with success.
+/// Exit handler: a module that calls exit must not end the program with the status of success.
 void refuse_exit() {
   if (main_has_returned) return;
   hapbench::write_error("internal fault: a module or a library called exit");
   std::_Exit(hapbench::kInternalFault);
 }
 
-/// Beyond three quarters of the machine's memory an allocation throws std::bad_alloc, so that a file from outside ends
-/// in an error and not the machine. Never raises a limit that the system or the user has set.
+/// Limits the memory of this process to three quarters of the machine's memory. Beyond the limit, an allocation
+/// throws std::bad_alloc, so that an excessive input file ends in an error and does not stall the machine.
+/// Never raises a limit that the system or the user has set.
 void limit_memory() {
-#ifndef HAPBENCH_SANITIZED  // the sanitizers' own maps of memory, terabytes of addresses, would count
+#ifndef HAPBENCH_SANITIZED  // the sanitizers map terabytes of addresses, which would count
   const auto most = static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
   rlimit limit = {};
   if (::getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur < most / 4 * 3) return;
@@ -57,11 +59,12 @@ void limit_memory() {
 #endif
 }
 
-/// Keeps memory that was freed for what comes next. glibc would give blocks of megabytes, by which meshes grow, back
-/// and fetch them anew page by page: a tenth of the time of a short run on a mesh.
+/// Makes glibc keep freed memory for later allocations. By default it returns blocks of megabytes, with which
+/// meshes grow, to the system and requests them again page by page. This would cost a tenth of the time of a
+/// short run on a mesh.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);  // [B], the most that glibc takes
+  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);  // [B], the largest value that glibc accepts
   ::mallopt(M_TRIM_THRESHOLD, 256 << 20);
 #endif
 }
@@ -69,7 +72,8 @@ void keep_freed_memory() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Exceeding the file size limit should be an ordinary write error and not terminate the process.
+  // Without this, exceeding the file size limit would terminate the process; it should be an ordinary write
+  // error.
   std::signal(SIGXFSZ, SIG_IGN);
   std::atexit(refuse_exit);
   std::set_terminate(end_with_a_reason);

@@ -23,7 +23,7 @@ std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given
 /// its last entry. Throws InputError if the requested metric is not among `metrics`.
 std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for);
 
-/// Returns the first `max_count` texts; if there are more, adds a text with the number of omitted texts.
-std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t max_count);
+/// Returns the first `most` texts; if there are more, adds a text with the number of omitted texts.
+std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most);
 
 }  // namespace hapbench

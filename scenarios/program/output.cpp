@@ -12,7 +12,7 @@ namespace hapbench {
 namespace {
 
 void write_line(std::string_view head, std::string_view text) {
-  std::fflush(stdout);  // keeps the order of printing where both streams go to one pipe
+  std::fflush(stdout);  // keeps the order of the output if both streams go to one pipe
   fmt::print(stderr, "{} {}\n", head, text);
 }
 
@@ -20,7 +20,7 @@ std::string error_head() {
   return bold(stderr, "hapbench: error:");
 }
 
-/// Prints a line on standard error, or adds it to what the host collects of that kind.
+/// Prints a line on standard error, or appends the text to the captured list `kind` of a host.
 void tell(const ProgramContext& context, std::vector<std::string> CapturedOutput::*kind, std::string_view head,
           std::string_view text) {
   if (context.captured != nullptr) {

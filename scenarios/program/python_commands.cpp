@@ -32,12 +32,13 @@ const ImportKind kImportKinds[] = {
     {"stroke", "Make a stroke to play back from a recording: poses and measured forces", "hapbench_import"},
     {"device", "Make a device's file from its log: mass, friction, delay, encoder", "hapbench_identify"}};
 
-/// The line of a shell that becomes the launcher, which finds a Python for the package: its name and its first words.
+/// Returns a shell command that replaces the shell with the launcher of Python packages. `package`: the
+/// package's name and its first arguments.
 std::string launch_line(const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
   ProgramWords words = {"exec", (installed_folder("scripts/python") / "launch").string()};
   words.insert(words.end(), package.begin(), package.end());
   words.insert(words.end(), given.begin(), given.end());
-  // The packages ask this very program, for the points of a scene.
+  // The packages call this executable for the points of a scene.
   setenv("HAPBENCH_PROGRAM", context.program.c_str(), 1);
   return shell_line(words);
 }
@@ -47,7 +48,7 @@ std::string launch_line(const ProgramWords& package, const ProgramWords& given, 
                 std::error_code(errno, std::generic_category()));
 }
 
-/// Runs the line as another process. Returns its exit status and what it printed on standard output.
+/// Runs the shell command in a child process. Returns its exit status and its standard output.
 std::pair<int, std::string> run_beside(const std::string& line) {
   std::fflush(stdout);
   std::FILE* pipe = ::popen(line.c_str(), "r");
@@ -58,7 +59,8 @@ std::pair<int, std::string> run_beside(const std::string& line) {
   return {WIFEXITED(ended) ? WEXITSTATUS(ended) : kStopped + WTERMSIG(ended), text};
 }
 
-/// Runs it for the host, which gets text and messages. Returns its exit status. Throws InputError for what it refuses.
+/// Runs the shell command in a child process and stores its text and messages in `host`. Returns its exit
+/// status. Throws InputError for faults that it reports with the status of bad input.
 int run_for(CapturedOutput& host, const std::string& line) {
   const auto [status, text] = run_beside(line + " 2>&1");
   constexpr std::string_view kError = "hapbench: error: ", kWarning = "hapbench: warning: ";
@@ -78,30 +80,33 @@ int run_for(CapturedOutput& host, const std::string& line) {
   return status;
 }
 
-/// Makes "hapbench import device" simulate a log for its own Python, thousands of times over a pipe of doubles.
-/// Standard input has the count of rows, their times, their forces, and then requests: a number of rows (0 ends it) and
-/// the fields of a LoggedHandle. Each answer on standard output is the positions at these rows.
+/// Internal argument of "hapbench import device" that simulates a device log for the Python package, thousands
+/// of times through pipes of doubles. Standard input has the number of rows, their times, their forces, and
+/// then requests. A request is a number of rows (0 ends the requests) and the fields of a LoggedHandle. The
+/// answer to a request on standard output is the positions at these rows.
 constexpr const char* kSimulateLog = "--simulate-log";
 
 int simulate_log_for_pipe() {
   const auto read = [](double* values, std::size_t count) {
     return std::fread(values, sizeof(double), count, stdin) == count;
   };
+  // Read the times and forces of all rows.
   double rows = 0.0;
   if (!read(&rows, 1) || !(rows >= 0.0 && rows < 1e9)) return kBadInput;
   std::vector<double> times(static_cast<std::size_t>(rows)), forces(times.size()), positions(times.size());
   if (!read(times.data(), times.size()) || !read(forces.data(), forces.size())) return kBadInput;
-  std::array<double, 7> asked{};
-  while (read(asked.data(), asked.size()) && asked[0] > 0.0 && asked[0] <= rows) {
-    const auto count = static_cast<std::size_t>(asked[0]);
-    const LoggedHandle handle{asked[1], asked[2], asked[3], asked[4], asked[5], asked[6]};
+  // Answer requests until the input ends.
+  std::array<double, 7> request{};
+  while (read(request.data(), request.size()) && request[0] > 0.0 && request[0] <= rows) {
+    const auto count = static_cast<std::size_t>(request[0]);
+    const LoggedHandle handle{request[1], request[2], request[3], request[4], request[5], request[6]};
     simulate_log(handle, std::span(times).first(count), std::span(forces).first(count), positions);
     if (std::fwrite(positions.data(), sizeof(double), count, stdout) != count || std::fflush(stdout) != 0) break;
   }
   return kSuccess;
 }
 
-/// At a terminal this process becomes the launcher.
+/// Runs a package. Unless a host captures the output, this process becomes the launcher.
 int run(const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
   const std::string line = launch_line(package, given, context);
   if (context.captured != nullptr) return run_for(*context.captured, line);
@@ -140,8 +145,7 @@ void write_way(ProgramContext& context, const std::filesystem::path& folder, con
 
 int run_python_command(const ProgramWords& words, ProgramContext& context) {
   const ProgramWords given(words.begin() + 1, words.end());
-  return words[0] == "import" ? run_import(given, context)
-                              : run({"hapbench_pictures", words[0]}, given, context);
+  return words[0] == "import" ? run_import(given, context) : run({"hapbench_pictures", words[0]}, given, context);
 }
 
 }  // namespace hapbench

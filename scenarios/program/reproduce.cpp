@@ -35,12 +35,13 @@ struct ReproduceOptions : CommonOptions {
   std::vector<std::string> only;
   std::string ledger;
   bool rerun = false;
-  std::string readings;  ///< file; empty for none
+  std::string readings;  ///< file of --choices; empty for none
 
   fs::path folder() const { return results_directory(out, "reproduce"); }
   fs::path runs() const { return folder() / "thesis"; }
 };
 
+/// Returns the claims with these ids, in any case of letters; without ids all claims. Throws InputError.
 std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   std::vector<Claim> claims = all_claims();
   if (ids.empty()) return claims;
@@ -55,7 +56,7 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   return claims;
 }
 
-/// Returns true if the directory holds results of exactly this scenario, computed by exactly this program.
+/// Returns true if the directory has results of exactly this scenario, computed by exactly this program.
 bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
   try {
     const Json summary = read_json(directory / "summary.json");
@@ -63,16 +64,18 @@ bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
     return made.at("scenario_hash") == scenario_hash(effective_scenario(loaded.scenario, {}), loaded.files) &&
            made.at("commit") == provenance().commit && provenance().identifies_source();
   } catch (const std::exception&) {
-    return false;  // missing, damaged or of another version: run it
+    return false;  // the results are missing, damaged or of another version
   }
 }
 
+/// A scenario of the thesis, and its run by this command.
 struct ThesisRun : BundledScenario {
-  std::optional<double> seconds = {};   ///< that it took; none before it has run
-  std::vector<std::string> unmet = {};  ///< what the run did otherwise than the scenario expects
+  std::optional<double> seconds = {};   ///< duration of the run [s]; empty before it
+  std::vector<std::string> unmet = {};  ///< expectations of the scenario that the run does not meet
 };
 
-/// Runs the scenario into its subdirectory of the directory, except where the results there are current or it has run.
+/// Runs the scenario and writes its results to a subdirectory of `directory`. Does nothing if the scenario was
+/// run before. Keeps current results unless `rerun`.
 void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
   if (run.seconds) return;
   run.seconds = seconds_of(1, [&] {
@@ -82,7 +85,7 @@ void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
   });
 }
 
-/// Judges the claims by the thesis's runs, those of which are made that are missing.
+/// Judges the claims by the runs of the thesis's scenarios, and makes the missing runs first.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
                                const Choices& choices, std::vector<ThesisRun>& runs, const ReproduceOptions& options,
                                const ProgramContext& context) {
@@ -91,12 +94,12 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   for (const Claim& claim : claims) {
     bar.show(judged.size());
     std::set<std::string> used, provided;   // scenarios
-    double providing = 0.0, running = 0.0;  // seconds: for what others share, of the claim's own runs
+    double providing = 0.0, running = 0.0;  // [s]: time for runs that claims share; time for the runs of this claim
     const auto note = [&](const std::string& scenario) { used.insert(scenario); };
     const auto provide_run = [&](const std::string& scenario) {
       note(scenario);
       const auto run = std::ranges::find(runs, scenario, &ThesisRun::name);
-      if (run == runs.end()) return;  // of another group
+      if (run == runs.end()) return;  // a scenario of another group
       providing += seconds_of(1, [&] { provide(*run, options.runs(), options.rerun); });
       if (provided.insert(scenario).second) running += *run->seconds;
     };
@@ -109,20 +112,24 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   return judged;
 }
 
-/// Judges the claims under the readings; robustness.* go next to the ledger, if there is one. Returns that of .json.
+/// Judges the claims again under each reading, a set of values for the thesis's unstated choices. Writes
+/// robustness.csv and robustness.json next to the ledger, if there is one. Returns the content of
+/// robustness.json.
 Json judge_readings(const ReproduceOptions& options, const Readings& readings, const fs::path& ledger, FileSet& files,
                     ProgramContext& context) {
   const fs::path scratch = options.folder() / "robustness";
+  // Judge the claims under each reading.
   std::vector<ReadingVerdicts> judged(readings.values.size());
   for_each_job(judged.size(), job_options(options, "robustness", context),
                [&](std::size_t i) { judged[i] = judge_reading(readings, i, scratch / std::to_string(i)); });
   std::error_code ignored;
   fs::remove(scratch, ignored);
+  // Report the claims that could not be measured.
   std::vector<std::string> problems;
   for (const ReadingVerdicts& reading : judged)
     for (const std::string& problem : reading.problems) problems.push_back("not measured: " + one_line(problem));
   for (const std::string& problem : first_few(problems, 10)) print_error(context, problem);
-  // Readings of single claims leave those of the others as they are.
+  // With --only, keep what robustness.json has of the other claims.
   const fs::path file = ledger.parent_path() / "robustness.json";
   const bool some = !ledger.empty() && !options.only.empty() && fs::exists(file);
   const Json record = robustness_json(readings, judged, some ? read_json(file) : Json::object());
@@ -168,15 +175,16 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
   std::vector<ThesisRun> runs;
   for (const BundledScenario& bundled : bundled_scenarios())
     if (bundled.group == "thesis") runs.push_back({bundled});
-  // Single claims run only the scenarios they need.
+  // Without --only, make all runs first, in parallel. With --only, judge() makes the runs that the claims need.
   if (options.only.empty())
     for_each_job(runs.size(), job_options(options, "thesis", context),
                  [&](std::size_t i) { provide(runs[i], options.runs(), options.rerun); });
 
   const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options, context);
-  // None of single claims unless --ledger is given: they would replace the ledger of all claims.
+  // With --only and without --ledger, no ledger is written: it would replace the ledger of all claims.
   const fs::path ledger =
       options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);
+  // Use the stored robustness, or sample it anew with --choices.
   const fs::path on_record = reference / "robustness.json";
   Json robustness = fs::exists(on_record) ? read_json(on_record) : Json{{"claims", Json::array()}};
   if (!readings.values.empty()) {

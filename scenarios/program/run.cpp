@@ -29,8 +29,9 @@ struct RunOptions : CommonOptions {
   bool latency = false, no_skip = false;
 };
 
-/// One directory per scenario: that of --out for a single one, a subdirectory named after the file for several; without
-/// --out, one of results/out. Throws InputError when two files have the same name.
+/// Returns a directory for each scenario. A single scenario writes to the folder of --out, several scenarios to
+/// subdirectories of it that are named after their files. Without --out, each scenario has a folder in
+/// results/out. Throws InputError if two files have the same name.
 std::vector<fs::path> output_directories(const std::string& out, const std::vector<fs::path>& files) {
   std::vector<fs::path> directories;
   for (const std::string& name : names_of_scenarios(files)) {
@@ -40,8 +41,8 @@ std::vector<fs::path> output_directories(const std::string& out, const std::vect
   return directories;
 }
 
-/// The table of thesis D.4.
-Columns<PlaceMetrics> place_columns() {
+/// Returns the columns of the table of section D.4 of the thesis: means over subjects for each target.
+Columns<PlaceMetrics> target_columns() {
   const auto mean = [](SubjectMean PlaceMetrics::*of, double factor = 1.0) {
     return [=](const PlaceMetrics& p) {
       const SubjectMean& m = p.*of;
@@ -58,7 +59,7 @@ Columns<PlaceMetrics> place_columns() {
       {"speed [mm/s]", "1", "targets.0.speed_m_per_s.mean", mean(&PlaceMetrics::speed, 1e3), only_printed()}};
 }
 
-/// The steps of runs that timed them.
+/// Returns the columns of the step times of --latency.
 Columns<Result> latency_columns() {
   const auto time = [](std::uint64_t StepLatency::*of) {
     return [of](const Result& r) {
@@ -87,7 +88,8 @@ Columns<Result> latency_columns() {
   return columns;
 }
 
-/// What is wrong with a run and what to try; of several runs a line each, with the names of the rules. May be empty.
+/// Returns the diagnosis of runs, with what to try for a single run. Several runs have a line each, with the
+/// names of the rules. Empty if no rule applies.
 std::string diagnosis_text(std::span<const Result> reports, const Layout& layout) {
   std::string text;
   for (const Result& report : reports) {
@@ -108,7 +110,7 @@ std::string diagnosis_text(std::span<const Result> reports, const Layout& layout
 
 int run(const RunOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
-  // All input is checked before anything runs or is written.
+  // Check all input before anything runs or is written.
   std::vector<std::string> overrides = options.overrides;
   if (options.latency) overrides.emplace_back("record.timing=true");
   std::vector<LoadedScenario> loaded;
@@ -123,6 +125,7 @@ int run(const RunOptions& options, ProgramContext& context) {
   }
   for (const fs::path& directory : directories) require_writable_directory(context, directory);
 
+  // Run the scenarios one after the other.
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   Report report(options.output, where, context);
   std::vector<Result> results;
@@ -130,13 +133,13 @@ int run(const RunOptions& options, ProgramContext& context) {
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const Result& result = results.emplace_back(run_scenario(
         scenarios[i], directories[i], {!options.output.quiet, context.progress}, nullptr, /*diagnose=*/true));
-    // Users who try values of a field hear that the results of the value before are gone.
+    // Tell users who try values of a field that the results of the previous value were replaced.
     if (result.replaces_other && options.out.empty() && !options.overrides.empty())
       print_note(context, fmt::format("replaced the run of other fields in {}; --out DIRECTORY keeps both",
                                       directories[i].string()));
     if (result.sections.contains("targets"))
       targets += fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", result.name,
-                             place_columns().text(place_metrics(result.targets), layout));
+                             target_columns().text(place_metrics(result.targets), layout));
     print_warnings(context, run_warnings({&result, 1}));
     Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
@@ -156,7 +159,7 @@ int run(const RunOptions& options, ProgramContext& context) {
 }  // namespace
 
 std::vector<DescribedTable> single_run_tables() {
-  return {place_columns().described(), latency_columns().described()};
+  return {target_columns().described(), latency_columns().described()};
 }
 
 void add_run(CommandLine& line) {

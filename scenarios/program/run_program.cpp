@@ -19,6 +19,7 @@ namespace hapbench {
 
 namespace {
 
+/// Prints an error and returns the status of an internal fault.
 int fail(std::string_view what, ProgramContext& context) {
   print_error(context, what);
   return kInternalFault;
@@ -27,7 +28,7 @@ int fail(std::string_view what, ProgramContext& context) {
 }  // namespace
 
 int run_program(const ProgramWords& words, ProgramContext& context) {
-  // Numbers are read and written without the language of a host such as Python, whose decimal point may be a comma.
+  // Use the C locale while the command runs. The locale of a host such as Python may have a decimal comma.
   const locale_t plain = ::newlocale(LC_ALL_MASK, "C", nullptr), before = ::uselocale(plain);
   const std::shared_ptr<void> restored(nullptr, [=](void*) {
     ::uselocale(before);

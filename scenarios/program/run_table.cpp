@@ -13,26 +13,27 @@
 namespace hapbench {
 namespace {
 
-/// A number of few characters: "1440" in place of "1.44e+03", and never "-0".
+/// Returns a number with few characters: "1440" instead of "1.44e+03", and never "-0".
 std::string cell(std::optional<double> value, int digits = 3) {
   if (value && digits < 3) value = rounded_to_digits(*value, digits);
   if (value && std::abs(*value) >= 100.0 && std::abs(*value) < 1e6) return fmt::format("{:.0f}", *value);
   return value ? significant(*value + 0.0, digits) : "-";
 }
 
-/// What tells runs apart: those of one scenario their algorithms.
+/// Returns the member that distinguishes the runs: the algorithm if all runs are of one scenario, else the
+/// scenario.
 std::string Result::*distinct_name(std::span<const Result> reports) {
   return reports.front().name == reports.back().name ? &Result::algorithm : &Result::name;
 }
 
-/// How a run ended, and when, as far as that was before its last row.
+/// Returns how a run ended, and when if it ended before its last row.
 std::string ending_text(const Result& report) {
   const std::string name(outcome_name(report.end.outcome));
   const auto last = number_of(report.metrics, "last_contact_s");
   switch (report.end.outcome) {
     case Outcome::leaves_hole:
     case Outcome::tool_horizontal:
-      // Several trials have no time in common.
+      // Several trials have no common time.
       return !report.sections.contains("targets") ? fmt::format("{} at {:.3g} s", name, report.duration) : name;
     case Outcome::diverges:
       return fmt::format("{} at {:.3g} s", name, report.end.divergence.time);
@@ -73,7 +74,7 @@ Columns<Result> run_columns(bool of_scenes) {
   return columns;
 }
 
-/// Of runs with a reference force: measured with the stroke, or ideal.
+/// Columns of runs with a reference force, which is measured with the stroke or ideal.
 constexpr RunHeading kFidelityHeadings[] = {
     {"force\nerror [%]", "fidelity.force_error_relative", 100.0, false},
     {"normal\n[N rms]", "fidelity.force_error_normal_rms_N", 1.0, false},
@@ -108,7 +109,7 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
   std::vector<std::string> kinds, texts;
   for (const Result& report : reports) {
     for (const auto& [kind, pointer, text] : report.warnings) {
-      if (!pointer.empty()) continue;  // told before the run
+      if (!pointer.empty()) continue;  // was printed before the run
       const auto known = std::ranges::find(kinds, kind) - kinds.begin();
       if (known == std::ssize(kinds)) {
         kinds.push_back(kind);

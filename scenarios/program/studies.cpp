@@ -22,14 +22,15 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kAsk = "ask";
-/// What is said of a study, and is not an option of its command.
+/// Members of a study that are not options of its command.
 constexpr const char* kNoOptions[] = {kAsk, "scenarios", "summary", "source", "alone", "$schema"};
 
 fs::path studies_folder() {
   return installed_folder("scenarios/library") / "studies";
 }
 
-/// The file and the text of the study that a word names; none for others, and for what a command refuses to read.
+/// Returns the file and the text of the study that an argument names. Returns empty for other arguments and for
+/// files that cannot be read.
 std::optional<std::pair<fs::path, std::string>> find_study(const std::string& word) {
   std::error_code error;
   try {
@@ -43,12 +44,15 @@ std::optional<std::pair<fs::path, std::string>> find_study(const std::string& wo
   return std::nullopt;
 }
 
+/// Returns a value of a study as it is written on a command line.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number_float()) return cell_text(value.get<double>());
   return value.dump();
 }
 
+/// Returns values of a study as they are written on a command line: a single value, "a,b" or
+/// "from:to:count:log".
 std::string values_text(const Json& values) {
   if (values.is_object() && values.contains("from")) {
     const std::string count = values.contains("count") ? ":" + text_of(values["count"]) : "";
@@ -58,6 +62,7 @@ std::string values_text(const Json& values) {
   return values.is_array() ? fmt::format("{}", fmt::join(names_of(values, text_of), ",")) : text_of(values);
 }
 
+/// Returns the arguments that give an option with this value. An object gives one option for each member.
 ProgramWords option_words(const std::string& option, const Json& value) {
   if (value.is_boolean()) return ProgramWords(value.get<bool>() ? 1 : 0, option);
   ProgramWords words;
@@ -75,18 +80,21 @@ ProgramWords option_words(const std::string& option, const Json& value) {
   return words;
 }
 
-/// A scenario's file is looked for next to the study's first, and then as other words of a command are.
+/// Returns a scenario file next to the study if it exists. Otherwise returns the name, which the command
+/// resolves like every scenario name.
 std::string scenario_beside(const fs::path& study, const std::string& name) {
   const fs::path file = study.parent_path() / name;
   std::error_code error;
   return name.ends_with(".json") && fs::exists(file, error) ? file.lexically_normal().string() : name;
 }
 
+/// Returns the line of a key in the text of a study, from 1.
 std::size_t line_of(const std::string& text, const std::string& key) {
   const std::size_t at = text.find("\"" + key + "\"");
   return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
+/// Returns the content of a study. Throws InputError if it is no study.
 Json study_json(const fs::path& file, const std::string& text) {
   try {
     Json study = parse_json(text);
@@ -117,6 +125,7 @@ std::vector<BundledStudy> bundled_studies() {
 
 std::optional<StudyWords> StudyWords::in(const ProgramWords& words, std::span<const std::size_t> arguments) {
   if (words.empty() || words[0] == "describe") return std::nullopt;
+  // Find the first argument that names a study.
   std::optional<std::pair<fs::path, std::string>> named;
   std::size_t place = 0;
   for (std::size_t i = 0; i < arguments.size() && !named; ++i) {
@@ -129,13 +138,15 @@ std::optional<StudyWords> StudyWords::in(const ProgramWords& words, std::span<co
   if (study[kAsk] != words[0])
     fail_in_line(file, line_of(text, kAsk),
                  fmt::format("is a question for \"hapbench {} {}\"", study[kAsk].get<std::string>(), words[place]));
+  // Scenarios first, then the options of the study, then the other arguments of the command line.
   StudyWords found{file, {words[0]}, {}};
   for (const Json& scenario : study["scenarios"]) found.words.push_back(scenario_beside(file, text_of(scenario)));
   for (const auto& [key, value] : study.items()) {
     if (std::ranges::find(kNoOptions, key) != std::end(kNoOptions)) continue;
     const std::string option = "--" + key;
     const auto is_given = [&](const std::string& word) { return word == option || word.starts_with(option + "="); };
-    // What may be given several times adds up.
+    // An option of the command line replaces the study's option. Options with an object may be repeated and are
+    // combined.
     if (!value.is_object() && std::ranges::any_of(words, is_given)) continue;
     found.lines[option] = line_of(text, key);
     std::ranges::move(option_words(option, value), std::back_inserter(found.words));

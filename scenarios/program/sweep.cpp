@@ -40,7 +40,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is printed of a run, with the headings that run and compare have; also the metric where it is not among them.
+/// Returns the printed columns of a run: the varied fields, the outcome and the columns of `run`. Adds a column
+/// for the metric if none of them has it.
 Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric) {
   Columns<SweepRow> columns;
   const bool single = table.fields() == 1, sampled = table.about.contains("sample");
@@ -78,7 +79,8 @@ Columns<OutcomeCount> count_columns() {
            [](const OutcomeCount& c) { return c.second.expected; }, only_printed()}};
 }
 
-/// The runs, of several fields those with the least of the metric, failures last; then the counts of outcomes.
+/// Returns the table of the runs, followed by the counts of outcomes. With several fields, the runs are in
+/// ascending order of the metric, failures last.
 std::string summary_text(const SweepTable& table, const std::string& metric, const Layout& layout) {
   constexpr std::size_t kMostShown = 100, kMostListed = 20;
   std::vector<SweepRow> rows = table.rows;
@@ -98,7 +100,7 @@ std::string summary_text(const SweepTable& table, const std::string& metric, con
   return text + count_columns().text(table.kept.outcomes, layout);
 }
 
-/// A number or another value of JSON where the cell is one; null for an empty cell; else its text.
+/// Returns a cell as JSON if it is valid JSON, else as text; null for an empty cell.
 Json json_of_cell(const std::string& cell) {
   if (cell.empty()) return Json();
   return Json::accept(cell) ? Json::parse(cell) : Json(cell);
@@ -115,13 +117,14 @@ Json summary_json(const SweepTable& table) {
   for (const SweepRow& row : table.rows) {
     Json& added = rows.emplace_back(Json::object());
     for (std::size_t c = 0; c < row.size(); ++c) {
-      const bool is_hash = c + 1 == row.size();  // which may look like a number
+      const bool is_hash = c + 1 == row.size();  // a hash may look like a number
       added[table.columns[c]] = is_hash && !row[c].empty() ? Json(row[c]) : json_of_cell(row[c]);
     }
   }
   return json;
 }
 
+/// Values of the options of `sweep`.
 struct SweepCommand : CommonOptions {
   std::string scenario, sample, points, metric, shard;
   std::vector<std::string> vary, where;
@@ -132,7 +135,7 @@ struct SweepCommand : CommonOptions {
 constexpr const char* kNothingToSweep =
     "sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep";
 
-/// The scenes that an axis names, or the one of the command line.
+/// Returns the scenes that an axis names, or the scene of the command line. Throws InputError.
 std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vector<Axis>& axes) {
   const auto axis = std::ranges::find(axes, kSceneAxis, &Axis::path);
   if (axis == axes.end()) {
@@ -161,7 +164,7 @@ Cases cases_of(const SweepCommand& command) {
   return {std::move(scenes), command.overrides, std::move(axes), std::move(sampling)};
 }
 
-/// Reports runs that failed or ended unexpectedly and returns the exit status.
+/// Reports the number and the first of the runs that failed or ended unexpectedly, and returns the exit status.
 int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& counts, ProgramContext& context) {
   const std::string scene = cases.scenes().front().file.string();
   const auto run_text = [&cases](std::size_t run) {
@@ -182,7 +185,7 @@ int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& co
 int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& context) {
   if (command.row >= cases.size())
     fail_in_option("--row", fmt::format("got {}; allowed: 0 ... {}", command.row, cases.size() - 1));
-  cases.load(command.row);  // throws if the row's scenario is wrong
+  cases.load(command.row);  // throws if the scenario of this row is invalid
   const fs::path scene = fs::absolute(cases.scene(command.row).file).lexically_normal();
   std::vector<std::string> words = {context.program.string(), "run", scene.string()};
   for (const std::string& override : cases.overrides(command.row)) words.insert(words.end(), {"--set", override});
@@ -191,7 +194,8 @@ int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& c
   return kSuccess;
 }
 
-/// Prints the rows of a finished sweep that keep the conditions of --where; `resumed`: how many were there before.
+/// Prints the rows of a finished sweep that satisfy the conditions of --where. `resumed`: number of runs that
+/// an earlier call had computed.
 void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramContext& context,
                  std::size_t resumed = 0) {
   const Layout layout = context.layout();
@@ -208,6 +212,7 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramCo
   print(context, command.output, text, {});
 }
 
+/// Prints a finished sweep again. Throws InputError for options that would run something.
 int reprint(const SweepCommand& command, ProgramContext& context) {
   const bool runs = !command.vary.empty() || !command.overrides.empty() || !command.sample.empty() ||
                     !command.points.empty() || !command.out.empty() || !command.shard.empty() || command.resume ||
@@ -222,6 +227,7 @@ int reprint(const SweepCommand& command, ProgramContext& context) {
 }
 
 int sweep(const SweepCommand& command, ProgramContext& context) {
+  // A folder with results is printed; complete shards are joined first.
   std::error_code ignored;
   if (fs::is_directory(command.scenario, ignored))
     if (join_shards(command.scenario) || fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored))
@@ -230,7 +236,7 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
   if (!command.where.empty() && !command.shard.empty())
     fail_in_option("--where",
                    "got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");
-  // All input is checked before anything runs or is written.
+  // Check all input before anything runs or is written.
   Cases cases = cases_of(command);
   if (command.print) return print_row(command, cases, context);
   SweepOptions options{
@@ -240,10 +246,11 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
       .keep_runs = command.keep_runs};
   if (!command.shard.empty()) options.shard = parse_shard(command.shard);
   const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking", context));
-  chosen_metric(plan.metrics, command.metric);            // throws if there is none of that name
-  print_warnings(context, first_few(plan.warnings, 20));  // there may be as many as runs
+  chosen_metric(plan.metrics, command.metric);            // throws if the metric does not exist
+  print_warnings(context, first_few(plan.warnings, 20));  // there may be a warning for each run
   require_writable_directory(context, options.directory);
 
+  // Run the sweep, then print its table.
   const SweepReport report = run_sweep(plan, options);
   const SweepTable table = read_sweep(options.table(), command.where);
   print_sweep(command, table, context, report.resumed);

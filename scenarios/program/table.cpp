@@ -13,15 +13,16 @@ namespace hapbench {
 
 namespace {
 
-constexpr std::size_t kGap = 2;  ///< blanks between columns
+constexpr std::size_t kGap = 2;  ///< spaces between columns
 
-/// The upper and the lower line of a title; a single line is the lower one.
+/// Returns the upper and lower line of a title. A title of one line is the lower line.
 std::array<std::string, 2> title_lines(const std::string& title) {
   const std::size_t end = title.find('\n');
   if (end == std::string::npos) return {"", title};
   return {title.substr(0, end), title.substr(end + 1)};
 }
 
+/// Returns the width of each column: of its title or widest cell.
 std::vector<std::size_t> widths_of(const Table& table) {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
@@ -33,7 +34,8 @@ std::vector<std::size_t> widths_of(const Table& table) {
   return widths;
 }
 
-/// The columns of these places side by side, under their header. The last one is wrapped where it is wider.
+/// Returns the columns with these indices side by side, under their header. Wraps the last column if it is
+/// wider than its width.
 std::string block_text(const Table& table, const std::vector<std::size_t>& widths,
                        const std::vector<std::size_t>& places) {
   const auto line = [&](auto cell_of) {
@@ -50,6 +52,7 @@ std::string block_text(const Table& table, const std::vector<std::size_t>& width
   if (text == "\n") text.clear();
   text += line([&](std::size_t c) { return title_lines(table.columns[c].title)[1]; });
   text += line([&](std::size_t c) { return std::string(widths[c], '-'); });
+  // Write the rows, each with as many lines as its wrapped last cell.
   for (const auto& row : table.rows) {
     const std::size_t last = places.back();
     std::istringstream prose(wrapped(row[last], 0, widths[last]));
@@ -71,12 +74,14 @@ std::string Table::text(std::size_t most_width) const {
   std::vector<std::size_t> widths = widths_of(*this);
   const std::size_t others = std::accumulate(widths.begin(), widths.end() - 1, kGap * (widths.size() - 1));
   if (others + widths.back() > most_width && columns.size() > 1 && !columns.back().number) {
-    // In a block of its own the last column stands beside the first.
+    // If the last column does not fit beside the others, it stands beside the first column in a block of its
+    // own.
     const std::size_t beside = others + kNarrowestProse <= most_width ? others : widths[0] + kGap;
     const std::size_t rest = std::max(kNarrowestProse, most_width - std::min(most_width, beside));
     widths.back() = std::min(widths.back(), rest);
   }
   std::string text;
+  // Fill blocks with columns, each block beginning with the first column.
   std::vector<std::size_t> places = {0};
   std::size_t width = widths[0];
   for (std::size_t c = 1; c < columns.size(); ++c) {

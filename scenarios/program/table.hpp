@@ -11,9 +11,8 @@ namespace hapbench {
 struct Table {
   struct Column {
     std::string title;
-    bool number = true;  ///< true: aligned right; false: text, aligned left
-    std::string meaning =
-        {};  ///< for `describe`: a name that it explains, or a sentence; empty: the title is such a name
+    bool number = true;        ///< true: aligned right; false: text, aligned left
+    std::string meaning = {};  ///< for `describe`: a name that it explains, or a sentence; empty: the title
   };
   std::vector<Column> columns;
   std::vector<std::vector<std::string>> rows = {};  ///< each row has a cell for each column

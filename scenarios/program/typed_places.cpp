@@ -10,16 +10,17 @@ namespace hapbench {
 
 namespace {
 
-/// The location with the override in place of its file, if the override gave its field. `pointer` is the override's.
+/// Replaces the file in a location by the override that gave its field. `pointer` is the JSON pointer of the
+/// override's field.
 void name_override(ErrorLocation& location, const std::string& override, const std::string& pointer) {
   constexpr std::size_t kMostTyped = 60;
   const bool is_long = override.size() > kMostTyped;
-  const bool has_option = !location.option.empty();  // what else was typed, as --device
+  const bool has_option = !location.option.empty();  // another typed option, such as --device
   location.option +=
       fmt::format("{}--set {}{}", has_option ? ": " : "", override.substr(0, kMostTyped), is_long ? "…" : "");
   location.about_options.emplace_back("--set");
   location.file.clear();
-  if (location.pointer == pointer) location.pointer.clear();  // the override says it
+  if (location.pointer == pointer) location.pointer.clear();  // the override already names the field
 }
 
 }  // namespace

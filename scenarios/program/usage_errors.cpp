@@ -26,8 +26,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-/// The options of a command that the text of an error of CLI11 names, in the order of the text. CLI11 gives an option
-/// at fault only in the text.
+/// Returns the options of a command that an error text of CLI11 names, in the order of the text. CLI11 gives
+/// the option at fault only in the text.
 std::vector<std::string> options_named(const std::string& text, const CLI::App& command) {
   const std::vector<std::string> known = option_names(command);
   std::vector<std::string> named;
@@ -40,7 +40,7 @@ std::vector<std::string> options_named(const std::string& text, const CLI::App& 
   return named;
 }
 
-/// Tells a user who wrote a field of scenarios as an option how fields are given.
+/// Returns a hint for users who give a field of scenarios as an option; empty for other options.
 std::string field_hint(const std::string& option, const std::vector<std::string>& known) {
   const std::string field = option.substr(std::min(option.find_first_not_of('-'), option.size()));
   if (nearest_name(field, scenario_field_paths()).empty()) return "";
@@ -48,7 +48,7 @@ std::string field_hint(const std::string& option, const std::vector<std::string>
   return std::ranges::count(known, "--set") > 0 ? "; fields are set by --set FIELD=VALUE" : "";
 }
 
-/// Explains a word that no option or argument takes.
+/// Explains an argument that no option or positional argument takes.
 std::string problem_of(const std::string& word, const CLI::App& program, const CLI::App* command) {
   if (word.starts_with("-") && word != "-") {
     const std::string name = word.substr(0, word.find('='));
@@ -71,7 +71,7 @@ InputError usage_error(const CLI::ParseError& error, const CLI::App& program) {
   const std::string help = fmt::format("; \"hapbench {}--help\" explains", words);
   ProgramWords extra = program.remaining(true);
   std::erase(extra, "--");
-  // An unknown option leaves its value behind as an extra word; the option is the mistake to report.
+  // An unknown option leaves its value as an extra argument. Report the option, which is the mistake.
   std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
   const auto error_about = [](std::vector<std::string> options, const std::string& problem) {
     return InputError(InputError::Kind::relation, ErrorLocation{.about_options = std::move(options)}, problem);

@@ -72,7 +72,7 @@ std::string tool_text(const LoadedScenario& loaded, const SceneFacts& facts) {
   return text + "\n";
 }
 
-/// An amount of data, as in "271 MB".
+/// Returns an amount of data as text, such as "271 MB".
 std::string bytes_text(double bytes) {
   if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(1e-3 * bytes));
   return bytes < 1e9 ? fmt::format("{:.3g} MB", 1e-6 * bytes) : fmt::format("{:.3g} GB", 1e-9 * bytes);
@@ -117,19 +117,19 @@ Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
   return json;
 }
 
-/// True for a file with the fields of a scenario's device alone, which `limit --device` takes.
+/// Returns true for a file that has only the fields of a scenario's device, for `limit --device`.
 bool is_device_file(const std::filesystem::path& file) {
   const ScenarioText text = read_scenario_text(file);
   return text.json.is_object() && !text.json.contains("environment") && !text.json.contains("time") &&
          (text.json.contains(kTypeField) || text.json.contains("preset"));
 }
 
-/// Writes the points of the environment. Throws InputError when it has none, and when the file cannot be written.
+/// Writes the points of the environment. Throws InputError if it has no points or the file cannot be written.
 void write_points(const LoadedScenario& loaded, const std::filesystem::path& file, ProgramContext& context) {
   if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment))
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
   const auto shell = make_shell(loaded.scenario, loaded.files);
-  throw_if_stopped();  // that may have taken seconds
+  throw_if_stopped();  // making the shell may have taken seconds
   const std::string text = point_shell_text(shell->points(), file);
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
@@ -150,7 +150,7 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
       const WaitNotice notice(argument, !options.output.quiet);
       const std::filesystem::path file = find_scenario(argument);
       if (options.points.empty() && is_device_file(file)) {
-        device_of_file(file);  // throws what is wrong with it
+        device_of_file(file);  // throws if the device is invalid
         text += fmt::format("{}: a valid device, not a scenario: {}\n", argument,
                             shell_line({"hapbench", "limit", "tap_wall", "--device", argument}));
         verdict["kind"] = "device";
