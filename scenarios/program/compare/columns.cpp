@@ -17,7 +17,7 @@
 namespace hapbench {
 namespace {
 
-/// Programs may read these by their place: append new ones.
+/// Metrics of comparison.csv. Programs may read these columns by position: append new metrics at the end.
 constexpr std::string_view kComparedMetrics =
     "force_max_N velocity_total_variation_m_per_s force_reversals vibration_power_above_30Hz_m2_per_s2 depth_max_m "
     "ratio_min ratio_max steps_in_contact contact_share landings landing_force_max_N landing_force_step_max_N "
@@ -26,7 +26,8 @@ constexpr std::string_view kComparedMetrics =
     "inside_settled_m centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
     "fidelity.force_direction_error_rad fidelity.force_artefact_share";
 
-/// By how much the mean may be wrong: as its numbers, or by other seeds; at least what means of one rank differ by.
+/// Returns the error of the mean: the largest of the error of its numbers, the standard error over seeds, and a
+/// tenth of the difference up to which means share a rank. Without a spread, returns the error of its numbers.
 std::optional<double> error_of_mean(const Standing& standing) {
   if (!standing.spread) return standing.tolerance;
   const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));

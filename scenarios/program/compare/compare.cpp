@@ -37,10 +37,11 @@ namespace {
 
 struct CompareOptions : CommonOptions {
   std::vector<std::string> scenarios, metrics;
-  ComparisonQuestion question;  ///< without algorithms: all
+  ComparisonQuestion question;  ///< without algorithms: all algorithms are compared
   bool errors = false;
 };
 
+/// Checks the options and plans the comparison. Throws InputError.
 Comparison planned(const CompareOptions& options) {
   require_names("--by", options.metrics, names_of(all_metrics(), &Metric::name), "hapbench describe metrics");
   constexpr double kMostJitter = 1.0;
@@ -53,7 +54,7 @@ Comparison planned(const CompareOptions& options) {
   return planned(question);
 }
 
-/// The metrics of the table with --wide.
+/// Returns the metrics that the table of runs shows with --wide.
 std::vector<std::string> printed_metrics(const std::vector<Result>& reports) {
   std::vector<std::string> metrics = {kToolVibrationPower};
   for (const RunHeading& heading : kRunHeadings) metrics.emplace_back(heading.metric);
@@ -61,7 +62,7 @@ std::vector<std::string> printed_metrics(const std::vector<Result>& reports) {
   return metrics;
 }
 
-/// `named`: with scenario and seed.
+/// Returns the summaries of all runs. `named` adds the scenario and seed to each summary.
 Json summaries_json(const Comparison& comparison, const std::vector<Result>& reports, bool named) {
   Json summaries = Json::array();
   for (std::size_t i = 0; i < reports.size(); ++i) {
@@ -72,7 +73,7 @@ Json summaries_json(const Comparison& comparison, const std::vector<Result>& rep
   return summaries;
 }
 
-/// Reports runs that diverge unexpectedly; no other expectation of a scenario concerns every algorithm.
+/// Reports runs that diverge unexpectedly. Other expectations of a scenario need not hold for every algorithm.
 void judge(const Comparison& comparison, const std::vector<Result>& reports, Report& report) {
   constexpr std::size_t kMostShown = 15;
   std::vector<std::string> texts;
@@ -99,6 +100,7 @@ void write_runs(const Comparison& comparison, const std::vector<Result>& reports
   }
 }
 
+/// Reports the ranking in league.csv, in the printed text and in the JSON.
 void report_league(const League& league, const Layout& layout, Report& report) {
   report.write("league.csv", league_columns(false), league.standings);
   report.say(league_text(league, layout));
@@ -107,7 +109,8 @@ void report_league(const League& league, const Layout& layout, Report& report) {
   for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
 }
 
-/// The table of the runs of one scene; `errors`: how sure its numbers are is said elsewhere.
+/// Returns the table of the runs of one scene. `errors`: errors are reported, so that the sentence on vibration
+/// is omitted.
 std::string runs_text(const std::vector<Result>& reports, const League& league, bool errors, const Layout& layout) {
   std::string text = reports.front().name + "\n\n" + run_table(reports, false, layout) + fidelity_text(reports, layout);
   if (!errors) text += vibration_text(league, layout);
@@ -119,23 +122,26 @@ int compare(const CompareOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   if (options.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
-  // All input is checked before anything runs or is written.
+  // Check all input before anything runs or is written.
   const Comparison comparison = planned(options);
   const bool several = comparison.scenes.size() > 1;
-  // Whether there is something to rank over, or metrics to rank by.
+  // True if there are several scenes or seeds to rank over, or metrics to rank by.
   const bool ranks = several || comparison.seeds > 1 || !options.metrics.empty();
   print_warnings(context, comparison.warnings);
   Report report(options, several ? "compare" : "compare_" + comparison.names[0], context);
   const std::filesystem::path& out = report.folder();
+  // Prepare the folders of the results.
   remove_earlier_comparison(out, comparison);
   for (std::size_t run = 0; run < comparison.size(); ++run)
     require_writable_directory(context, out / comparison.folder(run));
   const JobOptions jobs = job_options(options, "compare", context);
   JobOptions timed = jobs;
-  // The wide table of a single comparison shows times, which concurrent runs would lengthen.
+  // The wide table of a single scene shows times, which concurrent runs would lengthen: run one at a time
+  // unless --jobs is given.
   if (options.jobs == 0 && !ranks && layout.in_full()) timed.threads = 1;
   const std::vector<Result> reports =
       run_all(comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); });
+  // Rank the algorithms and write the results of all runs.
   const League league = league_of(comparison, reports, ranks ? options.metrics : printed_metrics(reports));
   write_runs(comparison, reports, context, report);
   report.json() = summaries_json(comparison, reports, ranks);
@@ -146,6 +152,7 @@ int compare(const CompareOptions& options, ProgramContext& context) {
     report.say(runs_text(reports, league, options.errors, layout));
   }
   if (options.errors) {
+    // Repeat the runs with finer steps and spacings for the errors of their metrics.
     const FinerRuns finer(comparison, reports, jobs);
     for (std::size_t s = 0; s < league.scenarios.size(); ++s)
       report_errors(league, finer, s, ranks || layout.in_full(), report, layout);

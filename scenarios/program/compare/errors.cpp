@@ -14,7 +14,7 @@
 namespace hapbench {
 namespace {
 
-/// The mean of an algorithm's errors over the common seeds, which bounds the error of their mean.
+/// Returns the mean of an algorithm's errors over the common seeds, which bounds the error of the mean value.
 KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t scenario, std::size_t algorithm,
                       const std::string& metric) {
   const std::vector<std::size_t>& seeds = league.common[scenario];
@@ -32,7 +32,8 @@ KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t 
   return mean;
 }
 
-/// The means of a metric in a scenario by algorithm, none of laws that failed; adds them and their order to the JSON.
+/// Returns the mean of a metric in a scenario for each algorithm, empty for algorithms with failures. Adds the
+/// means and the significant order of the algorithms to `json`.
 std::vector<NumberWithError> numbers_of(const League& league, const FinerRuns& finer, std::size_t scenario,
                                         std::size_t metric, Json& json) {
   std::vector<NumberWithError> numbers;
@@ -90,7 +91,7 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
 std::string vibration_text(const League& league, const Layout& layout) {
   struct VibrationMetric {
     const char *of, *metric;
-    double unfelt;  ///< [unit of the metric]
+    double unfelt;  ///< vibration that a hand cannot feel [unit of the metric]
   };
   constexpr VibrationMetric kVibrations[] = {{"force", "force_rms_above_30Hz_N", 1e-4},
                                              {"tool", kToolVibrationPower, 1e-10}};

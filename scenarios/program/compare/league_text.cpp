@@ -13,7 +13,7 @@
 namespace hapbench {
 namespace {
 
-/// True for the row that comes first in a table: by rank, of one rank by mean; those without a rank come last.
+/// Returns true if row a precedes row b in the table: by rank, then by mean. Rows without a rank come last.
 bool comes_first(const Standing& a, const Standing& b) {
   if (a.rank != b.rank) return a.rank && (!b.rank || *a.rank < *b.rank);
   if (a.better == Better::none) return false;
@@ -21,7 +21,7 @@ bool comes_first(const Standing& a, const Standing& b) {
   return a.better == Better::more ? *a.mean > *b.mean : *a.mean < *b.mean;
 }
 
-/// The standings by scenario and metric, best first.
+/// Returns the rankings by scenario and metric, each with the best algorithm first.
 std::vector<Standing> ranked(const League& league) {
   std::vector<Standing> all;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
@@ -34,7 +34,7 @@ std::vector<Standing> ranked(const League& league) {
   return all;
 }
 
-/// In how many rankings a law has a rank, and in how many of them the first.
+/// Number of rankings in which a law has a rank, and number of rankings in which it is first.
 struct RankCount {
   std::size_t rankings = 0, first = 0;
 };
@@ -52,7 +52,7 @@ RankCount rank_count(const League& league, const std::string& algorithm) {
 std::string firsts_text(const League& league) {
   constexpr std::size_t kMostNamed = 5;
   if (!league.laws.front().mean_rank) return "nothing is ranked: neither less nor more of these metrics is better";
-  std::size_t rankings = 0;  // the same number for each law
+  std::size_t rankings = 0;  // equal for all laws
   std::vector<std::string> firsts;
   for (const LawStanding& law : league.laws) {
     const RankCount count = rank_count(league, law.algorithm);
@@ -65,6 +65,7 @@ std::string firsts_text(const League& league) {
                      fmt::join(first_few(firsts, kMostNamed), ", "));
 }
 
+/// Summarizes which algorithms are first, and whether the seeds give a spread.
 std::string verdict(const League& league, const Layout& layout) {
   const std::string text = layout.wrapped(firsts_text(league), 0);
   if (league.seeds < 2) return text + "one seed: no spread is known; --seeds K gives one\n";

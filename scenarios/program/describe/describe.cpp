@@ -27,13 +27,15 @@
 namespace hapbench {
 namespace {
 
+/// Returns the text in lower case without white space.
 std::string plain(std::string_view text) {
   std::string plain = lower_case(text);
   std::erase_if(plain, [](unsigned char c) { return std::isspace(c); });
   return plain;
 }
 
-/// A heading is known by all of it, as ">30Hz rms N", and by its first line, ">30Hz".
+/// Returns true if `name` is the entry's heading, such as ">30Hz rms N", or the first line of it, ">30Hz".
+/// Ignores case and spaces.
 bool is_heading(const Named& thing, std::string_view name) {
   const std::string_view title = thing.name;
   return thing.kind == "heading" &&
@@ -51,7 +53,7 @@ std::vector<Description> described_by_name(const Index& index, std::string_view 
   return described(index, [name](const Named& thing) { return thing.kind != "heading" && thing.name == name; });
 }
 
-/// What the headings of that name mean, each meaning once.
+/// Returns the meanings of the headings with this name, each meaning once.
 std::vector<Description> described_headings(const Index& index, const std::string& name) {
   std::vector<Description> found;
   for (const Named& heading : index) {
@@ -76,18 +78,20 @@ std::vector<Description> described_headings(const Index& index, const std::strin
                   name, nearest_name_hint(name, names)));
 }
 
-/// What a name means that the program does not know by itself.
+/// Returns the meanings of a name that the program itself does not define. Throws InputError if there are none.
 std::vector<Description> other_meanings(const Index& index, const std::string& name, const Layout& layout) {
   if (const std::optional<Description> place = describe_place(name, layout)) return {*place};
-  // Fields of that name in any section: "torque" for record.torque.
+  // Find fields with this name in any object: "torque" finds record.torque.
   std::vector<Description> found =
       described(index, [&](const Named& thing) { return thing.kind == "field" && thing.name.ends_with("." + name); });
   if (!found.empty()) return found;
+  // Find scenarios, studies, claims and choices of this name.
   const Index in_folders = folder_index(layout);
   found = described(in_folders, [&](const Named& thing) {
     return thing.name == name || (thing.kind == "claim" && lower_case(thing.name) == lower_case(name));
   });
   if (!found.empty()) return found;
+  // Find a term of the glossary, then a scenario file.
   if (const std::optional<Description> term = find_term(name, layout)) return {*term};
   std::error_code ignored;
   if (!std::filesystem::exists(name, ignored)) refuse(name, index, in_folders);
@@ -106,7 +110,8 @@ int describe(const DescribeOptions& options, ProgramContext& context) {
   const bool is_known = !meanings.empty();
   if (!is_known) meanings = other_meanings(index, options.name, layout);
   Description d = joined(meanings);
-  // A name of the program may also be a term, such as "proxy"; people get both meanings, scripts the program's.
+  // A name of the program may also be a term of the glossary, such as "proxy". The text has both meanings, the
+  // JSON only the program's meaning.
   if (is_known && !d.text.empty())
     if (const std::optional<Description> term = find_term(options.name, layout)) d.text += "\n" + term->text;
   OutputOptions output = options.output;

@@ -13,7 +13,8 @@
 namespace hapbench {
 namespace {
 
-/// A value in a line: the entries of a list between commas, the members of an object behind their names.
+/// Returns a value in one line. The entries of a list and the members of an object are separated by commas, and
+/// members follow their keys.
 std::string line_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (!value.is_structured()) return value.is_null() ? "" : value.dump();
@@ -23,10 +24,10 @@ std::string line_of(const Json& value) {
   return line;
 }
 
-/// Members that say in a sentence what a thing is.
+/// Members with a sentence that describes the entry.
 constexpr std::string_view kProse[] = {"summary", "meaning", "holds", "claim", "what"};
 
-/// The texts of an array of things.
+/// Returns the texts of an array of entries.
 std::string things_text(const Json& things, const Layout& layout, std::size_t indent) {
   std::string text;
   for (const Json& thing : things) text += thing_text(thing, layout, indent);
@@ -40,7 +41,7 @@ Description joined(const std::vector<Description>& meanings) {
   Description all{"", Json::array()};
   for (const Description& meaning : meanings) {
     all.text += (all.text.empty() ? "" : "\n") + meaning.text;
-    // A meaning that has several itself adds each.
+    // If a meaning is itself an array of meanings, add each of them.
     const Json list = meaning.json.is_array() ? meaning.json : Json::array({meaning.json});
     all.json.insert(all.json.end(), list.begin(), list.end());
   }
@@ -51,6 +52,7 @@ std::string thing_text(const Json& thing, const Layout& layout, std::size_t inde
   std::string name = thing.value("name", "");
   std::replace(name.begin(), name.end(), '\n', ' ');
   const std::string kind = thing.value("kind", ""), unit = thing.value("unit", "");
+  // Sort the members: prose, values of one line, lists of entries.
   std::string prose, facts, lists;
   for (const auto& [key, value] : thing.items()) {
     if (key == "kind" || key == "name" || key == "unit") continue;

@@ -14,7 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// True for an object whose fields are told one by one: not the bounds on metrics, which are more than all others.
+/// Returns true for an object whose fields are described one by one. The bounds on metrics are excluded: they
+/// have more fields than all other objects together.
 bool shows_fields(const ValueGuide& value) {
   constexpr std::size_t kMostShown = 50;
   return value.choices.empty() && !value.fields.empty() && value.fields.size() <= kMostShown;
@@ -24,7 +25,7 @@ bool is_object(const ValueGuide& value) {
   return value.choices.empty() && value.schema.is_object() && value.schema.contains("properties");
 }
 
-/// The default as JSON with blanks where a line may end; empty for none.
+/// Returns the default as JSON, with spaces where a line may break; empty if there is none.
 std::string default_of(const FieldGuide& field) {
   std::string text;
   if (field.presence == Presence::has_default)
@@ -32,7 +33,8 @@ std::string default_of(const FieldGuide& field) {
   return text;
 }
 
-/// The fields of an object and of those in it, each by its path from there, with what it may be and what it means.
+/// Describes the fields of an object and of the objects in it. Each field has its dotted path from the outer
+/// object, its allowed values, its default and its meaning.
 std::string field_cards(const std::string& prefix, const ValueGuide& object, std::size_t indent, const Layout& layout) {
   std::string text;
   for (const FieldGuide& field : object.fields) {
@@ -48,8 +50,9 @@ std::string field_cards(const std::string& prefix, const ValueGuide& object, std
   return text;
 }
 
-/// The value behind its title: its fields as cards; of a choice among objects those of each; a few lines for a plain
-/// value. `of` names the types or the field that have the value, where others have another of that title.
+/// Describes a value below its title. An object shows its fields; a choice of types shows the fields of each
+/// type; a plain value shows its allowed values and its default. `of` names the types or the field that the
+/// value belongs to, if other values have the same title.
 std::string value_text(const std::string& title, const std::string& of, const std::string& meaning,
                        const ValueGuide& value, const Layout& layout, const std::string& initial = "") {
   std::string text = bold(stdout, title) + "\n";
@@ -66,7 +69,8 @@ std::string value_text(const std::string& title, const std::string& of, const st
   return text;
 }
 
-/// The types among which the field at a path such as "hand.type" chooses; empty for a field that chooses none.
+/// Describes the types that a field such as "hand.type" selects from; returns an empty description for other
+/// fields.
 Description describe_types(const std::string& path, const Layout& layout) {
   const std::string end = std::string(".") + kTypeField;
   if (!path.ends_with(end)) return {};
@@ -90,6 +94,7 @@ const FieldGuide* find_field(const std::string& path) {
 
 Description describe_field(const std::string& path, const Layout& layout) {
   if (Description types = describe_types(path, layout); !types.text.empty()) return types;
+  // Group the types that share the schema of the field.
   std::vector<PlacedField> found;
   for (const PlacedField& placed : placed_fields()) {
     if (placed.path != path) continue;

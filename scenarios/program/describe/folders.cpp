@@ -34,7 +34,7 @@ void add_assignments(std::string& text, const std::string& path, const Json& val
   }
 }
 
-/// A fault of the file becomes its summary.
+/// Returns the entry of a bundled scenario. If the file is invalid, the error is the entry's description.
 Named named_scenario(const BundledScenario& bundled, const Layout& layout) {
   Json json;
   try {
@@ -61,7 +61,7 @@ Json list_on_record(const std::string& list) {
   return with_file(file, [&] { return read_json(file).at(list); });
 }
 
-/// What is on record of a claim or a choice.
+/// Returns the entry of a claim or choice of the reference results.
 Named on_record(const char* kind, const Json& thing, const Layout& layout) {
   const auto describe = [=] {
     Json titled = {{"kind", fmt::format("{}, on record", kind)}, {"name", thing.at("id")}};
@@ -70,7 +70,7 @@ Named on_record(const char* kind, const Json& thing, const Layout& layout) {
       titled["sureness"] =
           fmt::format("{}: {} of {} readings give this verdict", thing.at("sureness").get<std::string>(),
                       counts.at("holds").dump(), counts.at("judged").dump());
-    // The name has the id, and people are told what was measured in a sentence.
+    // Omit the members that the text gives in another form, and data for programs.
     for (const char* member : {"id", "cases", "choices_reach_it", "ours", "robustness", "timing"}) titled.erase(member);
     return Description{thing_text(titled, layout), thing};
   };

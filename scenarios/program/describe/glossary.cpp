@@ -11,21 +11,22 @@
 namespace hapbench {
 namespace {
 
-/// Returns the text without blanks at its ends.
+/// Returns the text without spaces at its ends.
 std::string trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(' ');
   if (first == std::string_view::npos) return "";
   return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
 }
 
+/// Returns the name in lower case, without spaces at its ends and with spaces for "_".
 std::string normalized(std::string_view name) {
   std::string normal = lower_case(trimmed(name));
   std::ranges::replace(normal, '_', ' ');
   return normal;
 }
 
-/// Returns true if `name` is the whole title of an entry, one of its names between commas, or its name without what
-/// stands in parentheses.
+/// Returns true if `name` is the whole title of an entry, or one of its names between commas without the text
+/// in parentheses.
 bool is_name_of(std::string_view title, std::string_view name) {
   const std::string wanted = normalized(name);
   if (normalized(title) == wanted) return true;
@@ -39,7 +40,8 @@ bool is_name_of(std::string_view title, std::string_view name) {
 Index glossary_index(const Layout& layout) {
   const std::string text = read_text_file(installed_folder("scenarios") / "GLOSSARY.md", kLargestJsonFile);
   Index index;
-  // Each entry is a row "| term | meaning |" of the table; its first two rows are the heading and the rule below it.
+  // Each entry is a row "| term | meaning |" of the table. The first two rows of the table are its heading and
+  // the rule below it.
   bool is_in_table = false;
   for (const std::string_view line : parts_of(text, '\n')) {
     const Words cells = parts_of(line, '|');

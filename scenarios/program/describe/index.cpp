@@ -12,7 +12,7 @@
 namespace hapbench {
 namespace {
 
-/// Names that stand for no single thing of a list.
+/// Names of descriptions that cover several entries.
 constexpr std::pair<const char*, Description (*)(const Layout&)> kSections[] = {
     {"metrics", describe_metrics},
     {"summary.json", describe_metrics},

@@ -19,7 +19,7 @@
 namespace hapbench {
 namespace {
 
-/// The kinds that lists have, in their order.
+/// The kinds of names that have lists, in the order of the lists.
 constexpr const char* kListed[] = {"algorithm", "depth model", "stage",  "integrator", "environment",
                                    "tool",      "hand",        "device", "preset",     "scenario",
                                    "study",     "metric",      "claim",  "term"};
@@ -28,9 +28,10 @@ std::string group_of(const Named& thing) {
   return thing.more.value("group", "");
 }
 
-constexpr std::size_t kColumn = 34;  // of the summaries
+constexpr std::size_t kColumn = 34;  // column of the summaries [characters]
 
-/// The first sentence, up to a semicolon or a colon that is not near its beginning, cut to what the line holds.
+/// Returns the first sentence, which also ends at a semicolon or at a colon after character 20. Shortens it to
+/// the rest of the line.
 std::string short_summary(const std::string& text, const Layout& layout) {
   std::size_t end = std::min(text.find("; "), text.find(": ", 20));
   for (std::size_t dot = text.find('.'); dot < end; dot = text.find('.', dot + 1)) {
@@ -44,7 +45,7 @@ std::string short_summary(const std::string& text, const Layout& layout) {
 }
 
 std::string list_text(const Index& all, bool names_alone, const Layout& layout) {
-  std::vector<std::pair<std::string, std::string>> lists;  // title, entries
+  std::vector<std::pair<std::string, std::string>> lists;  // title and entries of each list
   for (const Named& thing : all) {
     const std::string group = group_of(thing), title = list_name(thing.kind) + (group.empty() ? "" : " of " + group);
     if (lists.empty() || lists.back().first != title) lists.emplace_back(title, "");

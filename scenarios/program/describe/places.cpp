@@ -21,12 +21,14 @@
 namespace hapbench {
 namespace {
 
-/// A place of the thesis: "Fig. A.2" is {"Fig.", "A.2"}; the kind is "Fig.", "Table" or "section".
+/// A location in the thesis: "Fig. A.2" has the kind "Fig." and the number "A.2". The kind is "Fig.", "Table"
+/// or "section"; empty: any kind.
 struct Place {
   std::string kind, number;
 };
 
-/// The kind of place that a word announces. Numbers behind any other word are sections.
+/// Returns the kind of location that a word announces. Every word other than figure and table announces
+/// sections.
 std::string place_kind(const std::string& word) {
   const std::string lower = lower_case(word);
   if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";
@@ -34,7 +36,8 @@ std::string place_kind(const std::string& word) {
   return "section";
 }
 
-/// A place, of any kind where none is given, or of a figure's file such as figure_A.4_springs.svg; none of other names.
+/// Parses a location, of any kind if `name` gives none. Also accepts the file name of a figure, such as
+/// figure_A.4_springs.svg. Returns empty for other names.
 std::optional<Place> asked_place(const std::string& name) {
   static const std::regex kPlace(R"((?:(fig|figs|figure|table|section)[._ ]*)?)"
                                  R"(((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
@@ -42,14 +45,14 @@ std::optional<Place> asked_place(const std::string& name) {
   std::smatch parts;
   if (!std::regex_match(name, parts, kPlace)) return std::nullopt;
   Place place{parts[1].matched ? place_kind(parts[1]) : "", parts[2]};
-  // A plain number could mean anything.
+  // A number without a dot and a kind is ambiguous.
   if (place.kind.empty() && place.number.find('.') == std::string::npos) return std::nullopt;
   if (place.number.find('.') == 1) place.number[0] = static_cast<char>(std::toupper(place.number[0]));
   return place;
 }
 
-/// True for a source that names the place or a part of it, as "3.3, Fig. 4, C.2a" does: a kind holds until another word
-/// comes. Other numbers in the source are also taken for places.
+/// Returns true if a source such as "3.3, Fig. 4, C.2a" names the location or a part of it. A kind applies to
+/// all numbers up to the next word. Other numbers in the source also count as locations.
 bool names_place(const std::string& source, const Place& asked) {
   static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
   std::string kind = "section";
@@ -66,7 +69,7 @@ bool names_place(const std::string& source, const Place& asked) {
   return false;
 }
 
-/// The pictures on record of a figure of the thesis, such as figure_A.2.svg of "A.2".
+/// Returns the stored pictures of a figure of the thesis: figure_A.2.svg for "A.2".
 std::vector<std::filesystem::path> pictures_of(const Place& place) {
   if (!place.kind.empty() && place.kind != "Fig.") return {};
   const std::string figure = place.number.substr(0, place.number.find_last_not_of("abcd") + 1);

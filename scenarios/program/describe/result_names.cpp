@@ -21,7 +21,7 @@ struct Word {
 constexpr const char* kTime = "number of timing.json";
 constexpr const char* kResultFile = "file of the results";
 
-/// Words that no enumeration has.
+/// Printed names that no enumeration defines.
 constexpr Word kWords[] = {
     {"step_p50_s", kTime, "what half of the steps take at most, each by itself, without observers and recorders [s]"},
     {"step_p99_s", kTime, "what 99 % of the steps take at most, each by itself, without observers and recorders [s]"},

@@ -14,9 +14,10 @@
 namespace hapbench {
 namespace {
 
-/// What tells the cases apart.
+/// Returns the columns that distinguish the cases: device, scene, fields of --over, algorithm. Null: all
+/// columns, for `describe`.
 template <class Row>
-Columns<Row> place_columns(const LimitTable* table) {
+Columns<Row> case_columns(const LimitTable* table) {
   const bool devices = table == nullptr || !table->devices.empty();
   Columns<Row> columns = {
       {"device", "",
@@ -51,7 +52,8 @@ Cell value_beyond(const IntervalEnd& end) {
 Cell class_beyond(const IntervalEnd& end) {
   return end.beyond ? cell_of(run_verdict_name(end.beyond->verdict)) : Cell();
 }
-/// Without a limit, the class at the range's low end.
+/// Returns the class of motion beyond the limit. Without a limit, returns the class at the low end of the
+/// range.
 Cell class_beyond_limit(const LimitRow& row) {
   const IntervalEnd& end = row.limit.end;
   if (!end.beyond && !end.value) return cell_of(run_verdict_name(row.limit.runs.front().verdict));
@@ -64,13 +66,14 @@ std::string linear_edge_text(const LimitRow& row) {
   return std::isinf(*edge) || *edge == 0.0 ? "none" : significant(*edge, 6);
 }
 
-/// What `get` gives of a part of a row.
+/// Returns a function of a row that applies `get` to a part of the row.
 template <class Part, class Get>
 auto of(Part part, Get get) {
   return [part, get](const LimitRow& row) { return cell_of(std::invoke(get, std::invoke(part, row))); };
 }
 
-/// The edge, the interval that it ends, and the edge in theory. Of one case alone the end on the other side is printed.
+/// Returns the columns of the stability limit, of the stable interval that it ends, and of the linear limit. A
+/// single case also prints the other end of the interval.
 Columns<LimitRow> edge_columns(const LimitTable* table) {
   const auto is_printed = [table](bool low) {
     return table == nullptr || (!table->is_grid() && low != table->first().asked.search.smallest);
@@ -117,7 +120,8 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
        of(&Row::limit, &FieldLimit::linear)}};
 }
 
-/// What is known of the answer, and in a table of cases numbers of the run at the limit, for these to be compared by.
+/// Returns the columns of the search's diagnostics. `grid` adds numbers of the run at the limit, for comparing
+/// cases.
 Columns<LimitRow> search_columns(bool devices, bool grid) {
   using Row = LimitRow;
   const auto may_fail = [](const Row& r) {
@@ -162,7 +166,7 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
 
 Columns<LimitRow> limit_columns(const LimitTable* table) {
   using Row = LimitRow;
-  Columns<Row> columns = place_columns<Row>(table);
+  Columns<Row> columns = case_columns<Row>(table);
   columns.add(edge_columns(table));
   columns.add(search_columns(table == nullptr || !table->devices.empty(), table == nullptr || table->is_grid()));
   const auto has_forms = [](const Row& r) { return !r.limit.closed_forms.empty(); };
@@ -188,7 +192,7 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
 }
 
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table) {
-  Columns<LimitRunRow> columns = place_columns<LimitRunRow>(table);
+  Columns<LimitRunRow> columns = case_columns<LimitRunRow>(table);
   columns.add({{table == nullptr ? "{field}" : table->first().asked.path, "by name", "value of the field",
                 [](const LimitRunRow& r) { return r.run.value; }},
                {"class", "", "what became of the run (describe stability)",

@@ -13,7 +13,8 @@
 namespace hapbench {
 namespace {
 
-/// One search runs on all threads; of several each has one.
+/// Searches the limits. A single search uses all threads for its runs; several searches run in parallel with
+/// one thread each.
 void find_limits(const LimitOptions& options, std::vector<LimitRow>& rows, const ProgramContext& context) {
   const bool alone = rows.size() == 1;
   if (alone) rows[0].asked.threads = threads_of(options);
@@ -22,6 +23,7 @@ void find_limits(const LimitOptions& options, std::vector<LimitRow>& rows, const
                [&](std::size_t i) { rows[i].limit = field_limit(rows[i].asked); });
 }
 
+/// Computes the ratios of each limit to the limit of the first case in its block of rows.
 void add_ratios(LimitTable& table) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     LimitRow& row = table.rows[i];
@@ -33,6 +35,7 @@ void add_ratios(LimitTable& table) {
   }
 }
 
+/// Reports the limits in the CSV files, the printed text and the JSON.
 void tell_limits(const LimitTable& table, const Layout& layout, Report& report) {
   const LimitQuestion& question = table.first().asked;
   const Columns<LimitRow> columns = limit_columns(&table);

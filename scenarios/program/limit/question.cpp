@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* kNoFriction = "none";
 
-/// True where --set changes fields of the devices. Throws InputError where it would choose a device.
+/// Returns true if --set changes fields of the devices. Throws InputError if it would select another device.
 bool are_devices_changed(const LimitOptions& options) {
   const bool has_factors = !options.friction.empty() && options.friction != std::vector<std::string>{kNoFriction};
   bool is_changed = false;
@@ -46,14 +46,15 @@ bool are_devices_changed(const LimitOptions& options) {
   return is_changed;
 }
 
-/// The devices, marked where --set changes them, each with what nobody published of it: both ends or other frictions.
+/// Returns the selected devices. Each device is followed by its variants: both ends of the range of unpublished
+/// parameters, or the friction factors of --friction. A device that --set changes has "*" behind its name.
 std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
   const bool none_other = options.friction == std::vector<std::string>{kNoFriction};
   const bool is_changed = are_devices_changed(options);
   std::vector<ComparedDevice> devices;
   for (ComparedDevice device : chosen_devices(options.devices)) {
     const bool is_end = device.name.ends_with(']');
-    if (is_changed && device.published_stiffness) {  // nothing is published of this one
+    if (is_changed && device.published_stiffness) {  // the published limit does not hold for the changed device
       device.name += '*';
       device.published_stiffness.reset();
     }
@@ -68,11 +69,11 @@ std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
   return devices;
 }
 
-/// The error with the device's name, since the overrides hold for all devices.
+/// Returns the error with the device's name in its location, because the overrides apply to all devices.
 InputError on_device(const ComparedDevice& device, const InputError& error) {
   std::vector<InputError> faults;
   for (const InputError& fault : error.faults()) {
-    if (fault.place().empty()) return error;  // of an option
+    if (fault.place().empty()) return error;  // the error is about an option, not a file
     ErrorLocation location = fault.location();
     const bool is_of_type = location.pointer.starts_with("/device/") && !device.has_place_for_mass;
     location.option = fmt::format("--device {}", device.name);
@@ -83,17 +84,19 @@ InputError on_device(const ComparedDevice& device, const InputError& error) {
   return InputError::all(faults);
 }
 
-/// By default a run is stable by the rule of `tune`.
+/// Returns the question for a scene. By default, a run is stable by the rule of `tune`. Throws InputError.
 LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene, const Scenario& scenario,
                           const std::vector<std::string>& overrides) {
   if (options.field.find('=') != std::string::npos)
     fail_in_option("--vary",
                    fmt::format("got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
+  // Set the search.
   LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
   question.search.smallest = options.smallest;
   if (!options.resolution.empty())
     question.search.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
   question.between = options.devices.empty() && options.over.empty();
+  // Set the rule for stable runs.
   question.rule.bounded = options.stable == "bounded";
   if (!options.vibration.empty()) {
     if (!options.stable.empty() && options.stable != "still")
@@ -116,6 +119,7 @@ LimitTable asked_table(const LimitOptions& options) {
     fail_in_option("--friction", "got factors; allowed: with --device");
   const std::vector<std::filesystem::path> files = find_scenarios(options.scenarios);
   const Axis scene{.path = kSceneAxis, .values = names_of_scenarios(files)};
+  // Read the scenes.
   std::vector<ScenarioText> scenes;
   std::transform(files.begin(), files.end(), std::back_inserter(scenes), read_scenario_text);
   std::vector<ComparedDevice> devices;

@@ -30,14 +30,15 @@ std::string damping_text(const RenderingConfig& rendering) {
                      significant(rendering.damping_ratio), significant(rendering.mass));
 }
 
-/// How far the search goes.
+/// Returns the resolution of the bisection.
 std::string resolution_text(const LimitQuestion& question) {
   const SearchWay& search = question.search;
   if (search.whole) return "1";
   return fmt::format("{} %{}", 100.0 * search.resolution, search.range.logarithmic ? "" : " of the range");
 }
 
-/// States the question of one scene; `over`: other fields also vary.
+/// States the question for one scene. `over`: other fields vary too, so that values which depend on them are
+/// omitted.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over, const Layout& layout) {
   const SearchWay& search = question.search;
   const std::string width = resolution_text(question);
@@ -50,6 +51,7 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
   return layout.wrapped(text, 0);
 }
 
+/// States that no value is stable, with the number of runs in each class.
 std::string none_text(const FieldLimit& limit) {
   std::map<RunVerdict, std::size_t> counts;
   for (const JudgedValue& run : limit.runs) ++counts[run.verdict];
@@ -62,6 +64,7 @@ std::string none_text(const FieldLimit& limit) {
                      limit.runs.size(), fmt::join(texts, ", "));
 }
 
+/// Returns remarks on the answer of one row; may be empty.
 std::string remarks_text(const LimitRow& row, const Layout& layout) {
   const FieldLimit& limit = row.limit;
   const LimitQuestion& question = row.asked;
@@ -86,8 +89,9 @@ std::string remarks_text(const LimitRow& row, const Layout& layout) {
   return text;
 }
 
+/// Returns notes that explain the table's columns and marks.
 std::string notes_text(const LimitTable& table, const Layout& layout) {
-  std::optional<double> friction;  // the most of a handle; none where no row is on an impedance device
+  std::optional<double> friction;  // largest Coulomb friction of a handle [N]; empty without impedance devices
   for (const LimitRow& row : table.rows)
     if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device))
       friction = std::max(friction, std::optional(device->coulomb));

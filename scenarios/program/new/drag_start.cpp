@@ -12,9 +12,9 @@ Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, doub
   for (const SurfacePoint& point : points)
     if (point.position.z() >= top - tolerance) high.push_back(point.position);
   Vec3 middle = Vec3::Zero();
-  for (const Vec3& place : high) middle += place;
+  for (const Vec3& position : high) middle += position;
   middle /= static_cast<double>(high.size());
-  return *std::ranges::min_element(high, {}, [&middle](const Vec3& place) { return (place - middle).norm(); });
+  return *std::ranges::min_element(high, {}, [&middle](const Vec3& position) { return (position - middle).norm(); });
 }
 
 Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside) {
@@ -26,6 +26,7 @@ Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, 
 }
 
 DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough) {
+  // A later path must be this factor longer than the best path.
   constexpr double kFurther = 1.1;
   const double furthest = diagonal(shell.bounds());
   DragStart best{positions.front(), Vec3::UnitX(), smoothing, 0.0};

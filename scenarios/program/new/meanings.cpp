@@ -8,7 +8,7 @@
 namespace hapbench {
 namespace {
 
-/// The object of the value's type; null when the value is not an object with fields.
+/// Returns the description of the type that a value selects; null if the value is not an object with fields.
 const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
   if (!value.is_object()) return nullptr;
   if (guide.choices.empty()) return &guide;
@@ -17,11 +17,11 @@ const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
   return nullptr;
 }
 
-/// Adds the meaning of each field that a value has, by its path, objects before their fields.
+/// Adds the meaning of each field in a value by its dotted path. Objects come before their fields.
 void add_meanings(Json& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
   for (const auto& entry : value.items()) {
     const auto field = std::ranges::find(object.fields, entry.key(), &FieldGuide::name);
-    if (field == object.fields.end()) continue;  // the type
+    if (field == object.fields.end()) continue;  // the field "type" has no meaning of its own
     meanings[prefix + entry.key()] = field->meaning;
     if (const ValueGuide* nested = object_of(entry.value(), field->value))
       add_meanings(meanings, prefix + entry.key() + ".", entry.value(), *nested);

@@ -30,6 +30,7 @@ int list_kinds(const OutputOptions& output, ProgramContext& context) {
   return kSuccess;
 }
 
+/// Runs the scene and draws it. The run is written to the folder that `run` uses by default.
 void draw_preview(const std::filesystem::path& scenario, const std::filesystem::path& picture, bool quiet,
                   ProgramContext& context) {
   const std::filesystem::path run = results_directory("", scenario.stem().string());
@@ -53,6 +54,7 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   if (std::filesystem::exists(out, ignored))
     throw InputError(fmt::format("{} exists; choose another with --out", out.string()));
   const std::filesystem::path directory = out.parent_path();
+  // Make the scene and check it before anything is written.
   const StartedScene start = [&] {
     const WaitNotice notice("trying the scene", !options.output.quiet);
     return started_scene(kind, options, directory);

@@ -27,11 +27,11 @@
 namespace hapbench {
 namespace {
 
-constexpr double kClearance = 0.001;      ///< between tool and surface at the start [m]
-constexpr double kDragSpeed = 5.0;        ///< in diameters of the tool [1/s]
-constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the surface with the spring of a press [m]
+constexpr double kClearance = 0.001;      ///< distance of tool and surface at the start [m]
+constexpr double kDragSpeed = 5.0;        ///< speed of a drag [tool diameters per second]
+constexpr double kPressedBelow = 0.0035;  ///< depth of a pressing hand's target below the surface [m]; gives 1 N
 
-/// Rounds to two significant digits, as people write lengths.
+/// Rounds to two significant digits, for lengths that people read.
 double rounded(double value) {
   return rounded_to_digits(value, 2);
 }
@@ -40,13 +40,14 @@ Json list_of(const Vec3& v) {
   return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};  // never -0
 }
 
-/// Rounds to the micrometre, as people write places.
+/// Rounds a length to the micrometre, for positions that people read.
 double to_micrometres(double metres) {
   return std::round(1e6 * metres) / 1e6;
 }
 
-/// Makes a start for a file in `directory`: its values are determined one after the other. Places are found in the
-/// frame of the side from which the tool comes, in which that is z. Throws InputError when a file cannot be used.
+/// Makes a scene for a scenario file in `directory`, and determines its values one after the other. Positions
+/// are computed in the frame of the side from which the tool approaches: the side's direction is z. Throws
+/// InputError if a file cannot be used.
 class Start {
  public:
   Start(const StartKind& kind, const NewOptions& options, const std::filesystem::path& directory)
@@ -80,7 +81,7 @@ class Start {
     return scene_.contains(part) && scene_.at(part).value(kTypeField, "") == type;
   }
 
-  /// Writes the names of the source and of the mesh below a stroke where they are used.
+  /// Writes the names of the source file and of the mesh below a stroke into the fields that need them.
   void name_files() {
     for (const auto& [field, file] : {std::pair{"/environment/file", mesh_file()},
                                       {"/tool/file", options_.from},
@@ -91,7 +92,7 @@ class Start {
     }
   }
 
-  /// Puts the side's axes in the place of x, y and z.
+  /// Rotates the side's frame into the world frame, and orients the tool along the side's axis.
   void turn_to_side() {
     const auto axis = static_cast<Eigen::Index>(options_.side.back() - 'x');
     const Vec3 up = side_sign() * Vec3::Unit(axis), lean = Vec3::Unit(axis == 0 ? 1 : 0);
@@ -100,7 +101,7 @@ class Start {
       scene_["motion"] = {{"orientation", {{"up", list_of(up)}, {"lean", list_of(lean)}}}};
   }
 
-  /// The file of the environment, or of a tool.
+  /// Returns the mesh file of the environment, or of a tool.
   const std::string& mesh_file() const { return options_.on.empty() ? options_.from : options_.on; }
 
   LoadedScenario scenario() const { return read_scenario(scene_, directory_); }
@@ -110,7 +111,7 @@ class Start {
     return make_shell(loaded.scenario, loaded.files);
   }
 
-  /// The points of the scene in the side's frame.
+  /// Returns the surface points in the side's frame.
   std::vector<SurfacePoint> points() const {
     std::vector<SurfacePoint> points = shell()->points();
     for (SurfacePoint& point : points)
@@ -118,8 +119,9 @@ class Start {
     return points;
   }
 
-  /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
-  /// stated is in metres. Throws InputError when it then is not 1 mm to 1 m long, with its length in either unit.
+  /// Returns the scale that gives an object its stated size. `box`: the object's bounds, read as millimetres.
+  /// Without a stated size, the file is in metres. Throws InputError if the object then is shorter than 1 mm or
+  /// longer than 1 m, with its length in both units.
   double choose_scale(const Box& box, const char* object) {
     const double longest = box.size().maxCoeff() / 0.001;
     if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
@@ -137,7 +139,8 @@ class Start {
     return scale;
   }
 
-  /// The tool is sized by the mesh, but for one that a stroke leads.
+  /// Scales the mesh, and chooses the spacing of its points. The tool gets its size from the mesh unless a
+  /// stroke moves it.
   void scale_environment() {
     const Box box = bounds_of(points());
     const double scale = choose_scale(box, "mesh");
@@ -148,14 +151,15 @@ class Start {
       notes_.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
   }
 
-  /// The tool is 1 mm thick, or a fiftieth of a longer object.
+  /// Sets the tool's diameter to a fiftieth of the object's length [m], but at least 1 mm.
   void choose_tool(double longest) {
     diameter_ = std::max(0.001, rounded(longest / 50.0));
     for (const auto& [field, size] : {std::pair{"diameter_m", diameter_}, {"length_m", 10.0 * diameter_}})
       if (scene_.contains("tool") && scene_["tool"].contains(field)) scene_["tool"][field] = size;
   }
 
-  /// Turns the normals of an open mesh round that point away from the side, about its highest place.
+  /// Returns the points of the surface. Flips the normals of an open mesh if they point away from the side
+  /// around its highest point. Throws InputError for point shells with such normals.
   std::vector<SurfacePoint> facing_points() {
     std::vector<SurfacePoint> shell = points();
     const Box box = bounds_of(shell);
@@ -166,7 +170,7 @@ class Start {
     double facing = 0.0;
     for (const SurfacePoint& point : shell) {
       const Vec3 from_top = point.position - top;
-      // Not those of the far side of a thin wall.
+      // Skip points on the far side of a thin wall.
       if (from_top.norm() <= 0.5 * diameter_ && from_top.z() >= -0.1 * diameter_) facing += point.normal.z();
     }
     if (facing >= 0.0 || !is_open) return shell;
@@ -182,6 +186,7 @@ class Start {
     return points();
   }
 
+  /// Places the tool above the surface, and sets the motion of the hand.
   void place_tool() {
     const std::vector<SurfacePoint> shell = facing_points();
     const std::string count = has_type("environment", "mesh") ? "" : fmt::format("{} points", shell.size());
@@ -200,7 +205,7 @@ class Start {
                                  is_on_top ? "above the highest, at" : "off the surface at", said(top, !is_on_top)));
   }
 
-  /// A place in millimetres, with its height where that does not go without saying.
+  /// Returns a position as text [mm], in the world frame.
   std::string said(const Vec3& place, bool with_height) const {
     const Vec3 world = to_world_ * place;
     return fmt::format("x = {:.4g}, y = {:.4g}{} mm", 1e3 * world.x(), 1e3 * world.y(),
@@ -209,7 +214,8 @@ class Start {
 
   double side_sign() const { return options_.side.front() == '-' ? -1.0 : 1.0; }
 
-  /// The place over which the tool starts: the named one, else the highest.
+  /// Returns the surface point above which the tool starts: the point nearest to the first requested point that
+  /// faces the side, or the middle of the top without requested points.
   Vec3 top_of(const std::vector<SurfacePoint>& shell, const Box& box) const {
     if (named_.empty()) return middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
     const Vec3 named = to_world_.transpose() * named_.front();
@@ -219,12 +225,13 @@ class Start {
     return std::ranges::min_element(shell, {}, facing)->position;
   }
 
-  /// The start of a tool whose round tip is to land at `place`.
+  /// Returns the start position from which a tool with a round tip lands at `place`.
   Vec3 start_above(const Vec3& place) const {
     return {to_micrometres(place.x()), to_micrometres(place.y()),
             to_micrometres(place.z() + 0.5 * diameter_ + kClearance)};
   }
 
+  /// Sets the initial position. A pressing hand moves its target along the side's axis below the surface.
   void start_at(const Vec3& place) {
     const Json world = list_of(to_world_ * place);
     scene_["initial"]["position_m"] = world;
@@ -237,6 +244,7 @@ class Start {
              {"interpolation", "cosine"}};
   }
 
+  /// Drags the tool along the requested points.
   void follow_path(const Vec3& first) {
     double way = 0.0;
     Json& hand = scene_["hand"];
@@ -249,15 +257,17 @@ class Start {
     notes_.push_back(fmt::format("dragged over {}", length_text(way)));
   }
 
+  /// Sets the speed of a drag, and enough steps for a path of this length [m].
   void drag_for(double way) {
     const double speed = kDragSpeed * diameter_;
     scene_["hand"]["speed_m_per_s"] = rounded(speed);
     scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil(rounded(way / speed) / kStartStep));
   }
 
-  /// Places the tool above the plane's middle. Its tip is where the format has it without more words.
+  /// Places a mesh tool above the middle of the plane. The tip centre is the origin of the file, which is the
+  /// default of the format.
   void place_mesh_tool() {
-    const TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
+    const TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // read as millimetres
     Box box = box_of(surface.vertices);
     const double scale = choose_scale(box, "tool");
     scene_["tool"]["scale"] = scale;
@@ -271,7 +281,7 @@ class Start {
     start_at({0.0, 0.0, to_micrometres(-box.min.z() + kClearance)});
   }
 
-  /// Drags over four fifths of the way to where the surface ends.
+  /// Chooses the start and direction of a drag, over four fifths of the path up to the end of the surface.
   void choose_way(const PointShell& shell, const std::vector<Vec3>& starts) {
     const double enough = 0.25 * shell.bounds().size().maxCoeff();
     const DragStart drag = choose_drag(shell, starts, 0.5 * diameter_, enough);
@@ -296,6 +306,7 @@ class Start {
                                  along[2].dump(), length_text(way), length_text(drag.room)));
   }
 
+  /// Sets the number of steps to the duration of the stroke.
   void choose_stroke_steps() {
     const LoadedScenario loaded = scenario();
     const auto stroke = loaded.files.at(kMotionFile).stroke();
@@ -312,11 +323,11 @@ class Start {
   std::vector<std::string> notes_, warnings_;
   const NewOptions& options_;
   std::filesystem::path directory_;
-  std::optional<double> extent_;      ///< of the mesh: longest edge of its box [m]
-  std::vector<Vec3> named_;           ///< the tool starts over the surface's place nearest to it; then a drag's way [m]
-  Mat3 to_world_ = Mat3::Identity();  ///< from the side's frame
+  std::optional<double> extent_;      ///< stated longest edge of the mesh's box [m]
+  std::vector<Vec3> named_;           ///< points of --path, or the point of --at [m]
+  Mat3 to_world_ = Mat3::Identity();  ///< rotates vectors of the side's frame into the world frame
   double diameter_ = 0.001;           ///< [m]
-  double pressed_ = 0.0;              ///< where a hand that presses leads the tool, along the side's axis [m]
+  double pressed_ = 0.0;              ///< final target of a pressing hand along the side's axis [m]
 };
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace hapbench {
 namespace {
 
-/// A range of numbers above 0, which are searched by their ratios; none for an empty text. Throws InputError.
+/// Returns a range of numbers above 0, which is searched in ratios; empty for an empty text. Throws InputError.
 std::optional<Range> ratios_of(const char* option, const std::string& text) {
   std::optional<Range> range = range_of(option, text);
   if (!range) return range;

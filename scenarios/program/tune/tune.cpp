@@ -24,6 +24,7 @@
 namespace hapbench {
 namespace {
 
+/// Tunes one law after the other, and ranks the laws. Shows the current law and the number of runs meanwhile.
 void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& tuning, const ProgramContext& context) {
   std::atomic<std::size_t> law = 0, runs = 0;
   const auto now = [&] {
@@ -56,6 +57,7 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
   Report report(options, "tune_" + file.stem().string(), context);
   const std::filesystem::path& out = report.folder();
+  // Tune the laws and write their tables.
   tune_laws(algorithms, options.output.quiet, tuning, context);
   report.write("tune.csv", tuned_columns(), tuning.laws);
   std::vector<TuneTrial> trials;
@@ -63,6 +65,7 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   report.write("tune_trials.csv", trial_columns(), trials);
   report.say(tuning_text(tuning, layout));
   if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
+  // Write the scenario with the best choice.
   std::filesystem::path tuned;
   if (!tuning.ranking.empty()) {
     tuned = out / (file.stem().string() + "_tuned.json");
