@@ -105,6 +105,7 @@ std::vector<std::size_t> CommandLine::argument_places(const ProgramWords& words)
   std::vector<std::size_t> places;
   const CLI::App* command = words.empty() ? nullptr : command_named(*app_, words[0]);
   if (command == nullptr) return places;
+  // Skip options and their values; after "--" all arguments are positional.
   bool are_options_over = false;  // true after "--"
   for (std::size_t i = 1; i < words.size(); ++i) {
     const std::string& word = words[i];

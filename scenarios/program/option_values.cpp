@@ -29,6 +29,7 @@ void add_bound(const std::string& text, std::map<std::string, MetricBound>& boun
   if (parts.size() == 2) {
     require_valid_option("--bound", std::string(parts[0]), names_of(all_metrics(), &Metric::name),
                          "hapbench describe metrics");
+    // A single number is the maximum; min:max gives both bounds.
     const Words ends = parts_of(parts[1], ':');
     const auto least = finite_number(ends.front()), most = finite_number(ends.back());
     if (ends.size() <= 2 && least && most && *least <= *most) {

@@ -64,6 +64,7 @@ std::pair<int, std::string> run_beside(const std::string& line) {
 int run_for(CapturedOutput& host, const std::string& line) {
   const auto [status, text] = run_beside(line + " 2>&1");
   constexpr std::string_view kError = "hapbench: error: ", kWarning = "hapbench: warning: ";
+  // Sort the lines by their prefixes into errors, warnings and text.
   std::vector<InputError> faults;
   LineReader lines(text);
   while (const auto said = lines.next()) {

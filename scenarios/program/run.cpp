@@ -94,6 +94,7 @@ std::string diagnosis_text(std::span<const Result> reports, const Layout& layout
   std::string text;
   for (const Result& report : reports) {
     std::string rules;
+    // Explain each rule for a single run; only name the rules for several runs.
     for (const Diagnosed& found : *report.diagnosis) {
       rules += fmt::format("{}{} ({:.3g})", rules.empty() ? "" : ", ", found.rule, found.value);
       if (reports.size() > 1) continue;

@@ -110,6 +110,7 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
   for (const Result& report : reports) {
     for (const auto& [kind, pointer, text] : report.warnings) {
       if (!pointer.empty()) continue;  // was printed before the run
+      // Add a text for a new kind of warning; otherwise append the algorithm to the text of this kind.
       const auto known = std::ranges::find(kinds, kind) - kinds.begin();
       if (known == std::ssize(kinds)) {
         kinds.push_back(kind);

@@ -37,6 +37,7 @@ int stress(const StressOptions& options, ProgramContext& context) {
   report.write("stress.csv", columns, all);
   report.say(columns.text(all, layout));
   report.json() = columns.json_list(all);
+  // Report each law with an invalid force as a failure.
   for (const StressCounts& c : all) {
     if (!c.first_bad) continue;
     report.fault(fmt::format("{}: {} of {} forces are not finite, {} out of bound; the first in set {} of seed {}",

@@ -44,6 +44,7 @@ namespace fs = std::filesystem;
 /// for the metric if none of them has it.
 Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric) {
   Columns<SweepRow> columns;
+  // Begin with the varied fields; several fields also have the index of the run. Sampled numbers are rounded.
   const bool single = table.fields() == 1, sampled = table.about.contains("sample");
   for (std::size_t c = single ? 1 : 0; c <= table.fields(); ++c) {
     std::string title = table.columns[c];
@@ -56,6 +57,7 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
   }
   const auto outcome = [&table](const SweepRow& row) { return table.outcome(row); };
   columns.add({{"outcome", "", "outcome", outcome, only_printed()}});
+  // Add the columns of `run` that the sweep has, and the metric.
   std::vector<RunHeading> headings;
   for (RunHeading heading : kRunHeadings) {
     heading.wide = heading.wide && heading.metric != metric;

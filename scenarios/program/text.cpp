@@ -12,6 +12,7 @@ namespace hapbench {
 std::string fitted(std::string_view text, std::size_t width) {
   std::string all;
   while (!text.empty()) {
+    // Take the next line, and break it at spaces while it is too long.
     const std::size_t length = std::min(text.find('\n'), text.size());
     std::string line(text.substr(0, length));
     text.remove_prefix(std::min(text.size(), length + 1));
@@ -39,6 +40,7 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t width
   std::size_t column = 0;
   bool begins_line = true;
   while (!text.empty()) {
+    // Take the next word, and put it on a new line if it does not fit.
     const std::string_view word = text.substr(0, text.find_first_of(" \n"));
     const bool ends_line = word.size() < text.size() && text[word.size()] == '\n';
     text.remove_prefix(std::min(text.size(), word.size() + 1));

@@ -69,6 +69,7 @@ InputError usage_error(const CLI::ParseError& error, const CLI::App& program) {
   const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
   const std::string name = command ? command->get_name() + ": " : "", words = command ? command->get_name() + " " : "";
   const std::string help = fmt::format("; \"hapbench {}--help\" explains", words);
+  // An extra argument is the mistake, if there is one; otherwise CLI11's text explains it.
   ProgramWords extra = program.remaining(true);
   std::erase(extra, "--");
   // An unknown option leaves its value as an extra argument. Report the option, which is the mistake.

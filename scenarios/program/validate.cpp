@@ -156,6 +156,7 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
         verdict["kind"] = "device";
         continue;
       }
+      // Check the scenario, and report the facts about its scene.
       const CheckedScenario scene = checked(load_scenario(file, options.overrides));
       const LoadedScenario& loaded = scene.loaded();
       print_warnings(context, scene);

@@ -1,6 +1,6 @@
-// The engine for a page: a scenario whose hand and wrist follow a pointer, row by row. One WebAssembly instance is one
-// run. Exported functions take and return numbers and addresses in the instance's memory; texts end with a zero byte.
-// An exception ends the instance (runtime.cpp).
+// The simulation engine of a web page: a scenario whose hand and wrist follow a mouse pointer, step by step.
+// One WebAssembly instance simulates one run. Exported functions take and return numbers and addresses in the
+// instance's memory; texts end with a zero byte. An exception ends the instance (runtime.cpp).
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -26,13 +26,15 @@
 namespace hapbench {
 namespace {
 
-/// The last waypoints of what a pointer leads: place [m], tilt and azimuth [rad]. Profiles of these few have, where
-/// they lead, the values of profiles of all waypoints, bit for bit.
+/// Waypoints of the pointer, which sets the hand's position [m] and the wrist's tilt and azimuth [rad]. Keeps
+/// only the latest waypoints: between them, their profiles have the same values, bit for bit, as profiles of
+/// all waypoints.
 class Pointer {
  public:
   static constexpr std::size_t kLed = 5;
 
-  /// `now`: time of the next row [s]; of the waypoints before it the last two stay.
+  /// Adds a waypoint at time t [s]. `now` is the time of the next step [s]; of the waypoints before it, the
+  /// last two are kept.
   void add(double t, const std::array<double, kLed>& values, double now) {
     for (std::size_t i = 0; i < kLed; ++i) {
       auto& points = led_[i].points;
@@ -41,7 +43,7 @@ class Pointer {
     }
   }
   Profile profile(std::size_t i) const { return Profile::Shape(led_[i]); }
-  std::array<Profile, 3> place() const { return {profile(0), profile(1), profile(2)}; }
+  std::array<Profile, 3> position() const { return {profile(0), profile(1), profile(2)}; }
 
  private:
   std::array<Profile::Waypoints, kLed> led_;
@@ -51,12 +53,15 @@ nlohmann::json list(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Numbers of a row for the page: time, five vectors, depth, number of contacts. ROW in page/engine.js has the places.
+/// Count of numbers for each recorded row: time, five vectors, largest depth, number of contacts. ROW in
+/// page/engine.js has their positions.
 constexpr std::size_t kRowNumbers = 1 + 5 * 3 + 2;
 
+/// The run of a page, and its records for the page.
 class Session final : public Observer {
  public:
-  /// If the pointer leads the run, call `aim` before the first row; if not, the scenario's own hand and motion do.
+  /// Prepares the run. `is_led`: the pointer moves the hand, and aim() must be called before the first step.
+  /// Otherwise the scenario's hand and motion act, and the run begins at once.
   Session(LoadedScenario loaded, bool is_led) : scene_(checked(std::move(loaded))) {
     if (is_led)
       put_on_pointer();
@@ -66,25 +71,27 @@ class Session final : public Observer {
 
   void on_step(const StepRecord& row) noexcept override {
     last_ = row.force.S;
-    Vec3 vibration = Vec3::Zero();  // the force above the cutoff; zero where the sampling rate is too low for that
+    // Force above the vibration cutoff; zero if the sampling rate is too low for the filter.
+    Vec3 vibration = Vec3::Zero();
     if (high_pass_) {
       if (row.step == 0) high_pass_->settle_at(row.force.rendered);
       vibration = high_pass_->filter(row.force.rendered);
     }
     contacts_.assign(*row.rendered);
+    // Append the numbers of the step (kRowNumbers).
     rows_.push_back(row.time);
     for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring, vibration})
       rows_.insert(rows_.end(), {v.x(), v.y(), v.z()});
     rows_.insert(rows_.end(), {row.force.depth_max, static_cast<double>(row.rendered->size())});
   }
 
-  /// The pointer's waypoints from now on end with this one.
+  /// Adds a waypoint, which hand and wrist reach at time t [s]. The first waypoint begins the run.
   void aim(double t, const std::array<double, Pointer::kLed>& values) {
     const std::uint64_t row = simulation_ ? simulation_->next_row() : 0;
     const Scenario& scenario = scene_.scenario();
     pointer_.add(t, values, static_cast<double>(row) * scenario.time.step);
     const auto& hand = std::get<ImpedanceHandFields>(scenario.hand);
-    *hand_ = ImpedanceHand(hand.stiffness, hand.damping, pointer_.place());
+    *hand_ = ImpedanceHand(hand.stiffness, hand.damping, pointer_.position());
     Orientation led = make_orientation(*scenario.motion.orientation);
     led.tilt = pointer_.profile(3);
     led.azimuth = pointer_.profile(4);
@@ -92,12 +99,14 @@ class Session final : public Observer {
     if (!simulation_) begin();
   }
 
+  /// Simulates at most this many steps and returns their numbers, step after step, valid until the next call.
   const double* advance(std::uint32_t rows) {
     rows_.clear();
     rows_.reserve(kRowNumbers * rows);
     simulation_->advance(rows);
     return rows_.data();
   }
+  /// Returns the number of steps of the last advance().
   std::size_t advanced() const { return rows_.size() / kRowNumbers; }
 
   const char* text(const nlohmann::json& json) {
@@ -105,7 +114,7 @@ class Session final : public Observer {
     return text_.c_str();
   }
 
-  /// The data of the scene that stay the same during the run, as JSON.
+  /// Returns the data of the scene that are constant during the run, as JSON.
   const char* scene() {
     const Scenario& scenario = scene_.scenario();
     nlohmann::json outline = nlohmann::json::array();
@@ -128,7 +137,8 @@ class Session final : public Observer {
                  {"points", shell_ ? shell_->size() : 0}});
   }
 
-  /// The state hash and totals of the run so far, and contacts and stiffness tensor of its last row, as JSON.
+  /// Returns the state hash and totals of the run so far, and the contacts and stiffness tensor of its last
+  /// step, as JSON.
   const char* state() {
     nlohmann::json contacts = nlohmann::json::array();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -151,13 +161,15 @@ class Session final : public Observer {
   const PointShell* shell() const { return shell_.get(); }
 
  private:
+  /// Gives hand and wrist to the pointer. Throws InputError if the scenario has another hand or a scripted
+  /// position.
   void put_on_pointer() {
     const Scenario& scenario = scene_.scenario();
     if (!std::holds_alternative<ImpedanceHandFields>(scenario.hand))
       throw InputError("/hand/type: allowed: \"impedance\", whose target the pointer leads");
     if (!scenario.motion.orientation || !position_is_free(scenario.motion))
       throw InputError("/motion/position/type: allowed: \"free\", because the pointer leads the tool");
-    // What is assembled of these fields.
+    // assemble() makes these types from the fields that were checked above.
     hand_ = static_cast<ImpedanceHand*>(parts_.hand.get());
     motion_ = static_cast<ScriptedMotion*>(parts_.motion.get());
   }
@@ -172,8 +184,8 @@ class Session final : public Observer {
       assemble(scene_.scenario(), scene_.files(), make_shell(scene_.scenario(), scene_.files()), {});
   std::shared_ptr<const PointShell> shell_ = parts_.shell;
   std::shared_ptr<const ToolShape> tool_ = parts_.tool;
-  ImpedanceHand* hand_ = nullptr;     ///< the simulation's
-  ScriptedMotion* motion_ = nullptr;  ///< the simulation's
+  ImpedanceHand* hand_ = nullptr;     ///< owned by the simulation; null without pointer
+  ScriptedMotion* motion_ = nullptr;  ///< owned by the simulation; null without pointer
   Pointer pointer_;
   MetricsObserver metrics_{scene_.scenario().time.step};
   PassivityObserver passivity_{scene_.scenario().time.step};
@@ -193,9 +205,10 @@ std::optional<Session> session;
 
 }  // namespace
 
-// The parts of the engine that need an operating system: the folder of an installation, modules and signals.
+// Replacements of engine parts that need an operating system: the folder of an installation, modules and
+// signals.
 
-/// A file of the page, or else a bundled scenario.
+/// Returns a file of the page, or a bundled scenario of this name. Throws InputError if there is neither.
 std::filesystem::path find_scenario(const std::string& name, const std::filesystem::path& directory) {
   std::vector<std::filesystem::path> places = {directory / name};
   for (const char* group : kScenarioGroups)
@@ -220,7 +233,8 @@ EXPORTED(allocate) void* page_allocate(std::uint32_t size) {
   return std::malloc(size);
 }
 
-/// Makes the run of a file or bundled scenario, perhaps led by the pointer; `overrides` are lines as for --set.
+/// Creates the run of a file or bundled scenario. `overrides` has lines like values of --set. `is_led`: the
+/// pointer moves the hand.
 EXPORTED(load) void page_load(const char* name, const char* overrides, std::uint32_t is_led) {
   std::vector<std::string> given;
   LineReader lines(overrides);
@@ -232,16 +246,17 @@ EXPORTED(scene) const char* page_scene() {
   return session->scene();
 }
 
-/// From its last waypoint on, the pointer moves to these values, which it reaches at time t [s, m, rad].
+/// Moves the pointer from its last waypoint to these values, which it reaches at time t [s, m, rad].
 EXPORTED(aim) void page_aim(double t, double x, double y, double z, double tilt, double azimuth) {
   session->aim(t, {x, y, z, tilt, azimuth});
 }
 
-/// Computes so many rows, which must end two steps before the last waypoint, and returns their numbers, row after row.
+/// Simulates `rows` steps and returns their numbers, step after step. Precondition: they end at least two steps
+/// before the last waypoint.
 EXPORTED(advance) const double* page_advance(std::uint32_t rows) {
   return session->advance(rows);
 }
-/// The number of rows of the last `advance`: fewer than asked for once the run has ended.
+/// Returns the number of steps of the last `advance`. It is smaller than requested if the run has ended.
 EXPORTED(advanced) std::uint32_t page_advanced() {
   return static_cast<std::uint32_t>(session->advanced());
 }
@@ -250,7 +265,8 @@ EXPORTED(state) const char* page_state() {
   return session->state();
 }
 
-/// A coordinate of the shell's points, or of their normals for 3 ... 5; null without a shell.
+/// Returns a coordinate of all points of the shell: x, y, z for 0 to 2, components of the normals for 3 to 5.
+/// Returns null without a shell.
 EXPORTED(coordinates) const double* page_coordinates(std::uint32_t which) {
   const PointShell* shell = session->shell();
   if (shell == nullptr) return nullptr;

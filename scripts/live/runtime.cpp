@@ -1,5 +1,5 @@
-// Adds exceptions and files to the standard library for WebAssembly, which is built without them. An exception ends the
-// engine with its message; the page then makes a new engine.
+// Adds exceptions and files to the standard library for WebAssembly, which is built without them. An exception
+// ends the engine with its message; the page then creates a new engine.
 #include <sys/stat.h>
 #include <wasi/api.h>
 
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <typeinfo>
 
-/// Throws an error with this message in the page.
+/// Throws a JavaScript error with this message in the page.
 extern "C" [[noreturn]] __attribute__((import_module("page"), import_name("fail"))) void page_fail(const char* message);
 
 extern "C" {
@@ -25,14 +25,14 @@ void __cxa_free_exception(void* memory) {
   std::free(memory);
 }
 
-/// All that the engine throws on its way to here is a std::exception, without another base before it.
+/// Every exception of the engine reaches this function as an object whose first base is std::exception.
 [[noreturn]] void __cxa_throw(void* thrown, std::type_info*, void (*)(void*)) {
   page_fail(static_cast<std::exception*>(thrown)->what());
 }
 
 }  // extern "C"
 
-// The library declares these members of its instances as defined elsewhere.
+// The library declares these templates as instantiated elsewhere.
 template class std::basic_filebuf<char>;
 template class std::basic_ifstream<char>;
 
@@ -54,7 +54,7 @@ path __current_path(error_code* error) {
   return "/";
 }
 
-/// There are no links.
+/// Compares the paths as text: there are no links.
 bool __equivalent(const path& a, const path& b, error_code* error) {
   if (error) error->clear();
   return a.lexically_normal() == b.lexically_normal();

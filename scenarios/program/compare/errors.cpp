@@ -65,6 +65,7 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
   Table table{{{"algorithm", false}}};
   for (const std::string& algorithm : league.algorithms) table.rows.push_back({algorithm});
   std::string sentences;
+  // Evaluate each metric. The JSON has all of them, the table those of the table of runs, unless `all`.
   for (std::size_t m = 0; m < league.metrics.size(); ++m) {
     const std::string& metric = league.metrics[m];
     Json& json =
@@ -97,9 +98,11 @@ std::string vibration_text(const League& league, const Layout& layout) {
                                              {"tool", kToolVibrationPower, 1e-10}};
   if (league.algorithms.size() < 2) return "";
   std::string says;
+  // Algorithms with a failed run have no vibration to compare.
   std::vector<std::string> failing;
   for (std::size_t a = 0; a < league.algorithms.size(); ++a)
     if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
+  // Compare the force; if a law without failures has no value of it, compare the tool.
   for (const auto& [of, metric, unfelt] : kVibrations) {
     const auto place = static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
     std::vector<NumberWithError> numbers;

@@ -101,6 +101,7 @@ std::vector<Description> other_meanings(const Index& index, const std::string& n
 int describe(const DescribeOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   if (options.name.empty() || is_kind(options.name)) return list(options, context);
+  // Find the name in the program, as an entry and then as a heading.
   const Index index = program_index(layout);
   std::vector<Description> meanings = described_by_name(index, options.name);
   if (meanings.empty()) meanings = described_headings(index, options.name);

@@ -71,6 +71,7 @@ std::string thing_text(const Json& thing, const Layout& layout, std::size_t inde
     }
   }
   std::string text;
+  // Write the first line with name, unit and kind.
   if (!name.empty()) {
     if (!unit.empty()) name += fmt::format(" [{}]", unit);
     text = fmt::format("{:{}}{}{}{}\n", "", indent, bold(stdout, name), kind.empty() ? "" : ": ", kind);

@@ -105,6 +105,7 @@ Description describe_field(const std::string& path, const Layout& layout) {
     else
       same->types += (placed.types.empty() ? "" : ", ") + placed.types;
   }
+  // Describe each group.
   std::vector<Description> meanings;
   for (const auto& [at, types, field] : found) {
     Json json = field->schema();

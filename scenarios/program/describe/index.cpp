@@ -36,6 +36,7 @@ constexpr std::pair<const char*, Description (*)(const Layout&)> kSections[] = {
 }  // namespace
 
 Index program_index(const Layout& layout) {
+  // Entries come in the order of the lists; headings are last because they refer to other entries.
   const std::vector<DescribedTable> tables = result_tables();
   Index index;
   add_models(index, layout);

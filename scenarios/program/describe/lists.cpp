@@ -48,6 +48,7 @@ std::string list_text(const Index& all, bool names_alone, const Layout& layout) 
   std::vector<std::pair<std::string, std::string>> lists;  // title and entries of each list
   for (const Named& thing : all) {
     const std::string group = group_of(thing), title = list_name(thing.kind) + (group.empty() ? "" : " of " + group);
+    // Begin a new list if the kind or group changes.
     if (lists.empty() || lists.back().first != title) lists.emplace_back(title, "");
     std::string& entries = lists.back().second;
     const std::string verdict = thing.more.value("verdict", "");  // of a claim, which is told in full
@@ -58,6 +59,7 @@ std::string list_text(const Index& all, bool names_alone, const Layout& layout) 
     else
       entries += entry(fmt::format("{:<5}{}", thing.name, verdict), thing.summary, 2, kColumn, layout.width());
   }
+  // Join the lists below their titles.
   std::string text;
   for (const auto& [title, entries] : lists)
     text += (text.empty() ? "" : "\n") + bold(stdout, title) + "\n" + (names_alone ? layout.wrapped(entries) : entries);
@@ -90,12 +92,14 @@ int list(const DescribeOptions& options, ProgramContext& context) {
     return (options.name.empty() || list_name(thing.kind) == options.name || group_of(thing) == options.name) &&
            lower_case(text).find(pattern) != std::string::npos;
   };
+  // Collect the requested entries in the order of the kinds.
   Index index = program_index(layout), all;
   std::ranges::move(folder_index(layout), std::back_inserter(index));
   for (const std::string_view kind : kListed)
     for (const Named& thing : index)
       if (thing.kind == kind && is_asked(thing)) all.push_back(thing);
   if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
+  // Print them.
   Json json = Json::array();
   for (const Named& thing : all) {
     Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});

@@ -89,6 +89,7 @@ std::optional<Description> describe_place(const std::string& name, const Layout&
   const std::optional<Place> place = asked_place(name);
   if (!place) return std::nullopt;
   const std::string title = place->kind + (place->kind.empty() ? "" : " ") + place->number;
+  // Collect scenarios and claims whose source names the location.
   std::string scenarios, claims;
   Json json = {{"kind", "place"}, {"name", title}, {"scenarios", Json::array()}, {"claims", Json::array()}};
   for (const Named& thing : folder_index(layout)) {
@@ -100,6 +101,7 @@ std::optional<Description> describe_place(const std::string& name, const Layout&
       scenarios += layout.entry(thing.name, source, 4, 44);
     json[list_name(thing.kind)].push_back(thing.name);
   }
+  // Collect the stored pictures.
   std::string pictures;
   for (const std::filesystem::path& picture : pictures_of(*place)) {
     std::string id = picture.stem().string().substr(std::string_view("figure_").size());

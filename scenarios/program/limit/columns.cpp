@@ -170,6 +170,7 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
   columns.add(edge_columns(table));
   columns.add(search_columns(table == nullptr || !table->devices.empty(), table == nullptr || table->is_grid()));
   const auto has_forms = [](const Row& r) { return !r.limit.closed_forms.empty(); };
+  // Add the closed-form limits of a wall on an impedance device if a case has them.
   const bool forms = table == nullptr || std::ranges::any_of(table->rows, has_forms);
   for (std::size_t i = 0; i < stiffness_limits().size(); ++i) {
     const StiffnessLimit& known = stiffness_limits()[i];

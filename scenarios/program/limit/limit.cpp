@@ -39,6 +39,7 @@ void add_ratios(LimitTable& table) {
 void tell_limits(const LimitTable& table, const Layout& layout, Report& report) {
   const LimitQuestion& question = table.first().asked;
   const Columns<LimitRow> columns = limit_columns(&table);
+  // Collect the runs of all cases, and the limits as JSON.
   std::vector<LimitRunRow> runs;
   Json limits = Json::array();
   for (const LimitRow& row : table.rows) {

@@ -59,6 +59,7 @@ std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
       device.published_stiffness.reset();
     }
     devices.push_back(device);
+    // Add the variants of the device.
     if (none_other) continue;
     for (const std::string& factor : options.friction)
       if (const auto other = with_friction_times(device, number_between("--friction", factor, 0.0, 1e3)))
@@ -128,6 +129,7 @@ LimitTable asked_table(const LimitOptions& options) {
     devices = asked_devices(options);
     axes[0].values = names_of(devices, &ComparedDevice::name);
   }
+  // Make the axes in the order of LimitTable::cases.
   Axis algorithm{.path = "--algorithms", .values = {""}, .named = true};
   if (!options.algorithms.empty()) algorithm = {"rendering.algorithm", chosen_algorithms(options.algorithms)};
   for (const std::string& text : options.over) axes.push_back(parse_axis(text));

@@ -122,6 +122,7 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
   std::string text;
   for (const auto& [holds, note] : notes)
     if (holds) text += layout.wrapped(note, 0);
+  // Add a note on each distinct delay of a device.
   std::vector<std::string> delays = {""};
   if (table.over() == 0)
     for (const LimitRow& row : table.rows) append_new(delays, {delay_note(row.scenario)});
@@ -143,6 +144,7 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
     text +=
         ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first "
         "half of a run, all beyond 1 mm/s from then on";
+  // Add the bounds of --bound.
   for (const auto& [metric, bound] : rule.bounds) {
     if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
@@ -155,6 +157,7 @@ std::string limit_answer(const FieldLimit& found, double resolution) {
   std::string text = found.end.beyond
                          ? fmt::format("edge in runs {}", deserved(*found.end.value, found.end.tolerance()))
                          : fmt::format("stable in runs to the end of the range, {}", significant(*found.end.value, 6));
+  // Put the linear limit first, if there is one.
   const auto& linear = found.linear_edge();
   if (linear && std::isfinite(*linear) && *linear > 0.0) {
     const std::string edge = fmt::format("linear edge {}; ", significant(*linear, 6));

@@ -44,6 +44,7 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   if (options.kind.empty()) return list_kinds(options.output, context);
   const StartKind& kind = kind_named(options.kind);
   check_options(options, kind);
+  // Choose the files to write; no existing file is replaced.
   const std::filesystem::path source = options.from;
   const std::filesystem::path out =
       !options.out.empty() ? options.out : (source.empty() ? "" : source.stem().string() + "_") + kind.name + ".json";
@@ -64,6 +65,7 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   const CheckedScenario scene = checked(std::move(loaded));
   print_warnings(context, with_files(scene.loaded(), scene.file_warnings()));
   require_writable_directory(context, directory.empty() ? "." : directory);
+  // Write the scene, draw it with --preview, and explain its fields.
   write_file_atomically(out, json_text(start.scene));
 
   print_warnings(context, start.warnings);

@@ -167,6 +167,7 @@ class Start {
     const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
     const bool is_open =
         !has_type("environment", "mesh") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
+    // Sum the normals around the top along the side's axis; a negative sum means that they point away.
     double facing = 0.0;
     for (const SurfacePoint& point : shell) {
       const Vec3 from_top = point.position - top;
@@ -214,8 +215,8 @@ class Start {
 
   double side_sign() const { return options_.side.front() == '-' ? -1.0 : 1.0; }
 
-  /// Returns the surface point above which the tool starts: the point nearest to the first requested point that
-  /// faces the side, or the middle of the top without requested points.
+  /// Returns the surface point above which the tool starts. With requested points, this is the point that faces
+  /// the side and is nearest to the first of them. Otherwise it is the middle of the top.
   Vec3 top_of(const std::vector<SurfacePoint>& shell, const Box& box) const {
     if (named_.empty()) return middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
     const Vec3 named = to_world_.transpose() * named_.front();
@@ -283,11 +284,13 @@ class Start {
 
   /// Chooses the start and direction of a drag, over four fifths of the path up to the end of the surface.
   void choose_way(const PointShell& shell, const std::vector<Vec3>& starts) {
+    // Search a path of at least a quarter of the surface's extent.
     const double enough = 0.25 * shell.bounds().size().maxCoeff();
     const DragStart drag = choose_drag(shell, starts, 0.5 * diameter_, enough);
     const double way = 0.8 * drag.room;
     const bool has_room = way >= diameter_;
     start_at(drag.position);
+    // Write the drag into the scene.
     const Vec3 direction = to_world_ * drag.direction;
     Json along = Json::array();
     for (const double part : direction) along.push_back(static_cast<int>(part));

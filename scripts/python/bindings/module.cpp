@@ -34,29 +34,32 @@
 #include "scenarios/run/run_tables.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
-/// The engine and the commands of the program for Python. Users call the package around it (hapbench/).
+/// The engine and the commands of the program for Python. Users call the Python package around it (hapbench/).
 namespace hapbench {
 namespace {
 
 namespace py = pybind11;
 using namespace std::chrono_literals;
 
-/// Interval of handling signals and progress.
+/// Interval at which a waiting call handles signals and reports progress.
 constexpr auto kLookEvery = 50ms;
 
-/// Time that work has to end before the interpreter does: a module may loop.
+/// Largest wait for running calls before the interpreter ends; bounded because a loaded module may loop
+/// forever.
 constexpr auto kPatience = 2s;
 
-/// The number of calls under way, and the error that ends them, null if there is none. Both are guarded by the lock of
-/// the interpreter. A bare pointer, because at the end of the process there is no interpreter.
+/// Number of calls that are computing, and the Python error that ends them; null if there is none. Both are
+/// guarded by the interpreter lock. The error is a bare pointer because no interpreter exists any more when the
+/// process destroys static objects.
 int under_way = 0;
 PyObject* python_error = nullptr;
 
-/// Label, done and total; the total is 0 before the first report.
+/// Label, completed work and total work of a progress report; the total is 0 before the first report.
 using ProgressState = std::tuple<std::string, std::uint64_t, std::uint64_t>;
 
-/// Counts a call that computes. An error of Python in one of them ends all of them; the end of the last one lets work
-/// begin again. Precondition of both ends: the interpreter is held.
+/// Counts a call that computes, for its lifetime. A Python error in one call stops all calls. When the last
+/// call ends, the error is cleared and work may start again. Precondition of constructor and destructor: the
+/// interpreter lock is held.
 class UnderWay {
  public:
   UnderWay() { ++under_way; }
@@ -69,23 +72,25 @@ class UnderWay {
   UnderWay& operator=(const UnderWay&) = delete;
 };
 
-/// Raises the error that stop_work_by has kept, if any. Precondition: a call that is under way holds the interpreter.
+/// Raises the error that stop_work_by() has stored, if any. Preconditions: a call is counted, and the
+/// interpreter lock is held.
 void raise_python_error() {
   if (python_error == nullptr) return;
   PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(python_error)), python_error);
   throw py::error_already_set();
 }
 
-/// Calls `work` with the listener of its progress on a thread of its own, with the interpreter released, and waits for
-/// it. Several threads of Python may call it at once. While it waits, it handles signals and progress twenty times a
-/// second. `progress`: None for bars on a terminal, False for none, or a function of (label, done, total). Throws what
-/// `work` throws. An error of a Python law, of the progress function or of a signal handler, such as KeyboardInterrupt,
-/// ends the work and is raised; it also ends the work of other threads. Precondition: the interpreter is held.
+/// Calls `work` on a thread of its own and waits for it with the interpreter lock released. Several Python
+/// threads may call this at once. While it waits, it handles signals and reports progress 20 times a second.
+/// `progress` is None for progress bars on a terminal, False for no progress, or a function of (label, done,
+/// total). Throws the exception of `work`. An error of a Python law, of the progress function or of a signal
+/// handler (such as KeyboardInterrupt) stops the work of all threads and is raised. Precondition: the
+/// interpreter lock is held.
 void supervise(const py::object& progress, const std::function<void(const ProgressListener*)>& work) {
   const UnderWay counted;
-  const bool is_told = PyCallable_Check(progress.ptr()) != 0;
+  const bool has_function = PyCallable_Check(progress.ptr()) != 0;
   std::mutex mutex;
-  ProgressState reported, told;  // the work's last report, under the lock, and what Python was told
+  ProgressState reported, delivered;  // last report of the work, under the mutex; last report to Python
   const auto last_report = [&] {
     const std::lock_guard lock(mutex);
     return reported;
@@ -95,26 +100,29 @@ void supervise(const py::object& progress, const std::function<void(const Progre
     reported = {std::string(label), done, total};
   };
   const ProgressListener* const heard_by = progress.is_none() ? nullptr : &listener;
+  // Start the work.
   auto result = std::async(std::launch::async, [&] { work(heard_by); });
   const auto has_ended = [&result] {
     const py::gil_scoped_release released;
     return result.wait_for(kLookEvery) == std::future_status::ready;
   };
+  // Handle signals and report progress until the work ends.
   while (!has_ended()) {
     runs_in_python([&] {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       ProgressState last = last_report();
-      if (!is_told || last == told) return;
-      told = std::move(last);
-      std::apply(progress, told);
+      if (!has_function || last == delivered) return;
+      delivered = std::move(last);
+      std::apply(progress, delivered);
     });
   }
   raise_python_error();
   result.get();
-  if (const auto [label, done, total] = last_report(); is_told && total > 0) progress(label, total, total);
+  if (const auto [label, done, total] = last_report(); has_function && total > 0) progress(label, total, total);
 }
 
-/// Ends the calls of daemon threads, which would ask for the interpreter, by SystemExit before it ends, within 2 s.
+/// Exit handler: ends the calls of daemon threads by SystemExit and waits for them at most 2 s, because they
+/// would request the interpreter lock of an interpreter that has ended.
 void end_work() {
   if (under_way == 0) return;
   PyErr_SetNone(PyExc_SystemExit);
@@ -126,14 +134,15 @@ void end_work() {
   }
 }
 
-/// Makes loading of laws and computing by another thread exclude each other (LoadingGuard).
+/// Prevents loading of laws while another thread computes, and computing while a law is loaded (LoadingGuard).
+/// Throws InputError while another thread computes.
 std::shared_ptr<void> guard_loading() {
-  auto held = std::make_shared<py::gil_scoped_acquire>();  // which work needs to begin
+  auto held = std::make_shared<py::gil_scoped_acquire>();  // starting work requires this lock
   if (under_way > 1) throw InputError("a law cannot be loaded while another thread computes");
   return held;
 }
 
-/// Raises InputError and IoError as hapbench.ScenarioError and OSError.
+/// Translates InputError and IoError into hapbench.ScenarioError and OSError.
 void translate_errors() {
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
@@ -153,19 +162,22 @@ void translate_errors() {
   });
 }
 
-/// Name, unit and meaning of each column, and the numbers as an array of rows x columns.
+/// Returns the name, unit and meaning of each column, and the numbers as an array of rows x columns.
 py::tuple table_of(const MemoryTable& table) {
   py::list columns;
   for (const Column& column : table.columns()) columns.append(py::make_tuple(column.name, column.unit, column.meaning));
   return py::make_tuple(columns, py::array_t<double>({table.rows(), table.columns().size()}, table.numbers().data()));
 }
 
+/// Runs a scenario and returns its summary, effective scenario, timing, warnings, unmet expectations and
+/// recorded tables.
 py::dict run(const std::string& scenario, const std::vector<std::string>& overrides, const py::object& progress) {
   Result report;
   RunTables tables;
   std::vector<std::string> warnings;
   const bool shown = progress.ptr() != Py_False;
   supervise(progress, [&](const ProgressListener* listener) {
+    // Run the scenario and collect all warnings.
     const CheckedScenario scene = checked(load_scenario(find_scenario(scenario), overrides));
     const LoadedScenario& loaded = scene.loaded();
     warnings = with_files(loaded, loaded.warnings);
@@ -179,6 +191,7 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   result["timing"] = timing_text(report);
   result["warnings"] = warnings;
   result["unmet"] = report.unmet;
+  // Convert the recorded tables of each trial.
   py::list trials;
   for (const RecordedTables& trial : tables.trials) {
     py::dict recorded;
@@ -191,12 +204,14 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   return result;
 }
 
-/// The file that commands name as the program, which the package sets; else the interpreter's.
+/// The file that commands name as the program: the file that the Python package sets, by default the
+/// interpreter.
 std::filesystem::path& program_file() {
   static std::filesystem::path file = file_of_this_process();
   return file;
 }
 
+/// Runs a command and returns its status, standard output, warnings and errors.
 py::tuple command(const std::vector<std::string>& words, const py::object& progress) {
   CapturedOutput output;
   int status = 0;
@@ -208,6 +223,7 @@ py::tuple command(const std::vector<std::string>& words, const py::object& progr
   return py::make_tuple(status, output.text, output.warnings, output.errors);
 }
 
+/// Runs a command that prints on the terminal, and returns its exit status.
 int be_program(const std::vector<std::string>& words) {
   int status = 0;
   supervise(py::none(), [&](const ProgressListener* listener) {
@@ -217,7 +233,7 @@ int be_program(const std::vector<std::string>& words) {
   return status;
 }
 
-/// Keeps the last row, with its contacts.
+/// Observer that keeps the last step with its contacts.
 class LastRow final : public Observer {
  public:
   explicit LastRow(std::size_t capacity) : contacts(capacity) {}
@@ -235,7 +251,7 @@ py::array_t<double> array_of(const Vec3& v) {
   return py::array_t<double>(3, v.data());
 }
 
-/// A run, step by step.
+/// A run that Python advances step by step.
 class PythonSimulation {
  public:
   PythonSimulation(const std::string& scenario, const std::vector<std::string>& overrides)
@@ -257,7 +273,8 @@ class PythonSimulation {
     return more;
   }
 
-  /// Computes in pieces, between which signals are handled.
+  /// Advances in pieces of kAskEvery steps and handles signals between them. Returns the number of computed
+  /// steps.
   std::uint64_t advance(std::uint64_t steps) {
     const UnderWay counted;
     const std::uint64_t first = simulation_->result().rows;
@@ -329,7 +346,7 @@ class PythonSimulation {
   std::optional<Simulation> simulation_;
 };
 
-/// hapbench.Simulation says what they do.
+/// Defines the class Simulation; hapbench.Simulation documents its members.
 void bind_simulation(py::module_& module) {
   py::class_<PythonSimulation>(module, "Simulation")
       .def(py::init<const std::string&, const std::vector<std::string>&>(), py::arg("scenario"), py::arg("overrides"))

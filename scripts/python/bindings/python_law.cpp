@@ -18,32 +18,32 @@
 #include "bindings/bindings.hpp"
 #include "sim/core/hash.hpp"
 
-/// A force law in Python is a module (hapbench_module.h) whose functions call it.
+/// Force laws in Python. Each law is a module (hapbench_module.h) whose functions call a Python callable.
 namespace hapbench {
 namespace {
 
 namespace py = pybind11;
 
-/// The arguments of a law that show its contacts.
+/// Names of the arguments that give a law its contacts.
 constexpr std::string_view kShown[] = {"depths", "gradients", "points", "normals"};
 
-/// What one of them shows.
+/// Returns the columns of the contacts for the argument kShown[shown].
 ContactArray::Columns columns_of(std::size_t shown, const HapbenchContacts& c) {
   const ContactArray::Columns all[] = {{c.depth}, {c.gx, c.gy, c.gz}, {c.x, c.y, c.z}, {c.nx, c.ny, c.nz}};
   return all[shown];
 }
 
-/// Name, default, minimum, maximum, unit, meaning.
+/// Name, default, minimum, maximum, unit and meaning of a parameter.
 using GivenParameter = std::tuple<std::string, double, double, double, std::string, std::string>;
 
-/// A function, or a class whose objects are called, and its table.
+/// A Python law (a function, or a class whose objects are callable) and its module table.
 struct Definition {
   std::string name;
   py::object callable;
   bool is_class = false;
   std::vector<GivenParameter> given;
   std::array<std::string, 4> texts;    ///< summary, formula, source, known failure
-  std::vector<std::string> arguments;  ///< names: of kShown, "stiffness" or of its own parameters
+  std::vector<std::string> arguments;  ///< each is in kShown, "stiffness", or the name of a parameter
   std::vector<HapbenchParameter> parameters;
   HapbenchModule table = {};
 
@@ -53,7 +53,8 @@ struct Definition {
   }
 };
 
-/// The interpreter's state of a thread of ours, kept as long as a law lives: making one takes longer than a call.
+/// The interpreter's thread state of the calling thread, which is kept for the lifetime of a law, because
+/// creating a state takes longer than a call.
 class KeptThread {
  public:
   KeptThread() {
@@ -61,7 +62,8 @@ class KeptThread {
     PyGILState_Ensure();
     state_ = PyEval_SaveThread();
   }
-  /// Precondition: the interpreter is not held. A state of another thread stays until the interpreter ends.
+  /// Releases the state, but only on the thread that created it. On another thread, the state stays until the
+  /// interpreter ends. Precondition: the interpreter lock is not held.
   void give_back() noexcept {
     if (state_ == nullptr || thread_ != std::this_thread::get_id()) return;
     PyEval_RestoreThread(state_);
@@ -73,7 +75,7 @@ class KeptThread {
   PyThreadState* state_ = nullptr;
 };
 
-/// A law for one run. Precondition of everything: the interpreter is held.
+/// A law for one run. Precondition of all members: the interpreter lock is held.
 class PythonLaw {
  public:
   PythonLaw(const Definition& definition, const double* values, const HapbenchRun& run) : definition_(&definition) {
@@ -89,9 +91,11 @@ class PythonLaw {
     start();
   }
 
-  /// Makes a new object of a law that is a class.
+  /// Creates a new object if the law is a class.
   void start() { callable_ = definition_->is_class ? definition_->callable() : definition_->callable; }
 
+  /// Calls the law and stores its answer: weights of the contacts, or a force and a stiffness tensor. Throws
+  /// py::value_error for other answers.
   void step(HapbenchContacts& contacts, HapbenchForce& force) {
     const py::object answer = call(contacts);
     if (py::isinstance<py::tuple>(answer)) return take_force(answer, contacts.n, force);
@@ -157,7 +161,7 @@ class PythonLaw {
 
   const Definition* definition_;
   py::object callable_;
-  /// An array of the contacts or a number.
+  /// An argument of the law: an array of the contacts or a number.
   struct Argument {
     std::size_t shown = 0;
     std::optional<ContactArray> array = {};
@@ -192,7 +196,7 @@ void reset(void* state) {
 }
 
 void destroy(void* given) {
-  if (!Py_IsInitialized()) return;  // the interpreter has destroyed its objects
+  if (!Py_IsInitialized()) return;  // the interpreter has already destroyed its objects
   const std::unique_ptr<State> state(static_cast<State*>(given));
   {
     const py::gil_scoped_acquire held;
@@ -201,7 +205,7 @@ void destroy(void* given) {
   state->thread.give_back();
 }
 
-/// Any thread may release the last reference; it is destroyed only while there is an interpreter.
+/// Deletes a definition unless the interpreter has ended. Any thread may release the last reference to it.
 void destroy_definition(Definition* definition) {
   if (!Py_IsInitialized()) return;
   const py::gil_scoped_acquire held;
