@@ -253,7 +253,6 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(checked(plan.cases.load(i))); });
   report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().result.name,
                          levels.axis.path, levels.axis.values.front(), levels.ratio, levels.formal_order));
-  // Evaluate each metric.
   std::vector<ConvergeStudy> studies;
   std::vector<LevelRow> rows;
   for (const std::string& metric : metrics) {

@@ -85,7 +85,7 @@ std::string program_help(const Layout& layout) {
   std::string text = front_text(layout) + "\n" + bold(stdout, "Options without a command:") + "\n";
   text += layout.entry("--help", "print this text", 2, 14);
   text += layout.entry("--version", "print the version; with --json also what it was built from and promises", 2, 14);
-  // Indented by more than two spaces: scripts/completion offers each option that is indented by two.
+  // Indented by more: scripts/completion offers the options of a help that are indented by two.
   text += "\n" + bold(stdout, "Options that mean the same in every command that has them, behind its name:") + "\n";
   for (const auto& [name, help] : shared_options()) text += layout.entry(name, help, 4, 16);
   return text + "\n" +

@@ -4,7 +4,7 @@ namespace hapbench {
 
 namespace {
 
-/// The options that commands share. Each command has those that apply to it.
+/// What commands have in common, as far as it means something to them.
 constexpr SharedOption kSharedOptions[] = {
     {"--set", "override a field of every scene: path=value, as in time.steps=100; repeatable"},
     {"--out", "where the results go (default: results/out/NAME); a command's help has its own"},

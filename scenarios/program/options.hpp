@@ -27,7 +27,7 @@ std::span<const SharedOption> shared_options();
 /// Returns the help text of a shared option; empty for other options.
 std::string shared_option_help(const std::string& name);
 
-/// Values of the options that most commands have.
+/// Options that most commands have.
 struct CommonOptions {
   std::vector<std::string> overrides;
   unsigned jobs = 0;  ///< simulations at once; 0: as many as this process may use threads

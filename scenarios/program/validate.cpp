@@ -150,7 +150,7 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
       const WaitNotice notice(argument, !options.output.quiet);
       const std::filesystem::path file = find_scenario(argument);
       if (options.points.empty() && is_device_file(file)) {
-        device_of_file(file);  // throws if the device is invalid
+        device_of_file(file);  // throws what is wrong with it
         text += fmt::format("{}: a valid device, not a scenario: {}\n", argument,
                             shell_line({"hapbench", "limit", "tap_wall", "--device", argument}));
         verdict["kind"] = "device";

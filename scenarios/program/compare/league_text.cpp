@@ -52,7 +52,7 @@ RankCount rank_count(const League& league, const std::string& algorithm) {
 std::string firsts_text(const League& league) {
   constexpr std::size_t kMostNamed = 5;
   if (!league.laws.front().mean_rank) return "nothing is ranked: neither less nor more of these metrics is better";
-  std::size_t rankings = 0;  // equal for all laws
+  std::size_t rankings = 0;  // the same number for each law
   std::vector<std::string> firsts;
   for (const LawStanding& law : league.laws) {
     const RankCount count = rank_count(league, law.algorithm);

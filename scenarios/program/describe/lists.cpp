@@ -99,7 +99,6 @@ int list(const DescribeOptions& options, ProgramContext& context) {
     for (const Named& thing : index)
       if (thing.kind == kind && is_asked(thing)) all.push_back(thing);
   if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
-  // Print them.
   Json json = Json::array();
   for (const Named& thing : all) {
     Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});

@@ -17,7 +17,7 @@ namespace {
 /// Returns the columns that distinguish the cases: device, scene, fields of --over, algorithm. Null: all
 /// columns, for `describe`.
 template <class Row>
-Columns<Row> case_columns(const LimitTable* table) {
+Columns<Row> place_columns(const LimitTable* table) {
   const bool devices = table == nullptr || !table->devices.empty();
   Columns<Row> columns = {
       {"device", "",
@@ -166,7 +166,7 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
 
 Columns<LimitRow> limit_columns(const LimitTable* table) {
   using Row = LimitRow;
-  Columns<Row> columns = case_columns<Row>(table);
+  Columns<Row> columns = place_columns<Row>(table);
   columns.add(edge_columns(table));
   columns.add(search_columns(table == nullptr || !table->devices.empty(), table == nullptr || table->is_grid()));
   const auto has_forms = [](const Row& r) { return !r.limit.closed_forms.empty(); };
@@ -193,7 +193,7 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
 }
 
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table) {
-  Columns<LimitRunRow> columns = case_columns<LimitRunRow>(table);
+  Columns<LimitRunRow> columns = place_columns<LimitRunRow>(table);
   columns.add({{table == nullptr ? "{field}" : table->first().asked.path, "by name", "value of the field",
                 [](const LimitRunRow& r) { return r.run.value; }},
                {"class", "", "what became of the run (describe stability)",

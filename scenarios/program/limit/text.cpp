@@ -144,7 +144,6 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
     text +=
         ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first "
         "half of a run, all beyond 1 mm/s from then on";
-  // Add the bounds of --bound.
   for (const auto& [metric, bound] : rule.bounds) {
     if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
@@ -157,7 +156,6 @@ std::string limit_answer(const FieldLimit& found, double resolution) {
   std::string text = found.end.beyond
                          ? fmt::format("edge in runs {}", deserved(*found.end.value, found.end.tolerance()))
                          : fmt::format("stable in runs to the end of the range, {}", significant(*found.end.value, 6));
-  // Put the linear limit first, if there is one.
   const auto& linear = found.linear_edge();
   if (linear && std::isfinite(*linear) && *linear > 0.0) {
     const std::string edge = fmt::format("linear edge {}; ", significant(*linear, 6));
