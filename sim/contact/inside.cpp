@@ -10,19 +10,21 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kAtOnce = 4;  ///< cells halved at once, whose eight halves the tool is asked about in one call
-/// A cell is halved some 60 times at most before it is smaller than the tolerance, and every time adds four to the
-/// stack.
+/// Cells that are halved together; the tool evaluates their eight halves in one call
+constexpr std::size_t kAtOnce = 4;
+/// Maximum size of the stack of cells. A cell is smaller than the tolerance after at most about 60 halvings,
+/// and each halving adds four cells.
 constexpr std::size_t kMostCells = 1024;
+/// Maximum number of distance evaluations in one search, which bounds its time.
 constexpr std::size_t kMostLooks = 20000;
-/// Relative to the half width: a point this little outside the tool counts as in it; cells this small are not searched
-/// beyond the border.
+/// Tolerances relative to the half width. A point at most kOnTool outside the tool counts as in the tool. Cells
+/// smaller than kCoarse are not searched beyond the border of an open surface.
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
-/// Relative to the half width: stretches this short are not halved, ones this long have one ball only; what outlines
-/// made of polylines leave out of round bodies.
+/// Lengths relative to the half width. Segments shorter than kShort are not halved. Segments longer than kLong
+/// have one ball only. kPolyline bounds the distance between a round body and its outline, which is a polyline.
 constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
-/// Centres to try around that of the smallest ball, in half widths.
+/// Offsets of further ball centres from the centre of the smallest ball, in half widths.
 constexpr double kBeside[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
 
 }  // namespace
@@ -41,20 +43,22 @@ InsideSearch::InsideSearch(const ToolShape& tool, const Solid& solid)
 
 std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, double tolerance) noexcept {
   best_ = known;
-  looks_ += 8;  // of the tip and where it leads
+  looks_ += 8;  // about 8 evaluations: the tip centre and its improvement
   tolerance_ = tolerance;
   const SurfaceDistance tip = solid_.at(pose.position);
   const LookedUp looked{pose.position, tip.value};
   beyond_border_ = !tip.known;
   cells_.clear();
-  improve(pose, pose.position);  // also finds what is less deep than the tolerance
+  improve(pose, pose.position);  // also finds depths smaller than the tolerance
+  // Start with the box in which tool and solid may overlap.
   const Box box = tool_.box_near(pose, 0.0, solid_.region());
   const Vec3 low = box.min.cwiseMax(solid_.region().min), high = box.max.cwiseMin(solid_.region().max);
   if ((low.array() <= high.array()).all()) {
     const Vec3 half = 0.5 * (high - low);
-    // Halved once at first, so that the whole box need not be looked at.
+    // This cell is halved first, so its own depth bound may be coarse.
     cells_.push_back({0.5 * (low + high), half, std::abs(tip.value) + 2.0 * tool_.reach(), looked});
   }
+  // Halve cells until none can hold a deeper point.
   for (std::size_t looks = 0; !cells_.empty() && looks < kMostLooks; looks += 2 * kAtOnce) {
     std::array<Cell, kAtOnce> parents;
     std::size_t count = 0;
@@ -69,6 +73,7 @@ std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, do
 
 /// Halves the cells across their longest edges and keeps the halves that may hold a deeper point.
 void InsideSearch::look(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept {
+  // Halve the cells.
   std::array<Cell, 2 * kAtOnce> halves;
   points_.clear();
   for (std::size_t i = 0; i < count; ++i) {
@@ -83,21 +88,23 @@ void InsideSearch::look(const ToolPose& pose, const Cell* parents, std::size_t c
     }
   }
   if (points_.empty()) return;
+  // Keep the halves that meet the tool and may hold a deeper point.
   tool_.surface_constraints(pose, Vec3::Zero(), 0.0, points_);
   const std::size_t first = cells_.size();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     Cell cell = halves[i];
     double radius = cell.half.norm();
-    const double outside = -points_.depth[i];  // of the tool
+    const double outside = -points_.depth[i];  // distance outside the tool [m]
     if (!(outside <= radius)) continue;
-    // Projecting on a convex body brings no two points further apart.
+    // Move the centre of the cell to the nearest point of the tool. For a convex body, this projection
+    // increases no distance between points, so the radius stays valid.
     Vec3 place = cell.centre;
     const Vec3 gradient = points_.gradient(i);
     if (outside > 0.0) {
       place -= outside * gradient;
       if (!tool_.convex()) radius += outside;
     }
-    // Nothing is deeper than the way to the surface that is known.
+    // Skip the cell if the known distance alone proves that it is not deep enough.
     const double way = (place - cell.looked.place).norm();
     if (!may_be_deepest(radius + way - cell.looked.value)) continue;
     ++looks_;
@@ -117,7 +124,8 @@ void InsideSearch::look(const ToolPose& pose, const Cell* parents, std::size_t c
   std::ranges::sort(cells_.begin() + static_cast<std::ptrdiff_t>(first), cells_.end(), {}, &Cell::bound);
 }
 
-/// Moves a point near the tool into it, unless it is there. The distances of a mesh are approximate.
+/// Moves a point near the tool into the tool, if it is not inside. Repeats, because the distances of a mesh
+/// tool are approximate. Returns false if the point is still outside.
 bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
   for (int round = 0; round < 3; ++round) {
     one_.clear();
@@ -129,7 +137,7 @@ bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
   return false;
 }
 
-/// Follows the depth from a place of the tool to deeper ones.
+/// Moves from a point of the tool to deeper points of the tool and updates the largest depth.
 void InsideSearch::improve(const ToolPose& pose, Vec3 place) noexcept {
   constexpr int kMoves = 8, kHalvings = 6;
   const PlaceArrays answer{x_.data(), y_.data(), z_.data()};
@@ -144,6 +152,7 @@ void InsideSearch::improve(const ToolPose& pose, Vec3 place) noexcept {
     return true;
   };
   try_place(Vec3(place));
+  // Move towards the support point along -grad phi; halve the move until the depth increases.
   for (int move = 0; move < kMoves; ++move) {
     one_.clear();
     one_.push(0, place, solid_.gradient(place, kNormalsOver * tool_.half_width()));
@@ -161,14 +170,14 @@ InsideBound::InsideBound(const ToolShape& tool, const Solid& solid)
       solid_(solid),
       half_width_(tool.half_width()),
       outline_(tool.outline()),
-      // The outline of a tool on a grid may leave out a cell's diagonal.
+      // The outline of a tool on a grid may omit up to a cell's diagonal.
       margin_(kPolyline * half_width_ + 2.0 * tool.surface_error()) {
   const auto [far, tip] = std::ranges::minmax_element(outline_, {}, &ProfilePoint::s);
   stretches_.push_back({far->s, tip->s});
 }
 
-/// Distance from a place of the axis to the furthest point of the stretch: one of the outline's points in it or where
-/// the outline crosses its ends.
+/// Returns the distance from a position on the axis to the farthest point of the segment. This is a point of
+/// the outline within the segment, or a point at which the outline crosses an end of the segment.
 double InsideBound::radius(const Stretch& stretch, double place) const {
   double furthest = 0.0;
   for (std::size_t i = 0; i < outline_.size(); ++i) {
@@ -185,12 +194,13 @@ double InsideBound::radius(const Stretch& stretch, double place) const {
   return furthest + margin_;
 }
 
+/// Returns the smallest ball around the segment and, for a short segment, further balls around it.
 std::vector<InsideBound::Ball> InsideBound::balls_of(const Stretch& stretch) const {
-  constexpr int kRounds = 24;  // each leaves two thirds of the way: to 1e-4 of it
+  constexpr int kRounds = 24;  // each round keeps two thirds of the interval; 24 rounds leave 1e-4 of it
   double low = stretch.from - half_width_, high = stretch.to + half_width_;
   for (int i = 0; i < kRounds; ++i) {
     const double third = (high - low) / 3.0;
-    // The distance to the furthest of some points is convex.
+    // Ternary search: the distance to the farthest of several points is convex in the centre.
     if (radius(stretch, low + third) < radius(stretch, high - third)) {
       high -= third;
     } else {
@@ -207,8 +217,8 @@ std::vector<InsideBound::Ball> InsideBound::balls_of(const Stretch& stretch) con
   return balls;
 }
 
-/// The bound by one ball, without a look where the last one tells that this is enough or, if only enough will do,
-/// cannot be.
+/// Returns the bound from one ball. Uses the ball's last evaluation, without a new one, if this bound is
+/// sufficient or, if only a sufficient bound is of use, clearly cannot become sufficient.
 InsideBound::Look InsideBound::look(Ball& ball, const Question& q) {
   const Vec3 centre = q.pose.position + ball.place * q.pose.axis;
   const double beyond = ball.radius + q.moved + std::abs(ball.place) * q.turned;
@@ -223,6 +233,8 @@ InsideBound::Look InsideBound::look(Ball& ball, const Question& q) {
   return {beyond - phi.value, phi.known};
 }
 
+/// Returns the bound for segment k: the smallest bound of its balls, or the larger bound of its two halves if
+/// this is smaller.
 double InsideBound::of(std::size_t k, const Question& question) {
   if (stretches_[k].balls.empty()) stretches_[k].balls = balls_of(stretches_[k]);
   double least = std::numeric_limits<double>::infinity();
@@ -234,6 +246,7 @@ double InsideBound::of(std::size_t k, const Question& question) {
     if (least <= question.enough) return least;
   }
   const double from = stretches_[k].from, to = stretches_[k].to;
+  // Halve the segment if it is long enough.
   if (to - from < kShort * half_width_) return known ? least : 0.0;
   if (stretches_[k].halves == 0) {
     stretches_[k].halves = stretches_.size();

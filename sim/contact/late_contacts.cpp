@@ -30,7 +30,7 @@ void LateContacts::reset() noexcept {
 void LateContacts::begin_row(std::uint64_t row, const ToolPose& pose) noexcept {
   const Lateness& late = schedule_.lateness;
 
-  // Send the query of the row, if it has one.
+  // Send a query if this step has one.
   if (row % static_cast<std::uint64_t>(late.every) == 0) {
     const bool is_lost = schedule_.asked++ > 0 && late.dropout > 0.0 && random_.uniform() < late.dropout;
     if (is_lost)
@@ -39,7 +39,7 @@ void LateContacts::begin_row(std::uint64_t row, const ToolPose& pose) noexcept {
       waiting_[(first_ + count_++) % waiting_.size()] = {pose, row};
   }
 
-  // Take the answer that comes due. At most one does, because each query takes as long.
+  // Take the result that is due. At most one is due, because all queries have the same delay.
   if (count_ == 0 || waiting_[first_].row + static_cast<std::uint64_t>(late.delay) > row) return;
   schedule_.latest = waiting_[first_];
   first_ = (first_ + 1) % waiting_.size();
@@ -50,7 +50,7 @@ void LateContacts::begin_row(std::uint64_t row, const ToolPose& pose) noexcept {
 }
 
 void LateContacts::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
-  // Integrators that query within a step get the contacts of the row.
+  // Integrators that query again within a step get the contacts of the step.
   const std::uint64_t row = row_ != nullptr ? *row_ : calls_++;
   if (row != last_row_) begin_row(row, pose);
   last_row_ = row;
