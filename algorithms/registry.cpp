@@ -7,7 +7,7 @@
 #include "algorithms/stages/controllers.hpp"
 #include "sim/tool/refuse.hpp"
 
-/// The algorithms in the order of lists. For each row, a source file in laws/ or proxy/ defines
+/// The built-in algorithms, in the order of lists. For each name, a source file in laws/ or proxy/ defines
 /// `AlgorithmEntry <name>_entry()`.
 #define HAPBENCH_ALGORITHMS(row)                                                                                 \
   row(original_averaging) row(summation) row(mean) row(virtual_coupling) row(shaped_stiffness) row(tandpasta)    \
@@ -22,7 +22,7 @@ HAPBENCH_ALGORITHMS(HAPBENCH_DECLARE)
 
 namespace {
 
-/// The table, built at the first use because static variables of other files may ask for it.
+/// The table. Built at first use, because initialisers of static variables in other files may call it.
 struct Table {
 #define HAPBENCH_ENTRY(name) name##_entry(),
   std::deque<AlgorithmEntry> entries = {HAPBENCH_ALGORITHMS(HAPBENCH_ENTRY)};
@@ -44,7 +44,8 @@ const AlgorithmEntry& algorithm_entry(std::string_view name) {
   refuse("unknown algorithm ", name);
 }
 
-/// A name can be a field and a word of a list on the command line.
+/// Throws std::invalid_argument if a text cannot be used as a scenario field and as an entry of a list on the
+/// command line.
 void require_name(const std::string& what, const char* text) {
   const std::string_view name = text == nullptr ? "" : text;
   constexpr std::size_t kLongest = 64;
@@ -70,11 +71,11 @@ void check(const OwnParameter& p) {
     refuse(which, "its default is out of its range");
 }
 
-/// Throws std::invalid_argument.
+/// Throws std::invalid_argument if a name, a text or a parameter of the entry is invalid.
 void check(const AlgorithmEntry& entry) {
   const ModelInfo& info = *entry.info;
   require_name("an algorithm", info.name);
-  // `--algorithms all` means all of them.
+  // `--algorithms all` selects all algorithms.
   if (info.name == std::string_view("all")) refuse("an algorithm is called \"all\", which means all of them");
   for (const auto& [what, text] :
        {std::pair{"its summary", info.summary}, std::pair{"its formula", info.formula},
@@ -93,7 +94,7 @@ std::unique_ptr<ForceStage> make_force_stage(const ForceStageConfig& config) {
   return std::make_unique<ActuatorLimitedPassivity>(std::get<ActuatorLimitedPassivityConfig>(config));
 }
 
-/// Owns the targets of `info` and `own_parameters` of an added algorithm.
+/// Owner of the texts to which `info` and `own_parameters` of an external algorithm point.
 struct Texts {
   std::deque<std::string> all;
   ModelInfo info = {};
@@ -135,6 +136,7 @@ AlgorithmEntry checked_copy(AlgorithmEntry entry) {
   check(entry);
   auto texts = std::make_shared<Texts>();
   Texts& t = *texts;
+  // Copy the texts of the parameters, then the texts of the documentation.
   for (OwnParameter p : entry.own_parameters) {
     for (const char** text : {&p.name, &p.range.unit, &p.meaning}) *text = t.copy(*text);
     t.own.push_back(p);

@@ -80,8 +80,7 @@ class ActuatorLimitedPassivity final : public ForceStage {
  private:
   ActuatorLimitedPassivityConfig config_;
   double dt_ = 0.0;
-  double most_damping_ = 0.0;
-  /// Largest damping b [N s/m].
+  double most_damping_ = 0.0;  ///< largest damping b [N s/m]
 };
 
 /// An algorithm followed by a force stage. The stage's force is limited to max_force again. For a state within

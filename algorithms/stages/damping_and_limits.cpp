@@ -24,6 +24,7 @@ void DryFriction::release() noexcept {
 }
 
 Vec3 DryFriction::force(const Mat3& loads, const Vec3& v) noexcept {
+  // No friction without load.
   const double load = loads.trace(), resistance = K_t_ * dt_ + B_t_;
   if (!(load > 0.0) || resistance == 0.0) {
     release();
@@ -34,12 +35,14 @@ Vec3 DryFriction::force(const Mat3& loads, const Vec3& v) noexcept {
     before_ = bristle_;
     if (row_ != nullptr) last_row_ = *row_;
   }
+  // Predict the bristle's force at the end of the step and limit it to mu N.
   tangential_ = Mat3::Identity() - loads / load;
   Vec3 g = K_t_ * before_ + resistance * (tangential_ * v);
   const double size = g.norm(), most = mu_ * load;
   cut_ = size > most ? most / size : 1.0;
   g *= cut_;
   if (first_of_row) {
+    // Deflection that gives this force.
     bristle_ = (dt_ * g + B_t_ * before_) / resistance;
     state_ = cut_ < 1.0 ? Friction::slides : Friction::sticks;
   }
@@ -132,7 +135,8 @@ Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const C
   } else if (config_.mu_s != 0.0 || config_.mu_f != 0.0) {
     force -= tangential();
   } else if (config_.skips == Skips::off) {
-    force -= tangential() + Vec3::Zero();  // 0 and never -0: f - (-0) would turn a -0 of the force into 0
+    // The sum is 0 and never -0; subtracting -0 would turn a -0 of the force into 0
+    force -= tangential() + Vec3::Zero();
   }
   return cut_to(force, config_.max_force);
 }

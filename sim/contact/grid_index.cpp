@@ -98,8 +98,8 @@ GridIndex::GridIndex(const PointShell& shell)
                                        [&](std::size_t i) { return Vec3(shell.x()[i], shell.y()[i], shell.z()[i]); });
   start_ = std::move(sorted.start);
   shell_index_ = std::move(sorted.order);
-  // Copy the coordinates in the order of the cells.
   keeps_order_ = std::is_sorted(shell_index_.begin(), shell_index_.end());
+  // Copy the coordinates in the order of the cells.
   for (std::size_t place = 0; place < shell.size(); ++place) {
     const std::uint32_t i = shell_index_[place];
     x_[place] = shell.x()[i];

@@ -58,9 +58,8 @@ class InsideSearch {
   const ToolShape& tool_;
   const Solid& solid_;
   double error_;
-  ContactBuffer points_;  ///< query points for the tool
-  /// Buffer for a single query point
-  ContactBuffer one_;
+  ContactBuffer points_;      ///< query points for the tool
+  ContactBuffer one_;         ///< a single query point for the tool
   AlignedDoubles x_, y_, z_;  ///< support point returned by the tool
   std::vector<Cell> cells_;   ///< stack of cells that may hold the deepest point
   /// Depth of the deepest point found so far [m], and the tolerance of the current search

@@ -24,8 +24,8 @@ namespace hapbench {
 /// Call `move`, then `answer` in every step. Observer and controller share this code, so their results agree
 /// bitwise. A step without force and moment costs a few comparisons and a copy of the pose.
 class ObservedEnergy {
-  /// `dt`: time step [s]. `position_is_free`: false if a script prescribes the tool's position.
  public:
+  /// `dt`: time step [s]. `position_is_free`: false if a script prescribes the tool's position.
   explicit ObservedEnergy(double dt, bool position_is_free = true) : dt_(dt), free_(position_is_free) {}
 
   /// Returns to t = 0.
@@ -92,9 +92,8 @@ class ObservedEnergy {
     turn_is_known_ = false;
   }
 
-  /// True if the position is integrated, false if it is prescribed.
   double dt_;
-  bool free_;
+  bool free_;  ///< true if the position is integrated, false if it is prescribed
   double energy_ = 0.0;
   bool begun_ = false;
   bool first_ = false;

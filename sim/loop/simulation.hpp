@@ -148,8 +148,8 @@ class Simulation {
   /// Takes all remaining steps and returns the result.
   SimulationResult run() noexcept;
 
-  /// Number of the next step.
   const SimulationResult& result() const { return result_; }
+  /// Number of the next step.
   std::uint64_t next_row() const { return row_; }
   const ToolState& tool() const { return tool_; }
   const ContactSource& source() const { return *parts_.source; }

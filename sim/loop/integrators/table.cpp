@@ -23,8 +23,8 @@ Eigen::Matrix2d step_matrix(const SpringDamper& s) {
   A << 1.0 - k * s.dt, s.dt - b * s.dt, -k, 1.0 - b;
   return A;
 }
-/// Returns the stability margin of leapfrog, which is positive if and only if a step is stable.
 
+/// Returns the stability margin of leapfrog, which is positive if and only if a step is stable.
 double margin(const SpringDamper& s) {
   return 4.0 - 2.0 * s.lambda * s.B * s.dt / s.M - s.lambda * s.K * s.dt * s.dt / s.M;
 }
