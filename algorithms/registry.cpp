@@ -9,10 +9,11 @@
 
 /// The built-in algorithms, in the order of lists. For each name, a source file in laws/ or proxy/ defines
 /// `AlgorithmEntry <name>_entry()`.
-#define HAPBENCH_ALGORITHMS(row)                                                                                 \
-  row(original_averaging) row(summation) row(mean) row(virtual_coupling) row(shaped_stiffness) row(tandpasta)    \
-      row(normal_projection) row(exact_shaping) row(continuous_normal_projection) row(merged_shaping) row(proxy) \
-          row(least_squares) row(highest_depth) row(mcneely) row(static_coupling)
+#define HAPBENCH_ALGORITHMS(entry)                                                                       \
+  entry(original_averaging) entry(summation) entry(mean) entry(virtual_coupling) entry(shaped_stiffness) \
+      entry(tandpasta) entry(normal_projection) entry(exact_shaping) entry(continuous_normal_projection) \
+          entry(merged_shaping) entry(proxy) entry(least_squares) entry(highest_depth) entry(mcneely)    \
+              entry(static_coupling)
 
 namespace hapbench {
 
@@ -32,8 +33,8 @@ struct Table {
 };
 
 Table& table() {
-  static Table the_one;
-  return the_one;
+  static Table instance;
+  return instance;
 }
 
 constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo,        &kDampingAndLimitsInfo,
@@ -98,7 +99,7 @@ std::unique_ptr<ForceStage> make_force_stage(const ForceStageConfig& config) {
 struct Texts {
   std::deque<std::string> all;
   ModelInfo info = {};
-  std::vector<OwnParameter> own;
+  std::vector<OwnParameter> parameters;
 
   const char* copy(const char* text) { return all.emplace_back(text).c_str(); }
 };
@@ -106,10 +107,10 @@ struct Texts {
 }  // namespace
 
 double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter) {
-  const auto own = config.parameters.find(algorithm);
-  if (own == config.parameters.end()) return parameter.initial;
-  const auto value = own->second.find(parameter.name);
-  return value == own->second.end() ? parameter.initial : value->second;
+  const auto values = config.parameters.find(algorithm);
+  if (values == config.parameters.end()) return parameter.initial;
+  const auto value = values->second.find(parameter.name);
+  return value == values->second.end() ? parameter.initial : value->second;
 }
 
 const std::deque<AlgorithmEntry>& algorithms() {
@@ -139,13 +140,13 @@ AlgorithmEntry checked_copy(AlgorithmEntry entry) {
   // Copy the texts of the parameters, then the texts of the documentation.
   for (OwnParameter p : entry.own_parameters) {
     for (const char** text : {&p.name, &p.range.unit, &p.meaning}) *text = t.copy(*text);
-    t.own.push_back(p);
+    t.parameters.push_back(p);
   }
   t.info = *entry.info;
   for (const char** text : {&t.info.name, &t.info.summary, &t.info.formula, &t.info.source, &t.info.known_failure})
     *text = t.copy(*text);
   entry.info = &t.info;
-  entry.own_parameters = t.own;
+  entry.own_parameters = t.parameters;
   entry.texts = std::move(texts);
   return entry;
 }
@@ -154,14 +155,14 @@ void add_algorithm(AlgorithmEntry entry) {
   entry = checked_copy(std::move(entry));
   const std::vector<std::string> names = algorithm_names();
   const auto same = std::find(names.begin(), names.end(), entry.info->name);
-  const auto place = static_cast<std::size_t>(same - names.begin());
+  const auto index = static_cast<std::size_t>(same - names.begin());
   auto& [entries, built_in_size, count] = table();
-  if (place < built_in_size) refuse("\"", *same, "\" is the name of a built-in algorithm");
+  if (index < built_in_size) refuse("\"", *same, "\" is the name of a built-in algorithm");
   ++count;
-  if (place == entries.size()) {
+  if (index == entries.size()) {
     entries.push_back(std::move(entry));
   } else {
-    entries[place] = std::move(entry);
+    entries[index] = std::move(entry);
   }
 }
 

@@ -31,11 +31,11 @@ struct OwnParameter {
 /// Returns the parameter's value in `config`, or its default.
 double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter);
 
-/// AlgorithmEntry::force_bound of a law whose force is at most the force of `most` springs, all at the largest
-/// depth. Without `most`: at most the force of all n springs.
-template <int most = std::numeric_limits<int>::max()>
+/// AlgorithmEntry::force_bound of a law whose force is at most the force of `count` springs, all at the largest
+/// depth. Without `count`: at most the force of all n springs.
+template <int count = std::numeric_limits<int>::max()>
 double bound_of_springs(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
-  return std::min<double>(most, static_cast<double>(n)) * depth;
+  return std::min<double>(count, static_cast<double>(n)) * depth;
 }
 
 /// The file from which an external algorithm was loaded, for the provenance of results.

@@ -119,8 +119,8 @@ class ContinuousNormalProjection final : public DepthModel {
       const bool stays = point.step + 1 == step_;
       const double pressed = stays ? point.depth + (moved + turned.cross(x - pose.position)).dot(u) : 0.0;
       // Rounding may put a point on the surface slightly outside
-      const double least = std::max(contacts.depth[i], 0.0);
-      point = {std::min(std::max(least, pressed), exit_[i]), step_};
+      const double shortest = std::max(contacts.depth[i], 0.0);
+      point = {std::min(std::max(shortest, pressed), exit_[i]), step_};
       contacts.depth[i] = point.depth;
     }
     contacts.pad();

@@ -56,8 +56,8 @@ class SeriesLaw : public ForceLaw {
   /// Returns energy and moment of springs of stiffness K_p [N/m] in series with a coupling. The force `spring`
   /// stretches the coupling by `stretch` [m], which reduces the depth of each penalty spring to d_i + <u_i,
   /// stretch>.
-  static SpringState springs(const ContactBuffer& contacts, const Vec3& spring, const Vec3& stretch, const Vec3& tip,
-                             double K_p) noexcept {
+  static SpringState coupled_springs(const ContactBuffer& contacts, const Vec3& spring, const Vec3& stretch,
+                                     const Vec3& tip, double K_p) noexcept {
     SpringState state = shifted_springs(contacts, stretch, tip, K_p);
     state.energy += 0.5 * spring.dot(stretch);
     return state;
@@ -87,22 +87,22 @@ class VirtualCoupling final : public SeriesLaw {
     set_weights(contacts, 1.0);
     const Mat3 S_sum = stiffness_tensor(contacts);
     const Vec3 sum = weighted_depth(contacts), u = sum.normalized();
-    passed_ = shift_ / (shift_ + scale_ * u.dot(S_sum * u));
-    return {-passed_ * K_ * sum, passed_ * S_sum};
+    transmitted_ = shift_ / (shift_ + scale_ * u.dot(S_sum * u));
+    return {-transmitted_ * K_ * sum, transmitted_ * S_sum};
   }
 
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
-    return K_ == 0.0 ? SpringState{} : springs(contacts, spring, spring * (scale_ / K_), tip, K_);
+    return K_ == 0.0 ? SpringState{} : coupled_springs(contacts, spring, spring * (scale_ / K_), tip, K_);
   }
 
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
-    return along_sum_ ? Vec3(passed_ * ForceLaw::turning_velocity(contacts, S, tool))
+    return along_sum_ ? Vec3(transmitted_ * ForceLaw::turning_velocity(contacts, S, tool))
                       : SeriesLaw::turning_velocity(contacts, S, tool);
   }
 
  private:
   bool along_sum_;
-  double passed_ = 1.0;  ///< fraction of the summed force that a scalar coupling transmits
+  double transmitted_ = 1.0;  ///< fraction of the summed force that a scalar coupling transmits
 };
 
 /// Bound of |f_spring| / K for n contacts with depths <= d: (I + U U^T)^-1 U has the singular values s / (1 +
@@ -120,7 +120,7 @@ class LeastSquares final : public SeriesLaw {
   explicit LeastSquares(const RenderingConfig& config) : SeriesLaw(config.stiffness, config.regularisation, 1.0) {}
 
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
-    return K_ == 0.0 ? SpringState{} : springs(contacts, spring, spring / K_, tip, K_ / shift_);
+    return K_ == 0.0 ? SpringState{} : coupled_springs(contacts, spring, spring / K_, tip, K_ / shift_);
   }
 };
 
@@ -138,14 +138,14 @@ constexpr OwnParameter kSaturation[] = {{"saturation_N",
 
 /// Limits of Newton's method: number of steps and smallest fraction of a step. If it ends before the balance is
 /// reached, the force is still the coupling's force.
-constexpr int kMostSteps = 30;
-constexpr double kSmallestPart = 1e-6;
+constexpr int kMaxSteps = 30;
+constexpr double kMinFraction = 1e-6;
 /// Smallest stiffness of the coupling along its force, relative to the stiffness across. Far beyond saturation,
 /// rounding would make it zero or negative.
-constexpr double kSoftest = 1e-12;
+constexpr double kMinStiffnessRatio = 1e-12;
 /// Tolerated imbalance, relative to K sqrt(sum p_i^2). The rounding of a sum of n forces is below 1e-16 sqrt(n)
 /// of this.
-constexpr double kBalanced = 1e-13;
+constexpr double kMaxImbalance = 1e-13;
 
 double saturation_of(const RenderingConfig& config) {
   return own_value(config, "static_coupling", kSaturation[0]);
@@ -165,8 +165,8 @@ class StaticCoupling final : public ForceLaw {
       : ForceLaw(config), K_vc_(config.virtual_coupling.value_or(config.stiffness)), F_s_(saturation_of(config)) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
-    shift_.setZero();
-    pass_.setZero();
+    displacement_.setZero();
+    transmission_.setZero();
     if (contacts.empty() || K_ == 0.0 || K_vc_ == 0.0) {
       set_weights(contacts, 0.0);
       return {};
@@ -174,16 +174,16 @@ class StaticCoupling final : public ForceLaw {
     find_balance(contacts);
     // Stiffness of the coupling and the contacts in series.
     const Mat3 springs = K_ * stiffness_tensor(contacts);
-    const Mat3 coupling = coupling_stiffness(shift_);
-    pass_ = Eigen::LDLT<Mat3>(coupling + springs).solve(coupling).transpose();
+    const Mat3 coupling = coupling_stiffness(displacement_);
+    transmission_ = Eigen::LDLT<Mat3>(coupling + springs).solve(coupling).transpose();
     // S is symmetric up to rounding, which averaging removes.
-    const Mat3 S = pass_ * springs / K_;
-    return {coupling_force(shift_), 0.5 * (S + S.transpose())};
+    const Mat3 S = transmission_ * springs / K_;
+    return {coupling_force(displacement_), 0.5 * (S + S.transpose())};
   }
 
   SpringState spring_state(const ContactBuffer& contacts, const Vec3&, const Vec3& tip) const noexcept override {
-    SpringState state = shifted_springs(contacts, shift_, tip, K_);
-    state.energy += coupling_energy(shift_);
+    SpringState state = shifted_springs(contacts, displacement_, tip, K_);
+    state.energy += coupling_energy(displacement_);
     return state;
   }
 
@@ -191,53 +191,55 @@ class StaticCoupling final : public ForceLaw {
 
   /// The coupling transmits velocities like depths.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
-    return pass_ * ForceLaw::turning_velocity(contacts, S, tool);
+    return transmission_ * ForceLaw::turning_velocity(contacts, S, tool);
   }
 
  private:
   /// The action of the contacts on the copy of the tool.
-  struct Pull {
-    double pressed = 0.0;       ///< sqrt(sum p_i^2) [m]
+  struct CopyForce {
+    double depth_norm = 0.0;    ///< sqrt(sum p_i^2) [m]
     Vec3 force = Vec3::Zero();  ///< contact force on the copy [N]
   };
 
   /// Computes the displacement s of the copy at which contact forces and coupling force balance.
   void find_balance(ContactBuffer& contacts) noexcept {
-    Pull pull = pull_at(contacts, shift_);
-    Vec3 residual = pull.force - coupling_force(shift_);
-    for (int step = 0; step < kMostSteps && residual.norm() > kBalanced * K_ * pull.pressed; ++step, ++iterations_) {
-      const Mat3 stiffness = coupling_stiffness(shift_) + K_ * stiffness_tensor(contacts);
+    CopyForce copy_force = force_on_copy(contacts, displacement_);
+    Vec3 residual = copy_force.force - coupling_force(displacement_);
+    for (int step = 0; step < kMaxSteps && residual.norm() > kMaxImbalance * K_ * copy_force.depth_norm;
+         ++step, ++iterations_) {
+      const Mat3 stiffness = coupling_stiffness(displacement_) + K_ * stiffness_tensor(contacts);
       const Vec3 newton = Eigen::LDLT<Mat3>(stiffness).solve(residual);
-      const Vec3 from = shift_;
+      const Vec3 from = displacement_;
       const double before = residual.norm();
       // A full step may go too far where the coupling saturates or contacts separate.
-      for (double part = 1.0; part > kSmallestPart; part *= 0.5) {
-        shift_ = from + part * newton;
-        pull = pull_at(contacts, shift_);
-        residual = pull.force - coupling_force(shift_);
+      for (double fraction = 1.0; fraction > kMinFraction; fraction *= 0.5) {
+        displacement_ = from + fraction * newton;
+        copy_force = force_on_copy(contacts, displacement_);
+        residual = copy_force.force - coupling_force(displacement_);
         if (residual.norm() < before) break;
       }
       if (residual.norm() < before) continue;
-      shift_ = from;  // only rounding is left, or the balance cannot be reached
-      pull_at(contacts, shift_);
+      displacement_ = from;  // only rounding is left, or the balance cannot be reached
+      force_on_copy(contacts, displacement_);
       return;
     }
   }
 
-  double stretch(const Vec3& s) const noexcept { return std::sqrt(1.0 + (K_vc_ / F_s_ * s).squaredNorm()); }
-  Vec3 coupling_force(const Vec3& s) const noexcept { return K_vc_ / stretch(s) * s; }
+  double saturation(const Vec3& s) const noexcept { return std::sqrt(1.0 + (K_vc_ / F_s_ * s).squaredNorm()); }
+  Vec3 coupling_force(const Vec3& s) const noexcept { return K_vc_ / saturation(s) * s; }
   /// Energy W of the coupling [J], written without the cancelling difference.
-  double coupling_energy(const Vec3& s) const noexcept { return K_vc_ * s.squaredNorm() / (1.0 + stretch(s)); }
+  double coupling_energy(const Vec3& s) const noexcept { return K_vc_ * s.squaredNorm() / (1.0 + saturation(s)); }
   Mat3 coupling_stiffness(const Vec3& s) const noexcept {
-    const double q = stretch(s);
+    const double q = saturation(s);
     Vec3 r = K_vc_ / (F_s_ * q) * s;  // |r|^2 = 1 - 1 / q^2, and 1 - |r|^2 is the stiffness along s relative to across
-    if (const double along = r.squaredNorm(); along > 1.0 - kSoftest) r *= std::sqrt((1.0 - kSoftest) / along);
+    if (const double along = r.squaredNorm(); along > 1.0 - kMinStiffnessRatio)
+      r *= std::sqrt((1.0 - kMinStiffnessRatio) / along);
     return K_vc_ / q * (Mat3::Identity() - r * r.transpose());
   }
 
   /// Returns the contact force on a copy displaced by s [m]. Contacts that the copy still touches get weight 1,
   /// others 0. O(n).
-  Pull pull_at(ContactBuffer& contacts, const Vec3& s) const noexcept {
+  CopyForce force_on_copy(ContactBuffer& contacts, const Vec3& s) const noexcept {
     using simd::load, simd::Pack, simd::select;
     const Pack sx(s.x()), sy(s.y()), sz(s.z()), zero(0.0);
     Pack squares(0.0), fx(0.0), fy(0.0), fz(0.0);
@@ -256,10 +258,10 @@ class StaticCoupling final : public ForceLaw {
     return {std::sqrt(simd::sum(squares)), -K_ * Vec3(simd::sum(fx), simd::sum(fy), simd::sum(fz))};
   }
 
-  double K_vc_;                ///< stiffness of the coupling before saturation [N/m]
-  double F_s_;                 ///< saturation force of the coupling [N]
-  Vec3 shift_ = Vec3::Zero();  ///< displacement s of the copy for the last contacts [m]
-  Mat3 pass_ = Mat3::Zero();   ///< maps a displacement of the tool to the fraction that reaches the contacts
+  double K_vc_;                       ///< stiffness of the coupling before saturation [N/m]
+  double F_s_;                        ///< saturation force of the coupling [N]
+  Vec3 displacement_ = Vec3::Zero();  ///< displacement s of the copy for the last contacts [m]
+  Mat3 transmission_ = Mat3::Zero();  ///< maps a displacement of the tool to the fraction that reaches the contacts
 };
 
 /// Bound of |f_spring| / K: the coupling force balances the contacts, at most n K d, and is below F_s.

@@ -55,7 +55,7 @@ struct TensorPack {
 // Tensors and weights are padded to whole packs with zeros.
 
 /// Sums over the tensors and their weights c_i.
-struct Pass {
+struct TensorSums {
   Mat6 G;            ///< sum a_i a_i^T over the active tensors (c_i > 0)
   Vec6 S;            ///< sum c_i a_i
   bool same_active;  ///< no tensor changed between active and inactive
@@ -63,7 +63,7 @@ struct Pass {
 
 /// Sets the weight of every tensor to c_i = max(0, weight_of(a_i, previous c_i)) and returns the sums.
 template <class Tensors, class WeightOf>
-Pass sweep(const Tensors& tensors, WeightOf weight_of) noexcept {
+TensorSums update_weights(const Tensors& tensors, WeightOf weight_of) noexcept {
   using simd::Pack;
   Pack g[21], s[6];
   std::fill(std::begin(g), std::end(g), Pack(0.0));
@@ -84,19 +84,19 @@ Pass sweep(const Tensors& tensors, WeightOf weight_of) noexcept {
       for (int l = 0; l <= j; ++l) g[k++] += masked * u.a[l];
     }
   }
-  Pass pass;
-  pass.same_active = same;
+  TensorSums sums;
+  sums.same_active = same;
   for (int j = 0, k = 0; j < 6; ++j) {
-    pass.S[j] = simd::sum(s[j]);
-    for (int l = 0; l <= j; ++l) pass.G(j, l) = pass.G(l, j) = simd::sum(g[k++]);
+    sums.S[j] = simd::sum(s[j]);
+    for (int l = 0; l <= j; ++l) sums.G(j, l) = sums.G(l, j) = simd::sum(g[k++]);
   }
-  return pass;
+  return sums;
 }
 
 /// Sets the weights of the point w of the dual problem, c_i = max(0, a_i . w), and returns the sums.
 template <class Tensors>
-Pass evaluate(const Tensors& tensors, const Vec6& w) noexcept {
-  return sweep(tensors, [&w](const TensorPack& u, const simd::Pack&) { return u.dot(w); });
+TensorSums evaluate_at(const Tensors& tensors, const Vec6& w) noexcept {
+  return update_weights(tensors, [&w](const TensorPack& u, const simd::Pack&) { return u.dot(w); });
 }
 
 /// Returns (eps I + G)^-1 b.
@@ -106,53 +106,53 @@ Vec6 solve_step(const Mat6& G, double eps, const Vec6& b) noexcept {
 
 /// Returns the gradient of the convex dual function ½|eps w - I|² / eps + ½ sum max(0, a_i . w)². It is zero at
 /// the optimum.
-Vec6 dual_gradient(const Vec6& w, double eps, const Pass& pass) noexcept {
-  return eps * w - identity6() + pass.S;
+Vec6 dual_gradient(const Vec6& w, double eps, const TensorSums& sums) noexcept {
+  return eps * w - identity6() + sums.S;
 }
 
 /// Line search by bisection: moves w towards `target` until the slope of the dual function along the path has
 /// halved. The function is convex and piecewise quadratic, so its slope is monotone, this decreases it, and
-/// Newton's method converges from any start. On entry `pass` holds the sums at `target`, on return at w.
+/// Newton's method converges from any start. On entry `sums` holds the sums at `target`, on return at w.
 /// Returns false if the slope is only rounding.
 template <class Tensors>
 bool line_search(const Tensors& tensors, const Vec6& target, double eps, double slope_at_w, Vec6& w,
-                 Pass& pass) noexcept {
-  const Vec6 start = w, way = target - w;
+                 TensorSums& sums) noexcept {
+  const Vec6 start = w, direction = target - w;
   w = target;
   double low = 0.0, high = 1.0, fraction = 1.0;
   for (int i = 0; i < kMaxLineSearchSteps; ++i) {
-    const double slope = dual_gradient(w, eps, pass).dot(way);
+    const double slope = dual_gradient(w, eps, sums).dot(direction);
     const bool still_descending_at_target = fraction == 1.0 && slope <= 0.0;
     if (still_descending_at_target || std::abs(slope) <= 0.5 * std::abs(slope_at_w)) return true;
     (slope > 0.0 ? high : low) = fraction;
     fraction = 0.5 * (low + high);
-    w = start + fraction * way;
-    pass = evaluate(tensors, w);
+    w = start + fraction * direction;
+    sums = evaluate_at(tensors, w);
   }
   return false;
 }
 
-/// Newton's method for one epsilon, starting at w, where `pass` holds the sums; updates both. Adds the number
+/// Newton's method for one epsilon, starting at w, where `sums` holds the sums; updates both. Adds the number
 /// of steps to `steps`. Returns true if it has converged to rounding.
 template <class Tensors>
-bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, Pass& pass, int& steps) noexcept {
+bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, TensorSums& sums, int& steps) noexcept {
   const double n = static_cast<double>(tensors.size);
   for (int step = 0; step < max_steps; ++step) {
     ++steps;
     // With a fixed active set the dual function is quadratic, and its minimum solves (eps I + G) w = identity.
-    const Vec6 target = solve_step(pass.G, eps, identity6());
-    const double slope = dual_gradient(w, eps, pass).dot(target - w);
-    pass = evaluate(tensors, target);
+    const Vec6 target = solve_step(sums.G, eps, identity6());
+    const double slope = dual_gradient(w, eps, sums).dot(target - w);
+    sums = evaluate_at(tensors, target);
     // A contact whose exact weight is zero may change between active and inactive by the rounding of a_i .
     // target.
     const double rounding = 1e-15 * (1.0 + n) * (1.0 + target.norm());
-    const bool flickers_only = pass.same_active || dual_gradient(target, eps, pass).norm() <= rounding;
+    const bool flickers_only = sums.same_active || dual_gradient(target, eps, sums).norm() <= rounding;
     // In exact arithmetic the slope is negative before the optimum. Otherwise only rounding is left.
     if (flickers_only || slope >= 0.0) {
       w = target;
       return true;
     }
-    if (!line_search(tensors, target, eps, slope, w, pass)) return true;
+    if (!line_search(tensors, target, eps, slope, w, sums)) return true;
   }
   return false;
 }
@@ -161,14 +161,14 @@ bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, Pass& pa
 /// the residual R of the optimality condition. The small product a_i . correction is added to the weights,
 /// which keeps the digits that a_i . w would lose.
 template <class Tensors>
-void refine(const Tensors& tensors, Vec6 w, Pass pass) noexcept {
+void refine(const Tensors& tensors, Vec6 w, TensorSums sums) noexcept {
   const simd::Pack zero(0.0);
   for (int round = 0; round < kMaxRefinements; ++round) {
-    const Vec6 residual = -dual_gradient(w, kEps, pass);
+    const Vec6 residual = -dual_gradient(w, kEps, sums);
     if (residual.norm() <= kResidualRounding) return;
-    const Vec6 correction = solve_step(pass.G, kEps, residual);
+    const Vec6 correction = solve_step(sums.G, kEps, residual);
     w += correction;
-    pass = sweep(tensors, [&](const TensorPack& u, const simd::Pack& c) {
+    sums = update_weights(tensors, [&](const TensorPack& u, const simd::Pack& c) {
       return simd::select(c > zero, c + u.dot(correction), u.dot(w));
     });
   }
@@ -180,25 +180,25 @@ template <class Tensors>
 int solve(const Tensors& tensors) noexcept {
   // Start at w = identity, where every tensor is active, because a_i . identity is the trace of a_i.
   Vec6 w = identity6();
-  Pass pass = evaluate(tensors, w);
+  TensorSums sums = evaluate_at(tensors, w);
   int steps = 0;
-  if (!newton(tensors, kEps, kDirectSteps, w, pass, steps)) {
+  if (!newton(tensors, kEps, kDirectSteps, w, sums, steps)) {
     // Dense clusters of nearly equal gradients: the optimum keeps a few of hundreds, and Newton's method would
     // find them one by one. Following the optimum from a large epsilon to a small one takes a few steps for
     // each epsilon. Measured: at most 32 steps in total for 6e6 adversarial sets instead of a hundred, and 135
     // for the worst of 1e6 mixtures of such sets.
     double eps = kPath[0];
     w = identity6() / eps;
-    pass = evaluate(tensors, w);
+    sums = evaluate_at(tensors, w);
     for (const double next : kPath) {
       // Keep Y = eps w at the next epsilon: the weights scale, and the active set stays.
       w *= eps / next;
-      pass.S *= eps / next;
+      sums.S *= eps / next;
       eps = next;
-      newton(tensors, eps, kMaxNewtonSteps, w, pass, steps);
+      newton(tensors, eps, kMaxNewtonSteps, w, sums, steps);
     }
   }
-  refine(tensors, w, pass);
+  refine(tensors, w, sums);
   return steps;
 }
 
@@ -236,11 +236,11 @@ constexpr int kDirectionCells = 15;
 constexpr std::size_t kFaces = 6, kCells = kFaces * kDirectionCells * kDirectionCells;
 
 /// Returns the cell index along one edge of a face, for a tangent in [-1, 1].
-std::size_t step_of(double tangent) noexcept {
+std::size_t edge_cell(double tangent) noexcept {
   // Written so that NaN also gets a valid cell.
-  const double place = 0.5 * kDirectionCells * (tangent + 1.0);
-  if (!(place > 0.0)) return 0;
-  return place < kDirectionCells ? static_cast<std::size_t>(place) : kDirectionCells - 1;
+  const double position = 0.5 * kDirectionCells * (tangent + 1.0);
+  if (!(position > 0.0)) return 0;
+  return position < kDirectionCells ? static_cast<std::size_t>(position) : kDirectionCells - 1;
 }
 
 /// Returns the cell of a direction: the face of the cube that it crosses, and the position on this face.
@@ -260,7 +260,7 @@ std::size_t cell_of(double x, double y, double z) noexcept {
   }
   const double scale = 1.0 / std::abs(major);
   const std::size_t side = 2 * face + (major < 0.0);
-  return (side * kDirectionCells + step_of(u * scale)) * kDirectionCells + step_of(v * scale);
+  return (side * kDirectionCells + edge_cell(u * scale)) * kDirectionCells + edge_cell(v * scale);
 }
 
 using PerCell = std::array<double, simd::padded(kCells)>;
@@ -302,8 +302,8 @@ class MergedShaping final : public ForceLaw {
     gather(contacts);
     make_groups();
     iterations_ += static_cast<std::uint64_t>(cone_projection::solve(groups_));
-    for (std::size_t k = 0; k < groups_.size; ++k) share_[touched_[k]] = weight_[k] / trace_[k];
-    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] = share_[cell_[i]];
+    for (std::size_t k = 0; k < groups_.size; ++k) group_weight_[touched_[k]] = weight_[k] / trace_[k];
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] = group_weight_[cell_[i]];
     contacts.pad();
     return weighted_force(contacts, K_);
   }
@@ -358,7 +358,7 @@ class MergedShaping final : public ForceLaw {
   std::vector<std::uint16_t> cell_;  ///< cell of each contact
   std::vector<CellSum> cells_ = std::vector<CellSum>(kCells);
   std::vector<std::uint16_t> touched_;  ///< cells of the groups, ascending
-  PerCell share_{};                     ///< c_k of each cell
+  PerCell group_weight_{};              ///< c_k of each cell
   PerCell trace_{};
   alignas(64) PerCell weight_{};  ///< C_k = c_k tr T_k of each group
   Groups groups_;

@@ -9,7 +9,7 @@ namespace hapbench {
 namespace {
 
 /// Mean gradient below which the direction is rounding noise and the force is zero.
-constexpr double kCancelledBelow = 1e-9;
+constexpr double kMinMeanGradient = 1e-9;
 
 /// A law with one spring, compressed by d_r = Depth(contacts, |sum u_i|) [m]. Sets all weights to 1, because
 /// these laws define no point of application.
@@ -22,7 +22,7 @@ class AveragedDirection final : public SingleSpringLaw {
     set_weights(contacts, 1.0);
     const Vec3 gradients = gradient_sum(contacts);
     const double length = gradients.norm();
-    if (length <= kCancelledBelow * static_cast<double>(contacts.size())) return {};
+    if (length <= kMinMeanGradient * static_cast<double>(contacts.size())) return {};
     const Vec3 u = gradients / length;
     return {-K_ * Depth(contacts, length) * u, u * u.transpose()};
   }
@@ -39,14 +39,14 @@ double highest_depth(const ContactBuffer& contacts, double) noexcept {
   return *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
 }
 
-/// Bound of |f_spring| / K: sum d_i / |sum u_i|, where |sum u_i| > kCancelledBelow n, or the force is zero.
+/// Bound of |f_spring| / K: sum d_i / |sum u_i|, where |sum u_i| > kMinMeanGradient n, or the force is zero.
 double original_averaging_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 1e9 * std::min(1.0, static_cast<double>(n)) * depth;
 }
 
 /// Ratio of scaled to unscaled energy below which every spring is cancelled by another spring. Dividing by it
 /// would amplify rounding noise.
-constexpr double kNoEnergyBelow = 1e-12;
+constexpr double kMinEnergyRatio = 1e-12;
 
 class Tandpasta final : public ForceLaw {
  public:
@@ -64,7 +64,7 @@ class Tandpasta final : public ForceLaw {
       energy += d2;
     }
     const double sigma = energy > 0.0 ? scaled / energy : 0.0;
-    if (!(sigma > kNoEnergyBelow)) {
+    if (!(sigma > kMinEnergyRatio)) {
       set_weights(contacts, 0.0);
       return {};
     }
@@ -90,7 +90,7 @@ class Tandpasta final : public ForceLaw {
 
 /// Bound of |f_spring| / K. c = beta / sigma preserves the energy: sum c d_i^2 = sum d_i^2 <= n d^2. Also sum c
 /// <= n / sigma, since beta <= 1. By Cauchy and Schwarz, sum c d_i <= n d / sqrt(sigma), where sigma >
-/// kNoEnergyBelow, or the force is zero.
+/// kMinEnergyRatio, or the force is zero.
 double tandpasta_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 1e6 * static_cast<double>(n) * depth;
 }

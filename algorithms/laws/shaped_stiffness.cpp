@@ -46,8 +46,8 @@ class ShapedStiffness final : public ForceLaw {
 /// with the pseudoinverse S^+. After an update c_i <- c_i / rho_i, sum c_i / rho_i <= sum c_i u_i^T S^+ u_i =
 /// tr(S^+ S) <= 3. Without an update the law is summation.
 double shaped_stiffness_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
-  const double most = static_cast<double>(n);
-  return (config.iterations > 0 ? std::min(3.0, most) : most) * depth;
+  const double all_springs = static_cast<double>(n);
+  return (config.iterations > 0 ? std::min(3.0, all_springs) : all_springs) * depth;
 }
 
 constexpr ParameterInfo kShapingParameters[] = {

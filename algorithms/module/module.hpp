@@ -46,7 +46,7 @@ class ModuleState {
   /// Calls `call(fault)`, which calls the module's function with this name and returns true if it succeeded.
   /// Turns a failure or an exception into a fault and returns false.
   template <class Call>
-  bool runs(const char* function, const Call& call) noexcept;
+  bool call_guarded(const char* function, const Call& call) noexcept;
 
   Module module_;
   void* state_ = nullptr;
@@ -93,7 +93,7 @@ class ModuleContacts final : public ContactSource {
   void reset() noexcept override;
 
  private:
-  void take(std::size_t n, ContactBuffer& contacts) noexcept;
+  void accept(std::size_t n, ContactBuffer& contacts) noexcept;
 
   ModuleState state_;
   std::size_t capacity_;

@@ -19,7 +19,7 @@ using simd::load, simd::Pack;
 /// as part of the span. Gradients on one flat face of the tool, or along one line of its side, differ by
 /// rounding only, 1e-15. Other neighbouring gradients differ by far more than this angle of 3e-8.
 constexpr double kInSpan = 1e-15;
-constexpr int kMostIterations = 100;
+constexpr int kMaxIterations = 100;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -37,11 +37,11 @@ Violation largest_violation(const ContactBuffer& c, const Vec3& x, double tolera
     return load(&c.depth[i]) + (load(&c.ux[i]) * x0 + load(&c.uy[i]) * x1 + load(&c.uz[i]) * x2);
   };
   for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) largest = simd::max(largest, amount(i));
-  const double most = simd::max_lane(largest);
-  if (!(most > tolerance)) return {};
+  const double largest_amount = simd::max_lane(largest);
+  if (!(largest_amount > tolerance)) return {};
   for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
-    const std::uint8_t here = simd::bits(amount(i) >= Pack(most));
-    if (here != 0) return {i + static_cast<std::size_t>(std::countr_zero(here)), most};
+    const std::uint8_t here = simd::bits(amount(i) >= Pack(largest_amount));
+    if (here != 0) return {i + static_cast<std::size_t>(std::countr_zero(here)), largest_amount};
   }
   return {};
 }
@@ -100,11 +100,11 @@ class ActiveSet {
     R_(size_, size_) = length;
     Q_.col(size_++) = parts.remainder / length;
   }
-  void drop(int leaves) {
+  void remove(int leaving) {
     const ActiveSet before = *this;
     size_ = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(before.size_); ++k) {
-      if (static_cast<int>(k) == leaves) continue;
+      if (static_cast<int>(k) == leaving) continue;
       const Vec3& u = before.gradients_[k];
       add(before.contact_[k], u, split(u), before.lambda_[k]);
     }
@@ -135,11 +135,11 @@ bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet&
     const double whole_step = free2 > kInSpan ? violation / free2 : kNever;
     // Shorten the step where a multiplier would become negative; this contact leaves the active set.
     double step = whole_step;
-    int leaves = -1;
+    int leaving = -1;
     for (int k = 0; k < active.size(); ++k) {
       if (r[k] > 0.0 && active.lambda(k) / r[k] < step) {
         step = active.lambda(k) / r[k];
-        leaves = k;
+        leaving = k;
       }
     }
     if (step == kNever) return false;
@@ -149,11 +149,11 @@ bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet&
       x -= step * free;
       violation -= step * free2;
     }
-    if (leaves < 0) {
+    if (leaving < 0) {
       active.add(p, u, parts, lambda);
       return true;
     }
-    active.drop(leaves);
+    active.remove(leaving);
   }
 }
 
@@ -166,12 +166,12 @@ bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts
     const Violation worst = largest_violation(contacts, out.move, tolerance);
     // An active contact is violated by rounding only.
     if (!(worst.amount > tolerance) || active.contains(worst.contact)) break;
-    if (++out.iterations > kMostIterations) return false;
+    if (++out.iterations > kMaxIterations) return false;
     if (!satisfy(worst.contact, worst.amount, contacts.gradient(worst.contact), out.move, active)) return false;
   }
   // A contact that is only just reached holds nothing; rounding would decide whether it is active.
   for (int k = active.size() - 1; k >= 0; --k) {
-    if (active.lambda(k) <= tolerance) active.drop(k);
+    if (active.lambda(k) <= tolerance) active.remove(k);
   }
   for (int k = 0; k < active.size(); ++k) contacts.weight[active.contact(k)] = active.lambda(k);
   out.held = active.projector();
@@ -205,7 +205,7 @@ struct Compromise {
 void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
   out.move = wanted;
   Compromise here(contacts, wanted, out.move);
-  for (int i = 0; i < kMostIterations && here.gradient.norm() > kCompromiseEpsilon * tolerance; ++i, ++out.iterations) {
+  for (int i = 0; i < kMaxIterations && here.gradient.norm() > kCompromiseEpsilon * tolerance; ++i, ++out.iterations) {
     const Vec3 direction = -Eigen::LLT<Mat3>(here.hessian).solve(here.gradient);
     double step = 1.0;
     Compromise next(contacts, wanted, out.move + direction);
@@ -233,31 +233,31 @@ constexpr double kQueryMargin = 1.0 + 1e-6;
 constexpr double kEdgeSlack = 1e-3;
 
 /// Number of points whose spacing is measured.
-constexpr std::size_t kSampled = 100;
+constexpr std::size_t kSpacingSamples = 100;
 /// Radius of a patch relative to the spacing. It covers the centre of four points of a square lattice, at 0.707
 /// spacings.
 constexpr double kPatch = 0.75;
 /// Largest depth at which an edge constraint applies, relative to the spacing.
-constexpr double kDeepest = 0.1;
+constexpr double kMaxPatchDepth = 0.1;
 
 /// Points closer than this fraction of the shell's size count as one point, because shells may list a vertex
 /// once for each of its cells.
-constexpr double kSamePlace = 1e-7;
+constexpr double kSamePosition = 1e-7;
 
 /// Returns the distance [m] from a point to the second nearest point at another position.
 double distance_to_second(const PointShell& shell, std::size_t from) {
-  const double same = kSamePlace * shell.bounds().size().norm(), same2 = same * same;
+  const double same = kSamePosition * shell.bounds().size().norm(), same2 = same * same;
   double first2 = kNever, second2 = kNever;
   const Vec3 here = shell.point(from).position;
   Vec3 nearest = here;
   for (std::size_t i = 0; i < shell.size(); ++i) {
-    const Vec3 place(shell.x()[i], shell.y()[i], shell.z()[i]);
-    const double distance2 = (place - here).squaredNorm();
-    if (distance2 >= second2 || distance2 <= same2 || (place - nearest).squaredNorm() <= same2) continue;
+    const Vec3 position(shell.x()[i], shell.y()[i], shell.z()[i]);
+    const double distance2 = (position - here).squaredNorm();
+    if (distance2 >= second2 || distance2 <= same2 || (position - nearest).squaredNorm() <= same2) continue;
     if (distance2 < first2) {
       second2 = first2;
       first2 = distance2;
-      nearest = place;
+      nearest = position;
     } else {
       second2 = distance2;
     }
@@ -271,7 +271,7 @@ double distance_to_second(const PointShell& shell, std::size_t from) {
 /// for each point.
 double typical_spacing(const PointShell& shell) {
   if (shell.size() < 3) return 0.0;
-  const std::size_t samples = std::min(kSampled, shell.size());
+  const std::size_t samples = std::min(kSpacingSamples, shell.size());
   std::vector<double> distances;
   for (std::size_t k = 0; k < samples; ++k) distances.push_back(distance_to_second(shell, k * shell.size() / samples));
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(samples / 2);
@@ -298,9 +298,9 @@ ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& too
       spacing_(typical_spacing(shell)),
       reach_(tool.grown(margin_ * kQueryMargin)),
       near_(make_contact_query(shell, *reach_.shape, skips)),
-      places_x_(simd::padded(near_->capacity())),
-      places_y_(places_x_.size()),
-      places_z_(places_x_.size()) {}
+      support_x_(simd::padded(near_->capacity())),
+      support_y_(support_x_.size()),
+      support_z_(support_x_.size()) {}
 
 /// Keeps the edges of the tool from sinking in between the points of a shell. The edge of a drill on a wall
 /// could sink by up to 0.05 mm between two lines of points 0.1 mm apart, because it touches points with both of
@@ -320,14 +320,14 @@ void ShellConstraints::add_edges(const ToolPose& proxy, ContactBuffer& contacts)
   const PackRange all{0, padded / simd::lanes, 0xff, static_cast<std::uint8_t>(0xffu >> (padded - points))};
   const PointColumns columns{contacts.index.data(), contacts.x.data(),  contacts.y.data(), contacts.z.data(),
                              contacts.nx.data(),    contacts.ny.data(), contacts.nz.data()};
-  const Pack highest(margin_), deepest(-kDeepest * spacing_), patch2(kPatch * spacing_ * kPatch * spacing_);
-  const PlaceArrays places{places_x_.data(), places_y_.data(), places_z_.data()};
-  tool_->foremost_places(proxy, contacts, places);
+  const Pack highest(margin_), deepest(-kMaxPatchDepth * spacing_), patch2(kPatch * spacing_ * kPatch * spacing_);
+  const PlaceArrays support{support_x_.data(), support_y_.data(), support_z_.data()};
+  tool_->foremost_places(proxy, contacts, support);
   // For each contact whose support point lies on its patch, append the constraint of the patch.
   for (std::size_t i = 0; i < padded; i += simd::lanes) {
     const Pack nx = load(&contacts.nx[i]), ny = load(&contacts.ny[i]), nz = load(&contacts.nz[i]);
-    const Pack dx = load(&places.x[i]) - load(&contacts.x[i]), dy = load(&places.y[i]) - load(&contacts.y[i]),
-               dz = load(&places.z[i]) - load(&contacts.z[i]);
+    const Pack dx = load(&support.x[i]) - load(&contacts.x[i]), dy = load(&support.y[i]) - load(&contacts.y[i]),
+               dz = load(&support.z[i]) - load(&contacts.z[i]);
     const Pack height = nx * dx + ny * dy + nz * dz;
     const Pack aside2 = dx * dx + dy * dy + dz * dz - height * height;
     const simd::Mask applies = height <= highest && height >= deepest && aside2 <= patch2;

@@ -103,7 +103,8 @@ class ShellConstraints final : public ProxyConstraints {
   double spacing_;          ///< typical distance between neighbouring shell points [m]
   ToolShape::Grown reach_;  ///< the tool, enlarged by the margin
   std::unique_ptr<ContactQuery> near_;
-  AlignedDoubles places_x_, places_y_, places_z_;  ///< scratch memory of add_edges: one support point for each contact
+  /// Scratch memory of add_edges: one support point for each contact.
+  AlignedDoubles support_x_, support_y_, support_z_;
 };
 
 /// Constraints from springs: planes that hold at any distance. A bilateral spring holds the tool from both

@@ -17,14 +17,14 @@ constexpr double kNoSpan = 1e-6;
 /// A pass that moves the proxy by less than this fraction of the margin is the last pass. Its constraints are
 /// exact at its start, so the error at its end is the squared length of the move over the width of the tool: 9
 /// nm for a drill of 1 mm.
-constexpr double kSettled = 0.03;
+constexpr double kConverged = 0.03;
 /// Longest cycle of proxy positions that is recognised, in passes.
 constexpr std::size_t kLongestCycle = 4;
 /// Positions closer than this fraction of the margin count as equal.
-constexpr double kSame = 1e-3;
+constexpr double kEqualPositions = 1e-3;
 /// Maximum number of times that the move of a proxy with points inside is shortened. Its length is then right
 /// to a few per cent, unless the tool itself pulls the proxy away.
-constexpr int kSlowed = 3;
+constexpr int kMaxShortenings = 3;
 
 constexpr OwnParameter kDampingTime[] = {
     {"damping_time_s",
@@ -44,7 +44,7 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
 
 /// Maximum number of passes in a step; most steps need two. The first passes bring the proxy near its goal, the
 /// last makes the constraints exact at its final position.
-constexpr int kProxyPasses = 64;
+constexpr int kMaxPasses = 64;
 /// Speed at which a proxy leaves points that are inside it, in half widths of the tool per second. For a drill
 /// of 1 mm it is 0.02 m/s, the highest speed at which the simulated subjects move the drill.
 constexpr double kRecoverySpeed = 40.0;
@@ -102,16 +102,16 @@ class ProxyRendering final : public ForceAlgorithm {
     }
     near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
     schedule_ = scene.schedule;
-    if (schedule_ != nullptr && schedule_->lateness.linear) base_depth_ = near_contacts_->depth;
+    if (schedule_ != nullptr && schedule_->timing.linear) constraint_depth_ = near_contacts_->depth;
     damping_and_limits_.prepare(scene);
   }
 
   void reset() noexcept override {
     constraints_->reset();
     damping_and_limits_.release();
-    placed_ = false;
-    found_.reset();
-    damped_row_.setZero();
+    has_proxy_ = false;
+    last_query_row_.reset();
+    damping_S_row_.setZero();
     last_row_.reset();
     work_ = {};
   }
@@ -120,13 +120,13 @@ class ProxyRendering final : public ForceAlgorithm {
     out = {};
     out.depth_max = contacts.largest_depth();
     if (schedule_ == nullptr)
-      find(tool.pose, contacts.empty());
+      update_proxy(tool.pose, contacts.empty());
     else
-      find_late(tool.pose, contacts.empty());
-    hand_over_holding(contacts);
+      update_with_schedule(tool.pose, contacts.empty());
+    copy_holding_contacts(contacts);
     out.spring = spring_;
     out.S = allowed_.held;
-    follow_directions();
+    filter_directions();
     // Without contact, S = 0 would make the whole velocity tangential, so no friction is applied.
     if (contacts.empty()) {
       out.rendered = spring_;
@@ -135,7 +135,7 @@ class ProxyRendering final : public ForceAlgorithm {
     }
     Mat3 loads;  // uninitialised unless read
     if (damping_and_limits_.needs_loads()) loads = load_along(spring_);
-    out.rendered = damping_and_limits_.rendered_force(spring_, damped_, velocity_at(tool), loads);
+    out.rendered = damping_and_limits_.rendered_force(spring_, damping_S_, velocity_at(tool), loads);
     out.friction = damping_and_limits_.friction_state();
   }
 
@@ -150,7 +150,7 @@ class ProxyRendering final : public ForceAlgorithm {
       if (!allowed_.feasible) state.energy += 0.5 * K_ * weight * weight;
       if (!constraints_->act_at_points()) return;
       // The stored energy depends on the scaled depth, so the moment of the point is scaled, too.
-      const double scale = near_contacts_->depth[i] > 0.0 ? slowed_ : 1.0;
+      const double scale = near_contacts_->depth[i] > 0.0 ? depth_scale_ : 1.0;
       state.moment -=
           (near_contacts_->point(i) - proxy_).cross(scale * K_ * multiplier(i) * near_contacts_->gradient(i));
     });
@@ -159,7 +159,7 @@ class ProxyRendering final : public ForceAlgorithm {
 
   ForceJacobian jacobian() const noexcept override {
     if (allowed_.held.isZero(0.0)) return {};
-    return {K_ * allowed_.held, damping_and_limits_.damping_matrix(spring_, damped_)};
+    return {K_ * allowed_.held, damping_and_limits_.damping_matrix(spring_, damping_S_)};
   }
 
   std::optional<double> angular_velocity_cutoff() const noexcept override {
@@ -173,32 +173,32 @@ class ProxyRendering final : public ForceAlgorithm {
 
  private:
   /// Moves the proxy for the tool's pose and updates the spring force. `free`: the tool touches no point.
-  void find(const ToolPose& tool, bool free) noexcept {
-    if (!placed_) place(tool.position);
+  void update_proxy(const ToolPose& tool, bool free) noexcept {
+    if (!has_proxy_) set_proxy(tool.position);
     // A tool in free air that is too far away for the proxy to follow: move the proxy to the tool.
-    if (!follow(tool) && free) place(tool.position);
+    if (!follow(tool) && free) set_proxy(tool.position);
     spring_ = K_ * (proxy_ - tool.position);
   }
 
   /// `find` for multi-rate contacts.
-  void find_late(const ToolPose& tool, bool free) noexcept {
+  void update_with_schedule(const ToolPose& tool, bool free) noexcept {
     const ContactSchedule::Query* query = schedule_->used();
     if (query == nullptr) {
-      place(tool.position);
+      set_proxy(tool.position);
       spring_.setZero();
       return;
     }
-    const bool linear = schedule_->lateness.linear;
-    if (found_ != query->row) {
-      found_ = query->row;
-      find(query->pose, free);
-      if (linear) base_depth_ = near_contacts_->depth;
+    const bool linear = schedule_->timing.linear;
+    if (last_query_row_ != query->row) {
+      last_query_row_ = query->row;
+      update_proxy(query->pose, free);
+      if (linear) constraint_depth_ = near_contacts_->depth;
     }
     if (!linear) return;
     move_planes(query->pose, tool);
-    allowed_ = nearest_allowed(tool.position - base_, *near_contacts_);
+    allowed_ = nearest_allowed(tool.position - constraint_position_, *near_contacts_);
     work_.iterations += static_cast<std::uint64_t>(allowed_.iterations);
-    proxy_ = allowed_.iterations == 0 ? tool.position : Vec3(base_ + allowed_.move);
+    proxy_ = allowed_.iterations == 0 ? tool.position : Vec3(constraint_position_ + allowed_.move);
     spring_ = K_ * (proxy_ - tool.position);
   }
 
@@ -208,27 +208,28 @@ class ProxyRendering final : public ForceAlgorithm {
     const Mat3 turned = turn_matrix(from, to) - Mat3::Identity();
     ContactBuffer& planes = *near_contacts_;
     for (std::size_t i = 0; i < planes.size(); ++i)
-      planes.depth[i] = base_depth_[i] + planes.gradient(i).dot(turned * (planes.point(i) - base_));
+      planes.depth[i] =
+          constraint_depth_[i] + planes.gradient(i).dot(turned * (planes.point(i) - constraint_position_));
   }
 
   /// Low-pass filters S for damping and friction. Further states of an integrator within a step start from the
   /// previous step, like the first. The first contact takes effect at once.
-  void follow_directions() noexcept {
-    damped_ = allowed_.held;
+  void filter_directions() noexcept {
+    damping_S_ = allowed_.held;
     if (damping_time_ == 0.0) return;
     const bool first_of_row = row_ == nullptr || last_row_ != *row_;
     if (first_of_row) {
-      before_ = damped_row_;
+      previous_S_ = damping_S_row_;
       if (row_ != nullptr) last_row_ = *row_;
     }
-    if (!allowed_.held.isZero(0.0) && !before_.isZero(0.0))
-      damped_ = before_ + dt_ / (damping_time_ + dt_) * (allowed_.held - before_);
-    if (first_of_row) damped_row_ = damped_;
+    if (!allowed_.held.isZero(0.0) && !previous_S_.isZero(0.0))
+      damping_S_ = previous_S_ + dt_ / (damping_time_ + dt_) * (allowed_.held - previous_S_);
+    if (first_of_row) damping_S_row_ = damping_S_;
   }
 
   /// Returns the velocity of the tool at the contacts that hold the proxy.
   ContactVelocity velocity_at(const ToolState& tool) const noexcept {
-    ContactVelocity velocity{tool.velocity, damped_ * tool.velocity};
+    ContactVelocity velocity{tool.velocity, damping_S_ * tool.velocity};
     if (!angular_velocity_cutoff() || !constraints_->act_at_points() || tool.angular_velocity == Vec3::Zero()) {
       return velocity;
     }
@@ -251,45 +252,45 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   /// Moves the proxy to a position, without contacts.
-  void place(const Vec3& position) noexcept {
-    placed_ = true;
-    proxy_ = base_ = position;
+  void set_proxy(const Vec3& position) noexcept {
+    has_proxy_ = true;
+    proxy_ = constraint_position_ = position;
     allowed_ = {};
     clear_ = false;
-    slowed_ = 1.0;
+    depth_scale_ = 1.0;
     near_contacts_->clear();
   }
 
   /// Returns the allowed move nearest to the wanted move, or a slow move out if points are inside the proxy.
   AllowedMove next_move(const Vec3& wanted) noexcept {
-    slowed_ = 1.0;
+    depth_scale_ = 1.0;
     const double deepest = clear_ ? 0.0 : near_contacts_->largest_depth();
     if (!(deepest > recovery_)) return nearest_allowed(wanted, *near_contacts_);
-    slow_down(recovery_ / deepest);
+    scale_depths(recovery_ / deepest);
     AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
     // Points between nearly opposite walls leave by a long move. The move is nearly proportional to the depths.
-    for (int k = 0; k < kSlowed && allowed.move.norm() > recovery_; ++k) {
-      slow_down(recovery_ / allowed.move.norm());
+    for (int k = 0; k < kMaxShortenings && allowed.move.norm() > recovery_; ++k) {
+      scale_depths(recovery_ / allowed.move.norm());
       allowed = nearest_allowed(wanted, *near_contacts_);
     }
     return allowed;
   }
 
   /// Multiplies the depths of points inside the proxy by `factor`.
-  void slow_down(double factor) noexcept {
-    slowed_ *= factor;
+  void scale_depths(double factor) noexcept {
+    depth_scale_ *= factor;
     for (double& depth : std::span(near_contacts_->depth.data(), near_contacts_->size())) {
       if (depth > 0.0) depth *= factor;
     }
   }
 
-  /// Moves the proxy towards the tool in passes. Returns false if kProxyPasses passes were not enough.
+  /// Moves the proxy towards the tool in passes. Returns false if kMaxPasses passes were not enough.
   bool follow(const ToolPose& tool) noexcept {
     const double margin = constraints_->margin();
-    const double settled = kSettled * margin, same = kSame * margin;
-    std::array<Vec3, kLongestCycle> last;  // positions of the last passes
-    last.fill(Vec3::Constant(std::numeric_limits<double>::infinity()));
-    for (int pass = 0; pass < kProxyPasses; ++pass) {
+    const double converged = kConverged * margin, same = kEqualPositions * margin;
+    std::array<Vec3, kLongestCycle> recent;  // positions of the last passes
+    recent.fill(Vec3::Constant(std::numeric_limits<double>::infinity()));
+    for (int pass = 0; pass < kMaxPasses; ++pass) {
       const ToolPose proxy{proxy_, tool.axis, tool.roll};
       const Vec3 wanted = tool.position - proxy_;
       constraints_->constraints_at(proxy, wanted, *near_contacts_);
@@ -297,9 +298,9 @@ class ProxyRendering final : public ForceAlgorithm {
       work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
       const double length = allowed.move.norm();
       const bool arrives = length <= margin;
-      base_ = proxy_;
+      constraint_position_ = proxy_;
       proxy_ += arrives ? allowed.move : Vec3(margin / length * allowed.move);
-      if (!allowed.feasible || slowed_ < 1.0) {
+      if (!allowed.feasible || depth_scale_ < 1.0) {
         // Leaving takes many steps, so one pass in each step is enough.
         clear_ = false;
         return arrives;
@@ -307,18 +308,18 @@ class ProxyRendering final : public ForceAlgorithm {
       if (arrives) {
         clear_ = true;
         if (allowed.iterations == 0) proxy_ = tool.position;
-        if (allowed.iterations == 0 || length <= settled) return true;
+        if (allowed.iterations == 0 || length <= converged) return true;
         // Patches of the surface become active and inactive as the proxy moves. Passes may therefore cycle
         // through two or four positions, all of which are allowed. Accept the position nearest to the tool when
         // it recurs.
         const double distance = (tool.position - proxy_).norm();
-        bool again = false, nearest = true;
-        for (const Vec3& place : last) {
-          again |= (proxy_ - place).norm() <= same;
-          nearest &= distance <= (tool.position - place).norm() + same;
+        bool recurs = false, nearest = true;
+        for (const Vec3& position : recent) {
+          recurs |= (proxy_ - position).norm() <= same;
+          nearest &= distance <= (tool.position - position).norm() + same;
         }
-        if (again && nearest) return true;
-        last[static_cast<std::size_t>(pass) % last.size()] = proxy_;
+        if (recurs && nearest) return true;
+        recent[static_cast<std::size_t>(pass) % recent.size()] = proxy_;
       }
     }
     return false;
@@ -331,7 +332,7 @@ class ProxyRendering final : public ForceAlgorithm {
 
   /// Replaces the colliding points by the contacts that hold the proxy back, up to the buffer's capacity. In a
   /// compromise, points and patches may exceed it; force and energy still include all of them.
-  void hand_over_holding(ContactBuffer& contacts) const noexcept {
+  void copy_holding_contacts(ContactBuffer& contacts) const noexcept {
     contacts.clear();
     for_each_holding(*near_contacts_, [&](std::size_t i) {
       if (contacts.size() == contacts.capacity()) return;
@@ -350,24 +351,24 @@ class ProxyRendering final : public ForceAlgorithm {
   /// Constraints of the last pass, with multipliers or violations as weights [m]
   std::unique_ptr<ContactBuffer> near_contacts_;
 
-  const ContactSchedule* schedule_ = nullptr;  ///< null: the proxy searches points in every step
-  std::optional<std::uint64_t> found_;         ///< step of the last query whose points were searched
+  const ContactSchedule* schedule_ = nullptr;    ///< null: the proxy searches points in every step
+  std::optional<std::uint64_t> last_query_row_;  ///< step of the last query whose points were searched
   /// Proxy position for which the constraints of the last pass were computed [m]
-  Vec3 base_ = Vec3::Zero();
-  AlignedDoubles base_depth_;  ///< depths of these constraints, if planes rotate [m]
+  Vec3 constraint_position_ = Vec3::Zero();
+  AlignedDoubles constraint_depth_;  ///< depths of these constraints, if planes rotate [m]
 
-  bool placed_ = false;  ///< false before the first step
+  bool has_proxy_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();
-  AllowedMove allowed_;         ///< result of the last pass
-  Mat3 damped_ = Mat3::Zero();  ///< S for normal damping and friction
+  AllowedMove allowed_;            ///< result of the last pass
+  Mat3 damping_S_ = Mat3::Zero();  ///< S for normal damping and friction
   /// This filtered S at the end of this step and of the previous step
-  Mat3 damped_row_ = Mat3::Zero(), before_ = Mat3::Zero();
+  Mat3 damping_S_row_ = Mat3::Zero(), previous_S_ = Mat3::Zero();
   std::optional<std::uint64_t> last_row_;
   const std::uint64_t* row_ = nullptr;  ///< null if no Simulation steps the algorithm; then each call counts as a step
   double dt_ = 0.0;
-  bool clear_ = false;     ///< no points are inside the proxy after the last pass
-  double recovery_ = 0.0;  ///< distance by which the deepest point may leave in a step [m]
-  double slowed_ = 1.0;    ///< factor on the depths of points inside the proxy in the last pass
+  bool clear_ = false;        ///< no points are inside the proxy after the last pass
+  double recovery_ = 0.0;     ///< distance by which the deepest point may leave in a step [m]
+  double depth_scale_ = 1.0;  ///< factor on the depths of points inside the proxy in the last pass
   Vec3 spring_ = Vec3::Zero();
   AlgorithmWork work_;
 };
@@ -375,7 +376,7 @@ class ProxyRendering final : public ForceAlgorithm {
 /// Bound of |f_spring| / K: a proxy placed on the tool moves by at most one margin in each pass, however deep
 /// the contacts are.
 double proxy_bound(const RenderingConfig&, const ToolShape& tool, std::size_t, double) {
-  return kProxyPasses * kProxyMargin * tool.half_width();
+  return kMaxPasses * kProxyMargin * tool.half_width();
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ class ActuatorLimitedPassivity final : public ForceStage {
  private:
   ActuatorLimitedPassivityConfig config_;
   double dt_ = 0.0;
-  double most_damping_ = 0.0;  ///< largest damping b [N s/m]
+  double max_damping_ = 0.0;  ///< largest damping b [N s/m]
 };
 
 /// An algorithm followed by a force stage. The stage's force is limited to max_force again. For a state within
@@ -109,9 +109,10 @@ class StagedRendering final : public ForceAlgorithm {
   std::unique_ptr<ForceStage> stage_;
   RenderingConfig config_;
   Scene scene_;
-  std::optional<std::uint64_t> row_;        ///< last step in which the stage was called
-  Vec3 change_ = Vec3::Zero();              ///< rendered force minus the algorithm's force in this step [N]
-  ObservedEnergy given_{0.0}, asked_{0.0};  ///< observed energy of the rendered forces, and of the algorithm's forces
+  std::optional<std::uint64_t> row_;  ///< last step in which the stage was called
+  Vec3 change_ = Vec3::Zero();        ///< rendered force minus the algorithm's force in this step [N]
+  /// Observed energy of the rendered forces, and of the algorithm's forces.
+  ObservedEnergy rendered_energy_{0.0}, requested_energy_{0.0};
   std::uint64_t steps_staged_ = 0;
 };
 
@@ -171,7 +172,7 @@ class PassivityController final : public ForceAlgorithm {
   const Vec3* input_ = nullptr;            ///< Scene::input, f_in [N]
   std::optional<std::uint64_t> last_row_;  ///< step of the last `compute`; empty before the first
   SpringState springs_;                    ///< energy and moment of the springs after scaling
-  double share_ = 1.0;                     ///< s, rendered fraction of the algorithm's force
+  double scale_ = 1.0;                     ///< s, rendered fraction of the algorithm's force
   double alpha_ = 0.0;                     ///< alpha, damping [N s/m]
   std::optional<Vec3> last_turn_;
   double largest_change_ = 0.0;  ///< largest change of the rotation vector between two steps so far [rad]

@@ -51,11 +51,11 @@ class DryFriction {
   const std::uint64_t* row_ = nullptr;  ///< null if no Simulation steps the algorithm; then each call counts as a step
   std::optional<std::uint64_t> last_row_;
   /// Deflection e at the end of this step, and of the previous step [m]
-  Vec3 bristle_ = Vec3::Zero(), before_ = Vec3::Zero();
+  Vec3 bristle_ = Vec3::Zero(), previous_bristle_ = Vec3::Zero();
   /// P, projector of the last force onto the tangential directions
   Mat3 tangential_ = Mat3::Zero();
   /// Factor in [0, 1] that limits the force to mu N; 1 while sticking
-  double cut_ = 0.0;
+  double slip_scale_ = 0.0;
   Friction state_ = Friction::none;
 };
 
@@ -73,10 +73,10 @@ double normal_damping(const RenderingConfig& config) noexcept;
 /// Returns the load tensor f f^T / ||f|| [N] of a single load ||f|| along the force f; zero for zero force.
 Mat3 load_along(const Vec3& force) noexcept;
 
-/// Returns the force, scaled down to the length `most` [N] if it is longer. nullopt: no limit.
-inline Vec3 cut_to(const Vec3& force, const std::optional<double>& most) noexcept {
-  const double length = most ? force.norm() : 0.0;
-  return most && length > *most ? Vec3(force * (*most / length)) : force;
+/// Returns the force, scaled down to the length `limit` [N] if it is longer. nullopt: no limit.
+inline Vec3 limited_to(const Vec3& force, const std::optional<double>& limit) noexcept {
+  const double length = limit ? force.norm() : 0.0;
+  return limit && length > *limit ? Vec3(force * (*limit / length)) : force;
 }
 
 /// Damping, friction and limits, identical for all laws (thesis 2.5, 2.6, A.2.1, B.2, C.4.3). Formulas:

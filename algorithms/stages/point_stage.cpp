@@ -166,17 +166,17 @@ class GradientReduction final : public PointStage {
     // Pointers in local variables, so that they are not loaded again for each test.
     const double *const ux = c.ux.data(), *const uy = c.uy.data(), *const uz = c.uz.data(), *const d = c.depth.data();
     const auto first = [i](unsigned lanes) { return i + static_cast<std::size_t>(std::countr_zero(lanes)); };
-    // Returns the lanes, out of `lanes`, that are not similar to the contact at index `place`, which is kept as
+    // Returns the lanes, out of `lanes`, that are not similar to the contact at index `index`, which is kept as
     // number k.
-    const auto refused_by = [&](std::size_t k, std::size_t place, unsigned lanes) {
+    const auto refused_by = [&](std::size_t k, std::size_t index, unsigned lanes) {
       unsigned refused = 0;
       for (;;) {
-        const Pack inner = x * Pack(ux[place]) + y * Pack(uy[place]) + z * Pack(uz[place]);
+        const Pack inner = x * Pack(ux[index]) + y * Pack(uy[index]) + z * Pack(uz[index]);
         const unsigned similar = simd::bits(inner > threshold) & lanes;
         // Most kept contacts are similar to none of the eight, so their depth is not compared.
-        const unsigned deeper = similar == 0 ? 0 : simd::bits(depth > Pack(d[place])) & similar;
+        const unsigned deeper = similar == 0 ? 0 : simd::bits(depth > Pack(d[index])) & similar;
         if (deeper == 0) {
-          if (place != k) c.copy(place, k);
+          if (index != k) c.copy(index, k);
           return refused | (lanes & ~similar);
         }
         // The first deeper contact replaces the kept contact, and the lanes after it are compared with the new
@@ -184,7 +184,7 @@ class GradientReduction final : public PointStage {
         const unsigned visited = deeper ^ (deeper - 1);
         refused |= lanes & ~similar & visited;
         lanes &= ~visited;
-        place = first(deeper);
+        index = first(deeper);
       }
     };
     unsigned lanes = 0xffu >> (simd::lanes - n);

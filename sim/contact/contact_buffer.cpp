@@ -82,15 +82,15 @@ void ContactBuffer::pad() {
 
 double ContactBuffer::largest_depth() const noexcept {
   if (empty()) return 0.0;
-  const Pack least(-std::numeric_limits<double>::infinity());
-  Pack largest = least;
+  const Pack lowest(-std::numeric_limits<double>::infinity());
+  Pack largest = lowest;
   // Maximum over the whole packs.
   const std::size_t whole = size_ / simd::lanes * simd::lanes;
   for (std::size_t i = 0; i < whole; i += simd::lanes) largest = simd::max(largest, simd::load(&depth[i]));
   // Maximum over the last pack without its padding.
   if (whole < size_) {
-    const simd::Mask own = simd::lanes_between(0, size_ - whole);
-    largest = simd::max(largest, simd::select(own, simd::load(&depth[whole]), least));
+    const simd::Mask in_use = simd::lanes_between(0, size_ - whole);
+    largest = simd::max(largest, simd::select(in_use, simd::load(&depth[whole]), lowest));
   }
   return simd::max_lane(largest);
 }
@@ -118,16 +118,16 @@ Vec3 weighted_depth(const ContactBuffer& contacts) {
 
 RatioRange ratio_range(const ContactBuffer& contacts, const Mat3& S) {
   if (contacts.empty()) return {};
-  constexpr double never = std::numeric_limits<double>::infinity();
-  Pack smallest(never), largest(-never);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Pack smallest(infinity), largest(-infinity);
   for (std::size_t i = 0; i < contacts.size(); i += simd::lanes) {
     const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
     // Same order of additions as Eigen's inner product, a + (b + c), so that results are bitwise identical.
     const auto along = [&](int row) { return Pack(S(row, 0)) * x + (Pack(S(row, 1)) * y + Pack(S(row, 2)) * z); };
     const Pack rho = x * along(0) + (y * along(1) + z * along(2));
-    const simd::Mask counts = simd::lanes_between(0, contacts.size() - i);  // excludes the padding
-    smallest = simd::min(smallest, simd::select(counts, rho, Pack(never)));
-    largest = simd::max(largest, simd::select(counts, rho, Pack(-never)));
+    const simd::Mask in_use = simd::lanes_between(0, contacts.size() - i);  // excludes the padding
+    smallest = simd::min(smallest, simd::select(in_use, rho, Pack(infinity)));
+    largest = simd::max(largest, simd::select(in_use, rho, Pack(-infinity)));
   }
   return {simd::min_lane(smallest), simd::max_lane(largest)};
 }

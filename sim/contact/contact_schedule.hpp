@@ -27,14 +27,14 @@ struct ContactSchedule {
     std::uint64_t row = 0;
   };
 
-  Lateness lateness;
-  bool serves = false;      ///< true once a query has returned contacts
+  Lateness timing;
+  bool has_result = false;  ///< true once a query has returned contacts
   Query latest;             ///< query whose contacts are used; undefined while no query has returned
   std::uint64_t asked = 0;  ///< queries sent so far, including lost queries
   std::uint64_t lost = 0;
 
   /// Returns the query whose contacts are used in the current step, or null if no query has returned yet.
-  const Query* used() const noexcept { return serves ? &latest : nullptr; }
+  const Query* used() const noexcept { return has_result ? &latest : nullptr; }
 };
 
 }  // namespace hapbench

@@ -14,7 +14,7 @@ constexpr double kSpacingsPerCell = 2.5;
 /// surfaces.
 constexpr double kCellsPerPoint = 8.0;
 /// Number of cells that is always allowed, so that small shells keep cells of the wanted size.
-constexpr double kFewestCells = 4096.0;
+constexpr double kMinCells = 4096.0;
 
 /// Returns the distance between neighbours [m] that n points would have if they were spread evenly over the
 /// faces of their box.
@@ -66,7 +66,7 @@ GridCells::GridCells(const Box& bounds, std::size_t points, double edge)
   const Vec3 extent = bounds.size();
   const double number = static_cast<double>(std::max<std::size_t>(1, points));
   const auto cells = [&](int axis) { return std::floor(extent[axis] / size_) + 1.0; };
-  while (cells(0) * cells(1) * cells(2) > std::max(kFewestCells, kCellsPerPoint * number)) size_ *= 1.25;
+  while (cells(0) * cells(1) * cells(2) > std::max(kMinCells, kCellsPerPoint * number)) size_ *= 1.25;
   for (int axis = 0; axis < 3; ++axis) count_[axis] = static_cast<std::size_t>(cells(axis));
 }
 
@@ -100,11 +100,11 @@ GridIndex::GridIndex(const PointShell& shell)
   shell_index_ = std::move(sorted.order);
   keeps_order_ = std::is_sorted(shell_index_.begin(), shell_index_.end());
   // Copy the coordinates in the order of the cells.
-  for (std::size_t place = 0; place < shell.size(); ++place) {
-    const std::uint32_t i = shell_index_[place];
-    x_[place] = shell.x()[i];
-    y_[place] = shell.y()[i];
-    z_[place] = shell.z()[i];
+  for (std::size_t k = 0; k < shell.size(); ++k) {
+    const std::uint32_t i = shell_index_[k];
+    x_[k] = shell.x()[i];
+    y_[k] = shell.y()[i];
+    z_[k] = shell.z()[i];
   }
   shell_index_.resize(shell.padded_size());
 }

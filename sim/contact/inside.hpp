@@ -39,21 +39,22 @@ class InsideSearch {
   static constexpr double kTolerance = 0.02;
   /// Additional error of the depth [m], from a tool sampled on a grid or from points that represent a surface.
   double error() const noexcept { return error_; }
-  std::size_t looks() const noexcept { return looks_; }  ///< distances evaluated in all searches so far, approximate
+  /// Approximate number of distances evaluated in all searches so far.
+  std::size_t looks() const noexcept { return evaluations_; }
 
  private:
   /// A box of the search and the upper bound of the depth in it.
   struct Cell {
     Vec3 centre, half;
-    double bound;     ///< upper bound of the depth in the cell [m]
-    LookedUp looked;  ///< a known distance, in this cell or in a cell that contains it
+    double bound;             ///< upper bound of the depth in the cell [m]
+    LookedUp known_distance;  ///< a known distance, in this cell or in a cell that contains it
   };
-  void look(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept;
+  void halve(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept;
   bool may_be_deepest(double bound) const noexcept {
     return bound > best_ + tolerance_ * tool_.half_width() + kTolerance * best_;
   }
   bool into_tool(const ToolPose& pose, Vec3& point) noexcept;
-  void improve(const ToolPose& pose, Vec3 place) noexcept;
+  void improve(const ToolPose& pose, Vec3 point) noexcept;
 
   const ToolShape& tool_;
   const Solid& solid_;
@@ -64,7 +65,7 @@ class InsideSearch {
   std::vector<Cell> cells_;   ///< stack of cells that may hold the deepest point
   /// Depth of the deepest point found so far [m], and the tolerance of the current search
   double best_ = 0.0, tolerance_ = kTolerance;
-  std::size_t looks_ = 0;
+  std::size_t evaluations_ = 0;
   bool beyond_border_ = false;  ///< true if a point beyond the border may be deeper
 };
 
@@ -93,42 +94,42 @@ class InsideBound {
   double roughly_at(const ToolPose& pose, double moved, double turned);
 
   /// Number of distances evaluated so far.
-  std::size_t looks() const noexcept { return looks_; }
+  std::size_t looks() const noexcept { return evaluations_; }
 
  private:
   /// A ball around a segment of the tool.
   struct Ball {
-    double place, radius;          ///< position of the centre on the axis, from the tip centre [m]; radius [m]
+    double position, radius;       ///< position of the centre on the axis, from the tip centre [m]; radius [m]
     std::optional<LookedUp> near;  ///< last centre with a known distance; empty if unknown
   };
   /// A segment of the tool along its axis.
-  struct Stretch {
+  struct Segment {
     double from, to;  ///< ends on the axis, from the tip centre [m]
     std::vector<Ball> balls = {};
     std::size_t halves = 0;  ///< index of the first of its two halves; 0 if it is not halved
   };
   /// The arguments of `at`.
-  struct Question {
+  struct BoundRequest {
     const ToolPose& pose;
     double moved, turned, enough;
     bool best;
   };
-  double radius(const Stretch& stretch, double place) const;
-  std::vector<Ball> balls_of(const Stretch& stretch) const;
-  struct Look {
+  double radius(const Segment& segment, double position) const;
+  std::vector<Ball> balls_of(const Segment& segment) const;
+  struct Evaluation {
     double bound;  ///< upper bound from one ball [m]
     bool known;    ///< true if the solid knows whether the ball's centre is inside
   };
-  Look look(Ball& ball, const Question& question);
-  double of(std::size_t stretch, const Question& question);
+  Evaluation evaluate(Ball& ball, const BoundRequest& request);
+  double bound_of_segment(std::size_t segment, const BoundRequest& request);
 
   const ToolShape& tool_;
   const Solid& solid_;
   double half_width_;
   std::vector<ProfilePoint> outline_;
   double margin_;  ///< distance by which the body may extend beyond the outline [m]
-  std::vector<Stretch> stretches_;
-  std::size_t looks_ = 0;
+  std::vector<Segment> segments_;
+  std::size_t evaluations_ = 0;
 };
 
 }  // namespace hapbench

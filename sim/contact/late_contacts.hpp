@@ -31,7 +31,7 @@ class LateContacts final : public ContactSource {
  public:
   /// `may_pull`: contacts with negative depth are springs that pull and stay. `seed` determines which queries
   /// are lost. Precondition: every >= 1, delay >= 0.
-  LateContacts(std::unique_ptr<ContactSource> source, const Lateness& lateness, bool may_pull, std::uint64_t seed);
+  LateContacts(std::unique_ptr<ContactSource> source, const Lateness& timing, bool may_pull, std::uint64_t seed);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return source_->capacity(); }
@@ -42,7 +42,7 @@ class LateContacts final : public ContactSource {
 
  private:
   /// Sends the query of the step, if one is scheduled, and takes the result that is due.
-  void begin_row(std::uint64_t row, const ToolPose& pose) noexcept;
+  void begin_step(std::uint64_t row, const ToolPose& pose) noexcept;
   /// Replaces the contents of `contacts` by the found contacts with their depths at this pose (linear
   /// contacts).
   void move_found_to(const ToolPose& pose, ContactBuffer& contacts) const noexcept;
@@ -52,8 +52,8 @@ class LateContacts final : public ContactSource {
   bool may_pull_;
   std::uint64_t seed_;
   Random random_;
-  std::uint64_t calls_ = 0;                ///< steps so far, if no Simulation steps the source
-  std::optional<std::uint64_t> last_row_;  ///< last step that has begun; empty before the first
+  std::uint64_t calls_ = 0;                 ///< steps so far, if no Simulation steps the source
+  std::optional<std::uint64_t> last_step_;  ///< last step that has begun; empty before the first
 
   std::vector<ContactSchedule::Query> waiting_;  ///< ring buffer of pending queries
   std::size_t first_ = 0, count_ = 0;

@@ -15,7 +15,7 @@ namespace {
 /// thinner skin lists must be rebuilt more often.
 constexpr double kSkinPerHalfWidth = 0.2;
 /// Maximum number of times that an empty skin is doubled while the tool is in free air.
-constexpr int kMostDoublings = 12;
+constexpr int kMaxDoublings = 12;
 /// Relative slack that covers rounding in the tool's motion and in the search.
 constexpr double kSlack = 1e-9;
 
@@ -42,8 +42,8 @@ class NeighbourListQuery final : public ContactQuery {
   NeighbourListQuery(const PointShell& shell, const ToolShape& tool)
       : shell_(&shell),
         tool_(&tool),
-        skin_wanted_(kSkinPerHalfWidth * tool.half_width()),
-        capacity_(most_points_in(shell, tool.cover(margin_of(skin_wanted_, largest_scale(shell, tool))))),
+        normal_skin_(kSkinPerHalfWidth * tool.half_width()),
+        capacity_(most_points_in(shell, tool.cover(margin_of(normal_skin_, largest_scale(shell, tool))))),
         grid_(shell),
         // A contiguous range of n points meets at most n / 8 + 2 packs.
         marks_(shell.size() / simd::lanes + 2 * grid_.columns()),
@@ -83,13 +83,13 @@ class NeighbourListQuery final : public ContactQuery {
     list_pose_ = pose;
 
     // List the points within the normal skin.
-    skin_ = skin_wanted_;
+    skin_ = normal_skin_;
     mark_near(pose, skin_);
     take_marked();
 
     // In free air, double the skin as long as it is empty.
     bool is_empty = list_size_ == 0;
-    for (int i = 0; i < kMostDoublings && is_empty; ++i) {
+    for (int i = 0; i < kMaxDoublings && is_empty; ++i) {
       mark_near(pose, 2.0 * skin_);
       for_each_hit([&](std::uint8_t, std::size_t) { is_empty = false; });
       if (is_empty) skin_ *= 2.0;
@@ -156,7 +156,7 @@ class NeighbourListQuery final : public ContactQuery {
 
   const PointShell* shell_;
   const ToolShape* tool_;
-  double skin_wanted_;  ///< normal thickness of the skin [m]
+  double normal_skin_;  ///< normal thickness of the skin [m]
   std::size_t capacity_;
   GridIndex grid_;
   std::vector<PackRange> runs_;      ///< ranges of the grid's points near the tool

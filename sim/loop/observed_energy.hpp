@@ -35,9 +35,9 @@ class ObservedEnergy {
   void move(const ToolState& tool, bool handle_moves_tool = false) noexcept {
     first_ = !begun_;
     begun_ = true;
-    now_ = !now_;
-    note(tool.pose);
-    if (force_acts_) energy_ -= (free_ ? 1.0 : 0.5) * force_.dot(way_to(tool, handle_moves_tool));
+    current_ = !current_;
+    set_pose(tool.pose);
+    if (force_acts_) energy_ -= (free_ ? 1.0 : 0.5) * force_.dot(displacement_to(tool, handle_moves_tool));
     if (moment_acts_) energy_ -= 0.5 * moment_.dot(turned());
   }
   /// Ends the step. `rendered` [N] and `springs` act on the tool that was passed to `move`.
@@ -47,7 +47,7 @@ class ObservedEnergy {
     moment_acts_ = !is_zero(springs.moment);
     if (force_acts_) {
       force_ = rendered;
-      if (!free_ && !first_) energy_ -= 0.5 * force_.dot(tool.pose.position - pose_[!now_].position);
+      if (!free_ && !first_) energy_ -= 0.5 * force_.dot(tool.pose.position - pose_[!current_].position);
       velocity_ = tool.velocity;
     }
     if (moment_acts_) {
@@ -63,8 +63,8 @@ class ObservedEnergy {
   /// Cheaper equivalent of `move` and `answer`. Precondition: `rests` returns true for this step.
   void rest(const ToolState& tool) noexcept {
     first_ = false;
-    now_ = !now_;
-    note(tool.pose);
+    current_ = !current_;
+    set_pose(tool.pose);
   }
 
   /// Returns E [J]. Between `move` and `answer` it does not yet include the work of this step's moment.
@@ -73,22 +73,22 @@ class ObservedEnergy {
   bool first() const { return first_; }
   /// Returns the rotation vector from the previous step's pose to this step's pose [rad].
   const Vec3& turned() noexcept {
-    if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(pose_[!now_], pose_[now_]);
+    if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(pose_[!current_], pose_[current_]);
     turn_is_known_ = true;
     return turn_;
   }
 
  private:
   /// Displacement since the previous step, over which the previous force does work [m].
-  Vec3 way_to(const ToolState& tool, bool handle_moves_tool) const noexcept {
-    if (handle_moves_tool || !free_) return tool.pose.position - pose_[!now_].position;
+  Vec3 displacement_to(const ToolState& tool, bool handle_moves_tool) const noexcept {
+    if (handle_moves_tool || !free_) return tool.pose.position - pose_[!current_].position;
     return 0.5 * (velocity_ + tool.velocity) * dt_;
   }
   /// Returns true if all components are zero. Branch-free, unlike Eigen's isZero.
   static bool is_zero(const Vec3& v) noexcept { return (v.x() == 0.0) & (v.y() == 0.0) & (v.z() == 0.0); }
 
-  void note(const ToolPose& pose) noexcept {
-    pose_[now_] = pose;
+  void set_pose(const ToolPose& pose) noexcept {
+    pose_[current_] = pose;
     turn_is_known_ = false;
   }
 
@@ -100,7 +100,7 @@ class ObservedEnergy {
   bool force_acts_ = false;
   bool moment_acts_ = false;
   bool turn_is_known_ = false;
-  bool now_ = false;              ///< index in pose_ of this step's pose
+  bool current_ = false;          ///< index in pose_ of this step's pose
   ToolPose pose_[2];              ///< poses of this step and of the previous step
   Vec3 velocity_ = Vec3::Zero();  ///< velocity in the last step with a force [m/s]
   Vec3 turn_ = Vec3::Zero();

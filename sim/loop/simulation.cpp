@@ -15,12 +15,12 @@ class Simulation::ForceWithinStep final : public ForceField {
  public:
   explicit ForceWithinStep(Simulation& simulation) : s_(simulation) {}
 
-  Vec3 force_at(double part, const Vec3& position, const Vec3& velocity) noexcept override {
-    const double t = (static_cast<double>(s_.row_) + part) * s_.config_.dt;
+  Vec3 force_at(double fraction, const Vec3& position, const Vec3& velocity) noexcept override {
+    const double t = (static_cast<double>(s_.row_) + fraction) * s_.config_.dt;
     const Vec3 axis = s_.parts_.motion->axis_at(t);
     const double roll = s_.roll_at(t);
     ToolState tool{{position, axis, s_.tool_rolls_ ? roll : 0.0}, velocity};
-    if (s_.angular_velocity_cutoff_) tool.angular_velocity = s_.angular_velocity_after(part, axis, roll);
+    if (s_.angular_velocity_cutoff_) tool.angular_velocity = s_.angular_velocity_after(fraction, axis, roll);
     s_.parts_.source->contacts_at(tool.pose, s_.contacts_);
     s_.parts_.algorithm->compute(tool, s_.contacts_, s_.within_step_);
     return s_.record_.hand.input + s_.within_step_.rendered;
@@ -57,7 +57,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
   }
   // Find out what moves the tool and the handle, and whether the roll angle is needed.
   position_is_free_ = parts_.motion->position_is_free();
-  handle_is_apart_ = parts_.device->energy().has_value();
+  handle_is_separate_ = parts_.device->energy().has_value();
   handle_moves_tool_ = position_is_free_ && parts_.device->moves_tool();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
   tool_rolls_ = parts_.tool && !parts_.tool->is_axisymmetric();
@@ -98,11 +98,11 @@ double Simulation::roll_at(double t) const noexcept {
   return roll_wanted_ ? parts_.motion->roll_at(t) : 0.0;
 }
 
-/// Returns the angular velocity [rad/s] from the orientation of the current step to the given orientation, a
-/// fraction `part` of a step later. A first-order low-pass with cut-off frequency f weights the new value with
-/// 1 - e^(-2 pi f t).
-Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept {
-  const double time = part * config_.dt;
+/// Returns the angular velocity [rad/s] of the turn from the current step's orientation to the given orientation, in
+/// the time `fraction` dt. A first-order low-pass with cut-off frequency f weights the new value with
+/// 1 - e^(-2 pi f t), where t is this time.
+Vec3 Simulation::angular_velocity_after(double fraction, const Vec3& axis, double roll) const noexcept {
+  const double time = fraction * config_.dt;
   const double taken = -math::expm1(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
   const ToolPose from{Vec3::Zero(), tool_.pose.axis, turn_rolls_ ? roll_ : 0.0};
   const ToolPose to{Vec3::Zero(), axis, turn_rolls_ ? roll : 0.0};
@@ -123,9 +123,9 @@ void Simulation::move_tool_by_script() noexcept {
   roll_ = roll;
   if (position_is_free_) return;
   const Vec3 position = parts_.motion->position_at(t);
-  const Vec3 way =
+  const Vec3 displacement =
       row_ == 0 ? Vec3(parts_.motion->position_at(config_.dt) - position) : Vec3(position - tool_.pose.position);
-  tool_.velocity = way / config_.dt;
+  tool_.velocity = displacement / config_.dt;
   tool_.pose.position = position;
 }
 
@@ -222,7 +222,7 @@ bool Simulation::check_bounds() noexcept {
   const auto well_inside = [](const char*, const Vec3& v, double bound) {
     return v.squaredNorm() <= 0.5 * bound * bound;
   };
-  if (all(well_inside, handle_is_apart_)) return true;
+  if (all(well_inside, handle_is_separate_)) return true;
   // Find the quantity that exceeds its bound and report it.
   const auto inside = [this](const char* quantity, const Vec3& v, double bound) {
     const double magnitude = v.norm();

@@ -161,7 +161,7 @@ class Simulation {
   void move_tool_by_script() noexcept;
   void put_tool_on_handle() noexcept;
   double roll_at(double t) const noexcept;
-  Vec3 angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept;
+  Vec3 angular_velocity_after(double fraction, const Vec3& axis, double roll) const noexcept;
   /// Ends the run and returns false if a value is not finite or exceeds its bound.
   bool check_bounds() noexcept;
   /// Ends the run and returns true if a stop rule's condition holds or the hand has finished its task.
@@ -180,7 +180,7 @@ class Simulation {
   bool tool_rolls_ = false;                        ///< the tool is not round, so its pose includes the roll
   bool turn_rolls_ = false;                        ///< the angular velocity includes the rotation about the tool's axis
   bool roll_wanted_ = false;                       ///< an observer or the tool needs the roll angle
-  bool handle_is_apart_ = false;                   ///< the handle is a body separate from the tool
+  bool handle_is_separate_ = false;                ///< the handle is a body separate from the tool
   bool handle_moves_tool_ = false;                 ///< the tool follows the handle; there is no virtual mass
   std::optional<double> angular_velocity_cutoff_;  ///< [Hz]; nullopt if nothing reads the angular velocity
   ContactBuffer contacts_;

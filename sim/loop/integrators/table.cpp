@@ -25,7 +25,7 @@ Eigen::Matrix2d step_matrix(const SpringDamper& s) {
 }
 
 /// Returns the stability margin of leapfrog, which is positive if and only if a step is stable.
-double margin(const SpringDamper& s) {
+double leapfrog_margin(const SpringDamper& s) {
   return 4.0 - 2.0 * s.lambda * s.B * s.dt / s.M - s.lambda * s.K * s.dt * s.dt / s.M;
 }
 
@@ -78,25 +78,26 @@ void rk4(ToolState& tool, const Vec3& force, double mass, double dt, ForceField&
 /// contacts: there, an explicit step creates energy of first order in the step size, this method of first order
 /// in the tolerance. f_in is held over the step.
 ///
-/// Each event costs about 10 log2(dt / tolerance) forces. After kMostPieces intervals, the step continues
+/// Each event costs about 10 log2(dt / tolerance) forces. After kMaxIntervals intervals, the step continues
 /// without locating events.
 void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double tolerance) noexcept {
-  constexpr int kMostPieces = 10'000;
+  constexpr int kMaxIntervals = 10'000;
   Vec3 acting = force;
   std::uint64_t set = field.contact_set();
   double done = 0.0, h = dt;
-  for (int piece = 0; done < dt; ++piece) {
+  for (int interval = 0; done < dt; ++interval) {
     const bool last = h >= dt - done;
     if (last) h = dt - done;
     // Try an interval and check at every stage whether the set of contacts is still the same.
     bool same = true;
-    const auto look = [&] { same = same && field.contact_set() == set; };
-    const auto [p, v] = runge_kutta(tool.pose.position, tool.velocity, acting, mass, done / dt, h, dt, field, look);
+    const auto check_contacts = [&] { same = same && field.contact_set() == set; };
+    const auto [p, v] =
+        runge_kutta(tool.pose.position, tool.velocity, acting, mass, done / dt, h, dt, field, check_contacts);
     const double end = last ? 1.0 : (done + h) / dt;
     const Vec3 force_then = field.force_at(end, p, v);
-    look();
+    check_contacts();
     // Halve the interval if it contains an event.
-    if (!same && h > tolerance && piece < kMostPieces) {
+    if (!same && h > tolerance && interval < kMaxIntervals) {
       h *= 0.5;
       continue;
     }
@@ -112,7 +113,7 @@ void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceFiel
 
 /// B dt / M at which the method becomes unstable: the end of the stability region |1 + z + z^2/2 + z^3/6 +
 /// z^4/24| <= 1 on the negative real axis.
-constexpr double kRk4Damper = 2.785293563405282;
+constexpr double kRk4DamperLimit = 2.785293563405282;
 
 // The implicit integrators solve for the velocity at the end of the step with a linearised force, f(p + dp, v +
 // dv) = f - K dp - D dv. K and D are stiffness and damping of the algorithm's Jacobian. A step costs one 3x3
@@ -193,7 +194,7 @@ const IntegratorEntry kLeapfrog = {
     .step = leapfrog,
     .holds_force = true,
     .step_matrix = step_matrix,
-    .stability_margin = margin,
+    .stability_margin = leapfrog_margin,
     .damper_limit = 2.0,
 };
 
@@ -218,7 +219,7 @@ const IntegratorEntry kRk4 = {
     .step = rk4,
     .order = 4,
     .damped_order = 4,
-    .damper_limit = kRk4Damper,
+    .damper_limit = kRk4DamperLimit,
 };
 
 const IntegratorEntry kEvent = {
@@ -231,7 +232,7 @@ const IntegratorEntry kEvent = {
     .step = event,
     .order = 4,
     .damped_order = 4,
-    .damper_limit = kRk4Damper,
+    .damper_limit = kRk4DamperLimit,
 };
 
 const IntegratorEntry kImplicitEuler = {

@@ -15,10 +15,10 @@ namespace hapbench {
 class ForceField {
  public:
   virtual ~ForceField() = default;
-  /// Returns f_in + f_render [N] at the time t_k + part dt, 0 < part <= 1, with the tip at `position` [m] and
+  /// Returns f_in + f_render [N] at the time t_k + fraction dt, 0 < fraction <= 1, with the tip at `position` [m] and
   /// `velocity` [m/s]. The axis follows the script. f_in is held over the step, as by a sampled device. Costs a
   /// contact search and a force computation.
-  virtual Vec3 force_at(double part, const Vec3& position, const Vec3& velocity) noexcept = 0;
+  virtual Vec3 force_at(double fraction, const Vec3& position, const Vec3& velocity) noexcept = 0;
   /// Returns a hash of the set of rendered contacts, of the last force_at, or of the step's own force if
   /// force_at has not been called. Equal sets have equal hashes. Costs about a nanosecond for each contact.
   virtual std::uint64_t contact_set() const noexcept { return 0; }
