@@ -63,7 +63,7 @@ struct AlgorithmEntry {
   std::string_view reported_depth_model = {};
   std::span<const OwnParameter> own_parameters = {};
   AlgorithmOrigin origin = {};  ///< empty for a built-in algorithm
-  /// Owner of the targets of `info` and `own_parameters` of an external algorithm
+  /// Owner of the targets of `info` and `own_parameters` of an external algorithm.
   std::shared_ptr<const void> texts = {};
 };
 

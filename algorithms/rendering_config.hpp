@@ -76,10 +76,10 @@ struct RenderingConfig {
   double regularisation = 0.01;            ///< eps of the law least_squares
 
   bool angular_damping = false;  ///< damping and friction use the tool's velocity at each contact
-  /// Cut-off of the low-pass on this velocity's rotation [Hz]; nullopt: none
+  /// Cut-off of the low-pass on this velocity's rotation [Hz]; nullopt: none.
   std::optional<double> angular_velocity_cutoff = 20.0;
 
-  /// Applied after the algorithm; nullopt: the algorithm's force is rendered
+  /// Applied after the algorithm; nullopt: the algorithm's force is rendered.
   std::optional<ForceStageConfig> force_stage;
   bool passivity_controller = false;  ///< applied around algorithm and force stage
 

@@ -45,8 +45,8 @@ typedef struct HapbenchRun {
   size_t capacity;        /* largest number of contacts in a step */
   const double* vertices; /* of the environment: x, y, z of each vertex [m] */
   size_t vertex_count;
-  const uint32_t*
-      triangles; /* three vertex indices each, counter-clockwise from outside; for block_with_hole or mesh */
+  /* of a block_with_hole or a mesh: three vertex indices each, counter-clockwise seen from outside */
+  const uint32_t* triangles;
   size_t triangle_count;
   double tool_radius; /* half of the tool's width [m] */
   double tool_length; /* of a cylinder with a flat tip [m]; 0 for other tools */

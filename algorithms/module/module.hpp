@@ -73,7 +73,7 @@ class ModuleLaw final : public SingleSpringLaw {
 
   ModuleState state_;
   std::vector<double> values_;
-  /// Guard numbers, one weight for each contact, guard numbers; detects writes out of range
+  /// Guard numbers, one weight for each contact, guard numbers; detects writes out of range.
   std::vector<double> weights_;
 };
 

@@ -20,10 +20,10 @@ inline constexpr double kCompromiseEpsilon = 1e-6;
 /// The result of nearest_allowed. x is the allowed move, t the wanted move.
 struct AllowedMove {
   Vec3 move = Vec3::Zero();  ///< x [m]
-  /// I - dx/dt: projector onto the span of the gradients of the contacts that hold the tool back
+  /// I - dx/dt: projector onto the span of the gradients of the contacts that hold the tool back.
   Mat3 held = Mat3::Zero();
   bool feasible = true;  ///< false: no move satisfies all contacts, so x is the least-squares compromise
-  /// If infeasible: <u_i, share> is the contribution of contact i to the residual t - x [m]
+  /// If infeasible: <u_i, share> is the contribution of contact i to the residual t - x [m].
   Vec3 share = Vec3::Zero();
   int iterations = 0;
 };

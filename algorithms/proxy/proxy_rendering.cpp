@@ -348,12 +348,12 @@ class ProxyRendering final : public ForceAlgorithm {
   DampingAndLimits damping_and_limits_;
   Skips skips_;
   std::unique_ptr<ProxyConstraints> constraints_;
-  /// Constraints of the last pass, with multipliers or violations as weights [m]
+  /// Constraints of the last pass, with multipliers or violations as weights [m].
   std::unique_ptr<ContactBuffer> near_contacts_;
 
   const ContactSchedule* schedule_ = nullptr;    ///< null: the proxy searches points in every step
   std::optional<std::uint64_t> last_query_row_;  ///< step of the last query whose points were searched
-  /// Proxy position for which the constraints of the last pass were computed [m]
+  /// Proxy position for which the constraints of the last pass were computed [m].
   Vec3 constraint_position_ = Vec3::Zero();
   AlignedDoubles constraint_depth_;  ///< depths of these constraints, if planes rotate [m]
 
@@ -361,7 +361,7 @@ class ProxyRendering final : public ForceAlgorithm {
   Vec3 proxy_ = Vec3::Zero();
   AllowedMove allowed_;            ///< result of the last pass
   Mat3 damping_S_ = Mat3::Zero();  ///< S for normal damping and friction
-  /// This filtered S at the end of this step and of the previous step
+  /// This filtered S at the end of this step and of the previous step.
   Mat3 damping_S_row_ = Mat3::Zero(), previous_S_ = Mat3::Zero();
   std::optional<std::uint64_t> last_row_;
   const std::uint64_t* row_ = nullptr;  ///< null if no Simulation steps the algorithm; then each call counts as a step

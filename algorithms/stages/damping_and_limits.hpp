@@ -50,11 +50,11 @@ class DryFriction {
   double dt_ = 0.0005;
   const std::uint64_t* row_ = nullptr;  ///< null if no Simulation steps the algorithm; then each call counts as a step
   std::optional<std::uint64_t> last_row_;
-  /// Deflection e at the end of this step, and of the previous step [m]
+  /// Deflection e at the end of this step, and of the previous step [m].
   Vec3 bristle_ = Vec3::Zero(), previous_bristle_ = Vec3::Zero();
-  /// P, projector of the last force onto the tangential directions
+  /// P, projector of the last force onto the tangential directions.
   Mat3 tangential_ = Mat3::Zero();
-  /// Factor in [0, 1] that limits the force to mu N; 1 while sticking
+  /// Factor in [0, 1] that limits the force to mu N; 1 while sticking.
   double slip_scale_ = 0.0;
   Friction state_ = Friction::none;
 };
@@ -122,7 +122,7 @@ class DampingAndLimits {
   /// Returns the cut-off frequency of the low-pass on the tool's angular velocity [Hz]; nullopt without angular
   /// damping.
   const std::optional<double>& angular_velocity_cutoff() const noexcept { return angular_velocity_cutoff_; }
-  /// Elastic energy of dry friction [J]
+  /// Elastic energy of dry friction [J].
   double stored_energy() const noexcept { return dry_friction_ ? dry_friction_->energy() : 0.0; }
   Friction friction_state() const noexcept { return dry_friction_ ? dry_friction_->state() : Friction::none; }
 
@@ -135,7 +135,7 @@ class DampingAndLimits {
   RenderingConfig config_;
   double B_;
   std::optional<DryFriction> dry_friction_;
-  /// Hunt and Crossley's limited damping chi sum N_i u_i u_i^T of the last force [N s/m]
+  /// Hunt and Crossley's limited damping chi sum N_i u_i u_i^T of the last force [N s/m].
   Mat3 damping_ = Mat3::Zero();
   std::optional<double> angular_velocity_cutoff_;
 };

@@ -125,7 +125,7 @@ class LocalAverage final : public PointStage {
   }
 
   std::vector<std::uint32_t> cell_of_point_;
-  /// Position of each cell's merged contact in the buffer; kNone between steps
+  /// Position of each cell's merged contact in the buffer; kNone between steps.
   std::vector<std::uint32_t> slot_of_cell_;
   AlignedDoubles count_;  ///< number of contacts in each merged contact, by its position
 };

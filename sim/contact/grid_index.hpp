@@ -81,7 +81,7 @@ class GridIndex {
 
  private:
   GridCells cells_;
-  /// position of each cell's first point in the sorted arrays; the last entry is the number of points
+  /// Position of each cell's first point in the sorted arrays; the last entry is the number of points.
   std::vector<std::uint32_t> start_;
   AlignedDoubles x_, y_, z_;
   std::vector<std::uint32_t> shell_index_;

@@ -9,7 +9,7 @@
 
 namespace hapbench {
 
-/// step for differences of phi (surface normals), relative to the tool's half width
+/// Step for differences of phi (surface normals), relative to the tool's half width.
 inline constexpr double kNormalsOver = 1e-3;
 
 /// Computes how deep a tool is inside a solid: max(0, -phi) over the tool's body, where phi is the signed
@@ -63,7 +63,7 @@ class InsideSearch {
   ContactBuffer one_;         ///< a single query point for the tool
   AlignedDoubles x_, y_, z_;  ///< support point returned by the tool
   std::vector<Cell> cells_;   ///< stack of cells that may hold the deepest point
-  /// Depth of the deepest point found so far [m], and the tolerance of the current search
+  /// Depth of the deepest point found so far [m], and the tolerance of the current search.
   double best_ = 0.0, tolerance_ = kTolerance;
   std::size_t evaluations_ = 0;
   bool beyond_border_ = false;  ///< true if a point beyond the border may be deeper

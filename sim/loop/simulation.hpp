@@ -88,7 +88,7 @@ struct StepRecord {
   std::uint64_t step = 0;
   double time = 0.0;  ///< t_k = k dt [s]
   ToolState tool;
-  /// Roll angle of the tool [rad], also if its pose omits the roll; computed only if an observer reads it
+  /// Roll angle of the tool [rad], also if its pose omits the roll; computed only if an observer reads it.
   double roll = 0.0;
   RenderedForce force;
   Vec3 hand_force = Vec3::Zero();  ///< force of the hand on the handle [N]
@@ -99,7 +99,7 @@ struct StepRecord {
   std::size_t colliding = 0;                ///< number of colliding points before any point stage
   const ContactBuffer* rendered = nullptr;  ///< contacts that the law used; valid during on_step only
   const ContactBuffer* found = nullptr;     ///< contacts before any point stage; null unless an observer reads them
-  /// Stiffness ratios of the rendered contacts; computed only if an observer reads them
+  /// Stiffness ratios of the rendered contacts; computed only if an observer reads them.
   RatioRange ratio;
   SpringState springs;                 ///< computed only if an observer reads springs or energy
   std::optional<DeviceEnergy> device;  ///< computed only if an observer reads the energy
@@ -174,7 +174,7 @@ class Simulation {
   bool ratio_wanted_ = false;
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
-  /// Copy of the contacts before any point stage; null unless an observer reads them
+  /// Copy of the contacts before any point stage; null unless an observer reads them.
   std::unique_ptr<ContactBuffer> found_;
   bool position_is_free_ = false;
   bool tool_rolls_ = false;                        ///< the tool is not round, so its pose includes the roll

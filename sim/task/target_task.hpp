@@ -43,11 +43,11 @@ struct Threshold {
 /// The rules of the man-machine experiments of the thesis (D.2.2, D.3.2).
 struct TargetRules {
   TargetDisplay display = TargetDisplay::panel;
-  /// positions at which targets appear [m]; only the displayed components count
+  /// Positions at which targets appear [m]; only the displayed components count.
   std::vector<Vec3> places;
   std::uint64_t targets_per_place = 5;  ///< number of targets at each position in one trial
   double tolerance = 0.0002;            ///< largest distance at which the tip is on the target [m]
-  /// largest distance at which force and speed are logged [m]; nullopt: tolerance
+  /// Largest distance at which force and speed are logged [m]; nullopt: tolerance.
   std::optional<double> logged = {};
   double least_press = 1.0;                 ///< smallest force along +z that activates the task and keeps it active [N]
   std::optional<Gauge> gauge = {};          ///< nullopt: the subject sees every sample of the rendered force
