@@ -25,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns the choice of a JSON entry. Throws Json::exception if a key is missing or has a wrong type.
 OpenChoice choice_of(const Json& json) {
   const Json& value = json.at("value");
   OpenChoice choice{.id = json.at("id").get<std::string>(),
@@ -38,17 +39,17 @@ OpenChoice choice_of(const Json& json) {
   return choice;
 }
 
+/// Returns true if a pattern of the field matches the scenario's name.
 bool concerns(const ChosenField& field, const std::string& scenario) {
   return std::ranges::any_of(field.scenarios, [&](const std::string& pattern) {
     return ::fnmatch(pattern.c_str(), scenario.c_str(), 0) == 0;
   });
 }
 
-using Place = std::pair<std::string, Json*>;  ///< a dotted path, and the value there
+using Place = std::pair<std::string, Json*>;  ///< a dotted path, and the value at this path
 
-/// The places below a place that a key of a dotted path stands for: the entry of this name, or all entries of a list
-/// for
-/// "*". Throws InputError when there is none.
+/// Returns the children of a JSON location that a key of a dotted path matches: the entry with this name, or all entries
+/// of a list for "*". Throws InputError if a name has no entry.
 std::vector<Place> places_below(const Place& place, std::string_view key) {
   const auto& [at, node] = place;
   const bool every = key == "*" && node->is_array();
@@ -61,7 +62,7 @@ std::vector<Place> places_below(const Place& place, std::string_view key) {
   return below;
 }
 
-/// The places that a dotted path stands for. Throws InputError.
+/// Returns all locations that a dotted path matches. Throws InputError if there are none.
 std::vector<Place> places_of(Json& scenario, const std::string& path) {
   std::vector<Place> places = {{"", &scenario}};
   for (const std::string_view key : parts_of(path, '.')) {
@@ -75,7 +76,7 @@ std::vector<Place> places_of(Json& scenario, const std::string& path) {
   return places;
 }
 
-/// The text of a choice's value at a place. Throws InputError.
+/// Returns the new value of a location, as text: `value`, or `value` times the present number. Throws InputError.
 std::string chosen_text(const Place& place, const ChosenField& field, const std::string& value) {
   if (!field.times) return value;
   if (!place.second->is_number())
@@ -104,8 +105,8 @@ std::vector<std::string> Choices::values_on_record() const {
 }
 
 std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<const std::string> values) const {
-  Json changed = effective_scenario(scenario, scenario.directory);  // with every default, so that every field exists
-  Json texts = Json::object();                                      // by path, in the order of their first change
+  Json changed = effective_scenario(scenario, scenario.directory);  // with all defaults, so that every field exists
+  Json texts = Json::object();                                      // new value by path
   for (std::size_t i = 0; i < all_.size(); ++i) {
     for (const ChosenField& field : all_[i].fields) {
       if (!concerns(field, scenario.name)) continue;

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A cell of a choice's column.
+/// Returns a cell of a choice's column. Throws InputError if the choice does not allow its value.
 std::string checked(const OpenChoice& choice, std::string_view cell, const fs::path& file, std::size_t line) {
   const auto& range = choice.range;
   const auto number = finite_number(cell);
@@ -38,7 +38,7 @@ std::string checked(const OpenChoice& choice, std::string_view cell, const fs::p
   fail_in_line(file, line, fmt::format("{}: got \"{}\"; allowed: {}", choice.id, cell, allowed));
 }
 
-/// Runs a scenario for its results. Says what keeps them from being judged by; empty for nothing.
+/// Runs a scenario and writes its results. Returns why the results cannot be used; empty if they can.
 std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   try {
     const LoadedScenario loaded = evidence.load(name);
@@ -53,9 +53,9 @@ std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   }
 }
 
-/// The bins of these readings, for each choice.
+/// Returns for each choice the bin of each reading in `which`, for the sensitivity analysis.
 std::vector<std::vector<std::size_t>> bins_of_choices(const Readings& readings, const std::vector<std::size_t>& which) {
-  // Sixteen bins with sixteen points each, if there are enough points.
+  // At most 16 bins, with at least 16 readings each if there are enough.
   const std::size_t count = std::clamp<std::size_t>(which.size() / 16, 2, 16);
   std::vector<std::vector<std::size_t>> bins;
   for (std::size_t c = 0; c < readings.choices.all().size(); ++c) {
@@ -73,10 +73,11 @@ std::vector<std::vector<std::size_t>> bins_of_choices(const Readings& readings, 
   return bins;
 }
 
-/// What the verdicts on the claim of this index say.
+/// Returns the entry of claim number `c` in robustness.json.
 Json entry_of(const Readings& readings, const std::vector<ReadingVerdicts>& judged, std::size_t c) {
   const JudgedClaim& claim = readings.claims[c];
   const std::string on_record(verdict_name(claim.finding.verdict));
+  // Count the verdicts over the readings.
   std::map<std::string, std::size_t> counts;
   std::vector<std::size_t> with_verdict;
   std::vector<double> holds;
@@ -91,7 +92,7 @@ Json entry_of(const Readings& readings, const std::vector<ReadingVerdicts>& judg
     with_verdict.push_back(i);
     holds.push_back(verdict == on_record ? 1.0 : 0.0);
   }
-  // That of most readings; of several the one on record, if it is one of them.
+  // Most frequent verdict; the recorded verdict wins a tie.
   std::string majority = on_record;
   for (std::size_t most = same; const auto& [verdict, count] : counts) {
     if (count > most) majority = verdict;
@@ -118,7 +119,7 @@ std::vector<std::vector<std::string>> read_readings(const fs::path& file, const 
   const std::string text = read_named_file(file);
   CsvReader csv{LineReader(text), file};
   const std::vector<std::string> ids = names_of(choices.all(), &OpenChoice::id);
-  std::vector<std::size_t> places;  // of the columns, among the choices
+  std::vector<std::size_t> places;  // index of the choice of each column
   for (const std::string_view column : csv.columns()) {
     const std::string id(column);
     require_valid_name(file.string() + ": got the column", id, ids, "scripts/readings.py 1");
@@ -139,11 +140,12 @@ std::vector<std::vector<std::string>> read_readings(const fs::path& file, const 
 
 ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, const fs::path& directory) {
   const std::vector<std::string>& values = readings.values[reading];
+  // Remove the results at the end of this scope.
   const std::shared_ptr<void> results(nullptr, [&directory](void*) {
     std::error_code ignored;
     fs::remove_all(directory, ignored);
   });
-  std::map<std::string, std::string> problems;  // by scenario; empty where its results are there
+  std::map<std::string, std::string> problems;  // by scenario that was run; empty if its results can be used
   Evidence evidence{
       readings.choices.with_numbers(readings.published, values), directory, {}, [&](const Scenario& scenario) {
         return readings.choices.overrides(scenario, values);
@@ -162,7 +164,7 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
     try {
       judged.verdicts.emplace_back(verdict_name(j.claim.finding(evidence).verdict));
     } catch (const IoError&) {
-      throw;  // a full disk says nothing about a claim
+      throw;  // a full disk is no result for the claim
     } catch (const std::exception& error) {
       judged.verdicts.emplace_back(kNotMeasured);
       judged.problems.push_back(fmt::format("sample {}, {}: {}", reading, j.claim.id, error.what()));

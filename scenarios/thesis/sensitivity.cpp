@@ -9,7 +9,7 @@
 namespace hapbench {
 namespace {
 
-/// None when no input has one.
+/// Returns the input with the largest first-order index; empty if all indices are NaN.
 std::optional<DecidingInput> largest_index(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
                                            std::span<const double> y) {
   std::optional<DecidingInput> largest;
@@ -63,7 +63,7 @@ std::optional<DecidingInput> deciding_input(const std::vector<std::vector<std::s
     random.shuffle(y);
     as_large += largest_index(bins_of_inputs, y)->index >= found->index ? 1U : 0U;
   }
-  // The order that was observed counts as one of them (Phipson and Smyth 2010).
+  // The observed order counts as one of the permutations (Phipson and Smyth 2010).
   const double p = static_cast<double>(as_large + 1) / static_cast<double>(permutations + 1);
   return p <= level ? found : std::nullopt;
 }
