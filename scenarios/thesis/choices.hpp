@@ -30,8 +30,8 @@ struct OpenChoice {
   std::string value = {};                               ///< recorded value, which the scenarios have, as text for --set
   std::optional<std::pair<double, double>> range = {};  ///< smallest and largest plausible value of a number
   std::vector<std::string> options = {};                ///< plausible values of a text, as for --set
-  std::vector<ChosenField> fields = {};                 ///< empty for a number that rules of claims read by the choice's id
-  std::string text = {};                                ///< JSON text of the whole entry
+  std::vector<ChosenField> fields = {};  ///< empty for a number that rules of claims read by the choice's id
+  std::string text = {};                 ///< JSON text of the whole entry
 };
 
 /// All recorded choices.
@@ -47,9 +47,9 @@ class Choices {
   /// Returns the recorded values, one for each choice, as texts for --set.
   std::vector<std::string> values_on_record() const;
 
-  /// Returns the overrides for load_scenario that apply `values`, one for each choice, to a scenario. Choices that set the
-  /// same field are applied in order. Throws InputError if a choice's path is not a field of a scenario that the choice
-  /// names, or if a field to multiply is not a number.
+  /// Returns the overrides for load_scenario that apply `values`, one for each choice, to a scenario. Choices that set
+  /// the same field are applied in order. Throws InputError if a choice's path is not a field of a scenario that the
+  /// choice names, or if a field to multiply is not a number.
   std::vector<std::string> overrides(const Scenario& scenario, std::span<const std::string> values) const;
 
   /// Returns `published` with the values of the choices without fields added, by the choices' ids.

@@ -13,12 +13,12 @@
 #include "scenarios/thesis/judging.hpp"
 #include "sim/tool/cylinder.hpp"
 
-/// The list of all claims. Their texts are in results/reference/rules.json, the published numbers in published.json. The
-/// source file of each chapter measures the claims and decides the verdicts.
+/// The list of all claims. Their texts are in results/reference/rules.json, the published numbers in published.json.
+/// The source file of each chapter measures the claims and decides the verdicts.
 namespace hapbench {
 
-/// The functions that measure a claim and decide its verdict from the measurement alone. A constant in them that is not a
-/// choice must also be stated in the claim's text.
+/// The functions that measure a claim and decide its verdict from the measurement alone. A constant in them that is not
+/// a choice must also be stated in the claim's text.
 struct ClaimRule {
   const char* id = nullptr;
   Measure measure = nullptr;

@@ -28,8 +28,8 @@ struct Evidence {
 
   // All functions throw InputError, also if a result file is missing or has another format.
 
-  /// Returns a number of a scenario's summary.json at a dotted path, such as "metrics.force_max_N"; NaN if it is missing
-  /// or null.
+  /// Returns a number of a scenario's summary.json at a dotted path, such as "metrics.force_max_N"; NaN if it is
+  /// missing or null.
   double number(const std::string& scenario, const std::string& path) const;
   /// Returns the columns of a CSV result file of a scenario, by name. A cell without a number is NaN.
   std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const;

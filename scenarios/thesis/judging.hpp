@@ -84,9 +84,10 @@ inline void append_item(std::string& list, std::string_view item, std::string_vi
   list += item;
 }
 
-/// An entry of rules.json, with the functions of its rule. Texts contain ids of published numbers, such as <T2.raw>, which
-/// PublishedNumbers::fill replaces by the numbers. A threshold of this project is a choice without fields, such as
-/// rule.easily. The rule's text names it as <rule.easily>, from which Choices::reach finds that it influences the claim.
+/// An entry of rules.json, with the functions of its rule. Texts contain ids of published numbers, such as <T2.raw>,
+/// which PublishedNumbers::fill replaces by the numbers. A threshold of this project is a choice without fields, such
+/// as rule.easily. The rule's text names it as <rule.easily>, from which Choices::reach finds that it influences the
+/// claim.
 struct Claim {
   std::string id = {};
   std::string place = {};      ///< section of the thesis

@@ -25,8 +25,8 @@ bool is_ours(const Json& claim) {
   return claim.at("ours").get<bool>();
 }
 
-/// Returns "steady" if more than half of the judged samples have the recorded verdict, otherwise "fragile"; "not sampled"
-/// without samples.
+/// Returns "steady" if more than half of the judged samples have the recorded verdict, otherwise "fragile"; "not
+/// sampled" without samples.
 const char* sureness(const Json& robustness) {
   if (robustness.is_null()) return kNotSampled;
   const auto judged = robustness.at("judged").get<std::size_t>(), holds = robustness.at("holds").get<std::size_t>();
@@ -98,7 +98,8 @@ std::string main_results(const Json& claims) {
 
 /// Returns the table row of a claim, with texts shortened to at most 300 characters in total.
 std::string row_of(const Json& claim) {
-  constexpr std::size_t kClaim = 90, kPublished = 50, kLongestRow = 300;  // [characters]; `describe ID` prints the full texts
+  constexpr std::size_t kClaim = 90, kPublished = 50,
+                        kLongestRow = 300;  // [characters]; `describe ID` prints the full texts
   const std::string before =
       fmt::format("| {} | {} | {} | ", text_at(claim, "id"), shortened(text_at(claim, "claim"), kClaim),
                   shortened(text_at(claim, "published"), kPublished));

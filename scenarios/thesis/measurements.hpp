@@ -39,23 +39,24 @@ ContactBuffer wall_point(double beyond, const char* depth_model);
 /// Number of repetitions of a timing measurement.
 inline constexpr int kRepetitions = 20;
 
-/// Returns the smallest duration [s] of a call of `work` over up to `repetitions` calls. Stops after one second in total.
+/// Returns the smallest duration [s] of a call of `work` over up to `repetitions` calls. Stops after one second in
+/// total.
 template <class Work>
 double seconds_of(int repetitions, Work work) {
   using Clock = std::chrono::steady_clock;
-  double least = 0.0, all = 0.0;
+  double smallest = 0.0, all = 0.0;
   for (int i = 0; i < repetitions && all < 1.0; ++i) {
     const auto start = Clock::now();
     work();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    if (i == 0 || seconds < least) least = seconds;
+    if (i == 0 || seconds < smallest) smallest = seconds;
     all += seconds;
   }
-  return least;
+  return smallest;
 }
 
-/// Returns a scenario of a drill in the block's hole, prepared for measuring contacts: with an ideal device, which has no
-/// dynamics, and the original force limit; at most one period of the tilt long (6 s); without records.
+/// Returns a scenario of a drill in the block's hole, prepared for measuring contacts: with an ideal device, which has
+/// no dynamics, and the original force limit; at most one period of the tilt long (6 s); without records.
 Scenario drill_in_hole(Scenario scenario);
 
 /// The contacts before (`colliding`) or after (`rendered`) the scenario's point stages.
@@ -89,15 +90,15 @@ MeasuredCase vibration(const std::string& name, const Result& run);
 
 /// Returns true if `a` has a larger velocity variation and a larger vibration power than `b`.
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
-/// Returns true if `a` vibrates in comparison with a smooth algorithm `b`. With the factor f = rule.vibrates: either the
-/// velocity variation is at least f times and the vibration power at least f^2 times that of `b`; or vibrates_more() is
-/// true and the number of force reversals is at least f times that of `b`.
+/// Returns true if `a` vibrates in comparison with a smooth algorithm `b`. With the factor f = rule.vibrates: either
+/// the velocity variation is at least f times and the vibration power at least f^2 times that of `b`; or
+/// vibrates_more() is true and the number of force reversals is at least f times that of `b`.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
 
-/// Returns the damping ratio zeta of an oscillation about zero, from positions `x` [m], one for each time step. With the
-/// mean ratio q of the magnitudes of successive extremes, zeta = -ln q / sqrt(pi^2 + ln^2 q). Ignores the oscillation from
-/// the first extreme within 1 um of zero on: rounding and grazing contact are not oscillations. Empty with fewer than two
-/// extremes.
+/// Returns the damping ratio zeta of an oscillation about zero, from positions `x` [m], one for each time step. With
+/// the mean ratio q of the magnitudes of successive extremes, zeta = -ln q / sqrt(pi^2 + ln^2 q). Ignores the
+/// oscillation from the first extreme within 1 um of zero on: rounding and grazing contact are not oscillations. Empty
+/// with fewer than two extremes.
 std::optional<double> damping_ratio_of_swings(std::span<const double> x);
 
 }  // namespace hapbench

@@ -27,9 +27,9 @@ class PublishedNumbers {
   /// Returns the number with this id. Throws InputError for an unknown id.
   const PublishedNumber& operator[](const std::string& id) const;
   /// Returns the text with each <ID> or <ID.MEMBER> replaced by the number: <T2.raw> becomes "37.8 ± 17.7",
-  /// <T3.reduced.bound.at_most> becomes "15". A member (mean, spread, at_least or at_most) may have a factor and a format,
-  /// such as <J1.depth.mean*1000:.2f>; without a format it is written by plain(), and NaN as "none". Throws InputError for
-  /// an unknown id.
+  /// <T3.reduced.bound.at_most> becomes "15". A member (mean, spread, at_least or at_most) may have a factor and a
+  /// format, such as <J1.depth.mean*1000:.2f>; without a format it is written by plain(), and NaN as "none". Throws
+  /// InputError for an unknown id.
   std::string fill(const std::string& text) const;
   /// Sets the mean of a number that is not published, such as a threshold (choices.hpp) or a measured number.
   void set(const std::string& id, double value) { numbers_[id].mean = value; }

@@ -119,20 +119,20 @@ std::vector<std::vector<std::string>> read_readings(const fs::path& file, const 
   const std::string text = read_named_file(file);
   CsvReader csv{LineReader(text), file};
   const std::vector<std::string> ids = names_of(choices.all(), &OpenChoice::id);
-  std::vector<std::size_t> places;  // index of the choice of each column
+  std::vector<std::size_t> choice_of_column;  // index of the choice of each column
   for (const std::string_view column : csv.columns()) {
     const std::string id(column);
     require_valid_name(file.string() + ": got the column", id, ids, "scripts/readings.py 1");
-    const auto place = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
-    if (std::find(places.begin(), places.end(), place) != places.end())
+    const auto index = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
+    if (std::find(choice_of_column.begin(), choice_of_column.end(), index) != choice_of_column.end())
       fail_in_file(file, fmt::format("got the column \"{}\" twice; allowed: each once", id));
-    places.push_back(place);
+    choice_of_column.push_back(index);
   }
   std::vector<std::vector<std::string>> readings;
   while (csv.next()) {
     std::vector<std::string>& values = readings.emplace_back(choices.values_on_record());
-    for (std::size_t i = 0; i < places.size(); ++i)
-      values[places[i]] = checked(choices.all()[places[i]], csv.cells()[i], file, csv.line());
+    for (std::size_t i = 0; i < choice_of_column.size(); ++i)
+      values[choice_of_column[i]] = checked(choices.all()[choice_of_column[i]], csv.cells()[i], file, csv.line());
   }
   if (readings.empty()) fail_in_file(file, "got no row; allowed: a reading of the choices on record in each");
   return readings;

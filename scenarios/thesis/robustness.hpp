@@ -10,8 +10,8 @@
 #include "scenarios/thesis/judging.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
 
-/// Robustness of the verdicts: the claims are judged again under other readings of the thesis. A reading assigns one value
-/// to each choice (choices.hpp) that the thesis leaves open.
+/// Robustness of the verdicts: the claims are judged again under other readings of the thesis. A reading assigns one
+/// value to each choice (choices.hpp) that the thesis leaves open.
 namespace hapbench {
 
 /// The claims and the readings under which they are judged.
@@ -51,9 +51,9 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
 /// with the verdict on each claim.
 std::string robustness_table(const Readings& readings, const std::vector<ReadingVerdicts>& judged);
 
-/// Returns the content of robustness.json: for each claim, counts of its verdicts over the readings, and the hash of the
-/// choices that influence it. Entries of `before`, an earlier robustness.json, are kept for claims that are not among
-/// the claims of `readings`.
+/// Returns the content of robustness.json: for each claim, counts of its verdicts over the readings, and the hash of
+/// the choices that influence it. Entries of `before`, an earlier robustness.json, are kept for claims that are not
+/// among the claims of `readings`.
 Json robustness_json(const Readings& readings, const std::vector<ReadingVerdicts>& judged, const Json& before);
 
 }  // namespace hapbench

@@ -25,7 +25,8 @@ struct SearchWay {
       {};                 ///< scenario's value, where the search starts; empty if it is outside of the range
   bool whole = false;     ///< true: values are integers
   bool smallest = false;  ///< true: t = 0 is the high end, and the result is the smallest stable value
-  /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
+  /// Width at which bisection stops: relative to the value in a logarithmic range, relative to the range in a linear
+  /// range.
   double resolution = kEdgeResolution;
 
   /// Returns the value at the parameter `t`, rounded if `whole`.
