@@ -169,6 +169,7 @@ constexpr int kUpdates[] = {1, 10, 100, 1000};
 
 Measured measure_density(const Evidence& e) {
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance", {"rendering.local_average=false"});
+  // Collect contact sets of task 2 before the reduction.
   const std::vector<ContactBuffer> sets = contact_sets(loaded.scenario, 256);
   Scene scene;
   scene.capacity = largest_size(sets) * kWallDensities[std::size(kWallDensities) - 1];
@@ -187,6 +188,7 @@ Measured measure_density(const Evidence& e) {
     config.reduction.reset();
     changes(m, config);
   };
+  // One case for each law, then for each number of updates of stiffness shaping.
   for (const char* law : kLaws) add(law, with_algorithm(loaded.scenario, law).rendering);
   for (const int updates : kUpdates) {
     RenderingConfig config = loaded.scenario.rendering;

@@ -48,6 +48,7 @@ Measured measure_counts(const Evidence& e, const std::string& task) {
     for (std::size_t i = 0; i < table.at("colliding").size(); ++i) {
       const double time = table.at("time_s")[i];
       const Vec3 force{table.at("fmeas_x_N")[i], table.at("fmeas_y_N")[i], table.at("fmeas_z_N")[i]};
+      // Steps within kAfterTap of a force beyond the input limit do not count for the bound.
       if (force.norm() > e.published["L1.measured"].mean) tap = time;
       if (time >= tap + kAfterTap) outside = std::max(outside, table.at("rendered")[i]);
       if (table.at("colliding")[i] == 0.0) continue;
@@ -372,6 +373,7 @@ double stiffest_contacts(int iterations) {
   double stiffest = 0.0;
   Random random(1);
   for (int climb = 0; climb < kClimbs; ++climb) {
+    // Climb from a random set: accept each random change that raises the stiffness.
     Directions best = random_directions(random);
     double highest = stiffness(best);
     for (int i = 0; i < kStepsPerClimb; ++i) {
@@ -445,12 +447,14 @@ MeasuredValues measure_force_limit(const Evidence& e) {
   for (std::size_t i = on.size() - last; i < on.size(); ++i) plateau += on[i].depth / static_cast<double>(last);
   for (const auto& [depth, handle, force] : on)
     if (depth >= 0.99 * plateau) onset = std::min(onset, force);
+  // Find the spread of the plateau, from 0.2 N beyond the onset on.
   double low = plateau, high = plateau;
   for (const auto& [depth, handle, force] : on) {
     if (force < onset + 0.2) continue;
     low = std::min(low, depth);
     high = std::max(high, depth);
   }
+  // Compare the displacement without limit with the ideal line.
   const double stiffness = e.load("force_limit_off").scenario.rendering.stiffness;
   double squares = 0.0, deepest = 0.0;
   for (const auto& [depth, handle, force] : off) {

@@ -190,6 +190,7 @@ MeasuredValues measure_underestimation(const Evidence& e) {
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance");
   const Cylinder tool = make_cylinder(loaded.scenario.tool);
   const auto law = make_law(kProposedLaw, loaded.scenario.rendering);
+  // Compare depths and forces of the same contacts by both depth models, and record the path of the tool.
   std::vector<double> error, share;
   std::vector<Vec3> path;
   double difference = 0.0, force = 0.0;
@@ -214,6 +215,7 @@ MeasuredValues measure_underestimation(const Evidence& e) {
       if (exact.depth[i] > 0.0) share.push_back(error.back() / exact.depth[i]);
     }
   });
+  // Compare the path with the path of a run with the depth along the normal.
   std::sort(error.begin(), error.end());
   double distance = 0.0;
   std::size_t sample = 0;
@@ -248,6 +250,7 @@ MeasuredValues measure_depth_cost(const Evidence& e) {
       contact_sets(e.load("task2_rotate_signed_distance").scenario, kStepsBetweenSamples);
   double contacts = 0.0;
   for (const ContactBuffer& set : sets) contacts += static_cast<double>(set.size());
+  // Subtract the time of copying the contact sets.
   const double copying = seconds_with(sets, kRepetitions, [](ContactBuffer&) {});
   const auto of_contact = [&](const char* model) -> std::vector<double> {
     const auto depth = find_depth_model(model)->make();

@@ -192,10 +192,12 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
 
 std::string ledger_markdown(const Json& ledger) {
   const Json& claims = ledger.at("claims");
+  // Main results, headline, bars by chapter and the meanings of the verdicts.
   std::string text =
       main_results(claims) + "\n" + text_at(ledger, "headline") + " By chapter:\n\n" + chapter_bars(claims) + "\n";
   for (std::size_t v = 0; v <= static_cast<std::size_t>(Verdict::not_reproducible); ++v)
     text += fmt::format("{} *{}*: {}.  \n", kVerdicts[v].mark, kVerdicts[v].name, kVerdicts[v].meaning);
+  // Table of all claims, contradicted claims first.
   text += "\nMore of a row: `hapbench describe ID`.\n\n" + heading("id | claim");
   for (const Verdict verdict : {Verdict::refuted, Verdict::not_reproduced, Verdict::in_kind, Verdict::reproduced})
     for (const Json& claim : claims)

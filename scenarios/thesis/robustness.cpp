@@ -98,6 +98,7 @@ Json entry_of(const Readings& readings, const std::vector<ReadingVerdicts>& judg
     if (count > most) majority = verdict;
     most = std::max(most, count);
   }
+  // Find the choice that decides whether the recorded verdict holds.
   Json decided_by = nullptr;
   if (const auto by = deciding_input(bins_of_choices(readings, with_verdict), holds, hash_of(claim.claim.id)))
     decided_by = {{"choice", readings.choices.all()[by->input].id}, {"index", by->index}};
@@ -145,6 +146,7 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
     std::error_code ignored;
     fs::remove_all(directory, ignored);
   });
+  // Run each scenario when its results are first needed.
   std::map<std::string, std::string> problems;  // by scenario that was run; empty if its results can be used
   Evidence evidence{
       readings.choices.with_numbers(readings.published, values), directory, {}, [&](const Scenario& scenario) {
@@ -155,6 +157,7 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
     if (is_new) found->second = problem_of_run(evidence, scenario);
     if (!found->second.empty()) throw InputError(found->second);
   };
+  // Judge the claims.
   ReadingVerdicts judged;
   for (const JudgedClaim& j : readings.claims) {
     if (j.claim.costly && reading >= readings.costly()) {

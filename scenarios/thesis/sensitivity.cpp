@@ -36,12 +36,14 @@ double first_order_index(std::span<const std::size_t> bin, std::span<const doubl
   const auto n = static_cast<double>(y.size());
   const double mean = std::accumulate(y.begin(), y.end(), 0.0) / n;
   std::vector<double> sums(*std::max_element(bin.begin(), bin.end()) + 1), counts(sums.size());
+  // Sum deviations from the mean: total sum of squares (SST), and sums by bin.
   double total = 0.0;
   for (std::size_t i = 0; i < y.size(); ++i) {
     total += (y[i] - mean) * (y[i] - mean);
     sums[bin[i]] += y[i] - mean;
     counts[bin[i]] += 1.0;
   }
+  // Sum of squares between the bins (SSB), and the number of nonempty bins (B).
   double between = 0.0, filled = 0.0;
   for (std::size_t b = 0; b < sums.size(); ++b) {
     if (counts[b] == 0.0) continue;

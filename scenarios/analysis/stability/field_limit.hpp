@@ -42,13 +42,12 @@ struct FieldLimit {
   /// are ignored; they and loss of contact can raise the simulated limit above it. Infinite if the whole range is
   /// stable.
   std::optional<double> linear;
-  // Limits of K on a two-sided wall that holds the handle of an impedance device (WallLimits); empty otherwise.
-
-  std::vector<std::optional<double>> closed_forms;  ///< by stiffness_limits(), in their order [N/m]
-  std::optional<double> worst_hand;                 ///< smallest linear limit over the hands of hand_family() [N/m]
-  std::string no_theory;                            ///< why no linear limit exists; empty if one exists
-  SettledState settled;                             ///< settled state of the run at the limit
-  std::optional<JudgedValue> own;  ///< the run at the scenario's value; empty if the value is outside of the range
+  /// WallLimits::closed_forms [N/m].
+  std::vector<std::optional<double>> closed_forms;
+  std::optional<double> worst_hand;  ///< WallLimits::worst_hand [N/m]
+  std::string no_theory;             ///< WallLimits::no_theory
+  SettledState settled;              ///< settled state of the run at the limit
+  std::optional<JudgedValue> own;    ///< the run at the scenario's value; empty if the value is outside of the range
   /// Result of unstable_without_contact() at the nearest value beyond the limit; without a limit, at the smallest
   /// evaluated value.
   bool unstable_alone = false;

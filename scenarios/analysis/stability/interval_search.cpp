@@ -206,6 +206,7 @@ FoundEdge find_tried_edge(const SearchWay& options, EvaluatedParameters& evaluat
     const FoundEdge interval = find_edge(options, evaluated, counts_as_stable, true);
     if (!interval.stable) return {.scattered = scattered};
     const double first = interval.first.value_or(*interval.stable);
+    // Verify the whole interval, then the neighbourhood of its limit.
     if (first_failing(parameters_between(first, *interval.stable, kTriedBetween))) continue;
     if (!near || options.whole || !interval.beyond) return interval;
     const std::optional<double> failing = first_failing(parameters_below(options, *interval.stable));

@@ -21,8 +21,8 @@ inline constexpr double kEdgeResolution = 1e-3;  ///< default relative width at 
 /// The range of a search and its settings.
 struct SearchWay {
   Range range;  ///< from < to; both ends are evaluated
-  std::optional<double> current =
-      {};                 ///< scenario's value, where the search starts; empty if it is outside of the range
+  /// Scenario's value, where the search starts; empty if it is outside of the range.
+  std::optional<double> current = {};
   bool whole = false;     ///< true: values are integers
   bool smallest = false;  ///< true: t = 0 is the high end, and the result is the smallest stable value
   /// Width at which bisection stops: relative to the value in a logarithmic range, relative to the range in a linear
@@ -67,8 +67,8 @@ FoundEdge find_edge(const SearchWay& options, EvaluatedParameters& evaluated, co
 // narrow as 1 % of a range. Further samples therefore verify an interval.
 inline constexpr std::size_t kTriedBetween = 48;  ///< verification samples between the ends of the interval
 inline constexpr std::size_t kTriedNear = 8;      ///< further samples just below the limit
-inline constexpr double kNear =
-    0.02;  ///< largest distance of the kTriedNear samples from the limit, relative to the limit
+/// Largest distance of the kTriedNear samples from the limit, relative to the limit.
+inline constexpr double kNear = 0.02;
 
 /// Returns the upper 95 % confidence bound on the unstable fraction of an interval if `samples` samples in it are all
 /// stable: 1 - 0.05^(1 / samples).

@@ -44,6 +44,7 @@ double last_settled(Trials& trials, const TuneTrial& trial, const SearchWay& opt
     so_far = so_far && holds(t);
     return so_far;
   };
+  // Search the limit, verify the values below it, and repeat with each sample that fails.
   EvaluatedParameters evaluated = scanned(kEdgeIntervals, holds_so_far);
   while (true) {
     const double last = find_edge(options, evaluated, holds, false).stable.value_or(0.0);

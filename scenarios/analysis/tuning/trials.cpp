@@ -144,6 +144,7 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
   in_parallel(count, [&](std::size_t i) {
     const SceneVariant& variant = variants_[i % variants_.size()];
     const LoadedScenario loaded = load(trial.setting, K, variant, more(i));
+    // Check the linear loop in contact, then run.
     if (unstable_loop(loaded.scenario, lambda, K, loaded.scenario.rendering.stiffness)) {
       why[i] = "unstable in contact" + with(variant);
       return;

@@ -25,12 +25,12 @@ struct TuneQuestion {
   /// Limits on metrics, for all variants at K. Empty: the run of the scene itself must have low vibration by the rules
   /// of the diagnosis.
   std::map<std::string, MetricBound> limits = {};
-  std::vector<std::string> families = {"hands"};  ///< variant sets, from kFamilies (family.hpp)
-  Range damping_ratio = {0.01, 10.0, true};       ///< zeta; on impedance devices relative to the handle's mass
-  std::optional<Range> mass = {};  ///< virtual mass of an admittance device [kg]; empty: half to twice the
-                                   ///< scene's
-  bool filters = false;            ///< also search velocity filters of impedance devices
-  unsigned threads = 1;
+  std::vector<std::string> families = {"hands"};  ///< variant sets, from kFamilies
+  Range damping_ratio = {0.01, 10.0, true};       ///< zeta; on impedance devices computed with the handle's mass
+  /// Virtual mass of an admittance device [kg]; empty: half to twice the scene's virtual mass.
+  std::optional<Range> mass = {};
+  bool filters = false;                                ///< also search velocity filters of impedance devices
+  unsigned threads = 1;                                ///< number of parallel runs; does not change the result
   std::function<void(std::size_t runs)> on_runs = {};  ///< called repeatedly with the number of runs so far
 };
 

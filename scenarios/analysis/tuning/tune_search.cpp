@@ -80,10 +80,10 @@ bool TuneSearch::improve(const TuneSetting& setting) {
   const auto holds = [&](double t) { return trials_.feasible(setting, options.value_at(t)); };
   EvaluatedParameters scan = scanned(kEdgeIntervals, holds);
   if (const auto between = window(setting, options, scan)) scan[*between] = true;
-  const FoundEdge edge = find_edge(options, scan, holds, false);
-  if (!edge.stable) return false;
-  best_ = trials_.trial_at(setting, options.value_at(*edge.stable));
-  beyond_ = edge.beyond ? trials_.beyond(setting, options.value_at(*edge.beyond)) : trials_.end();
+  const FoundEdge interval = find_edge(options, scan, holds, false);
+  if (!interval.stable) return false;
+  best_ = trials_.trial_at(setting, options.value_at(*interval.stable));
+  beyond_ = interval.beyond ? trials_.beyond(setting, options.value_at(*interval.beyond)) : trials_.end();
   return true;
 }
 

@@ -50,6 +50,7 @@ bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law)
   law.edge = field_limit(question);
   trials.count_runs(law.edge.runs.size());
   const double G_K = trials.question().margin * choice.stiffness;
+  // Reject a choice without a contiguous stable interval, or with a limit below G K.
   if (!law.edge.end.value) return refute(trials, choice, G_K, "stable values are scattered");
   if (!law.edge.end.beyond) return false;
   const auto& [K, verdict] = *law.edge.end.beyond;
