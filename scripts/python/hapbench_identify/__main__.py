@@ -25,9 +25,9 @@ from .log import read_log
 from .model import FRICTION_TOLD, KINDS, NAMES, design, force_to_ask, travel_of
 
 NOTES = [
-    "Log: a CSV file of one axis while no hand holds the handle: time, commanded force (positive in"
-    " the direction of the position) and position, named time_s, force_N and position_m, or as "
-    "--columns and --scale say.",
+    "Log: a CSV file of one axis while no hand holds the handle: time, commanded force and "
+    "position, named time_s, force_N and position_m, or as --columns and --scale say. The force of "
+    "a row is the one commanded at its time, positive in the direction of the position.",
     "Result: mass, viscous and dry friction, delay, encoder step and noise, each with a 95 % "
     "interval. A parameter that the log cannot determine is not written; a warning gives the "
     "reason. A constant offset force is printed, but is not part of the device.",

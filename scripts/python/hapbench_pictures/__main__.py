@@ -66,7 +66,7 @@ def plot_line():
     line.text(
         "--where",
         "<condition>",
-        "for a sweep: draw only runs that meet it, such as 'inside_max_m<3e-4'; repeatable",
+        "for a sweep: draw only runs that meet it, such as 'inside_max_m<3e-4' (sweep --help); repeatable",
         action="append",
         default=[],
     )
