@@ -78,7 +78,8 @@ void add_limit(CommandLine& line) {
   auto [command, options] = line.command(
       "limit", "Find the largest (or smallest) value of a field at which the runs of a scenario are stable.", limit,
       "no limit is written");
-  command.add("scenarios <scenario>...", options.scenarios, "scenario files or names of bundled scenarios",
+  command.add("scenarios <scenario>...", options.scenarios,
+              "scenario files, names of bundled scenarios, or the name of a study (\"hapbench describe studies\")",
               {.required = true});
   command.add("--vary <field>", options.field, fmt::format("field to search (default: {})", options.field));
   command.add("--between <a:b>", options.between,
