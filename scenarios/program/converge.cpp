@@ -274,9 +274,9 @@ void add_converge(CommandLine& line) {
               {.required = true});
   command.add("--metric <name,...>", options.metrics,
               fmt::format("metrics of summary.json (default: {})", kDefaultMetrics[0]), {.comma_separated = true});
-  command.add(
-      "--vary <field>", options.field,
-      "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), environment.grid_m or tool.grid_m; any positive number whose error falls with it");
+  command.add("--vary <field>", options.field,
+              "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
+              "environment.grid_m or tool.grid_m; any positive number whose error falls with it");
   command.add("--levels <n>", options.levels, "number of levels; the coarsest has the scenario's value (default: 5)",
               {.range = {{3, 9}}});
   command.add("--ratio <number>", options.ratio,
@@ -285,9 +285,13 @@ void add_converge(CommandLine& line) {
               "also print the coarsest level with a relative error below this, such as 1%, and its run time");
   add_common(command, options, "converge_NAME");
   command.footer(
-      "Result: one row per level with its error; the first row is your scenario's own setting. Below: observed order, extrapolated value, and grid convergence index (Roache), the relative error of the finest level.\n\n"
-      "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names the reason. Take the range of the finest levels as the answer, printed as \"last levels A ... B\".\n\n"
-      "Files: converge.csv (one row per metric: order, extrapolated value, range), converge_levels.csv (one row per metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier files.\n\n"
+      "Result: one row per level with its error; the first row is your scenario's own setting. Below: observed order, "
+      "extrapolated value, and grid convergence index (Roache), the relative error of the finest level.\n\n"
+      "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names the "
+      "reason. Take the range of the finest levels as the answer, printed as \"last levels A ... B\".\n\n"
+      "Files: converge.csv (one row per metric: order, extrapolated value, range), converge_levels.csv (one row per "
+      "metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier files."
+      "\n\n"
       "Time: with the default levels of the time step, about 31 times one run.");
 }
 

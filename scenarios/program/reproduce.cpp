@@ -220,14 +220,17 @@ void add_reproduce(CommandLine& line) {
       "file of the ledger, with a Markdown table next to it (default: OUT/claims.json; with --only, no ledger)");
   command.flag("--anew", options.anew, "repeat all runs, also those whose results are current");
   add_jobs(command, options.jobs);
-  command.add(
-      "--choices <file.csv>", options.readings,
-      "judge all claims again under other assumptions: one set of assumptions per row, one column per changed assumption, such as results/reference/readings.csv");
+  command.add("--choices <file.csv>", options.readings,
+              "judge all claims again under other assumptions: one set of assumptions per row, one column per changed "
+              "assumption, such as results/reference/readings.csv");
   command.footer(
-      "Files: claims.json and claims.md (the ledger: claim, published and measured value, verdict) and the runs in OUT/thesis. With --choices and a ledger also robustness.csv and robustness.json next to it.\n\n"
+      "Files: claims.json and claims.md (the ledger: claim, published and measured value, verdict) and the runs in "
+      "OUT/thesis. With --choices and a ledger also robustness.csv and robustness.json next to it.\n\n"
       "Earlier results: runs of the same scenario by the same build are used again; a ledger is replaced.\n\n"
-      "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. With --choices much longer: each row repeats the experiments.\n\n"
-      "Exit status: 0 whatever the verdicts are; 3 if a run did not end as its scenario expects; 130 stopped by Ctrl-C.");
+      "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. With --choices much longer: "
+      "each row repeats the experiments.\n\n"
+      "Exit status: 0 whatever the verdicts are; 3 if a run did not end as its scenario expects; 130 stopped by "
+      "Ctrl-C.");
 }
 
 }  // namespace hapbench

@@ -170,7 +170,9 @@ void add_run(CommandLine& line) {
   command.flag("--no-skip", options.no_skip,
                "disable all shortcuts of the computation; results are the same, only slower: for checks");
   command.footer(
-      "Files: trajectory.csv (pose, velocity and forces at every step), summary.json (outcome, metrics, warnings, diagnosis), scenario.effective.json (all fields; repeats the run), columns.json (units and meanings). \"hapbench plot FOLDER\" draws them.\n\n"
+      "Files: trajectory.csv (pose, velocity and forces at every step), summary.json (outcome, metrics, warnings, "
+      "diagnosis), scenario.effective.json (all fields; repeats the run), columns.json (units and meanings). "
+      "\"hapbench plot FOLDER\" draws them.\n\n"
       "Earlier results: a run in the same folder is replaced; other files stay. Use --out to keep both.\n\n"
       "Exit status: 3 if a run does not end as its scenario expects; its results are written all the same.");
 }

@@ -61,10 +61,10 @@ void add_stress(CommandLine& line) {
   add_jobs(command, options.jobs);
   add_out(command, options.out, "stress");
   command.footer(
-      "Invalid: a force that is infinite or not a number, or a force larger than the proven bound of the law. "
-      "Contact sets include zero normals, coincident points and opposite gradients.\n\n"
+      "Invalid: a force that is infinite or not a number, or a force larger than the proven bound of the law. Contact "
+      "sets include zero normals, coincident points and opposite gradients.\n\n"
       "Files: stress.csv, one row per law with its counts; replaces an earlier one.\n\n"
-      "Time: about 4 s on two processors for the default number of sets.\n\n"
+      "Time: about 5 s on two processors for the default number of sets.\n\n"
       "Exit status: 3 if a law returns an invalid force, else 0.");
 }
 

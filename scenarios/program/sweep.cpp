@@ -275,7 +275,8 @@ void add_sweep(CommandLine& line) {
               "scenario file or name of a bundled scenario; or the folder of a finished sweep, to print it again");
   command.add(
       "--vary <field=values>", options.vary,
-      "values of a field: a:b:n (n numbers from a to b), a:b:n:log (in equal ratios), or v,w,... (numbers, names or JSON); with --sample a:b or a:b:log; several --vary give all combinations",
+      "values of a field: a:b:n (n numbers from a to b), a:b:n:log (in equal ratios), or v,w,... (numbers, names or "
+      "JSON); with --sample a:b or a:b:log; several --vary give all combinations",
       {.several = true});
   command.add("--sample <kind:n>", options.sample,
               "run n random points instead of all combinations: lhs:n (Latin hypercube) or random:n");
@@ -287,7 +288,8 @@ void add_sweep(CommandLine& line) {
               "column of sweep.csv to show and to order runs by (default: " + std::string(kDefaultMetrics[0]) + ")");
   command.add(
       "--where <condition>", options.where,
-      "print only runs that meet the condition, such as 'inside_max_m<3e-4'; one of < <= > >= = !=; repeatable, all must hold",
+      "print only runs that meet the condition, such as 'inside_max_m<3e-4'; one of < <= > >= = !=; repeatable, all "
+      "must hold",
       {.several = true});
   add_common(command, options, "sweep_NAME");
   command.flag("--resume", options.resume,
@@ -302,10 +304,14 @@ void add_sweep(CommandLine& line) {
       "--shard <i/n>", options.shard,
       "run only rows i, i+n, i+2n, ... (i from 0), for several machines; \"hapbench sweep FOLDER\" joins the shards");
   command.footer(
-      "Files: sweep.csv has one row per run: index, the varied fields, outcome, expected, steps, all metrics, state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in sweep.csv.part until the sweep ends.\n\n"
+      "Files: sweep.csv has one row per run: index, the varied fields, outcome, expected, steps, all metrics, "
+      "state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in "
+      "sweep.csv.part until the sweep ends.\n\n"
       "Fields: rendering.algorithm=all tries every law; scenario=v,w,... varies the scenario, without <scenario>.\n\n"
-      "Earlier results: a finished sweep in the folder is replaced. An interrupted one is not: use --resume or another --out.\n\n"
-      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C; running runs are finished first.");
+      "Earlier results: a finished sweep in the folder is replaced. An interrupted one is not: use --resume or "
+      "another --out.\n\n"
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not end as its scenario "
+      "expects, 130 stopped by Ctrl-C; running runs are finished first.");
 }
 
 }  // namespace hapbench

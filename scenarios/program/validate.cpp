@@ -189,7 +189,9 @@ void add_validate(CommandLine& line) {
               "write surface points and normals to FILE.csv (exact) or FILE.ply (single precision, for viewers)");
   add_overrides(command, options.overrides);
   command.footer(
-      "Checks: names of fields (with the nearest valid name), types and ranges of their values, and the files they name. Warnings point out likely unit errors (a factor of 100 or more), coarse points, and a tool that starts behind the surface. Prints size, number of points, start distance, duration and output size.\n\n"
+      "Checks: names of fields (with the nearest valid name), types and ranges of their values, and the files they "
+      "name. Warnings point out likely unit errors (a factor of 100 or more), coarse points, and a tool that starts "
+      "behind the surface. Prints size, number of points, start distance, duration and output size.\n\n"
       "Exit status: 0 all files are valid, 2 at least one is not; the others are checked all the same.");
 }
 

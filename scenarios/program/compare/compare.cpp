@@ -170,20 +170,27 @@ void add_compare(CommandLine& line) {
               {.range = {{1, 10'000}}});
   command.add(
       "--jitter <m>", options.question.jitter,
-      "shift the start by a random vector of this length [m], the same for all laws; needed for a spread over seeds if nothing else is random");
+      "shift the start by a random vector of this length [m], the same for all laws; needed for a spread over seeds "
+      "if nothing else is random");
   command.add("--by <metric,...>", options.metrics,
-              "metrics of the ranking, a smaller value is better (default: " +
+              "metrics of the ranking; smaller is better, except for success rates (default: " +
                   fmt::format("{}", fmt::join(kDefaultMetrics, ", ")) +
-                  "; and fidelity metrics if every scenario has a reference force)",
+                  "; if every scenario has a reference force, fidelity metrics instead)",
               {.comma_separated = true});
   add_common(command, options, "compare_NAME; of several scenarios: results/out/compare");
   command.flag(
       "--errors", options.errors,
-      "repeat all runs at half and a quarter of the time step and of the point spacing, to print errors and check which ranks hold; about 9 times the work");
+      "repeat all runs at half and a quarter of the time step and of the point spacing, to print errors and check "
+      "which ranks hold; about 9 times the work");
   command.footer(
-      "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number of laws that are better by more than 0.1 % and by more than the errors of both. Laws with a failed run rank last.\n\n"
-      "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged along, or does not end as its scenario expects.\n\n"
-      "Files: comparison.csv (one row per run), ranking.csv (one row per scenario, law and metric), and each run in OUT/[SCENARIO/]ALGORITHM[/seed_K]; the parts in brackets exist if there are several. An earlier comparison in the folder is removed, other files stay.\n\n"
+      "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
+      "of laws that are better by more than 0.1 % and by more than the errors of both. Laws with a failed run rank "
+      "last.\n\n"
+      "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "
+      "along, or does not end as its scenario expects.\n\n"
+      "Files: comparison.csv (one row per run), ranking.csv (one row per scenario, law and metric), and each run in "
+      "OUT/[SCENARIO/]ALGORITHM[/seed_K]; the parts in brackets exist if there are several. An earlier comparison in "
+      "the folder is removed, other files stay.\n\n"
       "Exit status: 0 also if laws fail, except: 3 if a run diverges and its scenario does not expect that.");
 }
 

@@ -88,18 +88,21 @@ void add_limit(CommandLine& line) {
   add_algorithms(command, options.algorithms, "the scenario's algorithm");
   command.add(
       "--device <name,...>", options.devices,
-      "devices instead of the scenario's: presets, ideal, admittance, files NAME.json, all, or impedance for all presets; presets also run at both ends of their unpublished parameters",
+      "devices instead of the scenario's: presets, ideal, admittance, files NAME.json, all, or impedance for all "
+      "presets; presets also run at both ends of their unpublished parameters",
       {.comma_separated = true});
   command.add(
       "--friction <factor,...>", options.friction,
-      "with --device: instead of these ends, multiply the dry friction of each device by factors such as 0,2; none: no variation",
+      "with --device: instead of these ends, multiply the dry friction of each device by factors such as 0,2; none: "
+      "no variation",
       {.comma_separated = true});
   command.add("--over <field=values>", options.over,
               "repeat the search for each value of another field, written like sweep --vary; repeatable",
               {.several = true});
   command.add(
       "--stable <rule>", options.stable,
-      "settled: comes to rest or decays; bounded: may also vibrate; still: little vibration of the handle (default: settled; if a script moves the tool, still)",
+      "settled: comes to rest or decays; bounded: may also vibrate; still: little vibration of the handle (default: "
+      "settled; if a script moves the tool, still)",
       {.one_of = {"settled", "bounded", "still"}});
   command.add("--vibration <m/s>", options.vibration,
               fmt::format("for the rule still: largest vibration of the handle, rms above 30 Hz (default: {})",
@@ -108,13 +111,20 @@ void add_limit(CommandLine& line) {
               "a stable run must also keep METRIC=MAX or METRIC=MIN:MAX, such as inside_settled_m=3e-4; repeatable");
   command.add(
       "--resolution <ratio>", options.resolution,
-      "relative width of the interval that encloses the limit (default: 0.001); relative to the range if the range reaches 0 or below");
+      "relative width of the interval that encloses the limit (default: 0.001); relative to the range if the range "
+      "reaches 0 or below");
   add_common(command, options, "limit_NAME");
   command.footer(
-      "Stable: the run comes to rest or its oscillation decays; if a script moves the tool, the handle hardly vibrates. A run that diverges, passes through the surface, loses contact, sticks or never touches is unstable. \"hapbench describe stability\" defines all classes.\n\n"
-      "Result: two limits. The simulated limit is found by bisection on runs. The linear limit (- if there is none) follows from the eigenvalues of the loop in contact. If the linear limit is the smaller one, rely on it: above it, only bounces, dry friction or the end of the run keep runs stable.\n\n"
-      "Files: limit.csv has one row per search, limit_runs.csv one row per run with its class. They replace the files of an earlier search in the same folder.\n\n"
-      "Time: 100 to 400 runs for one search, and 30 to 50 for each row with --device or --over, which skip the verification samples.\n\n"
+      "Stable: the run comes to rest or its oscillation decays; if a script moves the tool, the handle hardly "
+      "vibrates. A run that diverges, passes through the surface, loses contact, sticks or never touches is unstable. "
+      "\"hapbench describe stability\" defines all classes.\n\n"
+      "Result: two limits. The simulated limit is found by bisection on runs. The linear limit (- if there is none) "
+      "follows from the eigenvalues of the loop in contact. If the linear limit is the smaller one, rely on it: above "
+      "it, only bounces, dry friction or the end of the run keep runs stable.\n\n"
+      "Files: limit.csv has one row per search, limit_runs.csv one row per run with its class. They replace the files "
+      "of an earlier search in the same folder.\n\n"
+      "Time: 100 to 400 runs for one search, and 30 to 50 for each row with --device or --over, which skip the "
+      "verification samples.\n\n"
       "Exit status: 0 also if no value is stable; 2 bad input; 130 stopped by Ctrl-C.");
 }
 

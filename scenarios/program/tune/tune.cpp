@@ -100,7 +100,8 @@ void add_tune(CommandLine& line) {
   command.flag("--filters", options.question.filters, "on an impedance device, choose the velocity filter too");
   add_common(command, options, "tune_NAME");
   command.footer(fmt::format(
-      "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear limit "
+      "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
+      "limit "
       "is at least margin x K, and every --bound holds at K. Without --bound the scenario's run must have low "
       "vibration: no buzz, pop, chatter or created energy (\"hapbench describe diagnosis\").\n\n"
       "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with "
