@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/renamed_names.hpp"
 #include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {
@@ -36,9 +37,16 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return least;
 }
 
+/// Returns the new name of a renamed name if it is valid here, else an empty text.
+std::string_view valid_new_name(std::string_view given, std::span<const std::string> valid) {
+  const std::string_view now = new_name_of(given);
+  return !now.empty() && std::ranges::find(valid, now) != valid.end() ? now : std::string_view();
+}
+
 }  // namespace
 
 std::string nearest_name(std::string_view given, std::span<const std::string> valid) {
+  if (const std::string_view now = valid_new_name(given, valid); !now.empty()) return std::string(now);
   const std::string lower = lower_case(given);
   std::string best;
   // A third of the letters may be wrong, but only one in a short name, which would otherwise match anything.
@@ -57,6 +65,8 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
 }
 
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid) {
+  if (const std::string_view now = valid_new_name(given, valid); !now.empty())
+    return fmt::format("; version 0.4.0 renamed it to \"{}\"", now);
   const std::string name = nearest_name(given, valid);
   return name.empty() ? "" : fmt::format("; nearest valid name: \"{}\"", name);
 }

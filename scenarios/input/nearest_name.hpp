@@ -7,11 +7,12 @@
 /// Messages about a name that is none of the valid ones.
 namespace hapbench {
 
-/// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest. Case does not
-/// matter, and an ending after an underscore, such as a unit, may be missing.
+/// Returns the valid name nearest to `given` in edit distance, or an empty text if no name is near enough to suggest. The
+/// new name of a renamed name (renamed_names.hpp) is the nearest. Case does not matter, and an ending after an
+/// underscore, such as a unit, may be missing.
 std::string nearest_name(std::string_view given, std::span<const std::string> valid);
 
-/// `; nearest valid name: "x"`, or empty.
+/// Returns `; nearest valid name: "x"`, or `; version 0.4.0 renamed it to "x"`, or an empty text.
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
 
 /// Throws an InputError, `got` before the name, when the name is not among the valid ones. `shown_by`: see below.

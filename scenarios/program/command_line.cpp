@@ -139,7 +139,6 @@ int CommandLine::parse_and_run(ProgramWords words) {
     app_->parse(std::move(words));
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
-    refuse_old_words(*app_, nullptr);
     const Layout layout = context_.layout();
     fmt::print("{}", chosen.empty() ? program_help(layout) : command_help(*chosen.front(), layout));
     return kSuccess;

@@ -16,7 +16,6 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/exit_status.hpp"
-#include "scenarios/program/old_words.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/program_context.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -103,8 +102,7 @@ int simulate_log_for_pipe() {
 }
 
 /// At a terminal this process becomes the launcher.
-int run(const std::string& command, const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
-  for (const std::string& word : given) refuse_old_word(command, word);
+int run(const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
   const std::string line = launch_line(package, given, context);
   if (context.captured != nullptr) return run_for(*context.captured, line);
   ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
@@ -117,7 +115,7 @@ int run_import(const ProgramWords& given, ProgramContext& context) {
   std::string kinds;
   if (given == ProgramWords{"device", kSimulateLog}) return simulate_log_for_pipe();
   for (const auto& [name, sentence, package] : kImportKinds) {
-    if (name == kind) return run("import " + name, {package}, {given.begin() + 1, given.end()}, context);
+    if (name == kind) return run({package}, {given.begin() + 1, given.end()}, context);
     kinds += layout.entry(fmt::format("hapbench import {} --help", name), sentence, 2, 34);
   }
   if (kind == "-h" || kind == "--help") {
@@ -154,7 +152,7 @@ void write_way(ProgramContext& context, const std::filesystem::path& folder, con
 int run_python_command(const ProgramWords& words, ProgramContext& context) {
   const ProgramWords given(words.begin() + 1, words.end());
   return words[0] == "import" ? run_import(given, context)
-                              : run(words[0], {"hapbench_pictures", words[0]}, given, context);
+                              : run({"hapbench_pictures", words[0]}, given, context);
 }
 
 }  // namespace hapbench

@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 struct ReproduceOptions : CommonOptions {
   std::vector<std::string> only;
   std::string ledger;
-  bool anew = false;
+  bool rerun = false;
   std::string readings;  ///< file; empty for none
 
   fs::path folder() const { return results_directory(out, "reproduce"); }
@@ -73,12 +73,12 @@ struct ThesisRun : BundledScenario {
 };
 
 /// Runs the scenario into its subdirectory of the directory, except where the results there are current or it has run.
-void provide(ThesisRun& run, const fs::path& directory, bool anew) {
+void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
   if (run.seconds) return;
   run.seconds = seconds_of(1, [&] {
     const fs::path results = directory / run.name;
     const LoadedScenario loaded = checked(load_scenario(run.file));
-    if (anew || !is_current(results, loaded)) run.unmet = run_scenario(loaded, results, false).unmet;
+    if (rerun || !is_current(results, loaded)) run.unmet = run_scenario(loaded, results, false).unmet;
   });
 }
 
@@ -96,7 +96,7 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
       note(scenario);
       const auto run = std::ranges::find(runs, scenario, &ThesisRun::name);
       if (run == runs.end()) return;  // of another group
-      providing += seconds_of(1, [&] { provide(*run, options.runs(), options.anew); });
+      providing += seconds_of(1, [&] { provide(*run, options.runs(), options.rerun); });
       if (provided.insert(scenario).second) running += *run->seconds;
     };
     Finding finding;
@@ -170,7 +170,7 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
   // Single claims run only the scenarios they need.
   if (options.only.empty())
     for_each_job(runs.size(), job_options(options, "thesis"),
-                 [&](std::size_t i) { provide(runs[i], options.runs(), options.anew); });
+                 [&](std::size_t i) { provide(runs[i], options.runs(), options.rerun); });
 
   const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options);
   // None of single claims unless --ledger is given: they would replace the ledger of all claims.
@@ -218,7 +218,7 @@ void add_reproduce(CommandLine& line) {
   command.add(
       "--ledger <file.json>", options.ledger,
       "file of the ledger, with a Markdown table next to it (default: OUT/claims.json; with --only, no ledger)");
-  command.flag("--anew", options.anew, "repeat all runs, also those whose results are current");
+  command.flag("--rerun", options.rerun, "repeat all runs, also those whose results are current");
   add_jobs(command, options.jobs);
   command.add("--choices <file.csv>", options.readings,
               "judge all claims again under other assumptions: one set of assumptions per row, one column per changed "

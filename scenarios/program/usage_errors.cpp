@@ -10,7 +10,6 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/old_words.hpp"
 #include "scenarios/program/program_words.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 
@@ -49,12 +48,6 @@ std::string problem_of(const std::string& word, const CLI::App& program, const C
 
 }  // namespace
 
-void refuse_old_words(const CLI::App& program, const CLI::App* command) {
-  for (const std::string& word : program.remaining()) refuse_old_word("", word);
-  if (command == nullptr) return;
-  for (const std::string& word : command->remaining()) refuse_old_word(command->get_name(), word);
-}
-
 std::string usage_problem(const CLI::ParseError& error, const CLI::App& program) {
   const std::vector<CLI::App*> chosen = program.get_subcommands();
   const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
@@ -62,7 +55,6 @@ std::string usage_problem(const CLI::ParseError& error, const CLI::App& program)
   const std::string help = fmt::format("; \"hapbench {}--help\" explains", words);
   ProgramWords extra = program.remaining(true);
   std::erase(extra, "--");
-  refuse_old_words(program, command);
   // An unknown option leaves its value behind as an extra word; the option is the mistake to report.
   std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
   if (!extra.empty()) return name + problem_of(extra.front(), program, command) + help;

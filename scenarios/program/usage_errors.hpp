@@ -10,9 +10,7 @@ class ParseError;
 /// What is wrong with words that no command takes.
 namespace hapbench {
 
-/// Explains in one line why the command line was refused. Throws InputError for a word that earlier versions took.
+/// Returns in one line why CLI11 rejected the command line, with the nearest valid name.
 std::string usage_problem(const CLI::ParseError& error, const CLI::App& program);
-/// Throws InputError for the first word that nothing took and that earlier versions did.
-void refuse_old_words(const CLI::App& program, const CLI::App* command);
 
 }  // namespace hapbench

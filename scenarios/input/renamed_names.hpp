@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string_view>
+
+namespace hapbench {
+
+/// A public name (field, metric, column, file, option or value) that version 0.4.0 renamed.
+struct RenamedName {
+  std::string_view before;
+  std::string_view now;
+};
+
+/// All renamed names. Error messages suggest the new name wherever it is allowed. CHANGELOG.md has the same table.
+inline constexpr RenamedName kRenamedNames[] = {
+    {"league.csv", "ranking.csv"},
+    {"beyond", "first_unstable"},
+    {"class_beyond", "first_unstable_class"},
+    {"low", "stable_low"},
+    {"below", "unstable_below"},
+    {"class_below", "unstable_below_class"},
+    {"high", "stable_high"},
+    {"above", "unstable_above"},
+    {"class_above", "unstable_above_class"},
+    {"theory", "theoretical_limit"},
+    {"closed_form", "closed_form_limit"},
+    {"linear", "linear_limit"},
+    {"undecided", "undecided_runs"},
+    {"worst_hand", "worst_hand_limit"},
+    {"no_theory", "no_theory_reason"},
+    {"inconsistent_runs", "non_monotonic_runs"},
+    {"astray", "non_monotonic_runs"},
+    {"linear_edge", "linear_limit"},
+    {"edge_in_runs", "simulated_limit"},
+    {"scattered", "no_contiguous_interval"},
+    {"dying_out", "decaying"},
+    {"contacts.asked", "contacts.queries"},
+    {"asked", "queries"},
+    {"force_stage.taken_J", "force_stage.removed_J"},
+    {"taken_J", "removed_J"},
+    {"least_press_N", "min_press_N"},
+    {"--anew", "--rerun"},
+};
+
+/// Returns the new name of a name that was renamed, else an empty text.
+constexpr std::string_view new_name_of(std::string_view before) {
+  for (const RenamedName& renamed : kRenamedNames)
+    if (renamed.before == before) return renamed.now;
+  return {};
+}
+
+}  // namespace hapbench
