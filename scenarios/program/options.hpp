@@ -20,12 +20,15 @@ struct OutputOptions {
 
 /// An option that means the same in every command that has it.
 struct SharedOption {
-  std::string_view name, help;
+  std::string_view name, placeholder, help;
 };
 /// In the order of the help.
 std::span<const SharedOption> shared_options();
 /// The help of a shared option; empty for other options.
 std::string shared_option_help(const std::string& name);
+
+/// Returns true for a shared option that the help of a command names without explaining it.
+bool is_listed_briefly(const std::string& name);
 
 /// Options that most commands have.
 struct CommonOptions {
