@@ -5,7 +5,8 @@
 
 namespace hapbench {
 
-/// Copied in each step. Constructing it there would write zeros one by one, and reading them in pairs would stall.
+/// Copied in every step. A default-constructed object would write its zeros one by one, and reading them in
+/// pairs would stall.
 static const RenderedForce kNoForce;
 
 PenaltyRendering::PenaltyRendering(std::unique_ptr<ForceLaw> law, const RenderingConfig& config)
@@ -40,18 +41,19 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
 void PenaltyRendering::render(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out.depth_max = contacts.largest_depth();
   if (local_average_) local_average_->process(contacts);
-  // A single contact cannot be similar to another one.
+  // A single contact has no similar contact, so the reduction would change nothing.
   if (reduction_ && (contacts.size() > 1 || skips_ == Skips::off)) reduction_->process(contacts);
   if (contacts.empty() && skips_ == Skips::on) return;
 
   const LawForce& law = law_force_ = law_->evaluate(contacts);
-  // -K times an empty sum is -0, but a step that skips the law answers 0.
+  // -K times an empty sum is -0; adding zero gives the 0 of a step that skips the law.
   out.spring = contacts.empty() ? Vec3(law.spring + Vec3::Zero()) : law.spring;
   out.S = law.S;
-  // Required by the model and no skip: S is zero without contacts, so the whole velocity would count as tangential.
+  // Stop here without contacts, also with Skips::off: S is zero, so the whole velocity would count as
+  // tangential.
   if (contacts.empty()) return;
   in_contact_ = true;
-  Mat3 loads;  // not set where nothing reads it
+  Mat3 loads;  // uninitialised unless read
   // A law without weights has a single load, its spring force.
   if (damping_and_limits_.needs_loads())
     loads = law_->gives_weights() ? Mat3(K_ * load_tensor(contacts)) : load_along(law.spring);

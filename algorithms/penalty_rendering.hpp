@@ -8,12 +8,13 @@
 
 namespace hapbench {
 
-/// Penalty-based rendering, the thesis's pipeline, as one force algorithm:
+/// Penalty-based rendering, the pipeline of the thesis, as one force algorithm:
 ///
 ///   contacts with depths -> (local average) -> (reduction) -> force law -> damping, friction, limits
 ///
-/// One virtual call per stage and step. Stages that the configuration does not ask for do not exist. Steps without
-/// contacts, or with too few to reduce, skip the stages that would do nothing (Skips).
+/// One virtual call for each stage in each step. Only the stages in the configuration are created. Steps
+/// without contacts skip all stages, and steps with one contact skip the reduction (Skips), since these stages
+/// would change nothing.
 class PenaltyRendering final : public ForceAlgorithm {
  public:
   PenaltyRendering(std::unique_ptr<ForceLaw> law, const RenderingConfig& config);
@@ -33,14 +34,14 @@ class PenaltyRendering final : public ForceAlgorithm {
   void render(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept;
   ContactVelocity velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept;
 
-  std::unique_ptr<PointStage> local_average_;  ///< may be null
-  std::unique_ptr<PointStage> reduction_;      ///< may be null
+  std::unique_ptr<PointStage> local_average_;  ///< null if not configured
+  std::unique_ptr<PointStage> reduction_;      ///< null if not configured
   std::unique_ptr<ForceLaw> law_;
   DampingAndLimits damping_and_limits_;
   Skips skips_;
   double K_;
-  bool in_contact_ = false;  ///< in the last step
-  LawForce law_force_;       ///< answer of the law in the last step with contacts
+  bool in_contact_ = false;  ///< true if the last step had contacts after the point stages
+  LawForce law_force_;       ///< result of the law in the last step with contacts
 };
 
 }  // namespace hapbench

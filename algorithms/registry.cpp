@@ -7,12 +7,13 @@
 #include "algorithms/stages/controllers.hpp"
 #include "sim/tool/refuse.hpp"
 
-/// The algorithms in the order of lists. For each row, a source file in laws/ or proxy/ defines
+/// The built-in algorithms, in the order of lists. For each name, a source file in laws/ or proxy/ defines
 /// `AlgorithmEntry <name>_entry()`.
-#define HAPBENCH_ALGORITHMS(row)                                                                                 \
-  row(original_averaging) row(summation) row(mean) row(virtual_coupling) row(shaped_stiffness) row(tandpasta)    \
-      row(normal_projection) row(exact_shaping) row(continuous_normal_projection) row(merged_shaping) row(proxy) \
-          row(least_squares) row(highest_depth) row(mcneely) row(static_coupling)
+#define HAPBENCH_ALGORITHMS(entry)                                                                       \
+  entry(original_averaging) entry(summation) entry(mean) entry(virtual_coupling) entry(shaped_stiffness) \
+      entry(tandpasta) entry(normal_projection) entry(exact_shaping) entry(continuous_normal_projection) \
+          entry(merged_shaping) entry(proxy) entry(least_squares) entry(highest_depth) entry(mcneely)    \
+              entry(static_coupling)
 
 namespace hapbench {
 
@@ -22,7 +23,7 @@ HAPBENCH_ALGORITHMS(HAPBENCH_DECLARE)
 
 namespace {
 
-/// The table, built at the first use because static variables of other files may ask for it.
+/// The table. Built at first use, because initialisers of static variables in other files may call it.
 struct Table {
 #define HAPBENCH_ENTRY(name) name##_entry(),
   std::deque<AlgorithmEntry> entries = {HAPBENCH_ALGORITHMS(HAPBENCH_ENTRY)};
@@ -32,8 +33,8 @@ struct Table {
 };
 
 Table& table() {
-  static Table the_one;
-  return the_one;
+  static Table instance;
+  return instance;
 }
 
 constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo,        &kDampingAndLimitsInfo,
@@ -44,7 +45,8 @@ const AlgorithmEntry& algorithm_entry(std::string_view name) {
   refuse("unknown algorithm ", name);
 }
 
-/// A name can be a field and a word of a list on the command line.
+/// Throws std::invalid_argument if a text cannot be used as a scenario field and as an entry of a list on the
+/// command line.
 void require_name(const std::string& what, const char* text) {
   const std::string_view name = text == nullptr ? "" : text;
   constexpr std::size_t kLongest = 64;
@@ -70,11 +72,11 @@ void check(const OwnParameter& p) {
     refuse(which, "its default is out of its range");
 }
 
-/// Throws std::invalid_argument.
+/// Throws std::invalid_argument if a name, a text or a parameter of the entry is invalid.
 void check(const AlgorithmEntry& entry) {
   const ModelInfo& info = *entry.info;
   require_name("an algorithm", info.name);
-  // `--algorithms all` means all of them.
+  // `--algorithms all` selects all algorithms.
   if (info.name == std::string_view("all")) refuse("an algorithm is called \"all\", which means all of them");
   for (const auto& [what, text] :
        {std::pair{"its summary", info.summary}, std::pair{"its formula", info.formula},
@@ -93,11 +95,11 @@ std::unique_ptr<ForceStage> make_force_stage(const ForceStageConfig& config) {
   return std::make_unique<ActuatorLimitedPassivity>(std::get<ActuatorLimitedPassivityConfig>(config));
 }
 
-/// Owns the targets of `info` and `own_parameters` of an added algorithm.
+/// Owner of the texts to which `info` and `own_parameters` of an external algorithm point.
 struct Texts {
   std::deque<std::string> all;
   ModelInfo info = {};
-  std::vector<OwnParameter> own;
+  std::vector<OwnParameter> parameters;
 
   const char* copy(const char* text) { return all.emplace_back(text).c_str(); }
 };
@@ -105,10 +107,10 @@ struct Texts {
 }  // namespace
 
 double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter) {
-  const auto own = config.parameters.find(algorithm);
-  if (own == config.parameters.end()) return parameter.initial;
-  const auto value = own->second.find(parameter.name);
-  return value == own->second.end() ? parameter.initial : value->second;
+  const auto values = config.parameters.find(algorithm);
+  if (values == config.parameters.end()) return parameter.initial;
+  const auto value = values->second.find(parameter.name);
+  return value == values->second.end() ? parameter.initial : value->second;
 }
 
 const std::deque<AlgorithmEntry>& algorithms() {
@@ -135,15 +137,16 @@ AlgorithmEntry checked_copy(AlgorithmEntry entry) {
   check(entry);
   auto texts = std::make_shared<Texts>();
   Texts& t = *texts;
+  // Copy the texts of the parameters, then the texts of the documentation.
   for (OwnParameter p : entry.own_parameters) {
     for (const char** text : {&p.name, &p.range.unit, &p.meaning}) *text = t.copy(*text);
-    t.own.push_back(p);
+    t.parameters.push_back(p);
   }
   t.info = *entry.info;
   for (const char** text : {&t.info.name, &t.info.summary, &t.info.formula, &t.info.source, &t.info.known_failure})
     *text = t.copy(*text);
   entry.info = &t.info;
-  entry.own_parameters = t.own;
+  entry.own_parameters = t.parameters;
   entry.texts = std::move(texts);
   return entry;
 }
@@ -152,14 +155,14 @@ void add_algorithm(AlgorithmEntry entry) {
   entry = checked_copy(std::move(entry));
   const std::vector<std::string> names = algorithm_names();
   const auto same = std::find(names.begin(), names.end(), entry.info->name);
-  const auto place = static_cast<std::size_t>(same - names.begin());
+  const auto index = static_cast<std::size_t>(same - names.begin());
   auto& [entries, built_in_size, count] = table();
-  if (place < built_in_size) refuse("\"", *same, "\" is the name of a built-in algorithm");
+  if (index < built_in_size) refuse("\"", *same, "\" is the name of a built-in algorithm");
   ++count;
-  if (place == entries.size()) {
+  if (index == entries.size()) {
     entries.push_back(std::move(entry));
   } else {
-    entries[place] = std::move(entry);
+    entries[index] = std::move(entry);
   }
 }
 

@@ -12,83 +12,88 @@
 
 namespace hapbench {
 
-/// Gradient-based point reduction (thesis C.3, 2.8).
+/// Parameters of the gradient-based point reduction (thesis C.3, 2.8).
 struct ReductionConfig {
-  double threshold = 0.995;      ///< alpha_TH: gradients with a larger inner product are similar
-  std::size_t max_points = 100;  ///< n_ext
-  /// Without a seed, contacts are visited in ascending shell index. With one, in a fixed random order of the shell
-  /// points, to study how the greedy filter depends on it (the thesis starts at a random point).
+  double threshold = 0.995;      ///< alpha_TH: gradients with a larger inner product count as similar
+  std::size_t max_points = 100;  ///< n_ext: largest number of contacts kept
+  /// nullopt: contacts are visited in ascending shell index. Otherwise they are visited in a fixed random order
+  /// of the shell points, to study how the greedy filter depends on the order. The thesis starts at a random
+  /// point.
   std::optional<std::uint64_t> shuffle_seed;
 };
 
-/// The value of RenderingConfig::contact_source for the contacts of our search and depth models.
+/// Value of RenderingConfig::contact_source for contacts from hapbench's own search and depth models.
 inline constexpr const char* kOwnContacts = "own";
-/// Contacts that a file gives: the recorded contacts of a prescribed motion, or a library of the user's own.
+/// Values of RenderingConfig::contact_source for contacts from a file: the recorded contacts of a prescribed
+/// motion, or the user's shared library.
 inline constexpr const char* kTrace = "trace";
 inline constexpr const char* kContactPlugin = "plugin";
 
-/// Dry friction in place of the thesis's viscous one; see stages/damping_and_limits.hpp.
+/// Dry friction instead of the thesis's viscous friction; see stages/damping_and_limits.hpp.
 struct DryFrictionConfig {
-  double mu = 0.3;                  ///< friction coefficient [1]
-  std::optional<double> stiffness;  ///< K_t of the bristle [N/m]; none: K
-  double damping_ratio = 1.0;       ///< zeta_t of the bristle with the virtual mass
+  double mu = 0.3;                  ///< friction coefficient, dimensionless
+  std::optional<double> stiffness;  ///< K_t of the bristle [N/m]; nullopt: K
+  double damping_ratio = 1.0;       ///< zeta_t, damping ratio of the bristle with the virtual mass
 };
 
-// Force stages, which see the force of the algorithm and answer the one to render; see stages/controllers.hpp.
+// Force stages replace the force of an algorithm by the force to render; see stages/controllers.hpp.
 
 struct EnergyTankConfig {
-  double capacity = 0.1;  ///< C [J]
-  double initial = 0.0;   ///< besides the energy of the springs in the first row [J]
+  double capacity = 0.1;  ///< C, largest energy that the tank keeps [J]
+  double initial = 0.0;   ///< energy at the start, in addition to the energy of the springs in the first step [J]
 };
 struct ActuatorLimitedPassivityConfig {
-  std::optional<Vec3> max_force;      ///< F of the actuator along each axis [N]; none: no limit
-  std::optional<double> max_damping;  ///< b [N s/m]; none: M / dt of the virtual tool
+  std::optional<Vec3> max_force;      ///< F, limit of the actuator along each world axis [N]; nullopt: no limit
+  std::optional<double> max_damping;  ///< b, largest damping [N s/m]; nullopt: M / dt of the virtual tool
 };
 using ForceStageConfig = std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig>;
 
-/// Parameters of the rendering: how contacts become a force. Names are those of registry.hpp. Units: N, m, s, kg.
+/// Parameters of the rendering, which computes a force from contacts. Names are those of registry.hpp. Units:
+/// N, m, s, kg.
 struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
-  int iterations = 3;  ///< m of the shaping iteration, for the laws that iterate
+  int iterations = 3;  ///< m, number of shaping iterations, for laws that iterate
   std::string depth_model = "surface_normal";
-  std::string contact_source = kOwnContacts;  ///< or kTrace, kContactPlugin
-  std::string contact_file;                   ///< of the latter two, relative to the scenario file
-  std::string contact_config = "{}";          ///< of kContactPlugin: a JSON object
-  std::optional<Lateness> late;               ///< none: contacts of every row
+  std::string contact_source = kOwnContacts;  ///< kOwnContacts, kTrace or kContactPlugin
+  std::string contact_file;                   ///< file of kTrace or kContactPlugin, relative to the scenario file
+  std::string contact_config = "{}";          ///< configuration for kContactPlugin: a JSON object
+  std::optional<Lateness> late;               ///< multi-rate contacts; nullopt: contacts are found in every step
   bool local_average = false;
   std::optional<ReductionConfig> reduction;
 
-  double stiffness = 20000.0;                     ///< K [N/m]
-  double damping_ratio = 0.7;                     ///< zeta
-  double mass = 0.2;                              ///< M of the virtual tool [kg]
-  std::optional<double> damping;                  ///< B [N s/m]; none: 2 zeta sqrt(K M)
+  double stiffness = 20000.0;                     ///< K, stiffness of one penalty spring [N/m]
+  double damping_ratio = 0.7;                     ///< zeta, damping ratio
+  double mass = 0.2;                              ///< M, mass of the virtual tool [kg]
+  std::optional<double> damping;                  ///< B, normal damping [N s/m]; nullopt: 2 zeta sqrt(K M)
   double mu_s = 0.0;                              ///< viscous friction [N s/m]
   double mu_f = 0.0;                              ///< viscous friction per newton of spring force [s/m]
-  std::optional<DryFrictionConfig> dry_friction;  ///< then mu_s and mu_f are 0
-  /// chi [s/m] of damping that grows with depth (Hunt and Crossley), in place of B.
+  std::optional<DryFrictionConfig> dry_friction;  ///< if set, mu_s and mu_f are 0
+  /// chi [s/m] of damping that grows with depth (Hunt and Crossley); replaces B.
   std::optional<double> hunt_crossley;
-  std::optional<double> max_damping;       ///< B_max [N s/m]
-  std::optional<double> max_force;         ///< F_max [N]
-  std::optional<double> virtual_coupling;  ///< K_vc [N/m]; none: K
-  double regularisation = 0.01;            ///< eps of least_squares
+  std::optional<double> max_damping;       ///< B_max, limit of the damping [N s/m]; nullopt: none
+  std::optional<double> max_force;         ///< F_max, limit of the force [N]; nullopt: none
+  std::optional<double> virtual_coupling;  ///< K_vc, stiffness of the coupling spring [N/m]; nullopt: K
+  double regularisation = 0.01;            ///< eps of the law least_squares
 
-  bool angular_damping = false;  ///< damping and friction act on the velocity of the tool at each contact
-  std::optional<double> angular_velocity_cutoff = 20.0;  ///< low-pass of that angular velocity [Hz]
+  bool angular_damping = false;  ///< damping and friction use the tool's velocity at each contact
+  /// Cut-off of the low-pass on this velocity's rotation [Hz]; nullopt: none.
+  std::optional<double> angular_velocity_cutoff = 20.0;
 
-  std::optional<ForceStageConfig> force_stage;  ///< behind the algorithm; none: its force is rendered
-  bool passivity_controller = false;            ///< around both
+  /// Applied after the algorithm; nullopt: the algorithm's force is rendered.
+  std::optional<ForceStageConfig> force_stage;
+  bool passivity_controller = false;  ///< applied around algorithm and force stage
 
-  /// Given values of parameters that belong to one algorithm alone (OwnParameter), by algorithm and name.
+  /// Given values of the parameters that belong to one algorithm only (OwnParameter), by algorithm and name.
   std::map<std::string, std::map<std::string, double>> parameters;
 
   bool has_friction() const { return mu_s != 0.0 || mu_f != 0.0 || dry_friction; }
 
-  /// Skipped: stages without contacts, the reduction of one contact, friction with coefficients of zero. The run uses
-  /// the same value for its search and its records.
+  /// Whether to skip work that changes nothing: stages without contacts, the reduction of a single contact,
+  /// friction with coefficients of zero. The run uses the same value for its search and its records.
   Skips skips = Skips::on;
 };
 
-/// The fields of a scenario that set these, with unit and range.
+/// The scenario fields that set these parameters, with unit and range.
 namespace parameter {
 
 inline constexpr NumberRange kSwitch = {0, 1, "1"};
@@ -116,7 +121,8 @@ inline constexpr Parameter kDropout = {"rendering.contacts.dropout", {0.0, 1.0, 
 inline constexpr Parameter kMaxDamping = {"rendering.limits.max_damping_N_s_per_m", {0.0, 1e12, "N s/m"}};
 inline constexpr Parameter kMaxForce = {"rendering.limits.max_force_N", {0.0, 1e12, "N"}};
 inline constexpr Parameter kVirtualCoupling = {"rendering.virtual_coupling_N_per_m", {0.0, 1e12, "N/m", true}};
-/// Below 1e-9, the rounding of sum d_i u_i (1e-16 n d) divided by eps would not be far below a depth.
+/// Lower limit 1e-9: below it, the rounding of sum d_i u_i (1e-16 n d), divided by eps, would not be far below
+/// a depth.
 inline constexpr Parameter kRegularisation = {"rendering.regularisation", {1e-9, 1e6, "1"}};
 inline constexpr Parameter kTankCapacity = {"rendering.force_stage.capacity_J", {0.0, 1e6, "J"}};
 inline constexpr Parameter kTankInitial = {"rendering.force_stage.initial_J", {0.0, 1e6, "J"}};

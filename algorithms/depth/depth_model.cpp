@@ -8,7 +8,7 @@
 #include "sim/tool/motion.hpp"
 #include "sim/tool/refuse.hpp"
 
-/// The depth models, each with its documentation, and the source that applies one.
+/// The depth models, each with its documentation, and the contact source that applies a depth model.
 namespace hapbench {
 namespace {
 
@@ -80,18 +80,21 @@ constexpr ModelInfo kContinuousNormalProjectionInfo = {
         "sideways still drops its whole depth at once",
 };
 
-/// Normal projection without the jump (thesis F.1, Fig. F.4): each point remembers its depth from step to step.
+/// Normal projection without the force jump (thesis F.1, Fig. F.4): each point keeps its depth d from step to
+/// step. d_sd is the shortest distance to the tool's surface, d_np the normal projection, u the gradient, and
+/// dx the displacement of the tool at the point in one step.
 ///
-///  - No depth grows by more than |dx| in a step. This includes entry: seen from the tool, the point has moved by dx,
-///    so d_sd <= |dx|. Depths of a tool at rest do not creep.
-///  - Moving the tool along u changes d_np by the same amount. A point that the tool has pressed along u since the
-///    first touch therefore has d = d_np, also beyond the median line, where d_sd saturates.
-///  - The gain from <dx, u> is work done against the force -K d u. Energy is created by d_sd alone, as in depth model
-///    surface_normal. Some is lost where a point leaves sideways.
+///  - No depth grows by more than |dx| in a step. This includes entry: relative to the tool, the point has
+///    moved by dx, so d_sd <= |dx|. The depths of a tool at rest do not drift.
+///  - A motion of the tool along u changes d_np by the same amount. A point that the tool has pressed along u
+///    since first contact therefore has d = d_np, also beyond the median line, where d_sd saturates.
+///  - The increase by <dx, u> equals work done against the force -K d u. Only d_sd creates energy, as in the
+///    depth model surface_normal. Some energy is lost where a point leaves sideways.
 ///
-/// A function of the pose cannot have both: continuity at entry requires depth 0 on the whole surface of the tool, and
-/// no saturation the whole diameter there for a point that was pressed across it. Nor can the depth at entry be
-/// subtracted: a tool that slides over a flat, where points keep entering from the side, would lose its support. O(n).
+/// No function of the pose alone is both continuous and free of saturation. Continuity at entry requires depth
+/// 0 everywhere on the tool's surface. Without saturation, a point that was pressed across the tool would have
+/// the whole diameter as depth on the same surface. Subtracting the depth at entry is no solution: a tool that
+/// slides over a flat, where points keep entering from the side, would lose its support. O(n).
 class ContinuousNormalProjection final : public DepthModel {
  public:
   void prepare(const PointShell& shell) override {
@@ -115,8 +118,9 @@ class ContinuousNormalProjection final : public DepthModel {
       Memory& point = memory_[contacts.index[i]];
       const bool stays = point.step + 1 == step_;
       const double pressed = stays ? point.depth + (moved + turned.cross(x - pose.position)).dot(u) : 0.0;
-      const double least = std::max(contacts.depth[i], 0.0);  // rounding may put a point on the surface outside
-      point = {std::min(std::max(least, pressed), exit_[i]), step_};
+      // Rounding may put a point on the surface slightly outside
+      const double shortest = std::max(contacts.depth[i], 0.0);
+      point = {std::min(std::max(shortest, pressed), exit_[i]), step_};
       contacts.depth[i] = point.depth;
     }
     contacts.pad();
@@ -127,14 +131,14 @@ class ContinuousNormalProjection final : public DepthModel {
   static constexpr std::uint64_t kNever = 0;
 
   struct Memory {
-    double depth = 0.0;           ///< d [m]
-    std::uint64_t step = kNever;  ///< last step in which the point was in the tool
+    double depth = 0.0;           ///< d [m] in this step
+    std::uint64_t step = kNever;  ///< last step in which the point was inside the tool
   };
 
-  std::vector<Memory> memory_;  ///< one for each point of the shell
+  std::vector<Memory> memory_;  ///< one entry for each point of the shell
   std::vector<double> exit_;    ///< d_np of each contact [m]
   std::uint64_t step_ = kNever + 1;
-  ToolPose last_;  ///< pose in the step before; not used if no point stays
+  ToolPose last_;  ///< pose in the previous step; unused if no point was inside
 };
 
 template <class Model>

@@ -12,38 +12,41 @@
 
 namespace hapbench {
 
-/// Gives every colliding point its penetration depth d_i [m] >= 0 and its gradient u_i (thesis B.1, C.1, F.1; see
-/// ContactBuffer for the signs). Most models depend on the pose of the tool alone; one with a memory is the state of
-/// one run. One virtual call per step.
+/// Computes the penetration depth d_i >= 0 [m] and the gradient u_i of every colliding point (thesis B.1, C.1,
+/// F.1; signs as in ContactBuffer). Most models depend only on the pose of the tool. A model with a memory
+/// holds the state of one run. One virtual call in each step.
 class DepthModel {
  public:
   virtual ~DepthModel() = default;
-  /// Called before the first step with the contacts of a shell; the only call that may allocate.
+  /// Called before the first step with the shell of the contacts. Only this function may allocate.
   virtual void prepare(const PointShell& shell) { static_cast<void>(shell); }
-  /// Back to t = 0.
+  /// Returns to t = 0.
   virtual void reset() noexcept {}
-  /// Fills depth and gradient of all contacts and pads. Called once in every step; of consecutive steps without
-  /// contacts, all but the first may be left out. Precondition: every point lies in the tool (closed set).
+  /// Writes depth and gradient of all contacts and pads the buffer. Called once in every step. In consecutive
+  /// steps without contacts, all calls but the first may be skipped. Precondition: every point lies inside the
+  /// tool or on its surface.
   virtual void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
 };
 
+/// An entry of the table: documentation and constructor of a depth model.
 struct DepthModelEntry {
   const ModelInfo* info;
   std::unique_ptr<DepthModel> (*make)();
 };
 
-/// The table of depth models.
+/// Returns the table of depth models.
 std::span<const DepthModelEntry> depth_models();
-/// Null if there is no model of that name.
+/// Returns null if no model has this name.
 const DepthModelEntry* find_depth_model(std::string_view name);
-/// Throws std::invalid_argument for an unknown name.
+/// Creates the model with this name. Throws std::invalid_argument if there is none.
 std::unique_ptr<DepthModel> make_depth_model(std::string_view name);
 
-/// The points of a shell as contacts: a search finds them, a depth model gives them depth and gradient. In consecutive
-/// steps without contacts the depth model is called in the first only (Skips).
+/// Contact source of a shell: a search finds the colliding points, and a depth model computes their depths and
+/// gradients. In consecutive steps without contacts, the depth model is called in the first step only, unless
+/// `skips` is off.
 class ShellSource final : public ContactSource {
  public:
-  /// Shell and tool must outlive the source and the search, which refers to them.
+  /// Shell and tool must outlive the source. `search` must refer to this shell and this tool.
   ShellSource(const PointShell& shell, const ToolShape& tool, std::unique_ptr<ContactQuery> search,
               std::unique_ptr<DepthModel> depth_model, Skips skips = Skips::on);
 
@@ -57,7 +60,7 @@ class ShellSource final : public ContactSource {
   std::unique_ptr<ContactQuery> search_;
   std::unique_ptr<DepthModel> depth_model_;
   Skips skips_;
-  bool model_knows_of_no_contacts_ = false;  ///< the depth model's last call had no contacts
+  bool model_knows_of_no_contacts_ = false;  ///< the last call of the depth model had no contacts
 };
 
 }  // namespace hapbench

@@ -4,12 +4,13 @@
 #include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 
-/// Laws with a coupling spring between the tool and its contacts: virtual_coupling, least_squares and static_coupling.
+/// Laws with a coupling spring between the tool and its contacts: virtual_coupling, least_squares,
+/// static_coupling.
 namespace hapbench {
 namespace {
 
-/// Energy and moment about `tip` of springs of stiffness K [N/m] with the weights in the buffer, whose ends have moved
-/// by `shift` [m], so the depths are d_i + <u_i, shift>. O(n).
+/// Returns energy [J] and moment about `tip` of springs of stiffness K [N/m] with the weights in the buffer.
+/// Their ends have moved by `shift` [m], so the depths are d_i + <u_i, shift>. O(n).
 SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, const Vec3& tip, double K) noexcept {
   using simd::load, simd::Pack;
   const Pack sx(shift.x()), sy(shift.y()), sz(shift.z());
@@ -28,7 +29,8 @@ SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, co
   return {0.5 * K * simd::sum(energy), -K * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
 }
 
-/// f = -K M^-1 sum d_i u_i, S = M^-1 S_sum with M = shift I + scale S_sum, S_sum = sum u u^T.
+/// A law with all penalty springs in series with one coupling spring: f = -K M^-1 sum d_i u_i and S = M^-1
+/// S_sum, with S_sum = sum u u^T and M = shift I + scale S_sum.
 class SeriesLaw : public ForceLaw {
  public:
   SeriesLaw(double stiffness, double shift, double scale) : ForceLaw(stiffness), shift_(shift), scale_(scale) {}
@@ -36,25 +38,26 @@ class SeriesLaw : public ForceLaw {
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     set_weights(contacts, 1.0);
     const Mat3 S_sum = stiffness_tensor(contacts);
-    // Positive definite, because S_sum is a sum of u u^T.
+    // M is positive definite, because S_sum is a sum of u u^T.
     series_.compute(shift_ * Mat3::Identity() + scale_ * S_sum);
     const Mat3 S = series_.solve(S_sum);
-    // S_sum and the inverse commute, so S is symmetric; averaging removes the rounding of the solve.
+    // S is symmetric, because S_sum and M^-1 commute; averaging removes the rounding of the solve.
     return {-K_ * series_.solve(weighted_depth(contacts)), 0.5 * (S + S.transpose())};
   }
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling passes velocities on as it does depths.
+  /// The coupling transmits velocities like depths.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return series_.solve(ForceLaw::turning_velocity(contacts, S, tool));
   }
 
  protected:
-  /// Springs of penalty stiffness K_p [N/m] and a coupling that the force `spring` stretches by `stretch` [m], which
-  /// relieves every penalty spring: depth d_i + <u_i, stretch>.
-  static SpringState springs(const ContactBuffer& contacts, const Vec3& spring, const Vec3& stretch, const Vec3& tip,
-                             double K_p) noexcept {
+  /// Returns energy and moment of springs of stiffness K_p [N/m] in series with a coupling. The force `spring`
+  /// stretches the coupling by `stretch` [m], which reduces the depth of each penalty spring to d_i + <u_i,
+  /// stretch>.
+  static SpringState coupled_springs(const ContactBuffer& contacts, const Vec3& spring, const Vec3& stretch,
+                                     const Vec3& tip, double K_p) noexcept {
     SpringState state = shifted_springs(contacts, stretch, tip, K_p);
     state.energy += 0.5 * spring.dot(stretch);
     return state;
@@ -63,7 +66,7 @@ class SeriesLaw : public ForceLaw {
   double shift_, scale_;
 
  private:
-  Eigen::LLT<Mat3> series_;  ///< of M of the last contacts
+  Eigen::LLT<Mat3> series_;  ///< factorisation of M for the last contacts
 };
 
 constexpr OwnParameter kAlongSum[] = {
@@ -72,7 +75,7 @@ constexpr OwnParameter kAlongSum[] = {
      0.0,
      "0: a coupling spring in space; 1: a scalar one along the sum of the depths, whose direction the force keeps"}};
 
-/// The formula divided by K_vc, so that K = 0 needs no case of its own.
+/// M is divided by K_vc, so that K = 0 needs no special case.
 class VirtualCoupling final : public SeriesLaw {
  public:
   explicit VirtualCoupling(const RenderingConfig& config)
@@ -84,44 +87,46 @@ class VirtualCoupling final : public SeriesLaw {
     set_weights(contacts, 1.0);
     const Mat3 S_sum = stiffness_tensor(contacts);
     const Vec3 sum = weighted_depth(contacts), u = sum.normalized();
-    passed_ = shift_ / (shift_ + scale_ * u.dot(S_sum * u));
-    return {-passed_ * K_ * sum, passed_ * S_sum};
+    transmitted_ = shift_ / (shift_ + scale_ * u.dot(S_sum * u));
+    return {-transmitted_ * K_ * sum, transmitted_ * S_sum};
   }
 
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
-    return K_ == 0.0 ? SpringState{} : springs(contacts, spring, spring * (scale_ / K_), tip, K_);
+    return K_ == 0.0 ? SpringState{} : coupled_springs(contacts, spring, spring * (scale_ / K_), tip, K_);
   }
 
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
-    return along_sum_ ? Vec3(passed_ * ForceLaw::turning_velocity(contacts, S, tool))
+    return along_sum_ ? Vec3(transmitted_ * ForceLaw::turning_velocity(contacts, S, tool))
                       : SeriesLaw::turning_velocity(contacts, S, tool);
   }
 
  private:
   bool along_sum_;
-  double passed_ = 1.0;  ///< part of the sum that a scalar coupling passes on
+  double transmitted_ = 1.0;  ///< fraction of the summed force that a scalar coupling transmits
 };
 
-/// (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d.
+/// Bound of |f_spring| / K for n contacts with depths <= d: (I + U U^T)^-1 U has the singular values s / (1 +
+/// s^2) <= 1/2, where s is a singular value of U, the matrix of gradients, and |(d_1 … d_n)| <= sqrt(n) d.
 /// Precondition: K_vc = K.
 double virtual_coupling_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n)) * depth;
 }
 
-/// The energy of the law is that of its mechanical equivalent: penalty springs of stiffness K / eps in series with one
-/// coupling spring of stiffness K. E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2; its gradient with
-/// respect to the position of the tool is K x = -f. Depths and velocities are resolved alike.
+/// Mechanical equivalent: penalty springs of stiffness K / eps in series with one coupling spring of stiffness
+/// K. The energy is E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2. Its gradient by the
+/// tool's position is K x = -f. Depths and velocities are transmitted alike.
 class LeastSquares final : public SeriesLaw {
  public:
   explicit LeastSquares(const RenderingConfig& config) : SeriesLaw(config.stiffness, config.regularisation, 1.0) {}
 
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
-    return K_ == 0.0 ? SpringState{} : springs(contacts, spring, spring / K_, tip, K_ / shift_);
+    return K_ == 0.0 ? SpringState{} : coupled_springs(contacts, spring, spring / K_, tip, K_ / shift_);
   }
 };
 
-/// x = (eps I + U U^T)^-1 U d with the gradients in the columns of U. By the singular values s of U,
-/// |x| <= max s / (eps + s^2) |d|, at most 1 / (2 sqrt eps) where s^2 = eps, and |d| <= sqrt(n) times the deepest.
+/// Bound of |f_spring| / K: x = (eps I + U U^T)^-1 U d with the gradients in the columns of U. With the
+/// singular values s of U, |x| <= max s / (eps + s^2) |d|, which is at most |d| / (2 sqrt eps), at s^2 = eps.
+/// |d| is at most sqrt(n) times the largest depth.
 double least_squares_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
 }
@@ -131,101 +136,110 @@ constexpr OwnParameter kSaturation[] = {{"saturation_N",
                                          30.0,
                                          "F_s: the coupling never pulls with more; default what the trainer gives"}};
 
-/// Most Newton steps, and the smallest part of one. If they end before the balance, the force is still that of the
-/// coupling.
-constexpr int kMostSteps = 30;
-constexpr double kSmallestPart = 1e-6;
-/// Least stiffness of the coupling along its force, relative to that across it. Far beyond saturation rounding would
-/// make it zero or negative.
-constexpr double kSoftest = 1e-12;
-/// Tolerated imbalance, relative to K sqrt(sum p_i^2). The rounding of the sum of n pulls is below 1e-16 sqrt(n) of it.
-constexpr double kBalanced = 1e-13;
+/// Limits of Newton's method: number of steps and smallest fraction of a step. If it ends before the balance is
+/// reached, the force is still the coupling's force.
+constexpr int kMaxSteps = 30;
+constexpr double kMinFraction = 1e-6;
+/// Smallest stiffness of the coupling along its force, relative to the stiffness across. Far beyond saturation,
+/// rounding would make it zero or negative.
+constexpr double kMinStiffnessRatio = 1e-12;
+/// Tolerated imbalance, relative to K sqrt(sum p_i^2). The rounding of a sum of n forces is below 1e-16 sqrt(n)
+/// of this.
+constexpr double kMaxImbalance = 1e-13;
 
 double saturation_of(const RenderingConfig& config) {
   return own_value(config, "static_coupling", kSaturation[0]);
 }
 
-/// Finds the balance by Newton's method with halved steps. It is the minimum of a convex energy,
+/// Static virtual coupling: the tool is connected by a saturating spring to a massless copy of itself,
+/// displaced by s, which is in balance with its contacts. Newton's method with halved steps finds the balance,
+/// the minimum of the convex energy
 ///
-///   W(s) + K/2 sum p_i^2,  W(s) = F_s^2 / K_vc (sqrt(1 + (K_vc |s| / F_s)^2) - 1),
+///   W(s) + K/2 sum p_i^2,  W(s) = F_s^2 / K_vc (sqrt(1 + (K_vc |s| / F_s)^2) - 1)
 ///
-/// and does not depend on the step before, so every force is the derivative of one potential of the contacts.
+/// with the depths p_i of the copy. The balance does not depend on the previous step, so the force is the
+/// derivative of a potential of the contacts.
 class StaticCoupling final : public ForceLaw {
  public:
   explicit StaticCoupling(const RenderingConfig& config)
       : ForceLaw(config), K_vc_(config.virtual_coupling.value_or(config.stiffness)), F_s_(saturation_of(config)) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
-    shift_.setZero();
-    pass_.setZero();
+    displacement_.setZero();
+    transmission_.setZero();
     if (contacts.empty() || K_ == 0.0 || K_vc_ == 0.0) {
       set_weights(contacts, 0.0);
       return {};
     }
     find_balance(contacts);
+    // Stiffness of the coupling and the contacts in series.
     const Mat3 springs = K_ * stiffness_tensor(contacts);
-    const Mat3 coupling = coupling_stiffness(shift_);
-    pass_ = Eigen::LDLT<Mat3>(coupling + springs).solve(coupling).transpose();
-    // Coupling and contacts in series; symmetric, but for the rounding that averaging removes.
-    const Mat3 S = pass_ * springs / K_;
-    return {coupling_force(shift_), 0.5 * (S + S.transpose())};
+    const Mat3 coupling = coupling_stiffness(displacement_);
+    transmission_ = Eigen::LDLT<Mat3>(coupling + springs).solve(coupling).transpose();
+    // S is symmetric up to rounding, which averaging removes.
+    const Mat3 S = transmission_ * springs / K_;
+    return {coupling_force(displacement_), 0.5 * (S + S.transpose())};
   }
 
   SpringState spring_state(const ContactBuffer& contacts, const Vec3&, const Vec3& tip) const noexcept override {
-    SpringState state = shifted_springs(contacts, shift_, tip, K_);
-    state.energy += coupling_energy(shift_);
+    SpringState state = shifted_springs(contacts, displacement_, tip, K_);
+    state.energy += coupling_energy(displacement_);
     return state;
   }
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling passes velocities on as it does depths.
+  /// The coupling transmits velocities like depths.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
-    return pass_ * ForceLaw::turning_velocity(contacts, S, tool);
+    return transmission_ * ForceLaw::turning_velocity(contacts, S, tool);
   }
 
  private:
-  /// The action of the contacts on the copy.
-  struct Pull {
-    double pressed = 0.0;       ///< root of the sum of the squares of p_i [m]
-    Vec3 force = Vec3::Zero();  ///< [N]
+  /// The action of the contacts on the copy of the tool.
+  struct CopyForce {
+    double depth_norm = 0.0;    ///< sqrt(sum p_i^2) [m]
+    Vec3 force = Vec3::Zero();  ///< contact force on the copy [N]
   };
 
+  /// Computes the displacement s of the copy at which contact forces and coupling force balance.
   void find_balance(ContactBuffer& contacts) noexcept {
-    Pull pull = pull_at(contacts, shift_);
-    Vec3 residual = pull.force - coupling_force(shift_);
-    for (int step = 0; step < kMostSteps && residual.norm() > kBalanced * K_ * pull.pressed; ++step, ++iterations_) {
-      const Mat3 stiffness = coupling_stiffness(shift_) + K_ * stiffness_tensor(contacts);
+    CopyForce copy_force = force_on_copy(contacts, displacement_);
+    Vec3 residual = copy_force.force - coupling_force(displacement_);
+    for (int step = 0; step < kMaxSteps && residual.norm() > kMaxImbalance * K_ * copy_force.depth_norm;
+         ++step, ++iterations_) {
+      const Mat3 stiffness = coupling_stiffness(displacement_) + K_ * stiffness_tensor(contacts);
       const Vec3 newton = Eigen::LDLT<Mat3>(stiffness).solve(residual);
-      const Vec3 from = shift_;
+      const Vec3 from = displacement_;
       const double before = residual.norm();
-      // A whole step may go too far where the coupling saturates or contacts separate.
-      for (double part = 1.0; part > kSmallestPart; part *= 0.5) {
-        shift_ = from + part * newton;
-        pull = pull_at(contacts, shift_);
-        residual = pull.force - coupling_force(shift_);
+      // A full step may go too far where the coupling saturates or contacts separate.
+      for (double fraction = 1.0; fraction > kMinFraction; fraction *= 0.5) {
+        displacement_ = from + fraction * newton;
+        copy_force = force_on_copy(contacts, displacement_);
+        residual = copy_force.force - coupling_force(displacement_);
         if (residual.norm() < before) break;
       }
       if (residual.norm() < before) continue;
-      shift_ = from;  // rounding is all that is left, or the balance is out of reach
-      pull_at(contacts, shift_);
+      displacement_ = from;  // only rounding is left, or the balance cannot be reached
+      force_on_copy(contacts, displacement_);
       return;
     }
   }
 
-  double stretch(const Vec3& s) const noexcept { return std::sqrt(1.0 + (K_vc_ / F_s_ * s).squaredNorm()); }
-  Vec3 coupling_force(const Vec3& s) const noexcept { return K_vc_ / stretch(s) * s; }
-  /// W, written without the cancellation in its difference.
-  double coupling_energy(const Vec3& s) const noexcept { return K_vc_ * s.squaredNorm() / (1.0 + stretch(s)); }
+  double saturation(const Vec3& s) const noexcept { return std::sqrt(1.0 + (K_vc_ / F_s_ * s).squaredNorm()); }
+  Vec3 coupling_force(const Vec3& s) const noexcept { return K_vc_ / saturation(s) * s; }
+  /// Energy W of the coupling [J], written without the cancelling difference.
+  double coupling_energy(const Vec3& s) const noexcept { return K_vc_ * s.squaredNorm() / (1.0 + saturation(s)); }
   Mat3 coupling_stiffness(const Vec3& s) const noexcept {
-    const double q = stretch(s);
-    Vec3 r = K_vc_ / (F_s_ * q) * s;  // |r|^2 = 1 - 1 / q^2; 1 - |r|^2 is the relative stiffness along s
-    if (const double along = r.squaredNorm(); along > 1.0 - kSoftest) r *= std::sqrt((1.0 - kSoftest) / along);
+    const double q = saturation(s);
+    Vec3 r = K_vc_ / (F_s_ * q) * s;  // |r|^2 = 1 - 1 / q^2, and 1 - |r|^2 is the stiffness along s relative to across
+    if (const double along = r.squaredNorm(); along > 1.0 - kMinStiffnessRatio)
+      r *= std::sqrt((1.0 - kMinStiffnessRatio) / along);
     return K_vc_ / q * (Mat3::Identity() - r * r.transpose());
   }
 
-  /// The pull on a copy displaced by s. Contacts that the copy still touches get the weight 1, others 0. O(n).
-  Pull pull_at(ContactBuffer& contacts, const Vec3& s) const noexcept {
+  /// Returns the contact force on a copy displaced by s [m]. Contacts that the copy still touches get weight 1,
+  /// others 0. O(n).
+  CopyForce force_on_copy(ContactBuffer& contacts, const Vec3& s) const noexcept {
     using simd::load, simd::Pack, simd::select;
     const Pack sx(s.x()), sy(s.y()), sz(s.z()), zero(0.0);
     Pack squares(0.0), fx(0.0), fy(0.0), fz(0.0);
@@ -233,7 +247,7 @@ class StaticCoupling final : public ForceLaw {
       const Pack ux = load(&contacts.ux[i]), uy = load(&contacts.uy[i]), uz = load(&contacts.uz[i]);
       const Pack depth = load(&contacts.depth[i]);
       const Pack d = depth + (ux * sx + uy * sy + uz * sz);
-      const Pack weight = select(d * depth > zero, Pack(1.0), zero);  // the padding has no depth
+      const Pack weight = select(d * depth > zero, Pack(1.0), zero);  // the padding has depth 0 and gets weight 0
       const Pack p = weight * d;
       simd::store(weight, &contacts.weight[i]);
       squares += p * p;
@@ -244,13 +258,13 @@ class StaticCoupling final : public ForceLaw {
     return {std::sqrt(simd::sum(squares)), -K_ * Vec3(simd::sum(fx), simd::sum(fy), simd::sum(fz))};
   }
 
-  double K_vc_;                ///< [N/m]
-  double F_s_;                 ///< [N]
-  Vec3 shift_ = Vec3::Zero();  ///< s of the last contacts [m]
-  Mat3 pass_ = Mat3::Zero();   ///< maps a motion of the tool to the part that reaches the contacts
+  double K_vc_;                       ///< stiffness of the coupling before saturation [N/m]
+  double F_s_;                        ///< saturation force of the coupling [N]
+  Vec3 displacement_ = Vec3::Zero();  ///< displacement s of the copy for the last contacts [m]
+  Mat3 transmission_ = Mat3::Zero();  ///< maps a displacement of the tool to the fraction that reaches the contacts
 };
 
-/// The coupling force balances the contacts, at most n K d, and is below F_s.
+/// Bound of |f_spring| / K: the coupling force balances the contacts, at most n K d, and is below F_s.
 double static_coupling_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   const double summed = static_cast<double>(n) * depth;
   return config.stiffness > 0.0 ? std::min(summed, saturation_of(config) / config.stiffness) : summed;

@@ -1,7 +1,7 @@
 #include "algorithms/registry.hpp"
 
-/// Laws that give every contact the same weight c, which depends on the number n of contacts alone:
-/// f = -K c sum d_i u_i. `mean` is the shortest example of a law.
+/// Laws that give all contacts the same weight c, which depends only on the number n of contacts: f = -K c sum
+/// d_i u_i. `mean` is the shortest example of a law.
 namespace hapbench {
 namespace {
 
@@ -46,7 +46,7 @@ class McNeely final : public ForceLaw {
   double points_;
 };
 
-/// n springs of weight min(1, p / n), all in one direction.
+/// Bound of |f_spring| / K: n springs of weight min(1, p / n), all in one direction.
 double mcneely_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   return std::min(static_cast<double>(n), points_of(config)) * depth;
 }
@@ -78,7 +78,7 @@ AlgorithmEntry mean_entry() {
           "directions with few points get almost no stiffness: the tool sinks in where most points are parallel",
       .parameters = kStiffnessAlone,
   };
-  // |sum c d u| <= d sum c, and c = 1 / n.
+  // |sum c d u| <= d sum c with c = 1 / n, so at most one spring.
   return {.info = &kInfo, .make_law = law_of<Mean>, .force_bound = bound_of_springs<1>};
 }
 

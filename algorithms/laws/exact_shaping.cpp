@@ -12,21 +12,22 @@
 namespace hapbench {
 namespace {
 
-/// The solver behind exact_shaping and merged_shaping: the projection of the identity onto a cone of tensors.
+/// The solver of exact_shaping and merged_shaping: projects the identity onto the cone of the contact tensors.
 namespace cone_projection {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kEps = kExactShapingEpsilon;
-/// Newton steps tried for the final epsilon; nearly all scenes need one or two.
+/// Newton steps with the final epsilon before the path below is used; nearly all scenes need one or two.
 constexpr int kDirectSteps = 6;
-/// The sequence of epsilon if those are not enough (see solve).
+/// Decreasing values of epsilon that are used if these steps are not enough (see solve).
 constexpr double kPath[] = {1e-2, 1e-4, kEps};
-constexpr int kMaxNewtonSteps = 1000;  ///< per epsilon; never reached in exact arithmetic
+constexpr int kMaxNewtonSteps = 1000;  ///< for each epsilon; never reached in exact arithmetic
 constexpr int kMaxLineSearchSteps = 40;
 constexpr int kMaxRefinements = 5;
-/// A smaller residual of the optimality condition is rounding: S sums up to n terms of at most 1 in eight partial sums.
+/// Residual of the optimality condition below which only rounding is left: S sums up to n terms of at most 1 in
+/// eight partial sums.
 constexpr double kResidualRounding = 1e-14;
 
 /// The identity tensor in the basis of TensorPack.
@@ -35,8 +36,8 @@ const Vec6& identity6() {
   return identity;
 }
 
-/// Eight symmetric tensors in the orthonormal basis (xx, yy, zz, sqrt2 xy, sqrt2 xz, sqrt2 yz), in which the Frobenius
-/// product of two of them is a dot product: the six-vectors a_i of the solver.
+/// Eight symmetric tensors a_i in the orthonormal basis (xx, yy, zz, sqrt2 xy, sqrt2 xz, sqrt2 yz). In this
+/// basis, the Frobenius product of two tensors is the dot product of their six-vectors.
 struct TensorPack {
   simd::Pack a[6];
 
@@ -46,23 +47,23 @@ struct TensorPack {
   }
 };
 
-// The functions below take the generators of the cone as
+// The functions below take the generators of the cone as a class
 //
 //   struct Tensors { std::size_t size, padded_size; double* weight; TensorPack pack(std::size_t i) const; };
 //
-// with tensors of trace 1, eight of which `pack(i)` returns from index i on, and one weight for each. Both are padded
-// to whole packs with zeros.
+// with `size` tensors of trace 1 and one weight for each. `pack(i)` returns the eight tensors from index i on.
+// Tensors and weights are padded to whole packs with zeros.
 
-/// The sums of one pass over the tensors.
-struct Pass {
-  Mat6 G;            ///< sum a a^T over the active tensors, c_i > 0
+/// Sums over the tensors and their weights c_i.
+struct TensorSums {
+  Mat6 G;            ///< sum a_i a_i^T over the active tensors (c_i > 0)
   Vec6 S;            ///< sum c_i a_i
   bool same_active;  ///< no tensor changed between active and inactive
 };
 
-/// Gives every tensor the weight c_i = max(0, weight_of(a_i, c_i before)).
+/// Sets the weight of every tensor to c_i = max(0, weight_of(a_i, previous c_i)) and returns the sums.
 template <class Tensors, class WeightOf>
-Pass sweep(const Tensors& tensors, WeightOf weight_of) noexcept {
+TensorSums update_weights(const Tensors& tensors, WeightOf weight_of) noexcept {
   using simd::Pack;
   Pack g[21], s[6];
   std::fill(std::begin(g), std::end(g), Pack(0.0));
@@ -83,117 +84,121 @@ Pass sweep(const Tensors& tensors, WeightOf weight_of) noexcept {
       for (int l = 0; l <= j; ++l) g[k++] += masked * u.a[l];
     }
   }
-  Pass pass;
-  pass.same_active = same;
+  TensorSums sums;
+  sums.same_active = same;
   for (int j = 0, k = 0; j < 6; ++j) {
-    pass.S[j] = simd::sum(s[j]);
-    for (int l = 0; l <= j; ++l) pass.G(j, l) = pass.G(l, j) = simd::sum(g[k++]);
+    sums.S[j] = simd::sum(s[j]);
+    for (int l = 0; l <= j; ++l) sums.G(j, l) = sums.G(l, j) = simd::sum(g[k++]);
   }
-  return pass;
+  return sums;
 }
 
-/// The pass at the point w of the dual: c_i = max(0, a_i . w).
+/// Sets the weights of the point w of the dual problem, c_i = max(0, a_i . w), and returns the sums.
 template <class Tensors>
-Pass evaluate(const Tensors& tensors, const Vec6& w) noexcept {
-  return sweep(tensors, [&w](const TensorPack& u, const simd::Pack&) { return u.dot(w); });
+TensorSums evaluate_at(const Tensors& tensors, const Vec6& w) noexcept {
+  return update_weights(tensors, [&w](const TensorPack& u, const simd::Pack&) { return u.dot(w); });
 }
 
-/// (eps I + G)^-1 b
+/// Returns (eps I + G)^-1 b.
 Vec6 solve_step(const Mat6& G, double eps, const Vec6& b) noexcept {
   return Eigen::LDLT<Mat6>(G + eps * Mat6::Identity()).solve(b);
 }
 
-/// Gradient of the convex dual ½|eps w - I|² / eps + ½ sum max(0, a_i . w)²: zero at the optimum.
-Vec6 dual_gradient(const Vec6& w, double eps, const Pass& pass) noexcept {
-  return eps * w - identity6() + pass.S;
+/// Returns the gradient of the convex dual function ½|eps w - I|² / eps + ½ sum max(0, a_i . w)². It is zero at
+/// the optimum.
+Vec6 dual_gradient(const Vec6& w, double eps, const TensorSums& sums) noexcept {
+  return eps * w - identity6() + sums.S;
 }
 
-/// Moves w towards `target` until the slope of the dual along the way has halved (bisection on a monotone slope). The
-/// dual is convex and piecewise quadratic, so this descends and Newton's method converges from anywhere. `pass` is
-/// evaluated at `target` on entry and at w on return. Returns false if the slope is lost in rounding.
+/// Line search by bisection: moves w towards `target` until the slope of the dual function along the path has
+/// halved. The function is convex and piecewise quadratic, so its slope is monotone, this decreases it, and
+/// Newton's method converges from any start. On entry `sums` holds the sums at `target`, on return at w.
+/// Returns false if the slope is only rounding.
 template <class Tensors>
 bool line_search(const Tensors& tensors, const Vec6& target, double eps, double slope_at_w, Vec6& w,
-                 Pass& pass) noexcept {
-  const Vec6 start = w, way = target - w;
+                 TensorSums& sums) noexcept {
+  const Vec6 start = w, direction = target - w;
   w = target;
   double low = 0.0, high = 1.0, fraction = 1.0;
   for (int i = 0; i < kMaxLineSearchSteps; ++i) {
-    const double slope = dual_gradient(w, eps, pass).dot(way);
+    const double slope = dual_gradient(w, eps, sums).dot(direction);
     const bool still_descending_at_target = fraction == 1.0 && slope <= 0.0;
     if (still_descending_at_target || std::abs(slope) <= 0.5 * std::abs(slope_at_w)) return true;
     (slope > 0.0 ? high : low) = fraction;
     fraction = 0.5 * (low + high);
-    w = start + fraction * way;
-    pass = evaluate(tensors, w);
+    w = start + fraction * direction;
+    sums = evaluate_at(tensors, w);
   }
   return false;
 }
 
-/// Newton's method for one epsilon, started at w, where `pass` is evaluated; both are updated. Adds the number of steps
-/// to `steps`. Returns true if it has converged to rounding.
+/// Newton's method for one epsilon, starting at w, where `sums` holds the sums; updates both. Adds the number
+/// of steps to `steps`. Returns true if it has converged to rounding.
 template <class Tensors>
-bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, Pass& pass, int& steps) noexcept {
+bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, TensorSums& sums, int& steps) noexcept {
   const double n = static_cast<double>(tensors.size);
   for (int step = 0; step < max_steps; ++step) {
     ++steps;
-    // On a fixed active set the dual is quadratic; its minimum is where (eps I + G) w = identity.
-    const Vec6 target = solve_step(pass.G, eps, identity6());
-    const double slope = dual_gradient(w, eps, pass).dot(target - w);
-    pass = evaluate(tensors, target);
-    // A contact whose exact weight is zero may flicker between active and inactive by the rounding of a_i . target.
+    // With a fixed active set the dual function is quadratic, and its minimum solves (eps I + G) w = identity.
+    const Vec6 target = solve_step(sums.G, eps, identity6());
+    const double slope = dual_gradient(w, eps, sums).dot(target - w);
+    sums = evaluate_at(tensors, target);
+    // A contact whose exact weight is zero may change between active and inactive by the rounding of a_i .
+    // target.
     const double rounding = 1e-15 * (1.0 + n) * (1.0 + target.norm());
-    const bool flickers_only = pass.same_active || dual_gradient(target, eps, pass).norm() <= rounding;
-    // In exact arithmetic the slope is negative before the optimum; otherwise only rounding is left of it.
+    const bool flickers_only = sums.same_active || dual_gradient(target, eps, sums).norm() <= rounding;
+    // In exact arithmetic the slope is negative before the optimum. Otherwise only rounding is left.
     if (flickers_only || slope >= 0.0) {
       w = target;
       return true;
     }
-    if (!line_search(tensors, target, eps, slope, w, pass)) return true;
+    if (!line_search(tensors, target, eps, slope, w, sums)) return true;
   }
   return false;
 }
 
-/// Removes the rounding of the last solve, which the factor 1/eps has amplified: w += (eps I + G)^-1 R with the
-/// residual R of the optimality condition. The small a_i . correction is added to the weights, which keeps the digits
-/// that a_i . w loses.
+/// Removes the rounding of the last solve, which the factor 1/eps has amplified: w += (eps I + G)^-1 R, with
+/// the residual R of the optimality condition. The small product a_i . correction is added to the weights,
+/// which keeps the digits that a_i . w would lose.
 template <class Tensors>
-void refine(const Tensors& tensors, Vec6 w, Pass pass) noexcept {
+void refine(const Tensors& tensors, Vec6 w, TensorSums sums) noexcept {
   const simd::Pack zero(0.0);
   for (int round = 0; round < kMaxRefinements; ++round) {
-    const Vec6 residual = -dual_gradient(w, kEps, pass);
+    const Vec6 residual = -dual_gradient(w, kEps, sums);
     if (residual.norm() <= kResidualRounding) return;
-    const Vec6 correction = solve_step(pass.G, kEps, residual);
+    const Vec6 correction = solve_step(sums.G, kEps, residual);
     w += correction;
-    pass = sweep(tensors, [&](const TensorPack& u, const simd::Pack& c) {
+    sums = update_weights(tensors, [&](const TensorPack& u, const simd::Pack& c) {
       return simd::select(c > zero, c + u.dot(correction), u.dot(w));
     });
   }
 }
 
-/// solve_exact_shaping for any tensors a_i of trace 1, S = sum c_i a_i, with <a_i, S> in place of rho_i. Precondition:
-/// all weights are 1.
+/// solve_exact_shaping for any tensors a_i of trace 1, with S = sum c_i a_i and <a_i, S> in place of rho_i.
+/// Precondition: all weights are 1.
 template <class Tensors>
 int solve(const Tensors& tensors) noexcept {
-  // Every tensor is active at w = identity, because a_i . identity is its trace.
+  // Start at w = identity, where every tensor is active, because a_i . identity is the trace of a_i.
   Vec6 w = identity6();
-  Pass pass = evaluate(tensors, w);
+  TensorSums sums = evaluate_at(tensors, w);
   int steps = 0;
-  if (!newton(tensors, kEps, kDirectSteps, w, pass, steps)) {
-    // In dense clusters of nearly equal gradients the optimum keeps a few of hundreds, and Newton's method would find
-    // them one by one. Following the optimum from a large epsilon down takes a few steps for each epsilon: at most 32
-    // in all for 6e6 adversarial sets instead of a hundred, 135 for the worst of 1e6 mixtures of such sets.
+  if (!newton(tensors, kEps, kDirectSteps, w, sums, steps)) {
+    // Dense clusters of nearly equal gradients: the optimum keeps a few of hundreds, and Newton's method would
+    // find them one by one. Following the optimum from a large epsilon to a small one takes a few steps for
+    // each epsilon. Measured: at most 32 steps in total for 6e6 adversarial sets instead of a hundred, and 135
+    // for the worst of 1e6 mixtures of such sets.
     double eps = kPath[0];
     w = identity6() / eps;
-    pass = evaluate(tensors, w);
+    sums = evaluate_at(tensors, w);
     for (const double next : kPath) {
-      // The same Y = eps w at the next epsilon: weights scale, and the active set stays.
+      // Keep Y = eps w at the next epsilon: the weights scale, and the active set stays.
       w *= eps / next;
-      pass.S *= eps / next;
+      sums.S *= eps / next;
       eps = next;
-      newton(tensors, eps, kMaxNewtonSteps, w, pass, steps);
+      newton(tensors, eps, kMaxNewtonSteps, w, sums, steps);
     }
   }
-  refine(tensors, w, pass);
+  refine(tensors, w, sums);
   return steps;
 }
 
@@ -224,20 +229,21 @@ class ExactShaping final : public ForceLaw {
   }
 };
 
-/// Cells along an edge of each face of the cube of directions: 1350 cells of about 6 degrees, the angle that the
-/// reduction calls similar. Odd, so that the axes lie in the middle of cells.
+/// Number of cells along each edge of the cube of directions: 1350 cells of about 6 degrees, the angle within
+/// which the reduction calls gradients similar. Odd, so that the coordinate axes lie in the middle of cells.
 constexpr int kDirectionCells = 15;
 
 constexpr std::size_t kFaces = 6, kCells = kFaces * kDirectionCells * kDirectionCells;
 
-std::size_t step_of(double tangent) noexcept {
-  // Written so that a NaN also gets a cell of the grid.
-  const double place = 0.5 * kDirectionCells * (tangent + 1.0);
-  if (!(place > 0.0)) return 0;
-  return place < kDirectionCells ? static_cast<std::size_t>(place) : kDirectionCells - 1;
+/// Returns the cell index along one edge of a face, for a tangent in [-1, 1].
+std::size_t edge_cell(double tangent) noexcept {
+  // Written so that NaN also gets a valid cell.
+  const double position = 0.5 * kDirectionCells * (tangent + 1.0);
+  if (!(position > 0.0)) return 0;
+  return position < kDirectionCells ? static_cast<std::size_t>(position) : kDirectionCells - 1;
 }
 
-/// The cell of a direction, by the face of the cube through which it leaves and its place there.
+/// Returns the cell of a direction: the face of the cube that it crosses, and the position on this face.
 std::size_t cell_of(double x, double y, double z) noexcept {
   const double ax = std::abs(x), ay = std::abs(y), az = std::abs(z);
   std::size_t face = 0;
@@ -254,12 +260,12 @@ std::size_t cell_of(double x, double y, double z) noexcept {
   }
   const double scale = 1.0 / std::abs(major);
   const std::size_t side = 2 * face + (major < 0.0);
-  return (side * kDirectionCells + step_of(u * scale)) * kDirectionCells + step_of(v * scale);
+  return (side * kDirectionCells + edge_cell(u * scale)) * kDirectionCells + edge_cell(v * scale);
 }
 
 using PerCell = std::array<double, simd::padded(kCells)>;
 
-/// The tensors of the groups divided by their traces, in the order of the cells, one column for each component.
+/// The tensors of the groups divided by their traces, in the order of the cells. One column for each component.
 struct Groups {
   std::size_t size = 0, padded_size = 0;
   double* weight = nullptr;
@@ -272,16 +278,17 @@ struct Groups {
   }
 };
 
-/// Exact shaping of groups of contacts: a reduction that neither drops a contact nor depends on their order.
+/// Exact shaping of groups of contacts. Unlike the reduction, it drops no contact and does not depend on their
+/// order.
 ///
-/// Contacts whose gradients lie in the same of 1350 fixed cells of the sphere of directions (gradients away from a
-/// cube's faces, kDirectionCells x kDirectionCells on each) form a group k and share a weight c_k. A group acts by its
-/// exact tensor and its exact depth vector, as the formula of merged_shaping_entry says.
+/// The sphere of directions is divided into 1350 fixed cells, kDirectionCells x kDirectionCells on each face of
+/// a cube. Contacts whose gradients lie in the same cell form a group k and share a weight c_k. A group acts by
+/// its exact tensor and its exact depth vector; see the formula of merged_shaping_entry.
 ///
-/// The mean stiffness ratio over a group with weight is 1 and lambda_max(S) <= (1 + sqrt 3)/2 as for exact_shaping (the
-/// proof needs tensors of trace 1, not of rank 1). With one contact in each group the law equals exact_shaping.
-/// Contacts that the border of a cell divides form two groups, which share the weight. O(n) once, then O(groups) for
-/// each Newton step.
+/// In each group with positive weight, the mean stiffness ratio is 1. As for exact_shaping, lambda_max(S) <= (1
+/// + sqrt 3)/2; the proof needs tensors of trace 1, not of rank 1. With one contact in each group the law
+/// equals exact_shaping. Contacts on both sides of a cell's border form two groups, which share the weight.
+/// O(n) once, then O(groups) for each Newton step.
 class MergedShaping final : public ForceLaw {
  public:
   explicit MergedShaping(const RenderingConfig& config) : ForceLaw(config) { groups_.weight = weight_.data(); }
@@ -295,14 +302,14 @@ class MergedShaping final : public ForceLaw {
     gather(contacts);
     make_groups();
     iterations_ += static_cast<std::uint64_t>(cone_projection::solve(groups_));
-    for (std::size_t k = 0; k < groups_.size; ++k) share_[touched_[k]] = weight_[k] / trace_[k];
-    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] = share_[cell_[i]];
+    for (std::size_t k = 0; k < groups_.size; ++k) group_weight_[touched_[k]] = weight_[k] / trace_[k];
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] = group_weight_[cell_[i]];
     contacts.pad();
     return weighted_force(contacts, K_);
   }
 
  private:
-  /// Sums u u^T over each cell and lists the cells with contacts.
+  /// Sums u u^T over each cell and lists the cells that have contacts.
   void gather(const ContactBuffer& contacts) noexcept {
     touched_.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -322,13 +329,13 @@ class MergedShaping final : public ForceLaw {
     std::sort(touched_.begin(), touched_.end());
   }
 
-  /// Makes one group of each listed cell and resets the sums of the cell.
+  /// Creates one group from each listed cell and resets the sums of the cell.
   void make_groups() noexcept {
     groups_.size = touched_.size();
     for (std::size_t k = 0; k < groups_.size; ++k) {
       CellSum& cell = cells_[touched_[k]];
       const double trace = cell.tensor[0] + cell.tensor[1] + cell.tensor[2];
-      // A cell that holds zero gradients only has a zero tensor, and its weight has no effect.
+      // A cell with zero gradients only has a zero tensor, and its weight has no effect.
       const double scale = trace > 0.0 ? 1.0 / trace : 0.0;
       trace_[k] = trace > 0.0 ? trace : 1.0;
       weight_[k] = 1.0;
@@ -351,13 +358,14 @@ class MergedShaping final : public ForceLaw {
   std::vector<std::uint16_t> cell_;  ///< cell of each contact
   std::vector<CellSum> cells_ = std::vector<CellSum>(kCells);
   std::vector<std::uint16_t> touched_;  ///< cells of the groups, ascending
-  PerCell share_{};                     ///< c_k, by cell
+  PerCell group_weight_{};              ///< c_k of each cell
   PerCell trace_{};
-  alignas(64) PerCell weight_{};  ///< C_k
+  alignas(64) PerCell weight_{};  ///< C_k = c_k tr T_k of each group
   Groups groups_;
 };
 
-/// |f| / K <= sum c d = tr S d, and tr S <= 3 because at the optimum tr S >= |S|^2_F >= (tr S)^2 / 3.
+/// Bound of |f_spring| / K: |f| / K <= sum c d = tr S d, and tr S <= 3, because tr S >= |S|^2_F >= (tr S)^2 / 3
+/// at the optimum.
 constexpr auto* kBound = bound_of_springs<3>;
 
 }  // namespace

@@ -3,16 +3,16 @@
 #include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 
-/// Laws that read the sum of the gradients. original_averaging and highest_depth: one spring along the averaged
-/// gradient, u_r = sum u_i / |sum u_i|, f = -K d_r u_r, S = u_r u_r^T. They differ in the depth d_r.
+/// Laws that use the sum of the gradients. original_averaging and highest_depth have one spring along the
+/// averaged gradient: u_r = sum u_i / |sum u_i|, f = -K d_r u_r, S = u_r u_r^T. They differ in the depth d_r.
 namespace hapbench {
 namespace {
 
-/// Below this mean gradient the direction is rounding noise, and the force is zero.
-constexpr double kCancelledBelow = 1e-9;
+/// Mean gradient below which the direction is rounding noise and the force is zero.
+constexpr double kMinMeanGradient = 1e-9;
 
-/// One spring, compressed by d_r = Depth(contacts, |sum u_i|) [m]. Leaves weights of 1. The laws define no point of
-/// application.
+/// A law with one spring, compressed by d_r = Depth(contacts, |sum u_i|) [m]. Sets all weights to 1, because
+/// these laws define no point of application.
 template <double (*Depth)(const ContactBuffer&, double) noexcept>
 class AveragedDirection final : public SingleSpringLaw {
  public:
@@ -22,7 +22,7 @@ class AveragedDirection final : public SingleSpringLaw {
     set_weights(contacts, 1.0);
     const Vec3 gradients = gradient_sum(contacts);
     const double length = gradients.norm();
-    if (length <= kCancelledBelow * static_cast<double>(contacts.size())) return {};
+    if (length <= kMinMeanGradient * static_cast<double>(contacts.size())) return {};
     const Vec3 u = gradients / length;
     return {-K_ * Depth(contacts, length) * u, u * u.transpose()};
   }
@@ -39,13 +39,14 @@ double highest_depth(const ContactBuffer& contacts, double) noexcept {
   return *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
 }
 
-/// sum d_i / |sum u_i|, where |sum u_i| > kCancelledBelow n, or the force is zero.
+/// Bound of |f_spring| / K: sum d_i / |sum u_i|, where |sum u_i| > kMinMeanGradient n, or the force is zero.
 double original_averaging_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 1e9 * std::min(1.0, static_cast<double>(n)) * depth;
 }
 
-/// Below this scaled energy, every spring is cancelled by another and the normalisation would divide by rounding noise.
-constexpr double kNoEnergyBelow = 1e-12;
+/// Ratio of scaled to unscaled energy below which every spring is cancelled by another spring. Dividing by it
+/// would amplify rounding noise.
+constexpr double kMinEnergyRatio = 1e-12;
 
 class Tandpasta final : public ForceLaw {
  public:
@@ -63,7 +64,7 @@ class Tandpasta final : public ForceLaw {
       energy += d2;
     }
     const double sigma = energy > 0.0 ? scaled / energy : 0.0;
-    if (!(sigma > kNoEnergyBelow)) {
+    if (!(sigma > kMinEnergyRatio)) {
       set_weights(contacts, 0.0);
       return {};
     }
@@ -72,8 +73,9 @@ class Tandpasta final : public ForceLaw {
   }
 
  private:
-  /// beta of the gradient u: 1 if no other gradient opposes it, 0 if all cancel. The sum of inner products is the inner
-  /// product with the sum of gradients; only the sum of magnitudes needs the O(n) loop.
+  /// Returns the ratio beta of the gradient u: 1 if no other gradient opposes it, 0 if all cancel. The sum of
+  /// inner products is the inner product with the sum of gradients, so only the sum of magnitudes needs the
+  /// O(n) loop.
   static double cancelling_ratio(const ContactBuffer& c, const Vec3& u, const Vec3& total) noexcept {
     using simd::load, simd::Pack;
     const Pack x(u.x()), y(u.y()), z(u.z());
@@ -86,8 +88,9 @@ class Tandpasta final : public ForceLaw {
   }
 };
 
-/// c = beta / sigma keeps the energy: sum c d_i^2 = sum d_i^2 <= n d^2, and sum c <= n / sigma, since beta <= 1.
-/// Cauchy and Schwarz: sum c d_i <= n d / sqrt(sigma), where sigma > kNoEnergyBelow, or the force is zero.
+/// Bound of |f_spring| / K. c = beta / sigma preserves the energy: sum c d_i^2 = sum d_i^2 <= n d^2. Also sum c
+/// <= n / sigma, since beta <= 1. By Cauchy and Schwarz, sum c d_i <= n d / sqrt(sigma), where sigma >
+/// kMinEnergyRatio, or the force is zero.
 double tandpasta_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 1e6 * static_cast<double>(n) * depth;
 }

@@ -12,7 +12,7 @@ Mat3 update_shaped_weights(ContactBuffer& contacts, const Mat3& S) noexcept {
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
     const Pack rho = x * (xx * x + two_xy * y + two_xz * z) + y * (yy * y + two_yz * z) + zz * z * z;
-    // Zero gradients (and the padding) have ratio zero and stay without weight.
+    // Zero gradients and the padding have ratio zero and get weight zero.
     const Pack c = simd::select(rho > zero, load(&contacts.weight[i]) / rho, zero);
     simd::store(c, &contacts.weight[i]);
   }
@@ -42,11 +42,12 @@ class ShapedStiffness final : public ForceLaw {
   int m_;
 };
 
-/// After an update c_i <- c_i / rho_i with rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) for unit u_i (Cauchy and
-/// Schwarz), sum c_i / rho_i <= sum c_i u_i^T S^+ u_i = tr(S^+ S) <= 3. Without an update: summation.
+/// Bound of |f_spring| / K. For unit u_i, rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) by Cauchy and Schwarz,
+/// with the pseudoinverse S^+. After an update c_i <- c_i / rho_i, sum c_i / rho_i <= sum c_i u_i^T S^+ u_i =
+/// tr(S^+ S) <= 3. Without an update the law is summation.
 double shaped_stiffness_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
-  const double most = static_cast<double>(n);
-  return (config.iterations > 0 ? std::min(3.0, most) : most) * depth;
+  const double all_springs = static_cast<double>(n);
+  return (config.iterations > 0 ? std::min(3.0, all_springs) : all_springs) * depth;
 }
 
 constexpr ParameterInfo kShapingParameters[] = {
@@ -54,7 +55,8 @@ constexpr ParameterInfo kShapingParameters[] = {
     {parameter::kIterations, "m: updates of the weights; 0 is summation"},
 };
 
-/// The law, which several algorithms use, on a depth model of their own if there is one.
+/// Returns the entry of an algorithm with this law. `depth_model`: depth model that the algorithm prescribes;
+/// empty for none.
 AlgorithmEntry shaping_entry(const ModelInfo& info, std::string_view depth_model = {}) {
   return {.info = &info,
           .make_law = law_of<ShapedStiffness>,

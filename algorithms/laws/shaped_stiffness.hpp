@@ -5,13 +5,15 @@
 
 namespace hapbench {
 
-/// Applies `iterations` updates c_i <- c_i / rho_i to weights of 1 (thesis C.4.2), leaves them in the buffer and
-/// returns their stiffness tensor. Precondition: padded contacts. O(n) per iteration; a zero gradient gets weight zero.
-/// From the first update on lambda_max(S) <= (1 + sqrt 3)/2, planar (1 + sqrt 2)/2 (proof:
-/// results/reference/BEYOND.md).
+/// Writes the weights of stiffness shaping into the buffer and returns their stiffness tensor S (thesis C.4.2).
+/// Starts from weights of 1 and applies `iterations` updates c_i <- c_i / rho_i, with the stiffness ratio rho_i
+/// = u_i^T S u_i. A zero gradient gets weight zero. After at least one update, lambda_max(S) <= (1 + sqrt 3)/2,
+/// and (1 + sqrt 2)/2 in planar scenes (proof: results/reference/BEYOND.md). Precondition: the contacts are
+/// padded. O(n) for each iteration.
 Mat3 shape_weights(ContactBuffer& contacts, int iterations) noexcept;
 
-/// One update c_i <- c_i / (u_i^T S u_i); S must be the tensor of the weights in the buffer. Returns the new tensor.
+/// Applies one update c_i <- c_i / (u_i^T S u_i) and returns the new tensor. Precondition: S is the stiffness
+/// tensor of the weights in the buffer.
 Mat3 update_shaped_weights(ContactBuffer& contacts, const Mat3& S) noexcept;
 
 }  // namespace hapbench

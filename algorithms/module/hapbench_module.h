@@ -4,21 +4,21 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A force law or a source of contacts from outside, in C11 or any language that can speak C. A shared library defines
- * `hapbench_module`. Every command then has its law,
+/* C11 interface for force laws and contact sources outside hapbench, in C or any language that can export C functions.
+ * A module is a shared library that exports the function `hapbench_module`. A module with a law is loaded by option,
  *
  *     hapbench --module ./my_law.so run drag_molar --set rendering.algorithm=my_law
  *
- * or a scenario feeds the laws with its contacts:
+ * and a module with a contact source is named in a scenario; its contacts are the input of the laws:
  *
  *     "rendering": {"contact_source": {"type": "plugin", "file": "mine.so", "config": {...}}}
  *
- * Units N, m. Functions may be called from several threads at once, those of one state by one thread at a time.
- * Pointers that are handed over are valid during the call alone.
+ * Units: N, m. Functions may be called from several threads at the same time, but functions with the same state are
+ * called by one thread at a time. Pointers passed to a function are valid during the call only.
  *
- * A function that fails writes why, as a text of one line that ends with 0, into `fault`, which has room for
- * HAPBENCH_FAULT_SIZE characters and comes empty. What is thrown counts as a fault, and so does an answer that is not
- * finite. A fault ends the run. */
+ * A function that fails writes the reason into `fault`: one line of text, terminated by 0. `fault` has room for
+ * HAPBENCH_FAULT_SIZE characters and contains an empty text at the call. An exception is also a fault, and so is a
+ * result that is not finite. A fault ends the run. */
 
 #define HAPBENCH_MODULE_VERSION 1u
 #define HAPBENCH_FAULT_SIZE 200
@@ -29,53 +29,56 @@ extern "C" {
 
 enum { HAPBENCH_LAW = 1, HAPBENCH_CONTACTS = 2 };
 
-/* A parameter of a law: the field rendering.parameters.<law>.<name> of a scenario. Bounds are included. */
+/* A parameter of a law. In a scenario it is the field rendering.parameters.<law>.<name>. Both bounds are allowed. */
 typedef struct HapbenchParameter {
-  const char* name; /* letters, digits and "_", a small letter first */
-  const char* unit; /* SI, as in "N/m"; "1" for none */
+  const char* name; /* letters, digits and "_"; begins with a small letter */
+  const char* unit; /* SI unit such as "N/m"; "1" if dimensionless */
   double min, max;
-  double initial; /* the default */
+  double initial; /* default value */
   const char* meaning;
 } HapbenchParameter;
 
-/* What a state is made for. A law is not told of environment and tool. */
+/* Input of `create`. For a law, all fields of environment and tool are 0 or NULL. */
 typedef struct HapbenchRun {
-  const void* data;       /* that of the module's table */
+  const void* data;       /* HapbenchModule::data */
   double stiffness;       /* K of one penalty spring [N/m] */
-  size_t capacity;        /* the most contacts of a step */
-  const double* vertices; /* of the environment, x, y, z of each [m] */
+  size_t capacity;        /* largest number of contacts in a step */
+  const double* vertices; /* of the environment: x, y, z of each vertex [m] */
   size_t vertex_count;
-  const uint32_t* triangles; /* of a block_with_hole or a mesh: three vertices each, counter-clockwise from outside */
+  /* of a block_with_hole or a mesh: three vertex indices each, counter-clockwise seen from outside */
+  const uint32_t* triangles;
   size_t triangle_count;
-  double tool_radius; /* half the tool's width [m] */
-  double tool_length; /* of a cylinder with a flat tip, else 0 [m] */
+  double tool_radius; /* half of the tool's width [m] */
+  double tool_length; /* of a cylinder with a flat tip [m]; 0 for other tools */
 } HapbenchRun;
 
+/* Pose of the tool, world frame. */
 typedef struct HapbenchPose {
-  double tip[3];      /* tip centre: the flat's middle, the centre of a round tip or a bur's ball [m] */
-  double centre[3];   /* middle of the cylinder's axis; the tip centre of other tools [m] */
-  double rotation[9]; /* tool to world, row by row; its z points from the tip to the shank */
+  double tip[3];      /* tip centre [m]: centre of a flat tip, of a round tip or of a bur's ball */
+  double centre[3];   /* middle of the cylinder's axis [m]; for other tools the tip centre */
+  double rotation[9]; /* matrix from tool frame to world frame, row by row; the tool's z axis points to the shank */
 } HapbenchPose;
 
-/* The contacts of a step, n entries in each array. Moving the tool along the gradient, a unit vector, makes a contact
- * deeper; the penalty force on the tool of contact i alone is -K depth gradient. A law gets n > 0 of them and writes
- * the weights alone. A source of contacts writes n and all arrays but normals and weights, which are NULL. */
+/* The contacts of a step; n entries in each array. The gradient is the unit vector along which the tool gets deeper.
+ * The penalty force of contact i alone on the tool is -K depth gradient. A law receives n > 0 contacts and writes the
+ * weights only. A contact source writes n and all arrays except normals and weights, which are NULL. */
 typedef struct HapbenchContacts {
   size_t n;
-  size_t room;                /* of the arrays */
-  uint32_t* index;            /* of the point, vertex or triangle, the same from step to step */
-  double* depth;              /* >= 0 [m]; negative for some springs without a surface */
-  double *gx, *gy, *gz;       /* gradient */
+  size_t room;                /* capacity of the arrays */
+  uint32_t* index;            /* number of the point, vertex or triangle; constant over the run */
+  double* depth;              /* penetration depth >= 0 [m]; may be negative for springs */
+  double *gx, *gy, *gz;       /* gradient, unit vector */
   double *x, *y, *z;          /* colliding point, world [m] */
-  const double *nx, *ny, *nz; /* outward normal of the environment there */
-  double* weight;             /* c_i */
+  const double *nx, *ny, *nz; /* outward normal of the environment at this point */
+  double* weight;             /* c_i, weight of the contact's spring */
 } HapbenchContacts;
 
-/* The answer of a law. The weights tell force and stiffness, f = -K sum c_i d_i u_i and sum c_i u_i u_i^T, unless the
- * law sets `given` and writes both. Then weights, if it writes them, say how contacts share the force, and its energy
- * and moment are those of one spring of stiffness K at the weighted mean of the points. */
+/* The result of a law. By default, hapbench computes it from the weights: force -K sum c_i d_i u_i and stiffness tensor
+ * sum c_i u_i u_i^T, with depths d_i and gradients u_i. A law that sets `given` writes force and stiffness itself. Then
+ * the weights, if it writes them, are the contacts' shares of the force, and energy and moment are computed for one
+ * spring of stiffness K at the weighted mean of the points. */
 typedef struct HapbenchForce {
-  int given;           /* comes as 0 */
+  int given;           /* 0 at the call; nonzero: force and stiffness are written */
   double force[3];     /* f_spring on the tool [N] */
   double stiffness[6]; /* tensor in units of K: xx, xy, xz, yy, yz, zz; damping, friction and integrators need it */
 } HapbenchForce;
@@ -84,31 +87,32 @@ typedef struct HapbenchModule {
   uint32_t version; /* HAPBENCH_MODULE_VERSION */
   uint32_t kind;    /* HAPBENCH_LAW or HAPBENCH_CONTACTS */
 
-  const char* name; /* as a parameter's */
-  /* What "hapbench describe" prints of a law, for which none may be missing. */
+  const char* name; /* same characters as a parameter's name */
+  /* Texts that "hapbench describe" prints. A law must have all of them. */
   const char* summary;
   const char* formula;
-  const char* source;        /* where it is published, or whose idea it is */
-  const char* known_failure; /* where it loses */
+  const char* source;        /* publication or author */
+  const char* known_failure; /* known weakness */
   const HapbenchParameter* parameters;
   size_t parameter_count;
-  const void* data; /* the module's own, for `create` */
+  const void* data; /* for use by `create`; hapbench does not read it */
 
-  /* The state of one run; contacts may take seconds for it. `values` are those of the parameters in their order;
-   * `config` is the scenario's object of that name as JSON text, "{}" without one and for a law. NULL: a fault. Without
-   * this function the state is NULL. */
+  /* Creates the state of one run. A contact source may take seconds for this. `values`: parameter values, in the order
+   * of `parameters`. `config`: the scenario's object "config" as JSON text; "{}" for a law or without this object.
+   * Returning NULL is a fault. If this function is NULL, the state is NULL. */
   void* (*create)(const double* values, const char* config, const HapbenchRun* run, char* fault);
 
-  /* One pose of the tool; integrators may ask several times a step. A law has pose NULL and should not allocate;
-   * contacts have force NULL and depend on the pose alone. Returns 0; anything else is a fault. */
+  /* Evaluates one pose of the tool. Integrators may call it several times in a step. For a law, `pose` is NULL, and it
+   * should not allocate. For a contact source, `force` is NULL, and its contacts must depend on the pose only. Returns
+   * 0; any other value is a fault. */
   int (*step)(void* state, const HapbenchPose* pose, HapbenchContacts* contacts, HapbenchForce* force, char* fault);
 
-  void (*reset)(void* state);   /* back to t = 0, bit for bit; may be NULL: nothing is remembered */
-  void (*destroy)(void* state); /* may be NULL */
+  void (*reset)(void* state);   /* returns to t = 0, bitwise; NULL if the state does not change */
+  void (*destroy)(void* state); /* frees the state; may be NULL */
 } HapbenchModule;
 
-/* The one function that the library exports. `version` is the host's HAPBENCH_MODULE_VERSION; NULL: not supported. What
- * it returns lives as long as the library. */
+/* The only function that the library exports. `version`: HAPBENCH_MODULE_VERSION of the calling program. Returns the
+ * table, which must stay valid as long as the library is loaded, or NULL if this version is not supported. */
 #if defined(__GNUC__)
 __attribute__((visibility("default")))
 #endif

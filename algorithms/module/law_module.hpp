@@ -10,11 +10,13 @@
 
 namespace hapbench {
 
-/// The table of a module for a class that is derived from ForceLaw and made from K and the values of its own
-/// parameters, `Law(double stiffness, const double* values)`; `info.parameters` is not used. The module has its own
-/// copy of hapbench's code and of the contacts, so it need not be built by the compiler, or for the instruction set, of
-/// the program that loads it. Of the class's overrides only those of `evaluate`, `prepare`, `reset` and `gives_weights`
-/// take part. What the class throws ends the run.
+/// Returns the module table for a class `Law` that is derived from ForceLaw and has the constructor `Law(double
+/// stiffness, const double* values)`; `values` are the values of its parameters. `info.parameters` is not used.
+/// Only the overrides of `evaluate`, `prepare`, `reset` and `gives_weights` are called. An exception ends the
+/// run.
+///
+/// The module contains its own copy of hapbench's code and copies the contacts. It may therefore be built with
+/// another compiler, or for another instruction set, than the program that loads it.
 template <class Law>
 HapbenchModule law_module(const ModelInfo& info, std::span<const HapbenchParameter> parameters = {}) {
   struct State {

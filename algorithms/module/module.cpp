@@ -16,14 +16,14 @@ namespace hapbench {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kMostParameters = 1000;
+constexpr std::size_t kMaxParameters = 1000;
 
-/// Numbers before and after a law's weights, and what stands in weights that it has not written. No computation gives
-/// this signalling NaN.
+/// Number of guard values before and after a law's weights, and the value of guards and of weights that the law
+/// has not written. No computation produces this signalling NaN.
 constexpr std::size_t kGuards = 8;
 constexpr auto kUnwritten = std::uint64_t{0x7ff4deadc0ffee00};
 
-constexpr double kLargestLengthError = 1e-3;  ///< of a gradient
+constexpr double kLengthTolerance = 1e-3;  ///< tolerance of a gradient's length
 
 std::mutex faults_mutex;
 ModuleFaults& faults() {
@@ -31,13 +31,13 @@ ModuleFaults& faults() {
   return all;
 }
 
-/// May allocate, because the run is over.
-void note_fault(const char* text) {
+/// Counts a fault. May allocate, because the fault ends the run.
+void count_fault(const char* text) {
   const std::lock_guard lock(faults_mutex);
   if (faults().count++ == 0) faults().first = text;
 }
 
-/// A module reads and writes these arrays.
+/// Returns the buffer's arrays in the form that a module reads and writes.
 HapbenchContacts view_of(ContactBuffer& c) {
   return {.n = c.size(),
           .room = c.capacity(),
@@ -62,25 +62,24 @@ LawForce force_of(const HapbenchForce& answer) {
   return force;
 }
 
-/// The force of a law that has failed.
+/// The force of a law that has failed: NaN.
 LawForce no_force() {
   return {Vec3::Constant(kNaN), Mat3::Zero()};
 }
 
-/// The reason for which a contact cannot be used; null for none.
+/// Returns why a contact from a module cannot be used, or null.
 const char* problem_of(const ContactBuffer& contacts, std::size_t i) {
   const Vec3 gradient = contacts.gradient(i);
   if (!contacts.point(i).allFinite() || !gradient.allFinite() || !std::isfinite(contacts.depth[i]))
     return "gives a contact that is not finite";
-  if (std::abs(gradient.norm() - 1.0) > kLargestLengthError)
-    return "gives a contact whose gradient is not a unit vector";
+  if (std::abs(gradient.norm() - 1.0) > kLengthTolerance) return "gives a contact whose gradient is not a unit vector";
   return contacts.depth[i] < 0.0 ? "gives a contact with a negative depth" : nullptr;
 }
 
 }  // namespace
 
 template <class Call>
-bool ModuleState::runs(const char* function, const Call& call) noexcept {
+bool ModuleState::call_guarded(const char* function, const Call& call) noexcept {
   std::array<char, HAPBENCH_FAULT_SIZE> text;
   std::array<char, HAPBENCH_FAULT_SIZE + 64> problem;
   text.front() = text.back() = '\0';
@@ -100,9 +99,9 @@ bool ModuleState::runs(const char* function, const Call& call) noexcept {
 
 void ModuleState::fail(const char* problem) noexcept {
   std::snprintf(fault_.data(), fault_.size(), "%s (%s) %s", module_.table->name, module_.file.c_str(), problem);
-  // The text is printed in one line and written as JSON, whatever the module answers.
+  // Replace control characters, because the text is printed in one line and written as JSON.
   for (char& c : fault_) c = c == '\0' || (c >= ' ' && c <= '~') ? c : '?';
-  note_fault(fault_.data());
+  count_fault(fault_.data());
 }
 
 bool ModuleState::create(const double* values, const char* config, HapbenchRun run) noexcept {
@@ -110,7 +109,7 @@ bool ModuleState::create(const double* values, const char* config, HapbenchRun r
   fault_[0] = '\0';
   run.data = module_.table->data;
   const auto create = module_.table->create;
-  created_ = create == nullptr || runs("create", [&](char* fault) {
+  created_ = create == nullptr || call_guarded("create", [&](char* fault) {
                state_ = create(values, config, &run, fault);
                return state_ != nullptr;
              });
@@ -120,7 +119,7 @@ bool ModuleState::create(const double* values, const char* config, HapbenchRun r
 void ModuleState::destroy() noexcept {
   const auto destroy = module_.table->destroy;
   if (state_ != nullptr && destroy != nullptr) {
-    runs("destroy", [&](char*) {
+    call_guarded("destroy", [&](char*) {
       destroy(state_);
       return true;
     });
@@ -130,11 +129,11 @@ void ModuleState::destroy() noexcept {
 }
 
 void ModuleState::reset() noexcept {
-  if (!created_) return;  // which stays its fault
+  if (!created_) return;  // the fault of `create` stays
   fault_[0] = '\0';
   const auto reset = module_.table->reset;
   if (reset == nullptr) return;
-  runs("reset", [&](char*) {
+  call_guarded("reset", [&](char*) {
     reset(state_);
     return true;
   });
@@ -142,7 +141,8 @@ void ModuleState::reset() noexcept {
 
 bool ModuleState::step(const HapbenchPose* pose, HapbenchContacts& contacts, HapbenchForce* force) noexcept {
   if (fault() != nullptr) return false;
-  return runs("step", [&](char* text) { return module_.table->step(state_, pose, &contacts, force, text) == 0; });
+  return call_guarded("step",
+                      [&](char* text) { return module_.table->step(state_, pose, &contacts, force, text) == 0; });
 }
 
 void ModuleLaw::prepare(std::size_t capacity) {
@@ -165,6 +165,7 @@ LawForce ModuleLaw::failed(const char* problem) noexcept {
 
 LawForce ModuleLaw::evaluate(ContactBuffer& contacts) noexcept {
   if (contacts.empty()) return {};
+  // Surround the weights with guard values and call the module.
   set_weights(contacts, 0.0);
   const std::size_t n = contacts.size();
   std::fill_n(weights_.begin(), n + 2 * kGuards, std::bit_cast<double>(kUnwritten));
@@ -174,9 +175,11 @@ LawForce ModuleLaw::evaluate(ContactBuffer& contacts) noexcept {
   view.weight = &*weights;
   HapbenchForce answer = {0, {kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
   if (!state_.step(nullptr, view, &answer)) return no_force();
+  // Check that the module has not written out of range.
   const auto is_unwritten = [](double number) { return std::bit_cast<std::uint64_t>(number) == kUnwritten; };
   if (!std::all_of(weights_.begin(), weights, is_unwritten) || !std::all_of(end, end + kGuards, is_unwritten))
     return failed("writes beyond its weights, of which there is one for each contact");
+  // Take the weights, or the force with equal weights if the module wrote none.
   gives_weights_ = answer.given == 0;
   if (!gives_weights_) std::replace_if(weights, end, is_unwritten, 1.0 / static_cast<double>(n));
   std::copy(weights, end, contacts.weight.begin());
@@ -204,12 +207,12 @@ void ModuleContacts::contacts_at(const ToolPose& pose, ContactBuffer& contacts) 
   HapbenchContacts view = view_of(contacts);
   view.room = capacity_;
   const HapbenchPose at = module_pose(pose, tool_length_);
-  if (state_.step(&at, view, nullptr)) take(view.n, contacts);
+  if (state_.step(&at, view, nullptr)) accept(view.n, contacts);
   fault_ = state_.fault();
   contacts.pad();
 }
 
-void ModuleContacts::take(std::size_t n, ContactBuffer& contacts) noexcept {
+void ModuleContacts::accept(std::size_t n, ContactBuffer& contacts) noexcept {
   if (n > capacity_) {
     std::array<char, 80> problem;
     std::snprintf(problem.data(), problem.size(), "gives %zu contacts; allowed: at most %zu", n, capacity_);
@@ -239,8 +242,8 @@ HapbenchPose module_pose(const ToolPose& pose, double tool_length) noexcept {
 AlgorithmEntry law_entry(Module module, std::string hash) {
   const HapbenchModule& table = *module.table;
   if (table.step == nullptr) refuse("its function \"step\" is missing");
-  if (table.parameter_count > kMostParameters)
-    refuse("it has ", table.parameter_count, " parameters; allowed: at most ", kMostParameters);
+  if (table.parameter_count > kMaxParameters)
+    refuse("it has ", table.parameter_count, " parameters; allowed: at most ", kMaxParameters);
   if (table.parameter_count > 0 && table.parameters == nullptr) refuse("its table of parameters is missing");
   const ModelInfo info = {.name = table.name,
                           .summary = table.summary,

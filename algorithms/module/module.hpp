@@ -10,17 +10,19 @@
 #include "algorithms/registry.hpp"
 #include "sim/contact/contact_source.hpp"
 
-/// Laws and sources of contacts behind the C interface. A step adds one indirect call and a check of the answer.
+/// Force laws and contact sources behind the C interface. A step adds one indirect call and a check of the
+/// result.
 namespace hapbench {
 
-/// A module's table and the file that it came from, without folders.
+/// A module's table and the name of the file that it came from, without folders.
 struct Module {
   std::shared_ptr<const HapbenchModule> table;
   std::string file;
 };
 
-/// The state of a module for one run. What the module throws is a fault like one that it reports. After a fault it is
-/// not asked again until the next reset, and never when its state could not be made.
+/// The state of a module in one run. An exception counts as a fault, like a fault that the module reports.
+/// After a fault, the module is not called again until the next reset. If its state could not be created, it is
+/// never called.
 class ModuleState {
  public:
   explicit ModuleState(Module module) : module_(std::move(module)) {}
@@ -28,21 +30,23 @@ class ModuleState {
   ModuleState(const ModuleState&) = delete;
   ModuleState& operator=(const ModuleState&) = delete;
 
-  /// Makes the state anew; HapbenchRun::data is filled in. Returns false for a fault.
+  /// Creates a new state. Sets HapbenchRun::data. Returns false for a fault.
   bool create(const double* values, const char* config, HapbenchRun run) noexcept;
+  /// Returns to t = 0 and clears the fault, unless the state could not be created.
   void reset() noexcept;
-  /// Returns false for a fault, this one's or an earlier one's.
+  /// Evaluates one step. Returns false after a fault, of this step or an earlier one.
   bool step(const HapbenchPose* pose, HapbenchContacts& contacts, HapbenchForce* force) noexcept;
-  /// Makes a problem with the module's answer its fault, which names module and file.
+  /// Records a problem with the module's result as its fault, with the names of module and file.
   void fail(const char* problem) noexcept;
-  /// The fault in one printable line; null for none.
+  /// Returns the fault as one printable line, or null.
   const char* fault() const noexcept { return fault_[0] == '\0' ? nullptr : fault_.data(); }
 
  private:
   void destroy() noexcept;
-  /// Calls `call(fault)`, which runs the module's function of that name and returns whether it succeeded.
+  /// Calls `call(fault)`, which calls the module's function with this name and returns true if it succeeded.
+  /// Turns a failure or an exception into a fault and returns false.
   template <class Call>
-  bool runs(const char* function, const Call& call) noexcept;
+  bool call_guarded(const char* function, const Call& call) noexcept;
 
   Module module_;
   void* state_ = nullptr;
@@ -50,10 +54,11 @@ class ModuleState {
   std::array<char, 320> fault_{};
 };
 
-/// A law of a module. It reads the contacts of the step in place and allocates nothing in a step.
+/// A force law from a module. It passes the contacts of the step without copying and allocates nothing in a
+/// step.
 class ModuleLaw final : public SingleSpringLaw {
  public:
-  /// `values` are those of the module's parameters, in their order.
+  /// `values` are the values of the module's parameters, in their order.
   ModuleLaw(Module module, double stiffness, std::vector<double> values)
       : SingleSpringLaw(stiffness), state_(std::move(module)), values_(std::move(values)) {}
 
@@ -68,44 +73,46 @@ class ModuleLaw final : public SingleSpringLaw {
 
   ModuleState state_;
   std::vector<double> values_;
-  std::vector<double> weights_;  ///< between numbers that find writes beyond them
+  /// Guard numbers, one weight for each contact, guard numbers; detects writes out of range.
+  std::vector<double> weights_;
 };
 
-/// The contacts of a module. It decides which there are, where, how deep and in which direction; no depth model takes
-/// part. The normal is the reversed gradient. Unlike other sources, it allocates in a step if the module does.
+/// Contacts from a module, which determines their number, positions, depths and gradients. No depth model is
+/// used. The normal is the reversed gradient. Unlike other sources, it allocates in a step if the module does.
 class ModuleContacts final : public ContactSource {
  public:
-  /// Throws std::runtime_error with the module's fault if it cannot make its state for this scenario's `config`, an
-  /// object as JSON text.
+  /// Throws std::runtime_error with the module's fault if the module cannot create its state. `config` is the
+  /// scenario's JSON object as text.
   ModuleContacts(Module module, const std::string& config, const HapbenchRun& run);
 
-  /// After a fault no contacts until the next reset. So are more than there is room for, what is not finite, a gradient
-  /// whose length is not 1 within 0.001, and a negative depth.
+  /// Returns no contacts after a fault, until the next reset. The following are faults as well: more contacts
+  /// than capacity(), a value that is not finite, a gradient whose length differs from 1 by more than 0.001,
+  /// and a negative depth.
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return capacity_; }
   void reset() noexcept override;
 
  private:
-  void take(std::size_t n, ContactBuffer& contacts) noexcept;
+  void accept(std::size_t n, ContactBuffer& contacts) noexcept;
 
   ModuleState state_;
   std::size_t capacity_;
   double tool_length_;
 };
 
-/// The pose of a tool of HapbenchRun::tool_length [m] for a module.
+/// Returns the pose in the form that modules receive, for a tool with HapbenchRun::tool_length [m].
 HapbenchPose module_pose(const ToolPose& pose, double tool_length) noexcept;
 
-/// The entry of the table for a module's law; `hash` is that of its file's content. Throws std::invalid_argument for a
-/// module whose functions or documentation are missing.
+/// Returns the table entry for a module's law. `hash` is the hash of its file's content. Throws
+/// std::invalid_argument if functions or documentation of the module are missing.
 AlgorithmEntry law_entry(Module module, std::string hash);
 
-/// Faults of modules in runs, over all threads.
+/// Faults of modules in runs, collected over all threads.
 struct ModuleFaults {
   std::uint64_t count = 0;
-  std::string first;  ///< text of the first
+  std::string first;  ///< text of the first fault
 };
-/// The faults since the last call.
+/// Returns the faults since the last call.
 ModuleFaults take_module_faults();
 
 }  // namespace hapbench

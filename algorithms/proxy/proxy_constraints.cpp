@@ -15,20 +15,21 @@ namespace {
 
 using simd::load, simd::Pack;
 
-/// Squared sine of the angle between a gradient and the span of others below which it counts as part of the span.
-/// Gradients on one flat face of the tool, or along one line of its side, differ by rounding, 1e-15; other neighbours
-/// by far more than this angle of 3e-8.
+/// Squared sine of the angle between a gradient and the span of other gradients below which the gradient counts
+/// as part of the span. Gradients on one flat face of the tool, or along one line of its side, differ by
+/// rounding only, 1e-15. Other neighbouring gradients differ by far more than this angle of 3e-8.
 constexpr double kInSpan = 1e-15;
-constexpr int kMostIterations = 100;
+constexpr int kMaxIterations = 100;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
+/// A violated constraint.
 struct Violation {
   std::size_t contact = 0;
   double amount = 0.0;  ///< d + <u, x> [m]
 };
 
-/// Returns the first of the largest violations, or amount 0 if all are within the tolerance.
+/// Returns the largest violation (the first of equals), or amount 0 if all are within the tolerance.
 Violation largest_violation(const ContactBuffer& c, const Vec3& x, double tolerance) noexcept {
   const Pack x0(x.x()), x1(x.y()), x2(x.z());
   Pack largest(-kNever);
@@ -36,11 +37,11 @@ Violation largest_violation(const ContactBuffer& c, const Vec3& x, double tolera
     return load(&c.depth[i]) + (load(&c.ux[i]) * x0 + load(&c.uy[i]) * x1 + load(&c.uz[i]) * x2);
   };
   for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) largest = simd::max(largest, amount(i));
-  const double most = simd::max_lane(largest);
-  if (!(most > tolerance)) return {};
+  const double largest_amount = simd::max_lane(largest);
+  if (!(largest_amount > tolerance)) return {};
   for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
-    const std::uint8_t here = simd::bits(amount(i) >= Pack(most));
-    if (here != 0) return {i + static_cast<std::size_t>(std::countr_zero(here)), most};
+    const std::uint8_t here = simd::bits(amount(i) >= Pack(largest_amount));
+    if (here != 0) return {i + static_cast<std::size_t>(std::countr_zero(here)), largest_amount};
   }
   return {};
 }
@@ -53,15 +54,15 @@ double largest_length(const ContactBuffer& c, const Vec3& wanted) noexcept {
   return simd::max_lane(largest);
 }
 
-/// A gradient, split into the nearest combination of the active gradients and the remainder.
+/// A gradient split into its projection on the span of the active gradients and the remainder.
 struct Split {
-  Vec3 inside = Vec3::Zero();  ///< its components along the orthonormal basis of their span
-  Vec3 remainder;              ///< perpendicular to all of them
-  Vec3 along = Vec3::Zero();   ///< its coefficients of the active gradients
+  Vec3 inside = Vec3::Zero();  ///< components of the projection in the orthonormal basis of the span
+  Vec3 remainder;              ///< perpendicular to all active gradients
+  Vec3 along = Vec3::Zero();   ///< coefficients of the projection as a combination of the active gradients
 };
 
-/// The contacts that hold the tool back, at most three, with independent gradients. Keeps their factorisation
-/// gradients = Q R by Gram and Schmidt, which takes a handful of operations for three rows.
+/// The active set: at most three contacts that hold the tool back, with linearly independent gradients. Keeps
+/// the factorisation gradients = Q R by Gram and Schmidt, which takes a few operations for three columns.
 class ActiveSet {
  public:
   int size() const { return size_; }
@@ -88,7 +89,7 @@ class ActiveSet {
     }
     return parts;
   }
-  /// `parts` is the split of the gradient, with a remainder that is not 0.
+  /// Adds a contact. `parts` is the split of its gradient; its remainder must not be zero.
   void add(std::size_t contact, const Vec3& gradient, const Split& parts, double lambda) {
     const auto k = static_cast<std::size_t>(size_);
     contact_[k] = contact;
@@ -99,16 +100,16 @@ class ActiveSet {
     R_(size_, size_) = length;
     Q_.col(size_++) = parts.remainder / length;
   }
-  void drop(int leaves) {
+  void remove(int leaving) {
     const ActiveSet before = *this;
     size_ = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(before.size_); ++k) {
-      if (static_cast<int>(k) == leaves) continue;
+      if (static_cast<int>(k) == leaving) continue;
       const Vec3& u = before.gradients_[k];
       add(before.contact_[k], u, split(u), before.lambda_[k]);
     }
   }
-  /// The orthogonal projector onto the span of the gradients.
+  /// Returns the orthogonal projector onto the span of the gradients.
   Mat3 projector() const {
     Mat3 P = Mat3::Zero();
     for (int k = 0; k < size_; ++k) P += Q_.col(k) * Q_.col(k).transpose();
@@ -120,10 +121,11 @@ class ActiveSet {
   std::array<std::size_t, 3> contact_{};
   std::array<double, 3> lambda_{};
   std::array<Vec3, 3> gradients_;
-  Mat3 Q_, R_;  ///< the first size() columns
+  Mat3 Q_, R_;  ///< the first size() columns are valid
 };
 
-/// Satisfies contact `p` and drops active contacts that no longer hold. Returns false if that is impossible.
+/// Makes contact `p` satisfied and active, and removes active contacts that no longer hold the tool back.
+/// Returns false if this is impossible.
 bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet& active) noexcept {
   double lambda = 0.0;
   for (;;) {
@@ -131,12 +133,13 @@ bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet&
     const Vec3 &r = parts.along, &free = parts.remainder;
     const double free2 = active.size() == 3 ? 0.0 : free.squaredNorm();
     const double whole_step = free2 > kInSpan ? violation / free2 : kNever;
+    // Shorten the step where a multiplier would become negative; this contact leaves the active set.
     double step = whole_step;
-    int leaves = -1;
+    int leaving = -1;
     for (int k = 0; k < active.size(); ++k) {
       if (r[k] > 0.0 && active.lambda(k) / r[k] < step) {
         step = active.lambda(k) / r[k];
-        leaves = k;
+        leaving = k;
       }
     }
     if (step == kNever) return false;
@@ -146,16 +149,16 @@ bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet&
       x -= step * free;
       violation -= step * free2;
     }
-    if (leaves < 0) {
+    if (leaving < 0) {
       active.add(p, u, parts, lambda);
       return true;
     }
-    active.drop(leaves);
+    active.remove(leaving);
   }
 }
 
-/// The method of Goldfarb and Idnani. Returns false and leaves the weights unchanged if the contacts contradict each
-/// other.
+/// The method of Goldfarb and Idnani. Returns false and leaves the weights unchanged if the contacts contradict
+/// each other.
 bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
   ActiveSet active;
   out.move = wanted;
@@ -163,19 +166,19 @@ bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts
     const Violation worst = largest_violation(contacts, out.move, tolerance);
     // An active contact is violated by rounding only.
     if (!(worst.amount > tolerance) || active.contains(worst.contact)) break;
-    if (++out.iterations > kMostIterations) return false;
+    if (++out.iterations > kMaxIterations) return false;
     if (!satisfy(worst.contact, worst.amount, contacts.gradient(worst.contact), out.move, active)) return false;
   }
-  // A contact that is only just reached holds nothing, and rounding would decide whether it counts.
+  // A contact that is only just reached holds nothing; rounding would decide whether it is active.
   for (int k = active.size() - 1; k >= 0; --k) {
-    if (active.lambda(k) <= tolerance) active.drop(k);
+    if (active.lambda(k) <= tolerance) active.remove(k);
   }
   for (int k = 0; k < active.size(); ++k) contacts.weight[active.contact(k)] = active.lambda(k);
   out.held = active.projector();
   return true;
 }
 
-/// The least-squares problem at one x: its value, gradient and Hessian.
+/// The least-squares problem at one x: value, gradient and Hessian.
 struct Compromise {
   double value;
   Vec3 gradient;
@@ -197,11 +200,12 @@ struct Compromise {
   }
 };
 
-/// Newton with a line search: the problem is convex and piecewise quadratic, so it ends at the minimum.
+/// Newton's method with a line search. It ends at the minimum, because the problem is convex and piecewise
+/// quadratic.
 void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
   out.move = wanted;
   Compromise here(contacts, wanted, out.move);
-  for (int i = 0; i < kMostIterations && here.gradient.norm() > kCompromiseEpsilon * tolerance; ++i, ++out.iterations) {
+  for (int i = 0; i < kMaxIterations && here.gradient.norm() > kCompromiseEpsilon * tolerance; ++i, ++out.iterations) {
     const Vec3 direction = -Eigen::LLT<Mat3>(here.hessian).solve(here.gradient);
     double step = 1.0;
     Compromise next(contacts, wanted, out.move + direction);
@@ -209,7 +213,7 @@ void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& co
       step *= 0.5;
       next = Compromise(contacts, wanted, out.move + step * direction);
     }
-    if (!(next.value < here.value)) break;  // rounding is all that is left
+    if (!(next.value < here.value)) break;  // only rounding is left
     out.move += step * direction;
     here = next;
   }
@@ -222,36 +226,38 @@ void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& co
   out.held = 0.5 * (out.held + out.held.transpose()).eval();
 }
 
-/// The search looks a little further than the proxy moves, to allow for the rounding of both.
+/// Factor on the margin of the search, which must exceed the proxy's move by the rounding of both.
 constexpr double kQueryMargin = 1.0 + 1e-6;
-/// How far a point may lie inside one plane of an edge and still count as passing it, as a share of the spacing.
+/// Distance by which a point may lie inside one face of an edge and still count as outside the edge, relative
+/// to the spacing.
 constexpr double kEdgeSlack = 1e-3;
 
-/// Points whose spacing is measured.
-constexpr std::size_t kSampled = 100;
-/// Radius of a patch as a share of the spacing. It reaches the centre of four points of a square lattice, 0.707 away.
+/// Number of points whose spacing is measured.
+constexpr std::size_t kSpacingSamples = 100;
+/// Radius of a patch relative to the spacing. It covers the centre of four points of a square lattice, at 0.707
+/// spacings.
 constexpr double kPatch = 0.75;
-/// Largest depth at which an edge constraint applies, as a share of the spacing.
-constexpr double kDeepest = 0.1;
+/// Largest depth at which an edge constraint applies, relative to the spacing.
+constexpr double kMaxPatchDepth = 0.1;
 
-/// Points nearer to each other than this share of the size of the shell count as one, because shells may list a vertex
+/// Points closer than this fraction of the shell's size count as one point, because shells may list a vertex
 /// once for each of its cells.
-constexpr double kSamePlace = 1e-7;
+constexpr double kSamePosition = 1e-7;
 
-/// Distance from a point to the second nearest other place [m].
+/// Returns the distance [m] from a point to the second nearest point at another position.
 double distance_to_second(const PointShell& shell, std::size_t from) {
-  const double same = kSamePlace * shell.bounds().size().norm(), same2 = same * same;
+  const double same = kSamePosition * shell.bounds().size().norm(), same2 = same * same;
   double first2 = kNever, second2 = kNever;
   const Vec3 here = shell.point(from).position;
   Vec3 nearest = here;
   for (std::size_t i = 0; i < shell.size(); ++i) {
-    const Vec3 place(shell.x()[i], shell.y()[i], shell.z()[i]);
-    const double distance2 = (place - here).squaredNorm();
-    if (distance2 >= second2 || distance2 <= same2 || (place - nearest).squaredNorm() <= same2) continue;
+    const Vec3 position(shell.x()[i], shell.y()[i], shell.z()[i]);
+    const double distance2 = (position - here).squaredNorm();
+    if (distance2 >= second2 || distance2 <= same2 || (position - nearest).squaredNorm() <= same2) continue;
     if (distance2 < first2) {
       second2 = first2;
       first2 = distance2;
-      nearest = place;
+      nearest = position;
     } else {
       second2 = distance2;
     }
@@ -259,12 +265,13 @@ double distance_to_second(const PointShell& shell, std::size_t from) {
   return std::sqrt(second2);
 }
 
-/// Typical distance from a shell point to its neighbours [m], 0 for fewer than three points: the median, over some of
-/// the points, of the distance to the second nearest place, hence the spacing of a square lattice as well as of a line.
-/// Points at the same place count as one. O(size), about a hundred distances for each point.
+/// Returns the typical distance from a shell point to its neighbours [m]; 0 for fewer than three points. It is
+/// the median, over a sample of points, of the distance to the second nearest position, which is the spacing of
+/// a square lattice and of a line. Points at the same position count as one. O(size), about a hundred distances
+/// for each point.
 double typical_spacing(const PointShell& shell) {
   if (shell.size() < 3) return 0.0;
-  const std::size_t samples = std::min(kSampled, shell.size());
+  const std::size_t samples = std::min(kSpacingSamples, shell.size());
   std::vector<double> distances;
   for (std::size_t k = 0; k < samples; ++k) distances.push_back(distance_to_second(shell, k * shell.size() / samples));
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(samples / 2);
@@ -291,32 +298,36 @@ ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& too
       spacing_(typical_spacing(shell)),
       reach_(tool.grown(margin_ * kQueryMargin)),
       near_(make_contact_query(shell, *reach_.shape, skips)),
-      places_x_(simd::padded(near_->capacity())),
-      places_y_(places_x_.size()),
-      places_z_(places_x_.size()) {}
+      support_x_(simd::padded(near_->capacity())),
+      support_y_(support_x_.size()),
+      support_z_(support_x_.size()) {}
 
-/// Keeps the edges of the tool from sinking in between the points of a shell: the edge of a drill on a wall would find
-/// up to 0.05 mm of room between two rows of points 0.1 mm apart, because it touches points with both of its faces. The
-/// surface is assumed to be flat about each point, as far as the next points. If the foremost place of the tool towards
-/// the surface, v_i = argmin <q, n_i> over the tool, lies on that patch, it must stay above it:
+/// Keeps the edges of the tool from sinking in between the points of a shell. The edge of a drill on a wall
+/// could sink by up to 0.05 mm between two lines of points 0.1 mm apart, because it touches points with both of
+/// its faces.
 ///
-///     <n_i, v_i + x - x_i> >= 0, appended as contact with depth <n_i, x_i - v_i> and gradient -n_i.
+/// The surface around each point x_i with normal n_i is assumed to be flat up to the next points. Let v_i be
+/// the tool's support point towards the surface, argmin <q, n_i> over the tool. If v_i lies on this patch, the
+/// tool must stay above the patch:
 ///
-/// Patches apply at distances up to the margin and depths up to a tenth of the spacing; a patch that lies further out
-/// belongs to another part of the surface, such as the other side of a rim. Call after ToolShape::surface_constraints.
-/// Precondition: room for twice the contacts. O(n).
+///   <n_i, v_i + x - x_i> >= 0, appended as a contact with depth <n_i, x_i - v_i> and gradient -n_i.
+///
+/// Patches apply at distances up to the margin and depths up to a tenth of the spacing. A patch outside this
+/// range belongs to another part of the surface, such as the other side of a rim. Called after
+/// ToolShape::surface_constraints. Precondition: room for twice the contacts. O(n).
 void ShellConstraints::add_edges(const ToolPose& proxy, ContactBuffer& contacts) noexcept {
   const std::size_t points = contacts.size(), padded = contacts.padded_size();
   const PackRange all{0, padded / simd::lanes, 0xff, static_cast<std::uint8_t>(0xffu >> (padded - points))};
   const PointColumns columns{contacts.index.data(), contacts.x.data(),  contacts.y.data(), contacts.z.data(),
                              contacts.nx.data(),    contacts.ny.data(), contacts.nz.data()};
-  const Pack highest(margin_), deepest(-kDeepest * spacing_), patch2(kPatch * spacing_ * kPatch * spacing_);
-  const PlaceArrays places{places_x_.data(), places_y_.data(), places_z_.data()};
-  tool_->foremost_places(proxy, contacts, places);
+  const Pack highest(margin_), deepest(-kMaxPatchDepth * spacing_), patch2(kPatch * spacing_ * kPatch * spacing_);
+  const PlaceArrays support{support_x_.data(), support_y_.data(), support_z_.data()};
+  tool_->foremost_places(proxy, contacts, support);
+  // For each contact whose support point lies on its patch, append the constraint of the patch.
   for (std::size_t i = 0; i < padded; i += simd::lanes) {
     const Pack nx = load(&contacts.nx[i]), ny = load(&contacts.ny[i]), nz = load(&contacts.nz[i]);
-    const Pack dx = load(&places.x[i]) - load(&contacts.x[i]), dy = load(&places.y[i]) - load(&contacts.y[i]),
-               dz = load(&places.z[i]) - load(&contacts.z[i]);
+    const Pack dx = load(&support.x[i]) - load(&contacts.x[i]), dy = load(&support.y[i]) - load(&contacts.y[i]),
+               dz = load(&support.z[i]) - load(&contacts.z[i]);
     const Pack height = nx * dx + ny * dy + nz * dz;
     const Pack aside2 = dx * dx + dy * dy + dz * dz - height * height;
     const simd::Mask applies = height <= highest && height >= deepest && aside2 <= patch2;
@@ -348,7 +359,7 @@ void SpringConstraints::constraints_at(const ToolPose& proxy, const Vec3&, Conta
   for (std::size_t j = 0; j < springs_->gradients.size(); ++j) {
     const Vec3& u = springs_->gradients[j];
     const double depth = proxy.position.dot(u);
-    // False for a position that is not finite, which compresses no spring.
+    // The condition is false for a position that is not finite, which compresses no spring.
     if (depth > -kNever) push_spring(j, proxy.position, depth, u, contacts);
     if (springs_->bilateral && -depth > -kNever) push_spring(j, proxy.position, -depth, -u, contacts);
   }

@@ -11,70 +11,78 @@
 
 namespace hapbench {
 
-/// Violation, relative to the largest length of the problem, up to which a contact counts as satisfied: above the
-/// rounding of the solution and of gradients, far below anything felt (1e-11 m in a search of 0.1 mm).
+/// Tolerance of the constraints, relative to the largest length of the problem. It is above the rounding of
+/// solution and gradients, and far below anything that can be felt (1e-11 m in a search of 0.1 mm).
 inline constexpr double kViolationTolerance = 1e-7;
-/// epsilon of the compromise between contacts that contradict each other.
+/// Weight epsilon of the compromise between contradictory contacts (nearest_allowed).
 inline constexpr double kCompromiseEpsilon = 1e-6;
 
-/// The move nearest to a wanted one that a set of contacts allows.
+/// The result of nearest_allowed. x is the allowed move, t the wanted move.
 struct AllowedMove {
-  Vec3 move = Vec3::Zero();   ///< x [m]
-  Mat3 held = Mat3::Zero();   ///< I - dx/dt: the projector onto the span of the contacts that hold the tool back
-  bool feasible = true;       ///< false: no move satisfies all contacts, x is the least-squares compromise
-  Vec3 share = Vec3::Zero();  ///< if infeasible: <u_i, share> is the part of contact i in the residual t - x [m]
+  Vec3 move = Vec3::Zero();  ///< x [m]
+  /// I - dx/dt: projector onto the span of the gradients of the contacts that hold the tool back.
+  Mat3 held = Mat3::Zero();
+  bool feasible = true;  ///< false: no move satisfies all contacts, so x is the least-squares compromise
+  /// If infeasible: <u_i, share> is the contribution of contact i to the residual t - x [m].
+  Vec3 share = Vec3::Zero();
   int iterations = 0;
 };
 
-/// Solves, in three unknowns,
+/// Computes the move x nearest to a wanted move t [m] that a set of contacts allows:
 ///
-///     minimise |x - t|^2   subject to   d_i + <u_i, x> <= 0   for all contacts
+///   minimise |x - t|^2   subject to   d_i + <u_i, x> <= 0   for all contacts
 ///
-/// with the dual active-set method of Goldfarb and Idnani (Mathematical Programming 27, 1983), which here needs no more
-/// than three active contacts. Each iteration takes the contact that is violated most (the first of equals). Leaves the
-/// multipliers lambda_i >= 0 [m] as weights in the buffer: x = t - sum lambda_i u_i, 0 for contacts that do not hold.
+/// d_i [m] and u_i are depth and gradient of contact i. The solver is the dual active-set method of Goldfarb
+/// and Idnani (Mathematical Programming 27, 1983). With three unknowns, at most three contacts are active. Each
+/// iteration adds the most violated contact (the first of equals). The multipliers lambda_i >= 0 [m] are
+/// written as weights into the buffer; x = t - sum lambda_i u_i, and lambda_i = 0 for contacts that do not hold
+/// the tool back. A constraint counts as satisfied within kViolationTolerance times the largest length of the
+/// problem.
 ///
-/// Contacts count as satisfied within kViolationTolerance of the problem's largest length. If no x satisfies all of
-/// them (opposite walls of a slot narrower than the tool), x is instead the unique minimiser of
+/// If no x satisfies all contacts (opposite walls of a slot narrower than the tool), x is the unique minimiser
+/// of
 ///
-///     1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,   epsilon = 1e-6,
+///   1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,   epsilon = 1e-6,
 ///
-/// where opposite walls are shared in equal squares. The weights are then the violations w_i = max(0, d_i + <u_i, x>),
-/// and lambda_i = w_i + <u_i, share>, which may be negative, has the same identity but for epsilon: opposite violations
-/// cancel, share = H^-1 (t - x) divides the rest, H = sum u u^T + epsilon I over the violated. These lambda_i are the
-/// derivatives by d_i of 1/2 |x - t|^2 + 1/2 sum w^2, so forces and moments computed from them create no energy.
-/// O(n) per iteration, typically one to five iterations. Precondition: contacts are padded, gradients are unit vectors;
-/// otherwise finite. Allocates nothing.
+/// so that opposite walls are violated equally. The weights are then the violations w_i = max(0, d_i + <u_i,
+/// x>). The multipliers are lambda_i = w_i + <u_i, share> and may be negative. They satisfy the same identity
+/// up to epsilon: violations of opposite walls cancel, and share = H^-1 (t - x) distributes the rest, with H =
+/// sum u u^T + epsilon I over the violated contacts. These lambda_i are the derivatives by d_i of 1/2 |x - t|^2
+/// + 1/2 sum w^2, so forces and moments computed from them create no energy.
+///
+/// O(n) for each iteration, usually one to five iterations. Allocates nothing. Preconditions: the contacts are
+/// padded, and the gradients are unit vectors. Without unit vectors the result is still finite.
 AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept;
 
-/// The margin in half widths of the tool. With a wider one each pass looks at more points, with a narrower one a fast
-/// tool takes more passes.
+/// Margin around the tool within which constraints are computed, in half widths of the tool. A wider margin
+/// includes more points in each pass. A narrower margin needs more passes for a fast tool.
 inline constexpr double kProxyMargin = 0.2;
 
-/// Keeps a proxy of the tool out of an environment by linear constraints on its next move x: d_i + <u_i, x> <= 0 with
-/// depth d_i and gradient u_i of contact i.
+/// Keeps a proxy of the tool out of an environment by linear constraints on its next move x: d_i + <u_i, x> <=
+/// 0, with depth d_i [m] and gradient u_i of contact i.
 class ProxyConstraints {
  public:
   virtual ~ProxyConstraints() = default;
 
-  /// Replaces the contents of `contacts` by the constraints, padded, on a proxy at the pose `proxy` that wants to move
-  /// by `wanted` [m]. Precondition: contacts.capacity() >= capacity(). Allocates nothing.
+  /// Replaces the contents of `contacts` by the padded constraints of a proxy at the pose `proxy` with the
+  /// wanted move `wanted` [m]. Precondition: contacts.capacity() >= capacity(). Allocates nothing.
   virtual void constraints_at(const ToolPose& proxy, const Vec3& wanted, ContactBuffer& contacts) noexcept = 0;
+  /// Upper bound of the number of constraints.
   virtual std::size_t capacity() const noexcept = 0;
-  /// Distance that the proxy may move before the constraints must be computed again [m].
+  /// Distance [m] that the proxy may move before the constraints must be computed again.
   virtual double margin() const noexcept = 0;
-  /// True if the force of a constraint acts at the point of its contact, false if it acts at the tip, which does not
-  /// move when the tool turns.
+  /// Returns true if the force of a constraint acts at the contact's point. Returns false if it acts at the tip
+  /// centre, where it has no moment.
   virtual bool act_at_points() const noexcept = 0;
   virtual void reset() noexcept { work_ = {}; }
   virtual const SearchWork& work() const noexcept { return work_; }
 
  protected:
-  SearchWork work_;  ///< of constraints that have no search
+  SearchWork work_;  ///< for constraints without a search
 };
 
-/// Constraints of the shell points within the margin of the tool (ToolShape::surface_constraints) and of the patches of
-/// surface about them (add_edges).
+/// Constraints from the shell points within the margin of the tool (ToolShape::surface_constraints), and from
+/// the flat patches of surface around these points (add_edges).
 class ShellConstraints final : public ProxyConstraints {
  public:
   /// Shell and tool must outlive the constraints.
@@ -92,17 +100,18 @@ class ShellConstraints final : public ProxyConstraints {
 
   const ToolShape* tool_;
   double margin_;
-  double spacing_;          ///< typical spacing of the shell [m]
-  ToolShape::Grown reach_;  ///< the tool, grown by the margin
+  double spacing_;          ///< typical distance between neighbouring shell points [m]
+  ToolShape::Grown reach_;  ///< the tool, enlarged by the margin
   std::unique_ptr<ContactQuery> near_;
-  AlignedDoubles places_x_, places_y_, places_z_;  ///< scratch memory for add_edges, one place per contact
+  /// Scratch memory of add_edges: one support point for each contact.
+  AlignedDoubles support_x_, support_y_, support_z_;
 };
 
-/// Constraints of springs: planes, which hold at any distance. A bilateral spring holds the tool from both sides, so it
-/// gives the pair (d, u) and (-d, -u).
+/// Constraints from springs: planes that hold at any distance. A bilateral spring holds the tool from both
+/// sides, so it gives two constraints, (d, u) and (-d, -u).
 class SpringConstraints final : public ProxyConstraints {
  public:
-  /// The springs must outlive the constraints.
+  /// The spring set must outlive the constraints.
   explicit SpringConstraints(const SpringSet& springs) : springs_(&springs) {}
 
   void constraints_at(const ToolPose& proxy, const Vec3& wanted, ContactBuffer& contacts) noexcept override;

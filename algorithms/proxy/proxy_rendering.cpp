@@ -12,18 +12,19 @@
 namespace hapbench {
 namespace {
 
-/// Eigenvalue of sum u u^T below which the gradients do not span its eigenvector.
+/// Eigenvalue of sum u u^T below which its eigenvector counts as outside the span of the gradients.
 constexpr double kNoSpan = 1e-6;
-/// A pass that moves the proxy by less than this share of the margin is the last one. Its constraints were exact at its
-/// start, so the error at its end is its length squared over the width of the tool: 9 nm for a drill of 1 mm.
-constexpr double kSettled = 0.03;
-/// Longest cycle of places, in passes, that is recognised.
+/// A pass that moves the proxy by less than this fraction of the margin is the last pass. Its constraints are
+/// exact at its start, so the error at its end is the squared length of the move over the width of the tool: 9
+/// nm for a drill of 1 mm.
+constexpr double kConverged = 0.03;
+/// Longest cycle of proxy positions that is recognised, in passes.
 constexpr std::size_t kLongestCycle = 4;
-/// Places nearer to each other than this share of the margin are the same.
-constexpr double kSame = 1e-3;
-/// Most times that a move of a proxy with points inside is shortened. Its length is then right to a few per cent,
-/// unless the tool itself draws the proxy away.
-constexpr int kSlowed = 3;
+/// Positions closer than this fraction of the margin count as equal.
+constexpr double kEqualPositions = 1e-3;
+/// Maximum number of times that the move of a proxy with points inside is shortened. Its length is then right
+/// to a few per cent, unless the tool itself pulls the proxy away.
+constexpr int kMaxShortenings = 3;
 
 constexpr OwnParameter kDampingTime[] = {
     {"damping_time_s",
@@ -31,8 +32,8 @@ constexpr OwnParameter kDampingTime[] = {
      0.0,
      "time constant with which damping and friction follow the directions of the contacts"}};
 
-/// Calls `use(i)` for each contact that holds the proxy back, in order. Tests eight at a time, because only about three
-/// of some hundred contacts near the proxy hold it. Precondition: padded.
+/// Calls `use(i)` for each contact that holds the proxy back, in order. Tests eight contacts at a time, because
+/// only about three of some hundred contacts near the proxy hold it. Precondition: the contacts are padded.
 template <class Use>
 void for_each_holding(const ContactBuffer& contacts, const Use& use) {
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
@@ -41,41 +42,46 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
   }
 }
 
-/// Most passes of a step; most steps take two. Passes bring the proxy near and make the constraints exact where it
-/// ends.
-constexpr int kProxyPasses = 64;
-/// Speed at which a proxy leaves points that are inside it, in half widths of the tool per second. For a drill of 1 mm
-/// that is 0.02 m/s, the highest speed at which the simulated subjects lead it.
+/// Maximum number of passes in a step; most steps need two. The first passes bring the proxy near its goal, the
+/// last makes the constraints exact at its final position.
+constexpr int kMaxPasses = 64;
+/// Speed at which a proxy leaves points that are inside it, in half widths of the tool per second. For a drill
+/// of 1 mm it is 0.02 m/s, the highest speed at which the simulated subjects move the drill.
 constexpr double kRecoverySpeed = 40.0;
 
-/// Constraint-based rendering for a tool that cannot be turned back: a proxy of the tool that has its orientation and
-/// never enters the environment follows it, and a spring pulls the tool to the proxy (Zilles and Salisbury, 1995, for a
-/// point). Orientation is scripted, so only the translation x of the proxy is free: three unknowns.
+/// Constraint-based rendering with a proxy (Zilles and Salisbury, 1995, for a point). The proxy is a copy of
+/// the tool that never enters the environment. It follows the tool, and a spring pulls the tool to the proxy.
+/// The orientation is scripted and equals the tool's, so only the translation x of the proxy is free: three
+/// unknowns.
 ///
-/// Each pass computes the constraints on the proxy (ProxyConstraints) and moves it to the allowed place nearest to the
-/// tool (nearest_allowed), at most by the margin, so that it cannot reach points further away.
+/// Each pass computes the constraints on the proxy (ProxyConstraints) and moves it to the allowed position
+/// nearest to the tool (nearest_allowed). A move is at most as long as the margin, so that the proxy cannot
+/// reach points beyond the margin, for which it has no constraints.
 ///
-/// Guarantee: after a pass whose contacts do not contradict each other, and which was not shortened because points were
-/// inside the proxy, no shell point is inside the proxy by more than kViolationTolerance of the margin, because the
-/// constraints are conservative (the tool is convex), and those of a proxy without penetration still hold for a part of
-/// the move. If they contradict (a slot narrower than the tool), the proxy takes the least-squares compromise, and each
-/// wall that it enters counts as one more spring of stiffness K.
+/// Guarantee: after a pass, no shell point is inside the proxy by more than kViolationTolerance of the margin,
+/// if the contacts of this pass do not contradict each other and the move was not scaled because points were
+/// inside. Reason: the constraints are conservative (the tool is convex), and for a proxy without penetration
+/// they also hold for a part of the move. If contacts contradict each other (a slot narrower than the tool),
+/// the proxy takes the least-squares compromise, and each wall that it enters counts as one more spring of
+/// stiffness K.
 ///
-/// A proxy may have points inside if it was placed on them or if walls leave no room. Moving it out at once would throw
-/// the tool out, so the depths are scaled until the deepest point leaves at kRecoverySpeed. A proxy without points
-/// inside keeps the guarantee, however fast the tool turns. Planes of springs have no inside.
+/// Points may be inside the proxy if it was placed on them or if walls leave no room. Moving it out at once
+/// would throw the tool out. The depths are therefore scaled so that the deepest point leaves at
+/// kRecoverySpeed. A proxy without points inside keeps the guarantee, however fast the tool rotates. Planes of
+/// springs have no inside.
 ///
-/// With late contacts (ContactSchedule) the proxy follows the tool and looks for points in the rows of answers only, as
-/// of the tool's pose in the query. Held, its spring stays as it was then. Linear, the constraints of its last pass are
-/// planes in space that turn with the tool's material, and it goes to the allowed place nearest to the tool in every
-/// row, without passes: points beyond the margin are not seen before the next query.
+/// With multi-rate contacts (ContactSchedule), the proxy follows the tool and searches points only in steps in
+/// which a query returns, for the tool's pose in the query. Held: the spring force stays constant until then.
+/// Linear: the constraints of the last pass become planes in space that rotate with the tool's material, and in
+/// every step the proxy moves to the allowed position nearest to the tool, without passes. Points beyond the
+/// margin are not found before the next query.
 ///
-/// f_spring = K (x - p). S is the projector onto the span of the gradients that hold the proxy back. With angular
-/// damping v_n is S v plus the shortest velocity in that span whose components along the u_i are those of the turning
-/// tool, <omega x r_i, u_i>. Normal damping and friction may follow S with a time constant (`damping_time_s`), because
-/// S, and with it -B S v, steps as points come and go; a mean of projectors lies between 0 and I, so both stay passive.
-/// The rendered contacts are those that hold the proxy, with depth lambda_i [m] and weight 1: f_spring = -K sum
-/// lambda_i u_i.
+/// f_spring = K (x - p) with the tool's position p. S is the projector onto the span of the gradients that hold
+/// the proxy back. With angular damping, v_n is S v plus the shortest velocity in this span whose components
+/// along the u_i are the rotating tool's components <omega x r_i, u_i>. Normal damping and friction may follow
+/// S with a time constant (`damping_time_s`), because S, and with it -B S v, changes in steps as points come
+/// and go. A mean of projectors lies between 0 and I, so both stay passive. The rendered contacts are the
+/// contacts that hold the proxy, with depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
 class ProxyRendering final : public ForceAlgorithm {
  public:
   explicit ProxyRendering(const RenderingConfig& config)
@@ -96,16 +102,16 @@ class ProxyRendering final : public ForceAlgorithm {
     }
     near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
     schedule_ = scene.schedule;
-    if (schedule_ != nullptr && schedule_->lateness.linear) base_depth_ = near_contacts_->depth;
+    if (schedule_ != nullptr && schedule_->timing.linear) constraint_depth_ = near_contacts_->depth;
     damping_and_limits_.prepare(scene);
   }
 
   void reset() noexcept override {
     constraints_->reset();
     damping_and_limits_.release();
-    placed_ = false;
-    found_.reset();
-    damped_row_.setZero();
+    has_proxy_ = false;
+    last_query_row_.reset();
+    damping_S_row_.setZero();
     last_row_.reset();
     work_ = {};
   }
@@ -114,37 +120,37 @@ class ProxyRendering final : public ForceAlgorithm {
     out = {};
     out.depth_max = contacts.largest_depth();
     if (schedule_ == nullptr)
-      find(tool.pose, contacts.empty());
+      update_proxy(tool.pose, contacts.empty());
     else
-      find_late(tool.pose, contacts.empty());
-    hand_over_holding(contacts);
+      update_with_schedule(tool.pose, contacts.empty());
+    copy_holding_contacts(contacts);
     out.spring = spring_;
     out.S = allowed_.held;
-    follow_directions();
-    // Without contact, S = 0 would make the whole velocity tangential, so friction must not be applied.
+    filter_directions();
+    // Without contact, S = 0 would make the whole velocity tangential, so no friction is applied.
     if (contacts.empty()) {
       out.rendered = spring_;
       damping_and_limits_.release();
       return;
     }
-    Mat3 loads;  // not set where nothing reads it
+    Mat3 loads;  // uninitialised unless read
     if (damping_and_limits_.needs_loads()) loads = load_along(spring_);
-    out.rendered = damping_and_limits_.rendered_force(spring_, damped_, velocity_at(tool), loads);
+    out.rendered = damping_and_limits_.rendered_force(spring_, damping_S_, velocity_at(tool), loads);
     out.friction = damping_and_limits_.friction_state();
   }
 
-  /// One spring from tool to proxy. Each holding point pushes with its share on the proxy; moments are about the
-  /// proxy's tip centre.
+  /// Returns the energy of the spring from tool to proxy and the moment of the holding points about the proxy's
+  /// tip centre. Each holding point pushes the proxy with its multiplier lambda_i.
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override {
     if (K_ == 0.0) return {};
     SpringState state{spring_.squaredNorm() / (2.0 * K_) + damping_and_limits_.stored_energy(), Vec3::Zero()};
     for_each_holding(*near_contacts_, [&](std::size_t i) {
       const double weight = near_contacts_->weight[i];
-      // In the compromise, the violations also store energy.
+      // In the compromise, violated contacts store energy as well.
       if (!allowed_.feasible) state.energy += 0.5 * K_ * weight * weight;
       if (!constraints_->act_at_points()) return;
-      // The stored energy depends on the scaled depth, so the moment of the point is scaled as well.
-      const double scale = near_contacts_->depth[i] > 0.0 ? slowed_ : 1.0;
+      // The stored energy depends on the scaled depth, so the moment of the point is scaled, too.
+      const double scale = near_contacts_->depth[i] > 0.0 ? depth_scale_ : 1.0;
       state.moment -=
           (near_contacts_->point(i) - proxy_).cross(scale * K_ * multiplier(i) * near_contacts_->gradient(i));
     });
@@ -153,7 +159,7 @@ class ProxyRendering final : public ForceAlgorithm {
 
   ForceJacobian jacobian() const noexcept override {
     if (allowed_.held.isZero(0.0)) return {};
-    return {K_ * allowed_.held, damping_and_limits_.damping_matrix(spring_, damped_)};
+    return {K_ * allowed_.held, damping_and_limits_.damping_matrix(spring_, damping_S_)};
   }
 
   std::optional<double> angular_velocity_cutoff() const noexcept override {
@@ -166,59 +172,64 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
  private:
-  void find(const ToolPose& tool, bool free) noexcept {
-    if (!placed_) place(tool.position);
-    // A tool in free air that is too far away for the proxy to follow has been placed there.
-    if (!follow(tool) && free) place(tool.position);
+  /// Moves the proxy for the tool's pose and updates the spring force. `free`: the tool touches no point.
+  void update_proxy(const ToolPose& tool, bool free) noexcept {
+    if (!has_proxy_) set_proxy(tool.position);
+    // A tool in free air that is too far away for the proxy to follow: move the proxy to the tool.
+    if (!follow(tool) && free) set_proxy(tool.position);
     spring_ = K_ * (proxy_ - tool.position);
   }
 
-  void find_late(const ToolPose& tool, bool free) noexcept {
+  /// `find` for multi-rate contacts.
+  void update_with_schedule(const ToolPose& tool, bool free) noexcept {
     const ContactSchedule::Query* query = schedule_->used();
     if (query == nullptr) {
-      place(tool.position);
+      set_proxy(tool.position);
       spring_.setZero();
       return;
     }
-    const bool linear = schedule_->lateness.linear;
-    if (found_ != query->row) {
-      found_ = query->row;
-      find(query->pose, free);
-      if (linear) base_depth_ = near_contacts_->depth;
+    const bool linear = schedule_->timing.linear;
+    if (last_query_row_ != query->row) {
+      last_query_row_ = query->row;
+      update_proxy(query->pose, free);
+      if (linear) constraint_depth_ = near_contacts_->depth;
     }
     if (!linear) return;
     move_planes(query->pose, tool);
-    allowed_ = nearest_allowed(tool.position - base_, *near_contacts_);
+    allowed_ = nearest_allowed(tool.position - constraint_position_, *near_contacts_);
     work_.iterations += static_cast<std::uint64_t>(allowed_.iterations);
-    proxy_ = allowed_.iterations == 0 ? tool.position : Vec3(base_ + allowed_.move);
+    proxy_ = allowed_.iterations == 0 ? tool.position : Vec3(constraint_position_ + allowed_.move);
     spring_ = K_ * (proxy_ - tool.position);
   }
 
-  /// Turns the constraints about the place that they are of, as the tool has turned since.
+  /// Updates the constraint planes for the rotation of the tool since the query, about the proxy position of
+  /// the constraints.
   void move_planes(const ToolPose& from, const ToolPose& to) noexcept {
     const Mat3 turned = turn_matrix(from, to) - Mat3::Identity();
     ContactBuffer& planes = *near_contacts_;
     for (std::size_t i = 0; i < planes.size(); ++i)
-      planes.depth[i] = base_depth_[i] + planes.gradient(i).dot(turned * (planes.point(i) - base_));
+      planes.depth[i] =
+          constraint_depth_[i] + planes.gradient(i).dot(turned * (planes.point(i) - constraint_position_));
   }
 
-  /// Further states of an integrator within a row start from the row before, as the first did. A first contact counts
-  /// at once.
-  void follow_directions() noexcept {
-    damped_ = allowed_.held;
+  /// Low-pass filters S for damping and friction. Further states of an integrator within a step start from the
+  /// previous step, like the first. The first contact takes effect at once.
+  void filter_directions() noexcept {
+    damping_S_ = allowed_.held;
     if (damping_time_ == 0.0) return;
     const bool first_of_row = row_ == nullptr || last_row_ != *row_;
     if (first_of_row) {
-      before_ = damped_row_;
+      previous_S_ = damping_S_row_;
       if (row_ != nullptr) last_row_ = *row_;
     }
-    if (!allowed_.held.isZero(0.0) && !before_.isZero(0.0))
-      damped_ = before_ + dt_ / (damping_time_ + dt_) * (allowed_.held - before_);
-    if (first_of_row) damped_row_ = damped_;
+    if (!allowed_.held.isZero(0.0) && !previous_S_.isZero(0.0))
+      damping_S_ = previous_S_ + dt_ / (damping_time_ + dt_) * (allowed_.held - previous_S_);
+    if (first_of_row) damping_S_row_ = damping_S_;
   }
 
+  /// Returns the velocity of the tool at the contacts that hold the proxy.
   ContactVelocity velocity_at(const ToolState& tool) const noexcept {
-    ContactVelocity velocity{tool.velocity, damped_ * tool.velocity};
+    ContactVelocity velocity{tool.velocity, damping_S_ * tool.velocity};
     if (!angular_velocity_cutoff() || !constraints_->act_at_points() || tool.angular_velocity == Vec3::Zero()) {
       return velocity;
     }
@@ -240,45 +251,46 @@ class ProxyRendering final : public ForceAlgorithm {
     return velocity;
   }
 
-  void place(const Vec3& position) noexcept {
-    placed_ = true;
-    proxy_ = base_ = position;
+  /// Moves the proxy to a position, without contacts.
+  void set_proxy(const Vec3& position) noexcept {
+    has_proxy_ = true;
+    proxy_ = constraint_position_ = position;
     allowed_ = {};
     clear_ = false;
-    slowed_ = 1.0;
+    depth_scale_ = 1.0;
     near_contacts_->clear();
   }
 
-  /// The allowed move that is nearest to the wanted one, or a slow move out if points are inside the proxy.
+  /// Returns the allowed move nearest to the wanted move, or a slow move out if points are inside the proxy.
   AllowedMove next_move(const Vec3& wanted) noexcept {
-    slowed_ = 1.0;
+    depth_scale_ = 1.0;
     const double deepest = clear_ ? 0.0 : near_contacts_->largest_depth();
     if (!(deepest > recovery_)) return nearest_allowed(wanted, *near_contacts_);
-    slow_down(recovery_ / deepest);
+    scale_depths(recovery_ / deepest);
     AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
-    // Points between nearly opposite walls leave by a long way. The move is nearly proportional to the depths.
-    for (int k = 0; k < kSlowed && allowed.move.norm() > recovery_; ++k) {
-      slow_down(recovery_ / allowed.move.norm());
+    // Points between nearly opposite walls leave by a long move. The move is nearly proportional to the depths.
+    for (int k = 0; k < kMaxShortenings && allowed.move.norm() > recovery_; ++k) {
+      scale_depths(recovery_ / allowed.move.norm());
       allowed = nearest_allowed(wanted, *near_contacts_);
     }
     return allowed;
   }
 
-  /// Scales the depths of points inside the proxy.
-  void slow_down(double factor) noexcept {
-    slowed_ *= factor;
+  /// Multiplies the depths of points inside the proxy by `factor`.
+  void scale_depths(double factor) noexcept {
+    depth_scale_ *= factor;
     for (double& depth : std::span(near_contacts_->depth.data(), near_contacts_->size())) {
       if (depth > 0.0) depth *= factor;
     }
   }
 
-  /// Returns false if the passes did not suffice.
+  /// Moves the proxy towards the tool in passes. Returns false if kMaxPasses passes were not enough.
   bool follow(const ToolPose& tool) noexcept {
     const double margin = constraints_->margin();
-    const double settled = kSettled * margin, same = kSame * margin;
-    std::array<Vec3, kLongestCycle> last;  // places of the last passes
-    last.fill(Vec3::Constant(std::numeric_limits<double>::infinity()));
-    for (int pass = 0; pass < kProxyPasses; ++pass) {
+    const double converged = kConverged * margin, same = kEqualPositions * margin;
+    std::array<Vec3, kLongestCycle> recent;  // positions of the last passes
+    recent.fill(Vec3::Constant(std::numeric_limits<double>::infinity()));
+    for (int pass = 0; pass < kMaxPasses; ++pass) {
       const ToolPose proxy{proxy_, tool.axis, tool.roll};
       const Vec3 wanted = tool.position - proxy_;
       constraints_->constraints_at(proxy, wanted, *near_contacts_);
@@ -286,9 +298,9 @@ class ProxyRendering final : public ForceAlgorithm {
       work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
       const double length = allowed.move.norm();
       const bool arrives = length <= margin;
-      base_ = proxy_;
+      constraint_position_ = proxy_;
       proxy_ += arrives ? allowed.move : Vec3(margin / length * allowed.move);
-      if (!allowed.feasible || slowed_ < 1.0) {
+      if (!allowed.feasible || depth_scale_ < 1.0) {
         // Leaving takes many steps, so one pass in each step is enough.
         clear_ = false;
         return arrives;
@@ -296,30 +308,31 @@ class ProxyRendering final : public ForceAlgorithm {
       if (arrives) {
         clear_ = true;
         if (allowed.iterations == 0) proxy_ = tool.position;
-        if (allowed.iterations == 0 || length <= settled) return true;
-        // Patches of the surface become active and inactive as the proxy moves, so passes may cycle through two or four
-        // places, all of them allowed. The place nearest to the tool is taken when it recurs.
+        if (allowed.iterations == 0 || length <= converged) return true;
+        // Patches of the surface become active and inactive as the proxy moves. Passes may therefore cycle
+        // through two or four positions, all of which are allowed. Accept the position nearest to the tool when
+        // it recurs.
         const double distance = (tool.position - proxy_).norm();
-        bool again = false, nearest = true;
-        for (const Vec3& place : last) {
-          again |= (proxy_ - place).norm() <= same;
-          nearest &= distance <= (tool.position - place).norm() + same;
+        bool recurs = false, nearest = true;
+        for (const Vec3& position : recent) {
+          recurs |= (proxy_ - position).norm() <= same;
+          nearest &= distance <= (tool.position - position).norm() + same;
         }
-        if (again && nearest) return true;
-        last[static_cast<std::size_t>(pass) % last.size()] = proxy_;
+        if (recurs && nearest) return true;
+        recent[static_cast<std::size_t>(pass) % recent.size()] = proxy_;
       }
     }
     return false;
   }
 
-  /// lambda_i of a contact that holds the proxy back.
+  /// Returns the multiplier lambda_i [m] of a contact that holds the proxy back.
   double multiplier(std::size_t i) const noexcept {
     return near_contacts_->weight[i] + allowed_.share.dot(near_contacts_->gradient(i));
   }
 
-  /// Replaces the colliding points by those that hold the proxy back, as far as there is room; in a compromise, points
-  /// and patches may outnumber the points of the shell. Force and energy are those of all of them.
-  void hand_over_holding(ContactBuffer& contacts) const noexcept {
+  /// Replaces the colliding points by the contacts that hold the proxy back, up to the buffer's capacity. In a
+  /// compromise, points and patches may exceed it; force and energy still include all of them.
+  void copy_holding_contacts(ContactBuffer& contacts) const noexcept {
     contacts.clear();
     for_each_holding(*near_contacts_, [&](std::size_t i) {
       if (contacts.size() == contacts.capacity()) return;
@@ -331,35 +344,39 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   double K_;
-  double damping_time_;  ///< [s]
+  double damping_time_;  ///< time constant of damping and friction [s]
   DampingAndLimits damping_and_limits_;
   Skips skips_;
   std::unique_ptr<ProxyConstraints> constraints_;
-  std::unique_ptr<ContactBuffer> near_contacts_;  ///< constraints of the last pass, with weights [m]
+  /// Constraints of the last pass, with multipliers or violations as weights [m].
+  std::unique_ptr<ContactBuffer> near_contacts_;
 
-  const ContactSchedule* schedule_ = nullptr;  ///< null: the proxy looks for points in every row
-  std::optional<std::uint64_t> found_;         ///< row of the query that the proxy has looked for points of
-  Vec3 base_ = Vec3::Zero();                   ///< place of the proxy that the constraints of the last pass are of
-  AlignedDoubles base_depth_;                  ///< their depths, where planes move
+  const ContactSchedule* schedule_ = nullptr;    ///< null: the proxy searches points in every step
+  std::optional<std::uint64_t> last_query_row_;  ///< step of the last query whose points were searched
+  /// Proxy position for which the constraints of the last pass were computed [m].
+  Vec3 constraint_position_ = Vec3::Zero();
+  AlignedDoubles constraint_depth_;  ///< depths of these constraints, if planes rotate [m]
 
-  bool placed_ = false;  ///< false before the first step
+  bool has_proxy_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();
-  AllowedMove allowed_;                                     ///< of the last pass
-  Mat3 damped_ = Mat3::Zero();                              ///< S as normal damping and friction see it
-  Mat3 damped_row_ = Mat3::Zero(), before_ = Mat3::Zero();  ///< the same, of this row and of the row before
+  AllowedMove allowed_;            ///< result of the last pass
+  Mat3 damping_S_ = Mat3::Zero();  ///< S for normal damping and friction
+  /// This filtered S at the end of this step and of the previous step.
+  Mat3 damping_S_row_ = Mat3::Zero(), previous_S_ = Mat3::Zero();
   std::optional<std::uint64_t> last_row_;
-  const std::uint64_t* row_ = nullptr;  ///< null without a simulation; then each force is a row's
+  const std::uint64_t* row_ = nullptr;  ///< null if no Simulation steps the algorithm; then each call counts as a step
   double dt_ = 0.0;
-  bool clear_ = false;     ///< no points are inside the proxy after the last pass
-  double recovery_ = 0.0;  ///< distance by which the deepest point may leave in a step [m]
-  double slowed_ = 1.0;    ///< factor of the depths of points inside in the last pass
+  bool clear_ = false;        ///< no points are inside the proxy after the last pass
+  double recovery_ = 0.0;     ///< distance by which the deepest point may leave in a step [m]
+  double depth_scale_ = 1.0;  ///< factor on the depths of points inside the proxy in the last pass
   Vec3 spring_ = Vec3::Zero();
   AlgorithmWork work_;
 };
 
-/// A proxy placed on the tool moves by at most one margin per pass, however deep the contacts are.
+/// Bound of |f_spring| / K: a proxy placed on the tool moves by at most one margin in each pass, however deep
+/// the contacts are.
 double proxy_bound(const RenderingConfig&, const ToolShape& tool, std::size_t, double) {
-  return kProxyPasses * kProxyMargin * tool.half_width();
+  return kMaxPasses * kProxyMargin * tool.half_width();
 }
 
 }  // namespace

@@ -64,31 +64,34 @@ const ModelInfo kPassivityControllerInfo = {
 };
 
 Vec3 EnergyTank::force(const StageStep& step) noexcept {
+  // Fill the tank with the energy absorbed since the last step.
   level_ = std::min(config_.capacity, begun_ ? level_ + (step.energy - energy_) : config_.initial + step.energy);
   energy_ = step.energy;
   begun_ = true;
   const Vec3 &f = step.force, &v = step.velocity;
+  // Reduce the force along the velocity if it would return more energy than the tank holds.
   const double excess = f.dot(v) * dt_ - std::max(level_, 0.0);
   return f.dot(v) > 0.0 && excess > 0.0 ? Vec3(f - excess / (v.squaredNorm() * dt_) * v) : f;
 }
 
 void ActuatorLimitedPassivity::prepare(double time_step, double mass) {
   dt_ = time_step;
-  most_damping_ = config_.max_damping.value_or(mass / dt_);
+  max_damping_ = config_.max_damping.value_or(mass / dt_);
 }
 
 Vec3 ActuatorLimitedPassivity::force(const StageStep& step) noexcept {
   const Vec3 &f = step.force, &v = step.velocity;
   const double size = f.norm();
-  double owed = f.dot(v) - step.energy / dt_;  // [W]
+  double owed = f.dot(v) - step.energy / dt_;  // power to dissipate [W]
   if (size == 0.0 || !(owed > 0.0)) return f;
-  const Vec3 most = config_.max_force.value_or(Vec3::Constant(std::numeric_limits<double>::infinity()));
-  // The damping a <= b that dissipates what is owed from the velocity `part`, with |g - a part|_j <= F_j for each j.
+  const Vec3 limit = config_.max_force.value_or(Vec3::Constant(std::numeric_limits<double>::infinity()));
+  // Applies the smallest damping a <= b that dissipates the power owed, on the velocity component `part`. Keeps
+  // the force within the limits, |g - a part|_j <= F_j for each axis j.
   const auto damped = [&](const Vec3& g, const Vec3& part) -> Vec3 {
-    double a = std::min(most_damping_, owed / part.squaredNorm());
+    double a = std::min(max_damping_, owed / part.squaredNorm());
     for (int j = 0; j < 3; ++j) {
       if (part[j] == 0.0) continue;
-      const double room = most[j] + (part[j] > 0.0 ? g[j] : -g[j]);
+      const double room = limit[j] + (part[j] > 0.0 ? g[j] : -g[j]);
       a = std::min(a, std::max(0.0, room / std::abs(part[j])));
     }
     owed -= a * part.squaredNorm();
@@ -102,7 +105,7 @@ Vec3 ActuatorLimitedPassivity::force(const StageStep& step) noexcept {
 void StagedRendering::prepare(const Scene& scene) {
   algorithm_->prepare(scene);
   scene_ = scene;
-  given_ = asked_ = ObservedEnergy(scene.dt, scene.position_is_free);
+  rendered_energy_ = requested_energy_ = ObservedEnergy(scene.dt, scene.position_is_free);
   const bool has_mass = scene.position_is_free && !scene.handle_moves_tool;
   stage_->prepare(scene.dt, has_mass ? config_.mass : 0.0);
 }
@@ -110,8 +113,8 @@ void StagedRendering::prepare(const Scene& scene) {
 void StagedRendering::reset() noexcept {
   algorithm_->reset();
   stage_->reset();
-  given_.reset();
-  asked_.reset();
+  rendered_energy_.reset();
+  requested_energy_.reset();
   row_.reset();
   change_.setZero();
   steps_staged_ = 0;
@@ -119,6 +122,7 @@ void StagedRendering::reset() noexcept {
 
 void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   algorithm_->compute(tool, contacts, out);
+  // A state within a step gets the change of the step's force.
   const std::uint64_t row = scene_.row != nullptr ? *scene_.row : row_ ? *row_ + 1 : 0;
   if (row_ == row) {
     if (!change_.isZero(0.0)) out.rendered += change_;
@@ -126,14 +130,18 @@ void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, Re
   }
   const bool first = !row_;
   row_ = row;
-  for (ObservedEnergy* port : {&given_, &asked_}) port->move(tool, scene_.handle_moves_tool);
-  // The springs that a run begins with are energy to give back; the port of a stage is the tool's translation alone.
+  // Update the observed energies for the motion since the last step.
+  for (ObservedEnergy* port : {&rendered_energy_, &requested_energy_}) port->move(tool, scene_.handle_moves_tool);
+  // The springs at the start of a run are energy that may be returned. The stage's port is the tool's
+  // translation only, so the moment is zero.
   const SpringState springs{first ? algorithm_->spring_state(tool, contacts).energy : 0.0, Vec3::Zero()};
-  asked_.answer(tool, out.rendered, springs);
-  // Before its answer, the port has the energy that the row begins with.
-  given_.answer(tool, Vec3::Zero(), springs);
-  const Vec3 answer = cut_to(stage_->force({out.rendered, tool.velocity, given_.energy()}), config_.max_force);
-  given_.answer(tool, answer, springs);
+  requested_energy_.answer(tool, out.rendered, springs);
+  // Call the stage. Before its force is set, the observer gives the energy at the start of the step.
+  rendered_energy_.answer(tool, Vec3::Zero(), springs);
+  const Vec3 answer =
+      limited_to(stage_->force({out.rendered, tool.velocity, rendered_energy_.energy()}), config_.max_force);
+  rendered_energy_.answer(tool, answer, springs);
+  // Store the change for states within the step.
   if (answer == out.rendered) {
     change_.setZero();
     return;
@@ -146,21 +154,22 @@ void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, Re
 AlgorithmWork StagedRendering::work() const noexcept {
   AlgorithmWork work = algorithm_->work();
   work.steps_staged = steps_staged_;
-  work.energy_staged = given_.energy() - asked_.energy();
+  work.energy_staged = rendered_energy_.energy() - requested_energy_.energy();
   return work;
 }
 
-/// The largest s in [0, 1] with a s^2 + b s <= c, a >= 0; if there is none, the s that comes closest.
-static double largest_share(double a, double b, double c) noexcept {
+/// Returns the largest s in [0, 1] with a s^2 + b s <= c, where a >= 0. If there is none, returns the s that
+/// comes closest.
+static double largest_scale(double a, double b, double c) noexcept {
   if (a + b <= c) return 1.0;
   const double discriminant = std::max(0.0, b * b + 4.0 * a * c);
-  // Two forms of the same root, for b of either sign without cancellation.
+  // Two forms of the same root, to avoid cancellation for either sign of b.
   const double root = std::sqrt(discriminant);
   const double s = b > 0.0 ? 2.0 * c / (b + root) : a > 0.0 ? (root - b) / (2.0 * a) : 1.0;
   return std::clamp(s, 0.0, 1.0);
 }
 
-/// True where there is something to control: springs, or the force of a force stage in free air.
+/// Returns true if there is a force to control: from springs, or from a force stage in free air.
 static bool acts(const ContactBuffer& contacts, const RenderedForce& force) noexcept {
   return has_springs(contacts, force) || !force.rendered.isZero(0.0);
 }
@@ -185,7 +194,7 @@ void PassivityController::reset() noexcept {
 void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   algorithm_->compute(tool, contacts, out);
   if (row_ == nullptr || last_row_ == *row_) {
-    // A state within the step is not observed and keeps the row's share and damping.
+    // A state within a step is not observed and keeps the scale and the damping of the step.
     if (acts(contacts, out)) render(tool, out);
     return;
   }
@@ -193,12 +202,12 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   last_row_ = *row_;
   observed_.move(tool);
   if (!observed_.first()) {
-    // The largest change of the turn so far predicts how much the hand may change it again.
+    // The largest change of the rotation so far bounds how much the hand is expected to change it again.
     const Vec3 turn = observed_.turned();
     if (last_turn_) largest_change_ = std::max(largest_change_, (turn - *last_turn_).norm());
     last_turn_ = turn;
   }
-  share_ = 1.0;
+  scale_ = 1.0;
   alpha_ = 0.0;
   if (acts(contacts, out)) {
     springs_ = algorithm_->spring_state(tool, contacts);
@@ -210,46 +219,48 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   observed_.answer(tool, out.rendered, springs_);
 }
 
-/// Computes share and damping for the step, and weakens the springs.
+/// Computes scale and damping for the step, and scales energy and moment of the springs.
 void PassivityController::control(const ToolState& tool, const Vec3& force) noexcept {
-  // Energy that the scripted rotation draws from the moment over the last step and, at the same rate, over the next.
+  // Energy that the scripted rotation drew from the moment over the last step and is predicted to draw over the
+  // coming step.
   const double drawn = springs_.moment.dot(observed_.turned());
   const double energy = observed_.energy();
   const double weakened = 0.5 * drawn > energy && drawn > 0.0 ? std::max(0.0, 2.0 * energy / drawn) : 1.0;
 
+  // Find the largest scale for which the observed energy stays >= 0 over the coming step.
   const Vec3 w = tool.velocity + half_kick();
   const Vec3 u = w + force * (weakened * dt_ / mass_);
   const double unforeseen = springs_.moment.norm() * largest_change_;
   const double taken =
       0.5 * drawn + std::max(0.0, 0.5 * drawn + unforeseen) - (observed_.first() ? springs_.energy : 0.0);
   const double s =
-      largest_share(0.5 * mass_ * u.squaredNorm(), weakened * taken, energy + 0.5 * mass_ * w.squaredNorm());
-  share_ = weakened * s;
+      largest_scale(0.5 * mass_ * u.squaredNorm(), weakened * taken, energy + 0.5 * mass_ * w.squaredNorm());
+  scale_ = weakened * s;
   alpha_ = (1.0 - s) * mass_ / dt_;
-  if (share_ == 1.0) return;
+  if (scale_ == 1.0) return;
   ++steps_controlled_;
-  double spring_share = share_;
-  // A force that the limit cuts absorbs less energy, so less is left for the moment.
-  const Vec3 whole = share_ * force - alpha_ * w;
-  if (const Vec3 rendered = cut_to(whole, max_force_); rendered != whole && taken > 0.0) {
+  double spring_scale = scale_;
+  // A force cut by the force limit absorbs less energy, so less is left for the moment.
+  const Vec3 whole = scale_ * force - alpha_ * w;
+  if (const Vec3 rendered = limited_to(whole, max_force_); rendered != whole && taken > 0.0) {
     const Vec3 after = w + rendered * (dt_ / mass_);
     const double left = energy + 0.5 * mass_ * (w.squaredNorm() - after.squaredNorm());
-    spring_share = std::clamp(left / taken, 0.0, share_);
+    spring_scale = std::clamp(left / taken, 0.0, scale_);
   }
-  springs_.energy *= spring_share;
-  springs_.moment *= spring_share;
+  springs_.energy *= spring_scale;
+  springs_.moment *= spring_scale;
 }
 
 void PassivityController::render(const ToolState& tool, RenderedForce& out) const noexcept {
-  if (share_ == 1.0) return;
-  out.spring *= share_;
-  out.S *= share_;
-  out.rendered = cut_to(share_ * out.rendered - alpha_ * (tool.velocity + half_kick()), max_force_);
+  if (scale_ == 1.0) return;
+  out.spring *= scale_;
+  out.S *= scale_;
+  out.rendered = limited_to(scale_ * out.rendered - alpha_ * (tool.velocity + half_kick()), max_force_);
 }
 
 ForceJacobian PassivityController::jacobian() const noexcept {
   const ForceJacobian inner = algorithm_->jacobian();
-  return {share_ * inner.stiffness, share_ * inner.damping + alpha_ * Mat3::Identity()};
+  return {scale_ * inner.stiffness, scale_ * inner.damping + alpha_ * Mat3::Identity()};
 }
 
 AlgorithmWork PassivityController::work() const noexcept {

@@ -14,34 +14,37 @@ extern const ModelInfo kEnergyTankInfo;
 extern const ModelInfo kActuatorLimitedPassivityInfo;
 extern const ModelInfo kPassivityControllerInfo;
 
-/// Input of a force stage: the force and the motion of one row.
+/// Input of a force stage in one step.
 struct StageStep {
-  Vec3 force;     ///< that would be rendered without the stage, with damping, friction and limits [N]
-  Vec3 velocity;  ///< of the tool [m/s]
-  /// Energy that the stage has absorbed and may give back [J], by the passivity observer: that of the springs in
-  /// the first row, less the work that its answers have done on the tool since.
+  Vec3 force;     ///< force that would be rendered without the stage, after damping, friction and limits [N]
+  Vec3 velocity;  ///< velocity of the tool [m/s]
+  /// Energy [J] that the stage has absorbed and may return, from the passivity observer: the energy of the
+  /// springs in the first step, minus the work that the rendered forces have done on the tool since.
   double energy = 0.0;
 };
 
-/// A controller behind an algorithm, which answers the force to render in place of the algorithm's, in every row, also
-/// in free air. One object is the state of one run.
+/// A controller after an algorithm: replaces the algorithm's force by the force to render. Called in every
+/// step, also in free air. One instance holds the state of one run.
 class ForceStage {
  public:
   virtual ~ForceStage() = default;
-  /// Called once before the first row; may allocate. `time_step` of a row [s]; `mass` of the virtual tool [kg], 0 where
-  /// a device's handle or a script moves the tool.
+  /// Called once before the first step; may allocate. `time_step`: [s]. `mass`: mass of the virtual tool [kg],
+  /// 0 if a device's handle or a script moves the tool.
   virtual void prepare(double time_step, double mass) = 0;
-  /// Returns to t = 0, bit for bit.
+  /// Returns to t = 0; the next run is bitwise identical.
   virtual void reset() noexcept {}
-  /// [N]; called once for each row.
+  /// Returns the force to render [N]. Called once in every step.
   virtual Vec3 force(const StageStep& step) noexcept = 0;
 };
 
-/// An energy tank (kEnergyTankInfo has formula and source): its level T [J] is the energy that the rendering has
-/// absorbed, up to a capacity C beyond which it is lost. A force that would give away more over the coming step, at the
-/// tool's velocity, than there is loses its part along the velocity until it gives away just that. It takes push away
-/// and never resists: what the velocity changes within a step may overdraw the tank, which stays below zero until as
-/// much has been absorbed. Without external force the energy given away in all stays bounded.
+/// An energy tank (formula and source: kEnergyTankInfo). Its level T [J] is the energy that the rendering has
+/// absorbed, up to the capacity C; energy beyond C is lost. If the force would return more energy than T over
+/// the coming step, at the tool's current velocity, its component along the velocity is reduced until it
+/// returns exactly T.
+///
+/// The tank only reduces a pushing force; it never adds resistance. The velocity changes within a step, so the
+/// level may fall below zero; it stays there until enough energy has been absorbed. Without external force, the
+/// total energy returned is bounded.
 class EnergyTank final : public ForceStage {
  public:
   explicit EnergyTank(const EnergyTankConfig& config) : config_(config) {}
@@ -57,14 +60,16 @@ class EnergyTank final : public ForceStage {
   bool begun_ = false;
 };
 
-/// A passivity controller (Hannaford and Ryu, 2002) that asks no actuator for more than it has. What a force would
-/// overdraw of the observed energy E over the coming step, <f, v> dt - E > 0, is to be dissipated by damping, first
-/// along the force, where damping relieves the actuators, and what is left at right angles to it: the prioritised
-/// dissipation of Porcini and Frisoli, of whom we know the abstract, by formulas of ours
-/// (kActuatorLimitedPassivityInfo). Each damping is the least that dissipates what is owed, cut to `max_damping`,
-/// beyond which a step reverses the velocity, and to what keeps the force within the actuators' limits; they are those
-/// of the world's axes. What is left undissipated stays owed, E < 0, and is taken in later rows that render a force; in
-/// free air the stage renders nothing.
+/// A passivity controller (Hannaford and Ryu, 2002) that respects the limits of the actuators. A force f would
+/// exceed the observed energy E over the coming step by <f, v> dt - E. If this is positive, damping must
+/// dissipate it: first damping along the force, which relieves the actuators, then damping at right angles to
+/// the force for the remainder. This prioritised dissipation follows the abstract of Porcini and Frisoli; the
+/// formulas are ours (kActuatorLimitedPassivityInfo).
+///
+/// Each damping is the smallest that dissipates the remainder, but at most `max_damping`, beyond which a step
+/// would reverse the velocity, and at most the damping that keeps the force within the actuators' limits along
+/// the world axes. Energy that is not dissipated remains as a debt, E < 0, and is dissipated in later steps
+/// that render a force. In free air the stage renders nothing.
 class ActuatorLimitedPassivity final : public ForceStage {
  public:
   explicit ActuatorLimitedPassivity(const ActuatorLimitedPassivityConfig& config) : config_(config) {}
@@ -75,11 +80,11 @@ class ActuatorLimitedPassivity final : public ForceStage {
  private:
   ActuatorLimitedPassivityConfig config_;
   double dt_ = 0.0;
-  double most_damping_ = 0.0;
+  double max_damping_ = 0.0;  ///< largest damping b [N s/m]
 };
 
-/// An algorithm with a force stage behind it, whose answer is cut to the force limit again. A state within a step gets
-/// the change of its row.
+/// An algorithm followed by a force stage. The stage's force is limited to max_force again. For a state within
+/// a step, the change of the step's force is added to the algorithm's force.
 class StagedRendering final : public ForceAlgorithm {
  public:
   StagedRendering(std::unique_ptr<ForceAlgorithm> algorithm, std::unique_ptr<ForceStage> stage,
@@ -104,31 +109,37 @@ class StagedRendering final : public ForceAlgorithm {
   std::unique_ptr<ForceStage> stage_;
   RenderingConfig config_;
   Scene scene_;
-  std::optional<std::uint64_t> row_;        ///< of the last answer
-  Vec3 change_ = Vec3::Zero();              ///< of the row's force [N]
-  ObservedEnergy given_{0.0}, asked_{0.0};  ///< of the stage's answers, and of the forces they replace
+  std::optional<std::uint64_t> row_;  ///< last step in which the stage was called
+  Vec3 change_ = Vec3::Zero();        ///< rendered force minus the algorithm's force in this step [N]
+  /// Observed energy of the rendered forces, and of the algorithm's forces.
+  ObservedEnergy rendered_energy_{0.0}, requested_energy_{0.0};
   std::uint64_t steps_staged_ = 0;
 };
 
-/// A passivity controller around any force algorithm, after Hannaford and Ryu (2002) but looking one step ahead: mass
-/// and f_in are known, so the work of a force over the coming step is known before it is rendered.
+/// A passivity controller around any force algorithm, after Hannaford and Ryu (2002), but with a prediction of
+/// one step: mass M and input force f_in are known, so the work of a force over the coming step is known before
+/// it is rendered.
 ///
-/// With w = v + f_in dt / (2 M) and u = w + f dt / M, a force f gives away M/2 (|u|^2 - |w|^2) of the observed energy E
-/// by translation. If that would make E negative, the controller renders
+/// Let w = v + f_in dt / (2 M) and u = w + f dt / M. By translation, a force f returns M/2 (|u|^2 - |w|^2) of
+/// the observed energy E. If this would make E negative, the controller renders
 ///
 ///   s f - alpha w,  alpha = (1 - s) M / dt,
 ///
-/// which replaces u by s u, with the largest s in [0, 1] for which E stays >= 0: of all such forces the one nearest to
-/// f. It is adaptive damping, which at most (s = 0) stops the tool and never reverses it. Before that, the springs are
-/// weakened if the scripted rotation would draw more energy than E from their moment. The rotation over the coming step
-/// is assumed to be that of the last step, plus or minus twice the largest change of the turn between two steps so far;
-/// the work of half the moment over that change is kept in reserve. In free air the controller renders nothing.
+/// which replaces u by s u. s is the largest value in [0, 1] for which E stays >= 0, so this is the force
+/// nearest to f. The controller is adaptive damping: at s = 0 it stops the tool, and it never reverses the
+/// velocity.
 ///
-/// Guarantee for the leapfrog integrator and a free position: E is never negative but for rounding, as long as no
-/// change of the turn exceeds twice the largest before (the first turn of a run that starts in contact does). A law
-/// whose observed energy stays >= 0 without the controller keeps its bytes if the axis stays, and, if the axis turns,
-/// while that energy stays above the reserve. Energy that another integrator or a jerk beyond the reserve takes stays
-/// owed and is taken back in the next steps in contact.
+/// Before that, the springs are weakened if the scripted rotation would draw more energy than E from their
+/// moment. The rotation of the coming step is predicted as the last step's rotation, plus or minus twice the
+/// largest change of rotation between two steps so far. The work of half the moment over this change is kept in
+/// reserve. In free air the controller renders nothing.
+///
+/// Guarantee for the leapfrog integrator and a free position: E is never negative, up to rounding, while no
+/// change of the rotation exceeds twice the largest earlier change. (The first rotation of a run that starts in
+/// contact does.) The force is bitwise unchanged for a law whose observed energy stays >= 0 without the
+/// controller, if the axis is fixed; if the axis turns, it is unchanged while this energy stays above the
+/// reserve. Energy that another integrator or a jerk beyond the reserve takes remains as a debt and is
+/// dissipated in the next steps in contact.
 class PassivityController final : public ForceAlgorithm {
  public:
   PassivityController(std::unique_ptr<ForceAlgorithm> algorithm, const RenderingConfig& config)
@@ -136,7 +147,7 @@ class PassivityController final : public ForceAlgorithm {
 
   void prepare(const Scene& scene) override;
   void reset() noexcept override;
-  /// Weakens f_spring and S with the springs.
+  /// Computes the controlled force, and scales f_spring and S like the springs.
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return springs_; }
   ForceJacobian jacobian() const noexcept override;
@@ -149,7 +160,7 @@ class PassivityController final : public ForceAlgorithm {
  private:
   void control(const ToolState& tool, const Vec3& force) noexcept;
   void render(const ToolState& tool, RenderedForce& out) const noexcept;
-  /// Velocity change over half a step by f_in [m/s].
+  /// Returns the velocity change by f_in over half a step [m/s].
   Vec3 half_kick() const noexcept { return *input_ * (0.5 * dt_ / mass_); }
 
   std::unique_ptr<ForceAlgorithm> algorithm_;
@@ -159,12 +170,12 @@ class PassivityController final : public ForceAlgorithm {
   ObservedEnergy observed_{0.0};
   const std::uint64_t* row_ = nullptr;     ///< Scene::row
   const Vec3* input_ = nullptr;            ///< Scene::input, f_in [N]
-  std::optional<std::uint64_t> last_row_;  ///< row of the last `compute`
-  SpringState springs_;                    ///< springs as rendered
-  double share_ = 1.0;                     ///< rendered share of the algorithm's force
-  double alpha_ = 0.0;                     ///< damping [N s/m]
+  std::optional<std::uint64_t> last_row_;  ///< step of the last `compute`; empty before the first
+  SpringState springs_;                    ///< energy and moment of the springs after scaling
+  double scale_ = 1.0;                     ///< s, rendered fraction of the algorithm's force
+  double alpha_ = 0.0;                     ///< alpha, damping [N s/m]
   std::optional<Vec3> last_turn_;
-  double largest_change_ = 0.0;  ///< largest change of the turn between two steps so far [rad]
+  double largest_change_ = 0.0;  ///< largest change of the rotation vector between two steps so far [rad]
   std::uint64_t steps_controlled_ = 0;
 };
 

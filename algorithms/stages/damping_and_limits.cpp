@@ -17,13 +17,14 @@ DryFriction::DryFriction(const DryFrictionConfig& config, const RenderingConfig&
 
 void DryFriction::release() noexcept {
   bristle_.setZero();
-  before_.setZero();
+  previous_bristle_.setZero();
   last_row_.reset();
-  cut_ = 0.0;
+  slip_scale_ = 0.0;
   state_ = Friction::none;
 }
 
 Vec3 DryFriction::force(const Mat3& loads, const Vec3& v) noexcept {
+  // No friction without load.
   const double load = loads.trace(), resistance = K_t_ * dt_ + B_t_;
   if (!(load > 0.0) || resistance == 0.0) {
     release();
@@ -31,23 +32,25 @@ Vec3 DryFriction::force(const Mat3& loads, const Vec3& v) noexcept {
   }
   const bool first_of_row = row_ == nullptr || last_row_ != *row_;
   if (first_of_row) {
-    before_ = bristle_;
+    previous_bristle_ = bristle_;
     if (row_ != nullptr) last_row_ = *row_;
   }
+  // Predict the bristle's force at the end of the step and limit it to mu N.
   tangential_ = Mat3::Identity() - loads / load;
-  Vec3 g = K_t_ * before_ + resistance * (tangential_ * v);
-  const double size = g.norm(), most = mu_ * load;
-  cut_ = size > most ? most / size : 1.0;
-  g *= cut_;
+  Vec3 g = K_t_ * previous_bristle_ + resistance * (tangential_ * v);
+  const double size = g.norm(), limit = mu_ * load;
+  slip_scale_ = size > limit ? limit / size : 1.0;
+  g *= slip_scale_;
   if (first_of_row) {
-    bristle_ = (dt_ * g + B_t_ * before_) / resistance;
-    state_ = cut_ < 1.0 ? Friction::slides : Friction::sticks;
+    // Deflection that gives this force.
+    bristle_ = (dt_ * g + B_t_ * previous_bristle_) / resistance;
+    state_ = slip_scale_ < 1.0 ? Friction::slides : Friction::sticks;
   }
   return -(tangential_ * g);
 }
 
 Mat3 DryFriction::damping_matrix() const noexcept {
-  return cut_ * (K_t_ * dt_ + B_t_) * tangential_ * tangential_;
+  return slip_scale_ * (K_t_ * dt_ + B_t_) * tangential_ * tangential_;
 }
 
 constexpr ParameterInfo kDampingParameters[] = {
@@ -105,9 +108,9 @@ DampingAndLimits::DampingAndLimits(const RenderingConfig& config)
 }
 
 double DampingAndLimits::limited_damping(const Mat3& S) const noexcept {
-  const std::optional<double>& most = config_.max_damping;
-  const double largest = most ? B_ * lambda_max(S) : 0.0;
-  return most && largest > *most ? B_ * (*most / largest) : B_;
+  const std::optional<double>& limit = config_.max_damping;
+  const double largest = limit ? B_ * lambda_max(S) : 0.0;
+  return limit && largest > *limit ? B_ * (*limit / largest) : B_;
 }
 
 Mat3 DampingAndLimits::damping_matrix(const Vec3& spring, const Mat3& S) const noexcept {
@@ -132,9 +135,10 @@ Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const C
   } else if (config_.mu_s != 0.0 || config_.mu_f != 0.0) {
     force -= tangential();
   } else if (config_.skips == Skips::off) {
-    force -= tangential() + Vec3::Zero();  // 0 and never -0: f - (-0) would turn a -0 of the force into 0
+    // The sum is 0 and never -0; subtracting -0 would turn a -0 of the force into 0
+    force -= tangential() + Vec3::Zero();
   }
-  return cut_to(force, config_.max_force);
+  return limited_to(force, config_.max_force);
 }
 
 }  // namespace hapbench

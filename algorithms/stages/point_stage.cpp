@@ -44,8 +44,8 @@ const ModelInfo kGradientReductionInfo = {
 
 namespace {
 
-/// A merged contact has index, point and normal of the first colliding point of its cell. Merged contacts are in the
-/// order in which their cells first appear.
+/// A merged contact has the index, point and normal of the first colliding point of its cell. Merged contacts
+/// are in the order in which their cells first appear.
 class LocalAverage final : public PointStage {
  public:
   void prepare(const Scene& scene) override {
@@ -70,8 +70,8 @@ class LocalAverage final : public PointStage {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  /// Moves the first contact of each cell to the front, sums d u per cell in its gradient, returns the number of
-  /// cells. Points of a cell mostly follow each other: their sum stays in registers.
+  /// Moves the first contact of each cell to the front, stores the cell's sum of d u as its gradient, and
+  /// returns the number of cells. Points of a cell are mostly consecutive, so their sum stays in registers.
   std::size_t gather(ContactBuffer& contacts) noexcept {
     const auto depth_vector = [&](std::size_t i) { return Vec3(contacts.depth[i] * contacts.gradient(i)); };
     std::size_t cells = 0;
@@ -97,7 +97,8 @@ class LocalAverage final : public PointStage {
     return cells;
   }
 
-  /// Turns the sums into depths and gradients. Whether any contact has got no depth: its gradient is undefined.
+  /// Turns the sums into depths and gradients. Returns true if any contact has depth zero, and so an undefined
+  /// gradient.
   bool average(ContactBuffer& contacts) const noexcept {
     using simd::load, simd::Pack, simd::store;
     unsigned cancelled = 0;
@@ -105,7 +106,7 @@ class LocalAverage final : public PointStage {
       const Pack count = load(&count_[i]);
       const Pack x = load(&contacts.ux[i]) / count, y = load(&contacts.uy[i]) / count,
                  z = load(&contacts.uz[i]) / count;
-      const Pack depth = simd::sqrt(x * x + (y * y + z * z));  // in the order of Vec3::norm
+      const Pack depth = simd::sqrt(x * x + (y * y + z * z));  // additions in the order of Vec3::norm
       const std::size_t n = std::min(simd::lanes, contacts.size() - i);
       cancelled |= simd::bits(depth <= Pack(0.0)) & (0xffu >> (simd::lanes - n));
       store(depth, &contacts.depth[i]);
@@ -124,18 +125,19 @@ class LocalAverage final : public PointStage {
   }
 
   std::vector<std::uint32_t> cell_of_point_;
-  std::vector<std::uint32_t> slot_of_cell_;  ///< kNone between steps
-  AlignedDoubles count_;                     ///< contacts of each cell that has some, by slot
+  /// Position of each cell's merged contact in the buffer; kNone between steps.
+  std::vector<std::uint32_t> slot_of_cell_;
+  AlignedDoubles count_;  ///< number of contacts in each merged contact, by its position
 };
 
-/// Takes O(n * kept) inner products.
+/// Greedy filter. Takes O(n * kept) inner products.
 class GradientReduction final : public PointStage {
  public:
   explicit GradientReduction(const ReductionConfig& config) : config_(config) {}
 
   void prepare(const Scene& scene) override {
     if (!config_.shuffle_seed) return;
-    // rank_[i] is the place of the shell point or spring i in the visiting order.
+    // rank_[i] is the position of shell point or spring i in the visiting order.
     rank_.resize(scene.shell != nullptr ? scene.shell->size() : scene.capacity);
     std::iota(rank_.begin(), rank_.end(), 0u);
     Random(*config_.shuffle_seed).shuffle(rank_);
@@ -153,33 +155,36 @@ class GradientReduction final : public PointStage {
   }
 
  private:
-  /// Visits the `n` <= 8 contacts from i on. The loops are exchanged: each kept contact, in turn, is compared with all
-  /// contacts of the pack that no earlier kept contact has absorbed. The result is the same, because a kept contact
-  /// depends only on the contacts that the earlier ones refuse, and on their order.
+  /// Visits the `n` <= 8 contacts from i on. The loops are exchanged: each kept contact in turn is compared
+  /// with all contacts of the pack that no earlier kept contact has absorbed. The result is unchanged, because
+  /// a kept contact depends only on the contacts that are not similar to the earlier kept contacts, and on
+  /// their order.
   void visit_pack(ContactBuffer& c, std::size_t i, std::size_t n, std::size_t& kept) noexcept {
     using simd::load, simd::Pack;
     const Pack x = load(&c.ux[i]), y = load(&c.uy[i]), z = load(&c.uz[i]), depth = load(&c.depth[i]);
     const Pack threshold(config_.threshold);
-    // Pointers in local variables, so that they are not read again for each test.
+    // Pointers in local variables, so that they are not loaded again for each test.
     const double *const ux = c.ux.data(), *const uy = c.uy.data(), *const uz = c.uz.data(), *const d = c.depth.data();
     const auto first = [i](unsigned lanes) { return i + static_cast<std::size_t>(std::countr_zero(lanes)); };
-    // The lanes, out of `lanes`, that are refused by the contact at `place`, which is kept as number k.
-    const auto refused_by = [&](std::size_t k, std::size_t place, unsigned lanes) {
+    // Returns the lanes, out of `lanes`, that are not similar to the contact at index `index`, which is kept as
+    // number k.
+    const auto refused_by = [&](std::size_t k, std::size_t index, unsigned lanes) {
       unsigned refused = 0;
       for (;;) {
-        const Pack inner = x * Pack(ux[place]) + y * Pack(uy[place]) + z * Pack(uz[place]);
+        const Pack inner = x * Pack(ux[index]) + y * Pack(uy[index]) + z * Pack(uz[index]);
         const unsigned similar = simd::bits(inner > threshold) & lanes;
         // Most kept contacts are similar to none of the eight, so their depth is not compared.
-        const unsigned deeper = similar == 0 ? 0 : simd::bits(depth > Pack(d[place])) & similar;
+        const unsigned deeper = similar == 0 ? 0 : simd::bits(depth > Pack(d[index])) & similar;
         if (deeper == 0) {
-          if (place != k) c.copy(place, k);
+          if (index != k) c.copy(index, k);
           return refused | (lanes & ~similar);
         }
-        // The first deeper contact replaces the kept one, and the lanes behind it are compared with that.
+        // The first deeper contact replaces the kept contact, and the lanes after it are compared with the new
+        // kept contact.
         const unsigned visited = deeper ^ (deeper - 1);
         refused |= lanes & ~similar & visited;
         lanes &= ~visited;
-        place = first(deeper);
+        index = first(deeper);
       }
     };
     unsigned lanes = 0xffu >> (simd::lanes - n);
@@ -202,7 +207,7 @@ class GradientReduction final : public PointStage {
   ReductionConfig config_;
   std::vector<std::uint32_t> rank_;
   std::vector<std::uint32_t> order_;
-  std::unique_ptr<ContactBuffer> shuffled_;  ///< null without a shuffle
+  std::unique_ptr<ContactBuffer> shuffled_;  ///< null without shuffling
 };
 
 }  // namespace

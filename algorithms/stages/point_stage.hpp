@@ -9,16 +9,19 @@
 
 namespace hapbench {
 
-/// An optional stage between depth model and force law that merges or drops contacts in place (thesis C.2, C.3).
+/// An optional stage between depth model and force law that merges or drops contacts in place (thesis C.2,
+/// C.3).
 class PointStage {
  public:
   virtual ~PointStage() = default;
-  /// The only call that may allocate. Throws std::invalid_argument if the scene lacks what the stage needs.
+  /// Only this function may allocate. Throws std::invalid_argument if the scene lacks data that the stage
+  /// needs.
   virtual void prepare(const Scene& scene) = 0;
+  /// Returns to t = 0 and sets the counter to zero.
   virtual void reset() noexcept { dropped_ = 0; }
-  /// Takes and leaves padded contacts, never more than before.
+  /// Merges or drops contacts. The contacts are padded on entry and on return; their number never grows.
   virtual void process(ContactBuffer& contacts) noexcept = 0;
-  /// Contacts lost because a buffer was full, since the last reset.
+  /// Returns the number of contacts dropped because a buffer was full, since the last reset.
   std::uint64_t dropped() const noexcept { return dropped_; }
 
  protected:
@@ -28,7 +31,7 @@ class PointStage {
 extern const ModelInfo kLocalAverageInfo;
 extern const ModelInfo kGradientReductionInfo;
 
-/// Its `prepare` needs a shell with grid cells (PointShell::cell_size > 0).
+/// Creates the local average. Its `prepare` needs a shell with grid cells (PointShell::cell_size > 0).
 std::unique_ptr<PointStage> make_local_average();
 std::unique_ptr<PointStage> make_gradient_reduction(const ReductionConfig& config);
 

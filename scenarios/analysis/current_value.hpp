@@ -6,7 +6,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/scene/scenario.hpp"
 
-/// The value of a field in a scenario.
+/// Access to the value of a scenario's field by its path.
 namespace hapbench {
 
 /// Returns the scenario's current value at a path, dotted as in --set; null if the path names no field.

@@ -12,7 +12,10 @@
 namespace hapbench {
 
 void Command::add(const std::string& name, Variable variable, const std::string& help, const Takes& takes) {
-  CLI::Option* option = std::visit([&](auto value) { return app_->add_option(name, value.get(), help); }, variable);
+  const std::size_t blank = std::min(name.find(' '), name.size());
+  const std::string bare = name.substr(0, blank);
+  CLI::Option* option = std::visit([&](auto value) { return app_->add_option(bare, value.get(), help); }, variable);
+  if (blank < name.size()) option->type_name(name.substr(blank + 1));
   option->required(takes.required);
   if (takes.several) option->allow_extra_args(false)->take_all();
   if (takes.comma_separated)

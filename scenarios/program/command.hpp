@@ -34,13 +34,14 @@ class Command {
 
   explicit Command(CLI::App* app) : app_(app) {}
 
-  /// A name that begins with "--" is an option, another one an argument known by its place.
+  /// A name that begins with "--" is an option, another one a positional argument. The name may be followed by a blank
+  /// and the placeholder of its value in the help, such as "--out <dir>" or "scenarios <scenario>...".
   void add(const std::string& name, Variable variable, const std::string& help, const Takes& takes = {});
   void flag(const std::string& name, bool& value, const std::string& help);
   /// Makes parsing fail if `option` is given without `other`. An option can require one other option at most.
   /// Precondition: both options were added.
   void needs(const std::string& option, const std::string& other);
-  /// Text below the list of options: paragraphs, which are wrapped.
+  /// Text between the options and the examples. Each line is a paragraph, which is wrapped.
   void footer(const std::string& text);
 
  private:

@@ -84,6 +84,7 @@ void CommandLine::add_module_option(CLI::App& app) {
     modules_.insert(modules_.end(), files.begin(), files.end());
   };
   app.add_option_function<std::vector<std::string>>("--module", add, shared_option_help("--module"))
+      ->type_name("<file.so>")
       ->allow_extra_args(false)
       ->take_all();
 }

@@ -18,53 +18,64 @@ namespace {
 
 /// The commands in the order of the help.
 constexpr CommandGuide kCommands[] = {
-    {"make", "new", "a scene to start from", add_new,
+    {"make", "new", "write a scenario to start from", add_new,
      "new\n"
      "new drag --from my.stl --extent 12mm --preview\n"
-     "new hole --out mine.json"},
-    {"make", "import", "my recording as a stroke; my device's log as a device", nullptr},
-    {"make", "validate", "is a scene right, and what is in it?", add_validate,
+     "new hole --out mine.json",
+     "scenarios/README.md, section \"Write a scenario\""},
+    {"make", "import", "turn a recording into a stroke, a log into a device file", nullptr},
+    {"make", "validate", "check scenarios and show size, points and duration", add_validate,
      "validate mine.json\n"
      "validate mine.json --set environment.spacing_m=1e-4\n"
-     "validate drag_molar --points shell.csv"},
-    {"run", "run", "what happens, what is wrong with it, what to try?", add_run,
+     "validate drag_molar --points shell.csv",
+     "scenarios/README.md, section \"Write a scenario\""},
+    {"run", "run", "run scenarios and diagnose the results", add_run,
      "run drag_molar\n"
      "run drag_molar --set rendering.algorithm=proxy --out results/proxy\n"
-     "run mine.json --latency"},
-    {"run", "compare", "which law does better, over scenes and seeds?", add_compare,
+     "run mine.json --latency",
+     "results/README.md, section \"Files of a run\""},
+    {"run", "compare", "compare force laws, rank them over scenarios and seeds", add_compare,
      "compare drag_molar\n"
-     "compare tap_wall tap_corner --algorithms mean,proxy --seeds 5\n"
-     "compare mine.json --algorithms mean,proxy --errors"},
-    {"run", "sweep", "how does it depend on fields?", add_sweep,
+     "compare tap_wall --algorithms mean,proxy --seeds 5 --jitter 1e-5\n"
+     "compare mine.json --algorithms mean,proxy --errors",
+     "scenarios/batch/README.md, section \"Comparisons\""},
+    {"run", "sweep", "run a grid or a sample of field values", add_sweep,
      "sweep tap_wall --vary rendering.stiffness_N_per_m=1e3:1e5:9:log\n"
      "sweep tap_wall --vary rendering.algorithm=all --vary seed=1,2,3\n"
-     "sweep results/out/sweep_tap_wall --where 'inside_max_m<3e-4'"},
-    {"decide", "limit", "how far may a field go, on which device, with which law?", add_limit,
+     "sweep results/out/sweep_tap_wall --where 'inside_max_m<3e-4'",
+     "scenarios/batch/README.md, section \"Sweeps\""},
+    {"decide", "limit", "find how far a field may go before runs are unstable", add_limit,
      "limit tap_wall --device all\n"
      "limit mine.json --algorithms mean,shaped_stiffness\n"
-     "limit tap_wall --vary time.step_s --between 1e-4:1e-2"},
-    {"decide", "tune", "which law, stiffness and damping?", add_tune,
+     "limit tap_wall --vary time.step_s --between 1e-4:1e-2",
+     "scenarios/analysis/README.md, section \"How limit searches\""},
+    {"decide", "tune", "choose force law, stiffness and damping for a device", add_tune,
      "tune tap_wall --device touch\n"
      "tune mine.json --device log_device.json --algorithms mean,proxy\n"
-     "tune drag_molar --device omega.3 --bound inside_max_m=3e-4"},
-    {"decide", "converge", "how accurate is a number?", add_converge,
+     "tune drag_molar --device omega.3 --bound inside_max_m=3e-4",
+     "scenarios/TUNING.md, section \"What tune searches\""},
+    {"decide", "converge", "estimate the discretization error of a metric", add_converge,
      "converge drag_molar --metric force_max_N\n"
      "converge mine.json --levels 5 --metric inside_max_m\n"
-     "converge drag_molar --vary environment.spacing_m"},
-    {"decide", "stress", "does any law break on degenerate contacts?", add_stress,
+     "converge drag_molar --vary environment.spacing_m",
+     "scenarios/README.md, section \"How accurate a number is\""},
+    {"decide", "stress", "test every force law on degenerate contacts", add_stress,
      "stress\n"
      "stress --count 1000\n"
-     "stress --module ./my_law.so"},
-    {"decide", "reproduce", "which claims of the thesis hold?", add_reproduce,
+     "stress --module ./my_law.so",
+     "scenarios/analysis/README.md, section \"Stress\""},
+    {"decide", "reproduce", "test the claims of the thesis", add_reproduce,
      "reproduce\n"
      "reproduce --only T2,R1b\n"
-     "reproduce --choices results/reference/readings.csv"},
-    {"look", "describe", "what is a name? without one: what is there?", add_describe,
+     "reproduce --choices results/reference/readings.csv",
+     "scenarios/thesis/README.md, section \"The command reproduce\""},
+    {"look", "describe", "explain a name, or list what exists", add_describe,
      "describe\n"
      "describe shaped_stiffness\n"
-     "describe scenarios --grep molar"},
-    {"look", "plot", "a picture of results", nullptr},
-    {"look", "report", "a page of results with replay; of two: what differs", nullptr}};
+     "describe scenarios --grep molar",
+     "scenarios/README.md, section \"Commands\""},
+    {"look", "plot", "draw results as a picture", nullptr},
+    {"look", "report", "write a page with replay, or compare two result folders", nullptr}};
 
 }  // namespace
 

@@ -282,29 +282,31 @@ std::vector<DescribedTable> converge_tables() {
 
 void add_converge(CommandLine& line) {
   auto [command, options] =
-      line.command("converge", "Say how far metrics of a scene are from converged, in the step or any field", converge,
+      line.command("converge", "Estimate the error of metrics by refining the time step or another field.", converge,
                    "no table is written");
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
-  command.add("--metric", options.metrics,
-              fmt::format("names of summary.json, separated by commas (default: {})", kDefaultMetrics[0]),
-              {.comma_separated = true});
-  command.add(
-      "--vary", options.field,
-      "the field to refine: time.step_s (default), environment.grid_m, environment.spacing_m, tool.grid_m or any "
-      "other number above 0 that gets better as it falls");
-  command.add("--levels", options.levels, "number of levels, the scenario's own value the coarsest (default: 5)",
+  command.add("scenario <scenario>", options.scenario, "scenario file or name of a bundled scenario",
+              {.required = true});
+  command.add("--metric <name,...>", options.metrics,
+              fmt::format("metrics of summary.json (default: {})", kDefaultMetrics[0]), {.comma_separated = true});
+  command.add("--vary <field>", options.field,
+              "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
+              "environment.grid_m or tool.grid_m; any positive number whose error falls with it");
+  command.add("--levels <n>", options.levels, "number of levels; the coarsest has the scenario's value (default: 5)",
               {.range = {{3, 9}}});
-  command.add("--ratio", options.ratio, "of each level to the next; whole for the step (default: 2)");
-  command.add("--to", options.to, "also name the coarsest level with a smaller relative error, as 1%, and its cost");
+  command.add("--ratio <number>", options.ratio,
+              "ratio of the field between two levels (default: 2); an integer for the time step");
+  command.add("--to <error>", options.to,
+              "also print the coarsest level with a relative error below this, such as 1%, and its run time");
   add_common(command, options, "converge_NAME");
   command.footer(
-      "Observed order p, Richardson's value and grid convergence index of the three finest levels (Roache; ASME V&V "
-      "20; \"hapbench describe converge.csv\"). No order is stated, and the reason said, where contacts switch "
-      "between them, where differences change their sign, grow or are rounding, where the order is more than twice "
-      "the formal one, or where fewer than three levels end as the finest; the last levels are the answer then. Runs "
-      "of shorter steps last as long, delays of devices keep their length, and metrics of motion, force and contact "
-      "are taken at the times of the coarsest rows: a peak between these rows is not seen. Files: converge.csv, "
-      "converge_levels.csv, converge_levels_timing.csv.");
+      "Result: one row per level with its error; the first row is your scenario's own setting. Below: observed order, "
+      "extrapolated value, and grid convergence index (Roache), the relative error of the finest level.\n\n"
+      "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names the "
+      "reason. Take the range of the finest levels as the answer, printed as \"last levels A ... B\".\n\n"
+      "Files: converge.csv (one row per metric: order, extrapolated value, range), converge_levels.csv (one row per "
+      "metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier files."
+      "\n\n"
+      "Time: with the default levels of the time step, about 31 times one run.");
 }
 
 }  // namespace hapbench

@@ -18,48 +18,60 @@ std::string name_of(const CLI::Option& option) {
   return option.get_name(option.get_positional(), true);
 }
 
-/// The kind of value, as in "TEXT ..."; empty for a flag.
+/// The placeholder of the value, such as "<file>", or its kind, such as "TEXT ..."; empty for a flag.
 std::string kind_of_value(const CLI::Option& option) {
   if (option.get_type_size() == 0 || option.get_type_name().empty()) return "";
   std::string kind = option.get_type_name();
+  if (kind.starts_with('<')) return kind;
   if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
     kind += option.get_delimiter() == ',' ? ",..." : " ...";
   return kind;
 }
 
+/// An argument is shown by its placeholder.
+std::string argument_name(const CLI::Option& option) {
+  const std::string kind = kind_of_value(option);
+  if (kind.starts_with('<')) return kind;
+  return name_of(option) + (kind.ends_with("...") ? "..." : "");
+}
+
 std::string usage(const CLI::App& app) {
   std::string words = fmt::format("Usage: hapbench {} [OPTIONS]", app.get_name());
   for (const CLI::Option* option : app.get_options([](const CLI::Option* o) { return o->get_positional(); })) {
-    const std::string name = name_of(*option) + (kind_of_value(*option).ends_with("...") ? "..." : "");
+    const std::string name = argument_name(*option);
     words += option->get_required() ? " " + name : " [" + name + "]";
   }
   return words + "\n";
 }
 
-/// The entry of an argument or an option: its name with the kind of its value, what it means and what it needs.
+/// The column where the texts of options begin.
+constexpr std::size_t kHelpColumn = 28;
+constexpr const char* kSharedOptionsNote = "shared options; \"hapbench --help\" explains them";
+
+/// The entry of an argument or an option: its name with the placeholder of its value, its meaning and what it needs.
 std::string option_entry(const CLI::Option& option, const std::string& name, const Layout& layout) {
-  if (option.get_positional()) return layout.entry(name, option.get_description());
+  if (option.get_positional()) return layout.entry(argument_name(option), option.get_description(), 2, kHelpColumn);
   const std::string kind = kind_of_value(option);
   std::string help = option.get_description();
-  for (const CLI::Option* other : option.get_needs()) help += "; with " + other->get_name();
+  for (const CLI::Option* other : option.get_needs()) help += "; requires " + other->get_name();
   if (option.get_required()) help += "; required";
-  return layout.entry(kind.empty() ? name : name + " " + kind, help);
+  return layout.entry(kind.empty() ? name : name + " " + kind, help, 2, kHelpColumn);
 }
 
-/// The arguments, or the options; those that say nothing of their own stand in one line.
+/// The arguments, or the options. Options that all commands share stand in one line.
 std::string options_text(const CLI::App& app, bool arguments, const Layout& layout) {
   std::string text, shared;
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_positional() != arguments) continue;
     std::string name = name_of(*option);
     if (name == "-h,--help") name = "--help";
-    if (!arguments && option->get_description() == shared_option_help(name)) {
+    if (!arguments && is_listed_briefly(name) && option->get_description() == shared_option_help(name)) {
       shared += (shared.empty() ? "" : ", ") + name;
     } else {
       text += option_entry(*option, name, layout);
     }
   }
-  if (!shared.empty()) text += layout.entry(shared, "as everywhere: hapbench --help");
+  if (!shared.empty()) text += layout.entry(shared, kSharedOptionsNote, 2, kHelpColumn);
   return text.empty() ? "" : fmt::format("\n{}\n{}", bold(stdout, arguments ? "Arguments:" : "Options:"), text);
 }
 
@@ -70,7 +82,7 @@ std::string front_text(const Layout& layout) {
   std::string_view group;
   for (const CommandGuide& guide : command_guides()) {
     text +=
-        layout.entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
+        layout.entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.purpose, 0, 19);
     group = guide.group;
   }
   return text +
@@ -78,29 +90,33 @@ std::string front_text(const Layout& layout) {
          "first   hapbench run drag_molar\n"
          "        hapbench new drag --from my.stl --extent 12mm\n"
          "        hapbench describe\n\n"
-         "\"hapbench COMMAND --help\" explains a command, \"hapbench --help\" what all share.\n";
+         "\"hapbench COMMAND --help\" explains a command, \"hapbench --help\" shared options.\n";
 }
 
 std::string program_help(const Layout& layout) {
   std::string text = front_text(layout) + "\n" + bold(stdout, "Options without a command:") + "\n";
   text += layout.entry("--help", "print this text", 2, 14);
-  text += layout.entry("--version", "print the version; with --json also what it was built from and promises", 2, 14);
+  text += layout.entry("--version", "print the version; with --json also commit, compiler and guarantees", 2, 14);
   // Indented by more: scripts/completion offers the options of a help that are indented by two.
-  text += "\n" + bold(stdout, "Options that mean the same in every command that has them, behind its name:") + "\n";
-  for (const auto& [name, help] : shared_options()) text += layout.entry(name, help, 4, 16);
-  return text + "\n" +
-         layout.wrapped(
-             "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
-             "expects, 130 stopped by Ctrl-C.",
-             0);
+  text += "\n" + bold(stdout, "Options that commands share, written after the command's name:") + "\n";
+  for (const auto& [name, placeholder, help] : shared_options())
+    text += layout.entry(placeholder.empty() ? std::string(name) : fmt::format("{} {}", name, placeholder), help, 4,
+                         kHelpColumn);
+  return text + "\n" + bold(stdout, "Exit status:") + "\n" + layout.entry("0", "success", 2, 8) +
+         layout.entry("1", "internal fault", 2, 8) + layout.entry("2", "bad input or usage", 2, 8) +
+         layout.entry("3", "a run did not end as its scenario expects; each help lists other causes", 2, 8) +
+         layout.entry("130", "stopped by Ctrl-C", 2, 8) + "\nManual: scenarios/README.md, section \"Commands\"\n";
 }
 
 std::string command_help(const CLI::App& app, const Layout& layout) {
-  std::string text = layout.wrapped(app.get_description(), 0) + usage(app) + options_text(app, true, layout) +
+  const CommandGuide& guide = *std::ranges::find(command_guides(), app.get_name(), &CommandGuide::name);
+  std::string text = layout.wrapped(app.get_description(), 0) + "\n" + usage(app) + options_text(app, true, layout) +
                      options_text(app, false, layout) + "\n";
   if (!app.get_footer().empty()) text += layout.wrapped(app.get_footer(), 0) + "\n";
-  LineReader examples(std::ranges::find(command_guides(), app.get_name(), &CommandGuide::name)->examples);
+  text += bold(stdout, "Examples:") + "\n";
+  LineReader examples(guide.examples);
   while (const auto example = examples.next()) text += fmt::format("  hapbench {}\n", *example);
+  if (!guide.manual.empty()) text += "\n" + layout.wrapped(fmt::format("Manual: {}", guide.manual), 0);
   return text;
 }
 

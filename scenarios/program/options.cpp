@@ -1,20 +1,27 @@
 #include "scenarios/program/options.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace hapbench {
 
 namespace {
 
-/// What commands have in common, as far as it means something to them.
+/// The options that mean the same in several commands.
 constexpr SharedOption kSharedOptions[] = {
-    {"--set", "override a field of every scene: path=value, as in time.steps=100; repeatable"},
-    {"--out", "where the results go (default: results/out/NAME); a command's help has its own"},
-    {"--jobs", "runs at once; no result depends on it (default: one per thread)"},
-    {"--seed", "of the random numbers, for another sample (default: 1)"},
-    {"--module", "load FILE.so, which holds a force law of your own; HAPBENCH_MODULE_PATH names folders of such files"},
-    {"--json", "print JSON instead of tables, for a script"},
-    {"--quiet", "print nothing on standard output, and no progress"},
-    {"--wide", "print tables in full width, however narrow the terminal is"},
-    {"--help", "explain the command, with examples"}};
+    {"--set", "<path=value>", "override a field of every scenario, such as time.steps=100; repeatable"},
+    {"--out", "<dir>", "folder of the results (default: results/out/NAME, in the current folder)"},
+    {"--jobs", "<n>", "number of parallel runs; results do not depend on it (default: one per thread)"},
+    {"--seed", "<n>", "seed of the random numbers (default: 1)"},
+    {"--module", "<file.so>",
+     "load a compiled force law of your own; HAPBENCH_MODULE_PATH names folders of such files"},
+    {"--json", "", "print JSON instead of tables, for scripts"},
+    {"--quiet", "", "print nothing on standard output, and no progress"},
+    {"--wide", "", "print all columns, also beyond the width of the terminal"},
+    {"--help", "", "explain the command, with examples"}};
+
+/// Shared options that every help nevertheless explains, because users need them all the time.
+constexpr std::string_view kExplained[] = {"--set", "--jobs"};
 
 }  // namespace
 
@@ -23,25 +30,30 @@ std::span<const SharedOption> shared_options() {
 }
 
 std::string shared_option_help(const std::string& name) {
-  for (const auto& [option, help] : kSharedOptions)
+  for (const auto& [option, placeholder, help] : kSharedOptions)
     if (option == name) return std::string(help);
   return "";
 }
 
+bool is_listed_briefly(const std::string& name) {
+  return std::ranges::find(kSharedOptions, name, &SharedOption::name) != std::end(kSharedOptions) &&
+         std::ranges::find(kExplained, name) == std::end(kExplained);
+}
+
 void add_overrides(Command& command, std::vector<std::string>& overrides) {
-  command.add("--set", overrides, shared_option_help("--set"), {.several = true});
+  command.add("--set <path=value>", overrides, shared_option_help("--set"), {.several = true});
 }
 
 void add_jobs(Command& command, unsigned& jobs) {
-  command.add("--jobs", jobs, shared_option_help("--jobs"), {.range = {{1, 1024}}});
+  command.add("--jobs <n>", jobs, shared_option_help("--jobs"), {.range = {{1, 1024}}});
 }
 
 void add_out(Command& command, std::string& out, const std::string& name) {
-  command.add("--out", out, "directory of the results (default: results/out/" + name + ")");
+  command.add("--out <dir>", out, "folder of the results (default: results/out/" + name + ")");
 }
 
 void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise) {
-  command.add("--algorithms", algorithms, "names separated by commas, or all (default: " + otherwise + ")",
+  command.add("--algorithms <name,...>", algorithms, "force laws, or all (default: " + otherwise + ")",
               {.comma_separated = true});
 }
 

@@ -20,12 +20,15 @@ struct OutputOptions {
 
 /// An option with one meaning in every command that has it.
 struct SharedOption {
-  std::string_view name, help;
+  std::string_view name, placeholder, help;
 };
 /// Returns the shared options in the order of the help.
 std::span<const SharedOption> shared_options();
 /// Returns the help text of a shared option; empty for other options.
 std::string shared_option_help(const std::string& name);
+
+/// Returns true for a shared option that the help of a command names without explaining it.
+bool is_listed_briefly(const std::string& name);
 
 /// Options that most commands have.
 struct CommonOptions {

@@ -29,8 +29,8 @@ struct ImportKind {
 };
 
 const ImportKind kImportKinds[] = {
-    {"stroke", "Make a stroke to play back from a recording: poses and measured forces", "hapbench_import"},
-    {"device", "Make a device's file from its log: mass, friction, delay, encoder", "hapbench_identify"}};
+    {"stroke", "a recorded tool motion, with or without forces, becomes a stroke to play back", "hapbench_import"},
+    {"device", "a log of time, commanded force and position of a handle becomes a device file", "hapbench_identify"}};
 
 /// Returns a shell command that replaces the shell with the launcher of Python packages. `package`: the
 /// package's name and its first arguments.
@@ -125,7 +125,18 @@ int run_import(const ProgramWords& given, ProgramContext& context) {
     kinds += layout.entry(fmt::format("hapbench import {} --help", name), sentence, 2, 34);
   }
   if (kind == "-h" || kind == "--help") {
-    print(context, {}, "Usage: hapbench import stroke FILE | hapbench import device LOG\n\n" + kinds, {});
+    const std::string text =
+        layout.wrapped("Convert a recording into a stroke, or the log of a device into a device file.", 0) +
+        "\nUsage: hapbench import stroke [OPTIONS] [<recording>]\n"
+        "       hapbench import device [OPTIONS] [<log.csv>]\n\n" +
+        kinds + "\n" +
+        layout.wrapped("Both read any column names and units: see --columns and --scale in their help.", 0) +
+        "\nExamples:\n"
+        "  hapbench import stroke log.txt --preset hapi\n"
+        "  hapbench import stroke rec.csv --columns time=1,position=2 --scale time=1e-6\n"
+        "  hapbench import device log.csv\n\n" +
+        layout.wrapped("Manual: scenarios/README.md, section \"Strokes in\"", 0);
+    print(context, {}, text, {});
     return kSuccess;
   }
   throw InputError(fmt::format("import: {}; allowed: hapbench import stroke FILE, hapbench import device LOG",

@@ -218,28 +218,27 @@ std::vector<DescribedTable> claim_tables() {
 }
 
 void add_reproduce(CommandLine& line) {
-  auto [command, options] = line.command("reproduce", "Run the thesis's experiments and judge its claims", reproduce,
-                                         "finished runs are kept, and the same command continues from there");
-  command.add(
-      "--only", options.only,
-      "ids of claims, separated by commas; \"hapbench describe claims\" shows them, and scripts/reproduce --only "
-      "draws their figures",
-      {.comma_separated = true});
+  auto [command, options] =
+      line.command("reproduce", "Run the experiments of the thesis and judge its claims.", reproduce,
+                   "finished runs are kept, and the same command continues from there");
+  command.add("--only <id,...>", options.only, "judge only these claims; \"hapbench describe claims\" lists the ids",
+              {.comma_separated = true});
   add_out(command, options.out, "reproduce");
   command.add(
-      "--ledger", options.ledger,
-      "file of the ledger, JSON, with a Markdown table next to it (default: OUT/claims.json; with --only none)");
-  command.flag("--rerun", options.rerun, "run every scenario again, even if its results are current");
+      "--ledger <file.json>", options.ledger,
+      "file of the ledger, with a Markdown table next to it (default: OUT/claims.json; with --only, no ledger)");
+  command.flag("--rerun", options.rerun, "repeat all runs, also those whose results are current");
   add_jobs(command, options.jobs);
-  command.add(
-      "--choices", options.readings,
-      "judge every claim again under each reading of FILE.csv, appendix D in the first quarter of them: a row each, a "
-      "column for each choice that it reads otherwise than on record, as results/reference/readings.csv; writes "
-      "robustness.csv and .json next to the ledger, if there is one; with --only, .json keeps what it has of other "
-      "claims");
+  command.add("--choices <file.csv>", options.readings,
+              "judge all claims again under other assumptions: one set of assumptions per row, one column per changed "
+              "assumption, such as results/reference/readings.csv");
   command.footer(
-      "results/reference/choices.json has what the thesis leaves open; scripts/readings.py draws readings of it.\n"
-      "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by "
+      "Files: claims.json and claims.md (the ledger: claim, published and measured value, verdict) and the runs in "
+      "OUT/thesis. With --choices and a ledger also robustness.csv and robustness.json next to it.\n\n"
+      "Earlier results: runs of the same scenario by the same build are used again; a ledger is replaced.\n\n"
+      "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. With --choices much longer: "
+      "each row repeats the experiments.\n\n"
+      "Exit status: 0 whatever the verdicts are; 3 if a run did not end as its scenario expects; 130 stopped by "
       "Ctrl-C.");
 }
 

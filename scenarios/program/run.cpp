@@ -164,16 +164,23 @@ std::vector<DescribedTable> single_run_tables() {
 }
 
 void add_run(CommandLine& line) {
-  auto [command, options] = line.command("run", "Run scenarios, write their results and say what is wrong with them",
-                                         run, "nothing of the unfinished run is written; finished runs are kept");
-  command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them",
-              {.required = true});
-  command.add("--out", options.out,
-              "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
+  auto [command, options] =
+      line.command("run", "Run scenarios, write their results, and diagnose problems such as vibration.", run,
+                   "nothing of the unfinished run is written; finished runs are kept");
+  command.add("scenarios <scenario>...", options.scenarios,
+              "scenario files, names of bundled scenarios, or of groups of scenarios", {.required = true});
+  command.add("--out <dir>", options.out,
+              "folder of the results (default: results/out/NAME); several scenarios get a subfolder each");
   add_overrides(command, options.overrides);
-  command.flag("--latency", options.latency,
-               "time every step, as record.timing does, and print percentiles and missed deadlines");
-  command.flag("--no-skip", options.no_skip, "compute everything by brute force, even what cannot change the results");
+  command.flag("--latency", options.latency, "measure the time of every step; print percentiles and missed deadlines");
+  command.flag("--no-skip", options.no_skip,
+               "disable all shortcuts of the computation; results are the same, only slower: for checks");
+  command.footer(
+      "Files: trajectory.csv (pose, velocity and forces at every step), summary.json (outcome, metrics, warnings, "
+      "diagnosis), scenario.effective.json (all fields; repeats the run), columns.json (units and meanings). "
+      "\"hapbench plot FOLDER\" draws them.\n\n"
+      "Earlier results: a run in the same folder is replaced; other files stay. Use --out to keep both.\n\n"
+      "Exit status: 3 if a run does not end as its scenario expects; its results are written all the same.");
 }
 
 }  // namespace hapbench

@@ -55,11 +55,19 @@ std::vector<DescribedTable> stress_tables() {
 
 void add_stress(CommandLine& line) {
   auto [command, options] = line.command(
-      "stress", "Pass random degenerate contact sets through every algorithm, and count what no law may give", stress);
-  command.add("--count", options.count, "contact sets (default: 100000)", {.range = {{1, 1'000'000'000}}});
-  command.add("--seed", options.seed, "of the random numbers (default: 1)", {.range = {{0, std::int64_t{1} << 53}}});
+      "stress", "Pass random degenerate contact sets to every force law and count invalid forces.", stress);
+  command.add("--count <n>", options.count, "number of contact sets (default: 100000)",
+              {.range = {{1, 1'000'000'000}}});
+  command.add("--seed <n>", options.seed, "seed of the random numbers (default: 1)",
+              {.range = {{0, std::int64_t{1} << 53}}});
   add_jobs(command, options.jobs);
   add_out(command, options.out, "stress");
+  command.footer(
+      "Invalid: a force that is infinite or not a number, or a force larger than the proven bound of the law. Contact "
+      "sets include zero normals, coincident points and opposite gradients.\n\n"
+      "Files: stress.csv, one row per law with its counts; replaces an earlier one.\n\n"
+      "Time: about 5 s on two processors for the default number of sets.\n\n"
+      "Exit status: 3 if a law returns an invalid force, else 0.");
 }
 
 }  // namespace hapbench

@@ -279,48 +279,49 @@ std::vector<DescribedTable> sweep_tables() {
 
 void add_sweep(CommandLine& line) {
   auto [command, options] =
-      line.command("sweep", "Run one scenario over a grid or a sample of values of any fields, in parallel", sweep,
+      line.command("sweep", "Run a scenario once for each combination of field values, or for a random sample.", sweep,
                    "the same command with --resume continues");
+  command.add("scenario <scenario>", options.scenario,
+              "scenario file or name of a bundled scenario; or the folder of a finished sweep, to print it again");
   command.add(
-      "scenario", options.scenario,
-      "scenario file, or name of a bundled scenario; or the folder of a finished sweep, which is printed again");
-  command.add(
-      "--vary", options.vary,
-      "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or path=v,w,... "
-      "(numbers, names or JSON; rendering.algorithm=all; scenario=v,w in place of SCENARIO). Several give all "
-      "combinations; the last one varies fastest. With --sample: path=a:b, path=a:b:log or path=v,w,...",
+      "--vary <field=values>", options.vary,
+      "values of a field: a:b:n (n numbers from a to b), a:b:n:log (in equal ratios), or v,w,... (numbers, names or "
+      "JSON); with --sample a:b or a:b:log; several --vary give all combinations",
       {.several = true});
-  command.add("--sample", options.sample,
-              "run a sample of points instead of all combinations: lhs:N (Latin hypercube) or random:N; listed values "
-              "take equal shares");
-  command.add(
-      "--points", options.points,
-      "run the points of a CSV file instead: fields' paths in the first line, their values in each further one");
-  command.add("--seed", options.seed, "seed of the sample (default: 1)");
+  command.add("--sample <kind:n>", options.sample,
+              "run n random points instead of all combinations: lhs:n (Latin hypercube) or random:n");
+  command.add("--points <file.csv>", options.points,
+              "run the points of a table instead: field paths in the first line, values in the others");
+  command.add("--seed <n>", options.seed, "seed of the sample (default: 1)");
   command.needs("--seed", "--sample");
-  command.add("--metric", options.metric,
-              "the column of sweep.csv that is shown, by which runs are ordered (default: " +
-                  std::string(kDefaultMetrics[0]) + ")");
-  command.add("--where", options.where,
-              "print only the runs with this: a column of sweep.csv, one of < <= > >= = !=, and a number or a text, as "
-              "'inside_max_m<3e-4'; several must all hold",
-              {.several = true});
+  command.add("--metric <name>", options.metric,
+              "column of sweep.csv to show and to order runs by (default: " + std::string(kDefaultMetrics[0]) + ")");
+  command.add(
+      "--where <condition>", options.where,
+      "print only runs that meet the condition, such as 'inside_max_m<3e-4'; one of < <= > >= = !=; repeatable, all "
+      "must hold",
+      {.several = true});
   add_common(command, options, "sweep_NAME");
   command.flag("--resume", options.resume,
-               "continue an interrupted sweep of the same definition, and try again what failed");
-  command.flag("--keep-runs", options.keep_runs, "also write the files of each run, into runs/INDEX");
-  command.add("--row", options.row, "index of the run for --print");
-  command.flag("--print", options.print, "only print the command that repeats the run of --row");
+               "continue an interrupted sweep with the same options, and repeat runs that could not be computed");
+  command.flag("--keep-runs", options.keep_runs, "also write the files of each run into OUT/runs/INDEX");
+  command.add("--row <index>", options.row, "row of sweep.csv for --print, from 0");
+  command.flag("--print", options.print,
+               "print the \"hapbench run\" line that repeats one row; add it to the options of the sweep");
   command.needs("--row", "--print");
   command.needs("--print", "--row");
-  command.add("--shard", options.shard, "i/n with 0 <= i < n: do only every n-th run, from the i-th on");
+  command.add(
+      "--shard <i/n>", options.shard,
+      "run only rows i, i+n, i+2n, ... (i from 0), for several machines; \"hapbench sweep FOLDER\" joins the shards");
   command.footer(
-      "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be "
-      "computed), expected, steps, every metric, state_hash. \"hapbench sweep FOLDER\" prints it again, without a "
-      "run. Shards write sweep.I_of_N.csv, and the same joins them. Ctrl-C stops after the runs that are under "
-      "way.\n"
-      "Exit status: 0 success, 1 a run could not be computed, 2 bad input or usage, 3 a run did not end as expected, "
-      "130 stopped by Ctrl-C.");
+      "Files: sweep.csv has one row per run: index, the varied fields, outcome, expected, steps, all metrics, "
+      "state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in "
+      "sweep.csv.part until the sweep ends.\n\n"
+      "Fields: rendering.algorithm=all tries every law; scenario=v,w,... varies the scenario, without <scenario>.\n\n"
+      "Earlier results: a finished sweep in the folder is replaced. An interrupted one is not: use --resume or "
+      "another --out.\n\n"
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not end as its scenario "
+      "expects, 130 stopped by Ctrl-C; running runs are finished first.");
 }
 
 }  // namespace hapbench

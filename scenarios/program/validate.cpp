@@ -183,13 +183,18 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
 
 void add_validate(CommandLine& line) {
   auto [command, options] = line.command(
-      "validate", "Check scenario files and the files they name, without running them, and say what is in them",
+      "validate", "Check scenario files and the files they name, without running them, and show what they contain.",
       validate);
-  command.add("files", options.files, "scenario files, or names of bundled scenarios", {.required = true});
-  command.add(
-      "--points", options.points,
-      "write the environment's points, with normals: FILE.csv (exact) or FILE.ply (single precision, for viewers)");
+  command.add("files <scenario>...", options.files, "scenario files, device files or names of bundled scenarios",
+              {.required = true});
+  command.add("--points <file>", options.points,
+              "write surface points and normals to FILE.csv (exact) or FILE.ply (single precision, for viewers)");
   add_overrides(command, options.overrides);
+  command.footer(
+      "Checks: names of fields (with the nearest valid name), types and ranges of their values, and the files they "
+      "name. Warnings point out likely unit errors (a factor of 100 or more), coarse points, and a tool that starts "
+      "behind the surface. Prints size, number of points, start distance, duration and output size.\n\n"
+      "Exit status: 0 all files are valid, 2 at least one is not; the others are checked all the same.");
 }
 
 }  // namespace hapbench

@@ -15,8 +15,8 @@
 namespace hapbench {
 namespace {
 
-// ---- A1: the original algorithm and stiffness shaping without friction, which Table A.1 does not list, and with that
-// of the trainer. Other tilts at the start and other speeds are readings of choices on record.
+// ---- A1: vibration of the original algorithm and of stiffness shaping, without friction (Table A.1 lists none) and
+// with the trainer's friction. The initial tilt and speed are choices; other values are other readings.
 
 Measured measure_peg_motion(const Evidence& e) {
   Measured measured;
@@ -37,37 +37,38 @@ Finding judge_peg_motion(const Measured& measured, const PublishedNumbers& p) {
                       measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"])};
 }
 
-/// The algorithms of the thesis. The normal projection is missing: on springs it equals stiffness shaping.
+/// The algorithms of the thesis, except the normal projection, which equals stiffness shaping on springs.
 constexpr const char* kAlgorithms[] = {"original_averaging", "summation",        "mean",
                                        "virtual_coupling",   "shaped_stiffness", "tandpasta"};
-constexpr std::size_t kPairs = 100;  ///< of Table A.3
+constexpr std::size_t kPairs = 100;  ///< number of spring pairs in Table A.3
 
-/// How the mass comes to rest: whether it is at the end within rule.arrived of the origin; how far it goes beyond
-/// either axis [m]; how often it crosses the axes by more than that distance.
+/// Measures how the mass approaches the origin. arrives: 1 if its final distance from the origin is at most
+/// rule.arrived times the initial distance (the tolerance), otherwise 0. overshoot: largest x or y coordinate [m]; the
+/// mass starts at negative coordinates. swings: number of changes of side of an axis, beyond the tolerance.
 MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t pairs, const std::string& algorithm,
                       std::vector<std::string> overrides = {}) {
   overrides.insert(overrides.end(), {fmt::format("environment.groups.0.count={}", pairs),
                                      fmt::format("environment.groups.1.count={}", pairs),
                                      fmt::format("environment.groups.2.count={}", std::max<std::size_t>(1, pairs / 10)),
-                                     // 4 s are long enough for the slowest algorithm, which creeps.
+                                     // 4 s suffice for the slowest algorithm, which creeps.
                                      "time.steps=8000", "record.ratio_iterations=[]"});
   const LoadedScenario loaded = e.load(fmt::format("{}_{}", scene, algorithm), overrides);
-  const double far = threshold(e.published, "arrived") * loaded.scenario.initial.position.norm();
+  const double tolerance = threshold(e.published, "arrived") * loaded.scenario.initial.position.norm();
   const auto rows = static_cast<std::uint64_t>(loaded.scenario.time.steps);
   bool arrives = false;
   double overshoot = 0.0, swings = 0.0;
-  Vec3 side = Vec3::Zero();  // where it was last as far away, along each axis
+  Vec3 side = Vec3::Zero();  // last coordinate beyond the tolerance, for each axis
   for_each_row(checked(loaded), [&](const StepRecord& row) {
     const Vec3& p = row.tool.pose.position;
     for (const Eigen::Index axis : {0, 1}) {
       // The start is in the negative quadrant.
       overshoot = std::max(overshoot, p[axis]);
-      if (std::abs(p[axis]) < far) continue;
+      if (std::abs(p[axis]) < tolerance) continue;
       if (p[axis] * side[axis] < 0.0) swings += 1.0;
       side[axis] = p[axis];
     }
     // A run that diverges does not reach its last row.
-    arrives = row.step + 1 == rows && p.norm() <= far;
+    arrives = row.step + 1 == rows && p.norm() <= tolerance;
   });
   return {algorithm,
           {{"pairs", {static_cast<double>(pairs)}},
@@ -76,8 +77,8 @@ MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t p
            {"swings", {swings}}}};
 }
 
-// ---- A2, A3: a case for each algorithm, number of pairs and reading of the depth: signed, or its absolute value along
-// the displacement (2.3: d >= 0).
+// ---- A2, A3: one case for each algorithm, number of pairs and definition of the depth: signed, or nonnegative with
+// the gradient along the displacement (2.3: d >= 0).
 
 constexpr std::size_t kPairCounts[] = {1, 2, 4, 10, 30, kPairs};
 
@@ -95,12 +96,14 @@ Measured measure_springs_unlimited(const Evidence& e) {
   return measured;
 }
 
+/// Returns true if the mass arrives without more swings than rule.smooth_swings.
 bool is_smooth(const MeasuredCase& m, const PublishedNumbers& p) {
   return m["arrives"] == 1.0 && m["swings"] <= threshold(p, "smooth_swings");
 }
 
 Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers& p) {
-  // By reading and number of pairs, whether all are smooth; by reading and algorithm, the pairs with which it is.
+  // all_smooth: by definition of the depth and number of pairs, true if all algorithms are smooth.
+  // smooth_with: by definition of the depth and algorithm, the numbers of pairs with a smooth motion.
   std::map<std::pair<bool, double>, bool> all_smooth;
   std::map<std::pair<bool, std::string>, std::string> smooth_with;
   for (const MeasuredCase& m : measured) {
@@ -124,10 +127,10 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
       "pairs with which the way is smooth: " + text};
 }
 
-// With 100 pairs the plain sum has no smooth motion without limits to lose; with 4 it has (A2).
+// With 100 pairs the plain sum is not smooth even without limits; with 4 pairs it is (A2).
 constexpr std::size_t kStablePairs = 4;
 
-/// Cases in pairs: without limits, with them.
+/// Returns two cases for each algorithm and number of pairs: without force limits, then with force limits.
 Measured measure_springs_limited(const Evidence& e) {
   Measured measured;
   for (const std::size_t pairs : {kPairs, kStablePairs}) {
@@ -161,14 +164,15 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
           "swings without and with the limits: " + text};
 }
 
-// ---- A4: the stability limits. A case for each published figure, in their order.
+// ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.
 
 constexpr const char* kSpring = "single_spring";
 constexpr double kLimitResolution = 1e-4;
 constexpr const char* kUndamped = "rendering.damping_ratio=0";
-constexpr double kSameEnergy = 1e-9;  // in the rule
+constexpr double kSameEnergy = 1e-9;  // relative; stated in the rule's text
 
-/// The largest value of a field at which the run of the spring, struck once, stays bounded.
+/// Returns the largest value of a field at which a mass on the spring stays bounded after an initial velocity of 1
+/// mm/s.
 double largest_bounded(const Evidence& e, const std::string& field, const Range& range,
                        std::vector<std::string> overrides) {
   overrides.insert(overrides.end(), {"time.steps=20000", "initial.velocity_m_per_s=[0.001,0,0]"});
@@ -180,14 +184,16 @@ double largest_bounded(const Evidence& e, const std::string& field, const Range&
   return field_limit(question).end.value.value_or(0.0);
 }
 
+/// Returns the largest stiffness that stays bounded [N/m].
 double largest_stiffness(const Evidence& e, std::vector<std::string> overrides = {}) {
   return largest_bounded(e, kStiffnessPath, {1e3, 1e9, true}, std::move(overrides));
 }
+/// Returns the largest damping without a spring that stays bounded [N s/m].
 double largest_damping_alone(const Evidence& e) {
   return largest_bounded(e, "rendering.damping_N_s_per_m", {1.0, 1e5, true}, {"rendering.stiffness_N_per_m=0"});
 }
 
-/// The damping that belongs to a stiffness by the scene's zeta [N s/m].
+/// Returns the damping [N s/m] of a stiffness [N/m] by the scene's damping ratio.
 double damping_at(const Evidence& e, double stiffness) {
   const RenderingConfig rendering = e.load(kSpring).scenario.rendering;
   return 2.0 * rendering.damping_ratio * std::sqrt(stiffness * rendering.mass);
@@ -210,7 +216,8 @@ Finding judge_stability_limits(const Measured& measured, const PublishedNumbers&
           fmt::format("the largest difference to the published figures is {:.2g} %", 100.0 * worst)};
 }
 
-/// The damping that the largest stiffness without damping would have, and the largest one alone [N s/m].
+/// Measures "there", the damping that the scene's damping ratio gives at the largest undamped stiffness, and "alone",
+/// the largest damping without a spring [N s/m].
 MeasuredValues measure_damping_at_limit(const Evidence& e) {
   return {{"alone", {largest_damping_alone(e)}}, {"there", {damping_at(e, largest_stiffness(e, {kUndamped}))}}};
 }
@@ -223,20 +230,21 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
           before ? "the damping that belongs to the largest stiffness is unstable by itself" : "stiffness comes first"};
 }
 
-// ---- A6: the largest energy of an undamped mass on a spring, in units of that at its release.
+// ---- A6: the largest energy of an undamped mass on a spring, in units of its initial energy. bound: 1 / (1 - w dt /
+// 2) with the angular frequency w and the time step dt.
 
 MeasuredValues measure_energy(const Evidence& e) {
   const LoadedScenario loaded = e.load(kSpring, {kUndamped});
   const RenderingConfig& rendering = loaded.scenario.rendering;
-  double start = 0.0, most = 0.0;
+  double start = 0.0, largest = 0.0;
   for_each_row(checked(loaded), [&](const StepRecord& row) {
     const double energy = 0.5 * (rendering.stiffness * row.tool.pose.position.squaredNorm() +
                                  rendering.mass * row.tool.velocity.squaredNorm());
     if (row.step == 0) start = energy;
-    most = std::max(most, energy);
+    largest = std::max(largest, energy);
   });
   const double half_turn = 0.5 * loaded.scenario.time.step * std::sqrt(rendering.stiffness / rendering.mass);
-  return {{"most", {most / start}}, {"bound", {1.0 / (1.0 - half_turn)}}};
+  return {{"most", {largest / start}}, {"bound", {1.0 / (1.0 - half_turn)}}};
 }
 
 Finding judge_energy(const MeasuredCase& m, const PublishedNumbers&) {

@@ -11,12 +11,12 @@
 #include "scenarios/thesis/measurements.hpp"
 #include "sim/core/math.hpp"
 
-/// Claims of appendices B, what is wrong with the original algorithm, C, what the proposed one does to point density
-/// and damping, and F, the optional ones.
+/// Claims of appendices B (errors of the original algorithm), C (the proposed algorithm, point density and damping) and
+/// F (alternatives).
 namespace hapbench {
 namespace {
 
-// ---- B1: <f, n>, the force on the tool along the surface normal of a point beyond the tool's median line.
+// ---- B1: the force on the tool along the surface normal, <f, n> [N], for a wall point beyond the tool's median line.
 
 MeasuredValues measure_flipped_gradient(const Evidence&) {
   const auto force_along_normal = [](const char* depth_model) {
@@ -34,18 +34,18 @@ Finding judge_flipped_gradient(const MeasuredCase& m, const PublishedNumbers&) {
                                                    : "the original algorithm pushes the tool out here"};
 }
 
-/// damping_ratio_of_swings along x; NaN for none.
+/// Returns damping_ratio_of_swings() of the tool's x coordinate in a run; NaN if it is empty.
 double damping_ratio_of(const LoadedScenario& loaded) {
-  std::vector<double> way;
-  for_each_row(checked(loaded), [&](const StepRecord& row) { way.push_back(row.tool.pose.position.x()); });
-  return damping_ratio_of_swings(way).value_or(std::nan(""));
+  std::vector<double> x;
+  for_each_row(checked(loaded), [&](const StepRecord& row) { x.push_back(row.tool.pose.position.x()); });
+  return damping_ratio_of_swings(x).value_or(std::nan(""));
 }
 
-// ---- B2: a mass that a hand presses into a groove of two springs and that starts beside its bottom. A case for each
-// half angle between the contacts' gradients, with the damping ratios of the swings across the groove; no number where
-// the mass does not swing, and what does not swing is not under-damped.
+// ---- B2: a hand presses a mass into a groove of two springs; the mass starts beside the bottom. One case for each
+// half angle between the contacts' gradients, with the damping ratios of the oscillation across the groove. NaN if the
+// mass does not oscillate; then it is not under-damped.
 
-constexpr double kHalfAngles[] = {10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0};
+constexpr double kHalfAngles[] = {10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0};  ///< [degrees]
 
 Measured measure_groove(const Evidence& e) {
   Measured measured;
@@ -77,7 +77,8 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
                   under_damped, measured.size())};
 }
 
-// ---- B3: the merged depth before and after two more points, in units of the common depth.
+// ---- B3: the merged depth before and after adding two points, in units of the depth of each point. There are 2 n + 1
+// points with opposite gradients, n = kPoints; the two added points turn the merged direction around.
 
 constexpr std::size_t kPoints = 10;
 constexpr double kExact = 1e-9;
@@ -110,20 +111,20 @@ Finding judge_added_points(const MeasuredCase& m, const PublishedNumbers&) {
           depths && turned ? "exact, as the formula says" : "another depth or direction than the formula's"};
 }
 
-/// The laws that P1 compares; the thesis's is first.
+/// The laws that P1 compares; the law that the thesis proposes is first.
 constexpr const char* kLaws[] = {"shaped_stiffness", "original_averaging", "summation", "mean",
                                  "virtual_coupling", "least_squares"};
 
-constexpr std::size_t kWallDensities[] = {4, 10, 40};
-/// Gradients less steep than this belong to the wall.
+constexpr std::size_t kWallDensities[] = {4, 10, 40};  ///< copies of each wall point
+/// A gradient with |z| below this belongs to the wall.
 constexpr double kWall = 0.5;
 
-/// The contacts with so many points in place of each point of the wall.
-ContactBuffer crowded(const ContactBuffer& contacts, std::size_t times) {
-  ContactBuffer more(contacts.size() * times);
+/// Returns the contacts with each point of the wall repeated `copies` times.
+ContactBuffer with_repeated_wall_points(const ContactBuffer& contacts, std::size_t copies) {
+  ContactBuffer more(contacts.size() * copies);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vec3 gradient = contacts.gradient(i);
-    for (std::size_t k = 0; k < (std::abs(gradient.z()) < kWall ? times : 1); ++k) {
+    for (std::size_t k = 0; k < (std::abs(gradient.z()) < kWall ? copies : 1); ++k) {
       more.push(static_cast<std::uint32_t>(more.size()), contacts.point(i), contacts.normal(i));
       more.set_gradient(more.size() - 1, gradient);
       more.depth[more.size() - 1] = contacts.depth[i];
@@ -133,17 +134,17 @@ ContactBuffer crowded(const ContactBuffer& contacts, std::size_t times) {
   return more;
 }
 
-/// The spring forces of an algorithm for sets of contacts with depths and gradients, of which each point of the wall is
-/// there so many times, under a tool at rest.
+/// Returns the spring force [N] of an algorithm for each contact set, with each point of the wall repeated `copies`
+/// times and a tool at rest. The sets have depths and gradients.
 std::vector<Vec3> forces_of(const RenderingConfig& config, const Scene& scene, const std::vector<ContactBuffer>& sets,
-                            std::size_t times = 1) {
+                            std::size_t copies = 1) {
   const auto algorithm = make_algorithm(config);
   algorithm->prepare(scene);
   ToolState tool;
   tool.pose = kUpright;
   std::vector<Vec3> forces;
   for (const ContactBuffer& set : sets) {
-    ContactBuffer contacts = times == 1 ? set : crowded(set, times);
+    ContactBuffer contacts = copies == 1 ? set : with_repeated_wall_points(set, copies);
     RenderedForce force;
     algorithm->compute(tool, contacts, force);
     forces.push_back(force.spring);
@@ -151,7 +152,7 @@ std::vector<Vec3> forces_of(const RenderingConfig& config, const Scene& scene, c
   return forces;
 }
 
-/// How much the second spring forces differ from the first, rms over rms.
+/// Returns the rms difference between the second and the first forces over the rms of the first forces.
 double change_of_force(const std::vector<Vec3>& first, const std::vector<Vec3>& second) {
   double difference = 0.0, force = 0.0;
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -161,32 +162,34 @@ double change_of_force(const std::vector<Vec3>& first, const std::vector<Vec3>& 
   return std::sqrt(difference / force);
 }
 
-// ---- P1: how much the spring force of contacts of task 2 changes, rms over rms, if every point of the wall is there
-// many times: with all points, and after the reduction. A case for each law; of ours, another for each number of
-// updates, whose limit decouples.
+// ---- P1: change_of_force() of the contacts of task 2 if every point of the wall is repeated: with all points, and
+// after the reduction. One case for each law, and for stiffness shaping one case for each number of updates. With many
+// updates the force should no longer depend on the point density.
 
 constexpr int kUpdates[] = {1, 10, 100, 1000};
 
 Measured measure_density(const Evidence& e) {
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance", {"rendering.local_average=false"});
+  // Collect contact sets of task 2 before the reduction.
   const std::vector<ContactBuffer> sets = contact_sets(loaded.scenario, 256);
   Scene scene;
   scene.capacity = largest_size(sets) * kWallDensities[std::size(kWallDensities) - 1];
   const auto changes = [&](MeasuredCase& m, const RenderingConfig& config) {
     const std::vector<Vec3> once = forces_of(config, scene, sets);
-    for (const std::size_t times : kWallDensities)
-      m.values[fmt::format("x{}{}", times, config.reduction ? "_reduced" : "")] = {
-          change_of_force(once, forces_of(config, scene, sets, times))};
+    for (const std::size_t copies : kWallDensities)
+      m.values[fmt::format("x{}{}", copies, config.reduction ? "_reduced" : "")] = {
+          change_of_force(once, forces_of(config, scene, sets, copies))};
   };
   Measured measured;
   const auto add = [&](const std::string& name, RenderingConfig config) {
     MeasuredCase& m =
         measured.emplace_back(MeasuredCase{name, {{"updates", {static_cast<double>(config.iterations)}}}});
-    m.values["x40_reduced"] = {std::nan("")};  // of a law that has no reduction
+    m.values["x40_reduced"] = {std::nan("")};  // stays NaN for a law without reduction
     changes(m, config);
     config.reduction.reset();
     changes(m, config);
   };
+  // One case for each law, then for each number of updates of stiffness shaping.
   for (const char* law : kLaws) add(law, with_algorithm(loaded.scenario, law).rendering);
   for (const int updates : kUpdates) {
     RenderingConfig config = loaded.scenario.rendering;
@@ -206,10 +209,10 @@ Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
                   limit <= small ? "decouples" : "does not", reduced <= small ? "does" : "does not")};
 }
 
-// ---- C6: the damping ratio of one, two, … springs in parallel, whose stiffness ratio is their number.
+// ---- C6: the damping ratio of 1, 2, 4 and 8 springs in parallel. The stiffness ratio is the number of springs.
 
 constexpr double kCounts[] = {1.0, 2.0, 4.0, 8.0};
-constexpr double kSpringDamping = 0.1;  ///< small enough for many swings
+constexpr double kSpringDamping = 0.1;  ///< damping ratio of one spring; small, so that it oscillates many times
 
 Measured measure_relative_damping(const Evidence& e) {
   Measured measured;
@@ -217,7 +220,7 @@ Measured measure_relative_damping(const Evidence& e) {
     const std::vector<std::string> overrides = {
         fmt::format(R"(environment.groups=[{{"direction":[1,0,0],"count":{}}}])", count),
         "initial.position_m=[-0.005,0,0]", fmt::format("rendering.damping_ratio={}", kSpringDamping),
-        // With a tenth of the step the integrator's own damping is negligible.
+        // With a tenth of the step, the numerical damping of the integrator is negligible.
         "time.step_s=0.00005", "time.steps=10000"};
     const double ratio = damping_ratio_of(e.load("springs_unlimited_summation", overrides));
     measured.push_back({fmt::format("{}", count), {{"count", {count}}, {"damping_ratio", {ratio}}}});
@@ -231,13 +234,14 @@ Finding judge_relative_damping(const Measured& measured, const PublishedNumbers&
   for (const MeasuredCase& m : measured) {
     const double expected = kSpringDamping * std::sqrt(m["count"]);
     const double off = std::abs(m["damping_ratio"] / expected - 1.0);
-    same = same && off <= threshold(p, "same_damping");  // no ratio is another one
+    same = same && off <= threshold(p, "same_damping");  // false for NaN
     worst = std::max(worst, off);
   }
   return {decide(same, false), fmt::format("√ρ times that of one spring to {:.2g} %", 100.0 * worst)};
 }
 
-// ---- F1: the largest force step at a corner [N], and the depth rendered for a press into a flat [m].
+// ---- F1: the largest force change in a step at a corner [N], and the rendered depth of a tool pressed into a flat
+// [m].
 
 MeasuredValues measure_normal_projection(const Evidence& e) {
   const auto z = e.table("flat_press_normal_projection", "trajectory.csv").at("pz_m");
@@ -258,14 +262,14 @@ Finding judge_normal_projection(const MeasuredCase& m, const PublishedNumbers& p
                       saturates ? "does" : "does not")};
 }
 
-// ---- F2: the energy of the weighed over the plain springs; at some tilts of the planar peg, prescribed, the outward
-// force over that of the plain springs in the same pose; and in a converged run without friction (a hundredth of the
-// step) the time until the peg leaves [s].
+// ---- F2, the law tandpasta: the elastic energy of the weighted springs over the energy of the unweighted springs; at
+// some prescribed tilts of the planar peg, the outward force over the outward force of unweighted springs in the same
+// pose; and in a converged run without friction (1/100 of the step), the time until the peg leaves the hole [s].
 
-constexpr double kEnergyKept = 1e-9;
-constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};
+constexpr double kEnergyKept = 1e-9;                      ///< largest relative change of a conserved energy
+constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};  ///< [rad]
 
-/// The ratio furthest from 1 among the contact sets that give a force.
+/// Returns the energy ratio that is furthest from 1 among the contact sets with a force.
 double tandpasta_energy_ratio(const Evidence& e) {
   const auto law = make_law("tandpasta", {});
   double ratio = 1.0;
@@ -282,7 +286,7 @@ double tandpasta_energy_ratio(const Evidence& e) {
   return ratio;
 }
 
-/// The outward force over that of the plain springs, at the first row beyond each tilt.
+/// Returns the outward force over the outward force of unweighted springs, at the first step beyond each tilt.
 std::vector<double> outward_boosts(const Evidence& e) {
   const LoadedScenario loaded = e.load("tilt_sweep_tandpasta");
   const double stiffness = loaded.scenario.rendering.stiffness;
@@ -311,14 +315,14 @@ MeasuredValues measure_tandpasta(const Evidence& e) {
 
 Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
   const std::vector<double>& boosts = m.all("boosts");
-  const double least = boosts.empty() ? 0.0 : *std::min_element(boosts.begin(), boosts.end());
+  const double smallest = boosts.empty() ? 0.0 : *std::min_element(boosts.begin(), boosts.end());
   const bool unchanged = std::abs(m["energy_ratio"] - 1.0) <= kEnergyKept;
   return {
-      decide(unchanged && least >= threshold(p, "boosted"), unchanged && least > 1.0),
+      decide(unchanged && smallest >= threshold(p, "boosted"), unchanged && smallest > 1.0),
       fmt::format(
           "the weights {} the elastic energy and {} the outward force; that the peg leaves after 5 steps at the "
           "thesis's step is explicit friction blowing up, not the law",
-          unchanged ? "keep" : "change", least > 1.0 ? "raise" : "do not raise"),
+          unchanged ? "keep" : "change", smallest > 1.0 ? "raise" : "do not raise"),
       fmt::format("energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; in a "
                   "converged run the peg leaves after {:.3f} s, with summation after {:.3f}, with stiffness shaping "
                   "after {:.3f}",

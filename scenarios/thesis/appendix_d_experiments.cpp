@@ -13,10 +13,11 @@
 namespace hapbench {
 namespace {
 
+/// A measure of the experiments.
 struct MeasuredColumn {
-  const char* name;       ///< of the measure
-  const char* column;     ///< of targets.csv
-  const char* published;  ///< part of the id
+  const char* name;       ///< name of the measure
+  const char* column;     ///< column of targets.csv
+  const char* published;  ///< part of the id of the published number
 };
 constexpr const char *kSuccessRate = "success rate", *kModelForce = "model force";
 constexpr MeasuredColumn kMeasures[] = {{kSuccessRate, "removed", "success"},
@@ -24,14 +25,15 @@ constexpr MeasuredColumn kMeasures[] = {{kSuccessRate, "removed", "success"},
                                         {kModelForce, "model_force_N", "force"},
                                         {"speed", "speed_m_per_s", "speed"}};
 
-/// Largest difference of a measure, but for the force that subjects regulate, to the published one, in standard errors
-/// of the difference; half a unit of the last published digit is added.
-constexpr double kStandardErrors = 2.0;  // in words in the rule
+/// Largest difference between a measured and a published mean that counts as near [standard errors of the difference].
+/// Half a unit of the last published digit is allowed in addition. Does not apply to the force, which subjects
+/// regulate.
+constexpr double kStandardErrors = 2.0;  // stated in the rule's text
 
-/// The columns of targets.csv; NaN where there is no value.
+/// The columns of targets.csv by name; NaN for a missing value.
 using TargetTable = std::map<std::string, std::vector<double>>;
 
-/// Mean of a column over each subject's targets at a place; subjects without a value are left out.
+/// Returns the mean of a column over the targets at a place, by subject. Omits subjects without a value.
 std::map<double, double> subject_means(const TargetTable& targets, const char* column, double place) {
   std::map<double, std::vector<double>> values;
   for (std::size_t i = 0; i < targets.at("place").size(); ++i) {
@@ -44,7 +46,7 @@ std::map<double, double> subject_means(const TargetTable& targets, const char* c
   return means;
 }
 
-/// A case for each measure, with the mean of each subject that has one with either algorithm.
+/// Returns one case for each measure, with the means of the subjects that have values with both algorithms.
 Measured measure(const Evidence& e, const std::string& task, double place) {
   const TargetTable original = e.table(task + "_original_averaging", "targets.csv"),
                     shaped = e.table(task + "_shaped_stiffness", "targets.csv");
@@ -62,22 +64,24 @@ Measured measure(const Evidence& e, const std::string& task, double place) {
   return measured;
 }
 
-/// Half a unit of the last digit with which the thesis prints a mean.
+/// Returns half a unit of the last digit of a mean as printed in the thesis.
 double half_a_digit(double printed) {
   const std::string text = plain(printed);
   const auto point = text.find('.');
-  // Every mean of appendix D is printed with a digit behind the point, 1.0 too.
+  // Every mean of appendix D is printed with at least one decimal, also 1.0.
   const auto digits = point == std::string::npos ? 1 : text.size() - point - 1;
   return 0.5 * math::pow(10.0, -static_cast<double>(digits));
 }
 
+/// Comparison of a measure with the published values.
 struct Compared {
-  bool agrees = false;  ///< significant or not, and in the direction, as published
-  bool near = false;    ///< near the published ones; true of the force, which subjects regulate
-  double t = 0.0;
-  double farthest = 0.0;  ///< larger difference to a published mean [standard errors of the difference]
+  bool agrees = false;    ///< significance and direction of the difference are as published
+  bool near = false;      ///< both means are near the published means; always true for the force
+  double t = 0.0;         ///< paired t statistic of original minus shaped
+  double farthest = 0.0;  ///< larger difference from a published mean [standard errors of the difference]
 };
 
+/// Compares a measure with the published values. `id`, `published_difference`: see judge_experiment().
 Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const std::string& id,
                  bool published_difference) {
   const auto* column = std::ranges::find(kMeasures, m.name, &MeasuredColumn::name);
@@ -91,7 +95,7 @@ Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const
   Compared c;
   c.t = paired_t(original, shaped);
   const bool significant = std::abs(c.t) > critical_t(original.empty() ? 0 : original.size() - 1);
-  // Means that would be printed alike do not differ, however small their scatter.
+  // Means that round to the same printed values do not differ, however small their scatter.
   const double margin = half_a_digit(of_original.mean) + half_a_digit(of_shaped.mean);
   const bool alike = std::abs(mean_of(original) - mean_of(shaped)) <= margin;
   c.agrees =
@@ -101,17 +105,19 @@ Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const
   return c;
 }
 
-/// `id` is that of a claim D1 to D4; `published_difference`: whether the thesis found one.
+/// Judges an experiment by all its measures. `id`: D1 to D4. `published_difference`: true if the thesis reports a
+/// significant difference between the algorithms.
 Finding judge_experiment(const Measured& measured, const PublishedNumbers& published, const std::string& id,
                          bool published_difference) {
   bool all = true, success = false;
   std::string text, deviating, farthest;
-  double most = -1.0;
+  double largest = -1.0;
   for (const MeasuredCase& m : measured) {
     const Compared c = compare(m, published, id, published_difference);
-    if (c.farthest > most) farthest = m.name;
-    most = std::max(most, c.farthest);
-    // No difference is a claim about a level: two rates of nothing do not differ, either.
+    if (c.farthest > largest) farthest = m.name;
+    largest = std::max(largest, c.farthest);
+    // If the thesis reports no difference, the success rates must also be near the published rates: two rates of 0 do
+    // not differ either.
     if (m.name == kSuccessRate) success = c.agrees && (published_difference || c.near);
     const std::vector<double>&a = m.all("original"), &b = m.all("shaped");
     if (!c.agrees) {
@@ -130,13 +136,13 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
                              : "other than published: " + deviating) +
               fmt::format("; the {} differs most, by {:.2g} standard errors of the difference; subjects regulate the "
                           "gauge, so the mean force is nearly an input",
-                          farthest, most),
+                          farthest, largest),
           text};
 }
 
 constexpr const char *kVertical = "vertical_peg_in_hole", *kRotational = "rotational_peg_in_hole";
 
-// ---- D7: what the wall does to either algorithm. A case for each target.
+// ---- D7: the effect of the wall on the success rate with each algorithm. One case for each target: centre and side.
 
 Measured measure_wall(const Evidence& e) {
   Measured measured = {measure(e, kVertical, 0.0).front(), measure(e, kVertical, 1.0).front()};
@@ -166,16 +172,18 @@ Finding judge_wall(const Measured& measured, const PublishedNumbers& published) 
           text};
 }
 
-// ---- D6: success rates over places of the pilot experiments. A case for each, with both algorithms' subject means.
+// ---- D6: success rates at the target positions of the pilot experiments. One case for each position, with the mean
+// over the subjects for both algorithms.
 
-constexpr double kHardlyAny = 0.1;
-constexpr double kMostTrials = 0.5;
-constexpr double kOffsets[] = {0.4e-3, 0.46e-3, 0.52e-3, 0.58e-3, 0.64e-3, 0.7e-3};  ///< from the hole's axis [m]
-constexpr double kHeights[] = {2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 4.5e-3};            ///< over the hole's bottom [m]
-constexpr double kHoleDepth = 5e-3;
+constexpr double kHardlyAnyTarget = 0.1;  ///< largest success rate that counts as "hardly any target is removed"
+constexpr double kMostTargets = 0.5;      ///< smallest success rate that counts as "most targets are removed"
+constexpr double kOffsets[] = {0.4e-3,  0.46e-3, 0.52e-3,
+                               0.58e-3, 0.64e-3, 0.7e-3};                  ///< distance from the hole's axis [m]
+constexpr double kHeights[] = {2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 4.5e-3};  ///< height above the hole's bottom [m]
+constexpr double kHoleDepth = 5e-3;                                        ///< [m]
 
-/// The subjects' success rate at a place: four targets each, and no other place, since a drill that is lost at one
-/// would spoil the others.
+/// Returns the mean success rate of the subjects at one position [m], with four targets for each subject. Each position
+/// has a run of its own, because a subject who loses the drill misses all remaining targets.
 double success_rate(const Evidence& e, const std::string& scenario, const Vec3& place) {
   const Result run = e.run(scenario, {fmt::format("hand.task.places_m=[[{},{},{}]]", place.x(), place.y(), place.z()),
                                       "hand.task.targets_per_place=4", "hand.trials=1"});
@@ -195,14 +203,14 @@ Measured measure_pilots(const Evidence& e) {
   return measured;
 }
 
-/// What the pilots of one kind show.
+/// The result of the pilot experiments over offsets or over heights, with the original algorithm.
 struct PilotResult {
-  bool easy = false;       ///< most targets are removed somewhere
-  bool beyond = false;     ///< more than hardly any are removed beyond the published place
-  bool somewhere = false;  ///< a place where hardly any is removed, but most with stiffness shaping
+  bool easy = false;       ///< true if most targets are removed at some position
+  bool beyond = false;     ///< true if more than hardly any are removed beyond the published position
+  bool somewhere = false;  ///< true if at some position hardly any are removed, but most with stiffness shaping
 
   bool as_published() const { return easy && !beyond; }
-  const char* said() const {
+  const char* text() const {
     return as_published() ? "as published" : somewhere ? "another threshold" : "no threshold";
   }
 };
@@ -210,16 +218,16 @@ struct PilotResult {
 Finding judge_pilots(const Measured& measured, const PublishedNumbers& published) {
   PilotResult offset, height;
   for (const MeasuredCase& m : measured) {
-    const bool hardly_any = m["original"] <= kHardlyAny, is_offset = m.name == "offset";
+    const bool hardly_any = m["original"] <= kHardlyAnyTarget, is_offset = m.name == "offset";
     PilotResult& pilot = is_offset ? offset : height;
     const bool hard =
         is_offset ? m["value"] > published["D6.offset"].at_most : m["value"] < published["D6.height"].at_least;
-    pilot.easy = pilot.easy || m["original"] >= kMostTrials;
+    pilot.easy = pilot.easy || m["original"] >= kMostTargets;
     pilot.beyond = pilot.beyond || (hard && !hardly_any);
-    pilot.somewhere = pilot.somewhere || (hardly_any && m["shaped"] >= kMostTrials);
+    pilot.somewhere = pilot.somewhere || (hardly_any && m["shaped"] >= kMostTargets);
   }
   return {decide(offset.as_published() && height.as_published(), offset.somewhere || height.somewhere),
-          fmt::format("offset: {}; height: {}", offset.said(), height.said())};
+          fmt::format("offset: {}; height: {}", offset.text(), height.text())};
 }
 
 }  // namespace

@@ -24,17 +24,18 @@
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 
-/// Claims of chapter 3 but for the cost: the number of points before and after the reduction and the drill turned in
-/// the hole, against the ideal trajectory (3.3, 3.6, C.2); the stiffness ratios after some iterations and in the limit;
-/// the limit of the input force (2.7, 3.5, 4.5).
+/// Claims of chapter 3 except computing time: the number of points before and after the reduction; the drill turned in
+/// the hole, compared with the ideal trajectory (3.3, 3.6, C.2); the stiffness ratios after some iterations and in the
+/// limit; the limit of the input force (2.7, 3.5, 4.5).
 namespace hapbench {
 namespace {
 
 constexpr const char* kDensities[] = {"signed_distance", "binary"};
 
-// ---- T1, T2, T3: points per row with contact. A case for each density. The hands are calibrated to mean and standard
-// deviation of the raw counts, so those are input and what is left after the reduction is not. Taps beyond the limit of
-// the input, which are ours, and what is left within kAfterTap of them count for the means, not for the bound of 15.
+// ---- T1, T2, T3: number of points in each step with contact. One case for each point density. The hands are
+// calibrated to the mean and standard deviation of the raw counts, so that the raw counts are inputs; the counts after
+// the reduction are results. Our hands also tap with more than the input limit. Steps within kAfterTap of a tap count
+// for the means but not for the bound of 15 points.
 
 constexpr double kAfterTap = 0.1;  ///< [s]
 
@@ -48,6 +49,7 @@ Measured measure_counts(const Evidence& e, const std::string& task) {
     for (std::size_t i = 0; i < table.at("colliding").size(); ++i) {
       const double time = table.at("time_s")[i];
       const Vec3 force{table.at("fmeas_x_N")[i], table.at("fmeas_y_N")[i], table.at("fmeas_z_N")[i]};
+      // Steps within kAfterTap of a force beyond the input limit do not count for the bound.
       if (force.norm() > e.published["L1.measured"].mean) tap = time;
       if (time >= tap + kAfterTap) outside = std::max(outside, table.at("rendered")[i]);
       if (table.at("colliding")[i] == 0.0) continue;
@@ -72,8 +74,9 @@ Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& pub
           one ? "on a flat all gradients are equal, so one point is left" : "more than one point is left on the flat"};
 }
 
-/// Whether mean and spread of some counts of a density are near those of one recording. The thesis gives two of a task
-/// and no error of either: a number of ours is near one of them if it is no further from it than the other one is.
+/// Returns whether the mean and the spread of counts are near the published values of recording `one`. The thesis
+/// publishes two recordings of a task without errors. A value is near recording `one` if it is no further from it than
+/// recording `other` is.
 std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
                                const PublishedNumber& other) {
   const auto is_near = [](double value, double published, double elsewhere) {
@@ -83,15 +86,15 @@ std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts,
           is_near(c[counts + "_deviation"], one.spread, other.spread)};
 }
 
-/// What the counts of one density have in common with the published ones, those of 3.3 or of the appendix.
+/// Agreement of the counts of one density with a published recording, from section 3.3 or from appendix C.3.
 struct CountsAgree {
-  bool raw = false;    ///< mean and spread of the raw counts
-  bool mean = false;   ///< and the mean of the number that is left
-  bool whole = false;  ///< and its spread, with no row beyond the bound
+  bool raw = false;    ///< mean and spread of the raw counts agree
+  bool mean = false;   ///< in addition, the mean after the reduction agrees
+  bool whole = false;  ///< in addition, the spread after the reduction agrees, and no step exceeds the bound
 };
 
-/// Compares the counts of one density with both published recordings of a task: the appendix gives other counts
-/// than 3.3.
+/// Compares the counts of one density with both published recordings of a task: the counts of 3.3 and of appendix C.3
+/// differ. `bounded`: true if no step exceeds the published bound.
 CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, const std::string& task, bool bounded) {
   CountsAgree agree;
   for (const auto& [one, other] : {std::pair("", ".C3"), std::pair(".C3", "")}) {
@@ -129,13 +132,15 @@ Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& pub
   return {decide(all == counts.size(), means > 0), why};
 }
 
-// ---- J1, C5, T2b: the drill of task 2 turned by a hand of constant force: its errors [m] and its points. A case for
-// each force, with the local average or without, as the scene has it, then the other way round. Taps beyond 2 N would
-// be too short for the drill to sink in as far as it does. The scene tilts the drill to 0.9 rad: to 1.05 rad the hand
-// of 0.2 N, whose direction is constant, slides 1.26 mm off the wall, which 3.2 rules out.
+// ---- J1, C5, T2b: the drill of task 2 turned by a hand of constant force: its errors from the ideal trajectory [m]
+// and its numbers of points. One case for each force, first with the scene's setting of the local average, then with
+// the opposite setting. Short taps beyond 2 N would not let the drill sink in completely. The scene tilts the drill to
+// 0.9 rad only: at 1.05 rad the hand of 0.2 N, whose direction is constant, slides 1.26 mm off the wall, which 3.2
+// excludes.
 
 constexpr double kForces[] = {0.2, 0.5, 1.0, 1.5, 1.9, 2.5, 3.5};  ///< [N]
 
+/// Measures task 2 with a hand of constant force [N], with or without the local average.
 MeasuredCase turned_by(const Evidence& e, double force, bool averaged) {
   const Result run =
       e.run("task2_held", {fmt::format("hand.force_N={}", force), fmt::format("rendering.local_average={}", averaged)});
@@ -158,12 +163,13 @@ Measured measure_hands(const Evidence& e) {
   return measured;
 }
 
-/// At most in kind: the thesis's hand and forces are not published. Judged as the scene has it, in the first half.
+/// Returns in_kind at best, because the hand and forces of the thesis are not published. Uses the first half of the
+/// cases, which have the scene's setting of the local average.
 Finding judge_ideal_trajectory(const Measured& measured, const PublishedNumbers& published) {
   const double around = threshold(published, "around"), split = published["J1.split"].mean;
   const double depth = around * published["J1.depth"].mean, lateral = around * published["J1.lateral"].mean;
   const MeasuredCase& gentlest = measured.front();
-  // No number is far off.
+  // NaN counts as far off.
   const bool follows = std::abs(gentlest["height"]) <= depth;
   bool on_line = true, above = true, shallow = true;
   std::string as_high;
@@ -181,7 +187,7 @@ Finding judge_ideal_trajectory(const Measured& measured, const PublishedNumbers&
                       on_line ? "as published" : "further off", shallow ? "as published" : "more than published")};
 }
 
-/// Without the local average against with it, at each force below 2 N.
+/// Compares the cases without and with the local average, at each force below 2 N.
 Finding judge_local_average(const Measured& measured, const PublishedNumbers& p) {
   const double around = threshold(p, "around");
   bool lateral = true, inside = true;
@@ -196,15 +202,16 @@ Finding judge_local_average(const Measured& measured, const PublishedNumbers& p)
                       lateral ? "no further" : "further", inside ? "no deeper" : "deeper")};
 }
 
-/// A hand of 1.9 N presses about as those of appendix D do.
+/// Compares the raw counts of the gentlest hand and of a firm hand of 1.9 N, about the force in appendix D, with the
+/// published counts.
 Finding judge_hands(const Measured& measured, const PublishedNumbers& p) {
-  const double most = p["T2.raw"].mean + p["T2.raw"].spread;
+  const double largest = p["T2.raw"].mean + p["T2.raw"].spread;
   const auto firm = std::ranges::find_if(measured, [](const MeasuredCase& m) { return m["force"] >= 1.8; });
-  return {found(measured.front()["raw"] <= most && (*firm)["raw"] > most),
+  return {found(measured.front()["raw"] <= largest && (*firm)["raw"] > largest),
           "the published counts fit a hand about ten times gentler than those of appendix D"};
 }
 
-// ---- J2: the tilt at which the lower edge of the tip leaves the hole, by bisection.
+// ---- J2: the tilt [rad] at which the lower edge of the tip leaves the hole, by bisection.
 
 MeasuredValues measure_end_of_contact(const Evidence& e) {
   const Scenario scenario = e.load("task2_held").scenario;
@@ -220,13 +227,13 @@ MeasuredValues measure_end_of_contact(const Evidence& e) {
 
 Finding judge_end_of_contact(const MeasuredCase& m, const PublishedNumbers& published) {
   const double tilt = m["tilt"], printed = published["J1.tilt"].at_most;
-  const bool same = std::abs(tilt - printed) < 5e-4;  // the printed digits
+  const bool same = std::abs(tilt - printed) < 5e-4;  // half a unit of the last printed digit
   return {decide(same, false),
           same ? "π / 3 exactly, for a drill of half the hole's diameter" : "another tilt than printed"};
 }
 
-// ---- R1, R3: least and greatest ratio of each recorded row of tasks 2 and 3 after a number of updates; task 1 has one
-// point, whose ratio is 1. A case for each task and density.
+// ---- R1, R3: smallest and largest stiffness ratio in the recorded steps of tasks 2 and 3 after a number of updates.
+// One case for each task and density. Task 1 is left out: it has one point, whose ratio is 1.
 
 constexpr const char* kTasks[] = {"task2_rotate", "task3_spin"};
 
@@ -237,18 +244,19 @@ Measured measure_ratios(const Evidence& e, double updates) {
     for (const std::string density : kDensities) {
       const auto table = e.table(task + "_" + density, "ratios.csv");
       const auto &iteration = table.at("iteration"), &low = table.at("ratio_min"), &high = table.at("ratio_max");
-      double rows = 0.0, inside = 0.0, least = 1.0, most = 1.0, any_most = 1.0;
+      double rows = 0.0, inside = 0.0, smallest = 1.0, largest = 1.0, any_largest = 1.0;
       for (std::size_t i = 0; i < iteration.size(); ++i) {
         if (iteration[i] < 1.0 || std::isnan(low[i])) continue;
-        any_most = std::max(any_most, high[i]);
+        any_largest = std::max(any_largest, high[i]);
         if (iteration[i] != updates) continue;
-        least = std::min(least, low[i]);
-        most = std::max(most, high[i]);
+        smallest = std::min(smallest, low[i]);
+        largest = std::max(largest, high[i]);
         rows += 1.0;
         if (low[i] >= once.at_least && high[i] <= once.at_most) inside += 1.0;
       }
-      measured.push_back({task.substr(0, 5) + " " + density,
-                          {{"inside", {inside / rows}}, {"min", {least}}, {"max", {most}}, {"any_max", {any_most}}}});
+      measured.push_back(
+          {task.substr(0, 5) + " " + density,
+           {{"inside", {inside / rows}}, {"min", {smallest}}, {"max", {largest}}, {"any_max", {any_largest}}}});
     }
   }
   return measured;
@@ -268,8 +276,8 @@ Finding judge_ratios(const Measured& measured, const PublishedNumbers& published
                       bounded ? "below" : "not below", never_above, 100.0 * inside)};
 }
 
-// ---- R1b: the largest ratio after 160 iterations and at the exact limit, the projection of the identity on the cone
-// of contact tensors.
+// ---- R1b: the largest stiffness ratio after 160 iterations and in the exact limit, which is the projection of the
+// identity onto the cone of contact tensors.
 
 MeasuredValues measure_convergence(const Evidence& e) {
   double last_max = 1.0, limit_max = 1.0;
@@ -295,28 +303,31 @@ Finding judge_convergence(const MeasuredCase& m, const PublishedNumbers& p) {
                 "ratio of a contact without weight stays above 1"};
 }
 
-// ---- R2: the stiffest direction of the stiffest contacts found. A case for each number of iterations. No set exceeds
-// (1 + sqrt 3)/2, in the plane (1 + sqrt 2)/2, whatever that number; the proof is in results/reference/BEYOND.md. The
-// search shows that the bound is sharp, and would show an error in the proof.
+// ---- R2: the largest stiffness in any direction, in units of K, over contact sets found by a random search. One case
+// for each number of iterations. For every number of iterations at least 1 it is bounded by (1 + sqrt 3)/2, in the
+// plane by (1 + sqrt 2)/2; the proof is in results/reference/BEYOND.md. The search shows that the bound is sharp, and
+// would reveal an error in the proof.
 
-/// Instead of a number of iterations: the exact limit.
+/// Value of `iterations` that selects the exact limit of infinitely many iterations.
 constexpr int kExactLimit = -1;
-/// Rounding may lift a result of the search above the true supremum by this much.
+/// Largest amount by which rounding may raise a result of the search above the true supremum.
 constexpr double kSearchRounding = 1e-9;
 
-constexpr std::size_t kMostDirections = 8;
-constexpr int kClimbs = 60;
-constexpr int kStepsOfAClimb = 1500;
-/// A step of the search is at first about as long as this, at last a thousandth of it.
+constexpr std::size_t kMaxDirections = 8;  ///< largest number of directions of a set
+constexpr int kClimbs = 60;                ///< number of hill climbs from random sets
+constexpr int kStepsPerClimb = 1500;
+/// Length of the first step of a climb [rad]. The length decreases geometrically to a thousandth.
 constexpr double kFirstStep = 0.7;
 
+/// A contact's gradient direction and initial weight.
 struct WeightedDirection {
   Vec3 direction;
   double weight;
 };
 using Directions = std::vector<WeightedDirection>;
 
-/// The stiffness tensor after some iterations from the given weights; in the limit it does not depend on them.
+/// Returns the stiffness tensor in units of K after `iterations` iterations from the given weights. The exact limit
+/// does not depend on the weights.
 Mat3 shaped_tensor(const Directions& contacts, int iterations, ContactBuffer& buffer) {
   buffer.clear();
   for (const auto& [direction, weight] : contacts) {
@@ -331,8 +342,9 @@ Mat3 shaped_tensor(const Directions& contacts, int iterations, ContactBuffer& bu
   return S;
 }
 
+/// Returns 2 to kMaxDirections random directions, a fifth of the sets in a plane, with log-uniform weights.
 Directions random_directions(Random& random) {
-  Directions contacts(2 + random.below(kMostDirections - 1));
+  Directions contacts(2 + random.below(kMaxDirections - 1));
   const bool planar = random.uniform(0.0, 1.0) < 0.2;
   for (WeightedDirection& contact : contacts) {
     contact.direction = random.direction();
@@ -343,6 +355,7 @@ Directions random_directions(Random& random) {
   return contacts;
 }
 
+/// Returns the set with one random contact changed by about `step`.
 Directions neighbour(Directions contacts, double step, Random& random) {
   WeightedDirection& contact = contacts[random.below(contacts.size())];
   contact.direction = (contact.direction + step * random.direction()).normalized();
@@ -350,21 +363,22 @@ Directions neighbour(Directions contacts, double step, Random& random) {
   return contacts;
 }
 
-/// The largest eigenvalue of S, in units of K, of the stiffest contacts after so many iterations that climbs from
-/// random sets of up to eight weighted directions find. The weights before the first iteration stand for many contacts
-/// in one direction. About half a second.
+/// Returns the largest eigenvalue of the stiffness tensor after `iterations` iterations, in units of K, over all
+/// contact sets that hill climbs from random sets of up to eight weighted directions find. An initial weight represents
+/// many contacts in one direction. Takes about half a second.
 double stiffest_contacts(int iterations) {
-  ContactBuffer buffer(kMostDirections);
+  ContactBuffer buffer(kMaxDirections);
   const auto stiffness = [&](const Directions& contacts) {
     return lambda_max(shaped_tensor(contacts, iterations, buffer));
   };
   double stiffest = 0.0;
   Random random(1);
   for (int climb = 0; climb < kClimbs; ++climb) {
+    // Climb from a random set: accept each random change that raises the stiffness.
     Directions best = random_directions(random);
     double highest = stiffness(best);
-    for (int i = 0; i < kStepsOfAClimb; ++i) {
-      const double step = kFirstStep * math::pow(1e-3, static_cast<double>(i) / kStepsOfAClimb);
+    for (int i = 0; i < kStepsPerClimb; ++i) {
+      const double step = kFirstStep * math::pow(1e-3, static_cast<double>(i) / kStepsPerClimb);
       Directions next = neighbour(best, step, random);
       const double reached = stiffness(next);
       if (reached <= highest) continue;
@@ -377,13 +391,13 @@ double stiffest_contacts(int iterations) {
 }
 
 Measured measure_guarantee(const Evidence&) {
-  // The search has no inputs: one result serves all samples.
+  // The search does not depend on the evidence: its result is computed once for all readings.
   static const Measured found = [] {
     Measured measured;
     for (const int iterations : {1, 2, 3, 10, kExactLimit}) {
       measured.push_back({iterations == kExactLimit ? "limit" : std::to_string(iterations),
                           {{"lambda_max", {stiffest_contacts(iterations)}},
-                           {"sets", {static_cast<double>(kClimbs * (1 + kStepsOfAClimb))}}}});
+                           {"sets", {static_cast<double>(kClimbs * (1 + kStepsPerClimb))}}}});
     }
     return measured;
   }();
@@ -404,15 +418,19 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
                     largest <= proved + kSearchRounding ? "no set exceeds" : "some set exceeds", proved)};
 }
 
-// ---- L1: displacement into the flat against measured force. deviation: of the displacement without limit from the
-// ideal line of Fig. 6, (measured force - weight) / K, rms over the largest one; onset: measured force from which the
-// displacement stays [N]; plateau_spread: (max - min) / mean beyond it.
+// ---- L1: displacement of the tool into the flat as a function of the measured force.
+// deviation: rms difference, without the force limit, between the displacement and the ideal line of Fig. 6,
+//   (measured force - weight) / K, over the largest displacement.
+// onset: measured force from which the displacement is constant with the limit [N].
+// plateau_spread: (max - min) / mean of the displacement beyond the onset.
 
-/// Displacement of the tool and of the handle into the flat [m] and measured force [N] of a row with contact.
+/// Displacements of the tool (depth) and of the handle into the flat [m], and the measured force [N], in a step with
+/// contact.
 struct FlatRow {
   double depth, handle, force;
 };
 
+/// Returns the steps with contact of a scenario on the flat.
 std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario) {
   const auto table = e.table(scenario, "trajectory.csv");
   std::vector<FlatRow> rows;
@@ -424,23 +442,25 @@ std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario
 
 MeasuredValues measure_force_limit(const Evidence& e) {
   const std::vector<FlatRow> off = rows_on_flat(e, "force_limit_off"), on = rows_on_flat(e, "force_limit_on");
-  // The plateau is that of the last quarter; the onset where the displacement first reaches 99 % of it.
+  // The plateau is the mean displacement in the last quarter. At the onset the displacement first reaches 99 % of it.
   double plateau = 0.0, onset = std::numeric_limits<double>::infinity();
   const std::size_t last = on.size() / 4;
   for (std::size_t i = on.size() - last; i < on.size(); ++i) plateau += on[i].depth / static_cast<double>(last);
   for (const auto& [depth, handle, force] : on)
     if (depth >= 0.99 * plateau) onset = std::min(onset, force);
+  // Find the spread of the plateau, from 0.2 N beyond the onset on.
   double low = plateau, high = plateau;
   for (const auto& [depth, handle, force] : on) {
     if (force < onset + 0.2) continue;
     low = std::min(low, depth);
     high = std::max(high, depth);
   }
+  // Compare the displacement without limit with the ideal line.
   const double stiffness = e.load("force_limit_off").scenario.rendering.stiffness;
   double squares = 0.0, deepest = 0.0;
   for (const auto& [depth, handle, force] : off) {
-    const double apart = depth - (force - e.published["L1.offset"].mean) / stiffness;
-    squares += apart * apart / static_cast<double>(off.size());
+    const double difference = depth - (force - e.published["L1.offset"].mean) / stiffness;
+    squares += difference * difference / static_cast<double>(off.size());
     deepest = std::max(deepest, depth);
   }
   return {
@@ -456,7 +476,8 @@ Finding judge_force_limit(const MeasuredCase& m, const PublishedNumbers& publish
                       constant ? "constant" : "not constant", onset ? "onset as published" : "onset elsewhere")};
 }
 
-// ---- L4: force over way of the handle, from the first touch to the hardest press [N/m].
+// ---- L4: stiffness at the handle [N/m]: change of force over displacement of the handle, from the first contact to
+// the largest force.
 
 MeasuredValues measure_felt_stiffness(const Evidence& e) {
   MeasuredValues values;
@@ -475,35 +496,36 @@ Finding judge_felt_stiffness(const MeasuredCase& m, const PublishedNumbers& p) {
       fmt::format("{:.2g} times as stiff with the limit; what is left are servo and structure, which are ours", times)};
 }
 
-// ---- L2: rows of task 2 in contact in which the hand's force is limited: all, and those whose reaction has reached
-// the limit. The reaction grows along v where <v, grad|f|> = -K <f, S v> / |f| > 0; `against` is the share of the rows
-// in which it does not, `uphill` how much of the way the tool goes there is uphill. A case for each kind.
+// ---- L2: the steps of task 2 in contact in which the hand's force is at the limit. Two cases: all these steps, and
+// the steps in which the spring force f has also reached the limit. The spring force grows along the velocity v if <v,
+// grad |f|> = -K <f, S v> / |f| > 0 ("uphill"). against: fraction of the steps in which it does not grow. uphill:
+// distance moved along the gradient of |f| over the total distance.
 
 Measured measure_saturated_motion(const Evidence& e) {
-  // During one rotation of the drill to and fro the hand pushes with more than the input limit of 2 N all the time.
+  // The hand pushes with more than the input limit of 2 N during one rotation of the drill to and fro.
   const LoadedScenario loaded =
       e.load("task2_rotate_signed_distance",
              {R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})", "time.duration_s=6"});
   const double limit = input_force_limit(loaded.scenario.device).value();
   struct Rows {
-    double rows = 0.0, against = 0.0, way = 0.0, uphill = 0.0;
+    double rows = 0.0, against = 0.0, path = 0.0, uphill = 0.0;
   } all, reached;
   for_each_row(checked(loaded), [&](const StepRecord& row) {
     const Vec3& spring = row.force.spring;
-    // The limiter scales the force to the limit, up to rounding.
+    // Skip steps below the limit. The limiter scales the force to the limit, up to rounding.
     if (row.hand.input.norm() < limit * (1.0 - 1e-12) || spring.norm() == 0.0) return;
     const Vec3 gradient = -row.force.S * spring;
     const double along = row.tool.velocity.dot(gradient) / gradient.norm();
     for (Rows* kind : {&all, &reached}) {
       if (kind == &reached && spring.norm() < limit) continue;
       kind->rows += 1.0;
-      kind->way += row.tool.velocity.norm();
+      kind->path += row.tool.velocity.norm();
       if (along <= 0.0) kind->against += 1.0;
       kind->uphill += std::max(0.0, along);
     }
   });
   const auto shares = [](const char* name, const Rows& r) {
-    return MeasuredCase{name, {{"rows", {r.rows}}, {"against", {r.against / r.rows}}, {"uphill", {r.uphill / r.way}}}};
+    return MeasuredCase{name, {{"rows", {r.rows}}, {"against", {r.against / r.rows}}, {"uphill", {r.uphill / r.path}}}};
   };
   return {shares("all rows at the limit", all), shares("those whose reaction has reached it", reached)};
 }
@@ -518,17 +540,19 @@ Finding judge_saturated_motion(const Measured& measured, const PublishedNumbers&
               : "the tool's inertia carries it uphill"};
 }
 
-// ---- L3: a tool shaken in free air. A case for each frequency.
+// ---- L3: a tool shaken in free air. One case for each frequency.
 
 constexpr double kNormalShaking = 2.0;  ///< [Hz]
 constexpr double kFrequencies[] = {1.0, kNormalShaking, 3.0, 4.0, 6.0, 8.0};
 
+/// Result of shaking at one frequency.
 struct Shaking {
-  double apparent_mass = 0.0;  ///< amplitude of the hand's force over that of the handle's acceleration [kg]
-  double force_max = 0.0;      ///< of the hand, after the first second [N]
+  double apparent_mass = 0.0;  ///< amplitude of hand force over amplitude of handle acceleration [kg]
+  double force_max = 0.0;      ///< largest force of the hand in the last second [N]
 };
 
-/// Fundamental components over the last second, which holds whole periods.
+/// Shakes the tool at a frequency [Hz], with or without the device's force limit. Computes the fundamental components
+/// of force and position over the last second, which contains an integer number of periods.
 Shaking shake(const Evidence& e, double frequency, bool limited) {
   std::vector<std::string> overrides = {fmt::format("hand.target.x_m.period_s={}", 1.0 / frequency)};
   if (!limited) overrides.push_back("device.force_limit_N=null");

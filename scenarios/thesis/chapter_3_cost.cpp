@@ -8,17 +8,19 @@
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
-/// Claims of 1.2, 2.8, 3.4 and F.2: what the points cost. Times of this machine, so no two ledgers agree in digits.
+/// Claims of 1.2, 2.8, 3.4 and F.2: the computing time of contact points. Times differ between machines and runs, so
+/// that two ledgers do not agree in digits.
 namespace hapbench {
 namespace {
 
-constexpr int kIterations = 3;  ///< the thesis's default
+constexpr int kIterations = 3;  ///< default of the thesis
 
-/// Stiffness shaping as the thesis writes it: with the n x n matrix of squared inner products.
+/// Stiffness shaping as formulated in the thesis: with the n x n matrix of squared inner products of n gradients.
 class DenseShaping {
  public:
   explicit DenseShaping(std::size_t capacity) : matrix_(capacity * capacity), ratio_(capacity) {}
 
+  /// Computes the weights of the contacts by a number of iterations, starting from 1.
   void shape(ContactBuffer& contacts, int iterations) {
     const std::size_t n = contacts.size();
     for (std::size_t i = 0; i < n; ++i) {
@@ -41,8 +43,8 @@ class DenseShaping {
   std::vector<double> matrix_, ratio_;
 };
 
-// ---- T4, T4b: one step's work for the most contacts of a task [s]: the extreme case of 2.8, almost a thousand, of
-// task 3 with the drill upright and pressed against the wall.
+// ---- T4, T4b: computing time [s] of one step for the largest number of contacts of a task: the extreme case of 2.8,
+// almost a thousand points, from task 3 with the drill upright and pressed against the wall.
 
 MeasuredValues measure_deadline(const Evidence& e) {
   const LoadedScenario loaded =
@@ -79,7 +81,8 @@ Finding judge_tensor_deadline(const MeasuredCase& m, const PublishedNumbers& pub
                           : "without the reduction the tensor form misses the deadline, too"};
 }
 
-// ---- T5: one step's share of the period [1] for the contacts of task 3, in the dense form; and in the tensor form.
+// ---- T5: computing time of one step over the time step [1] for the contacts of task 3, in the dense form and in the
+// tensor form.
 
 MeasuredValues measure_loop_load(const Evidence& e) {
   const LoadedScenario task = e.load("task3_spin_signed_distance");
@@ -112,8 +115,8 @@ Finding judge_loop_load(const MeasuredCase& m, const PublishedNumbers& p) {
                   m["tensor_reduced_3"] < m["tensor_unreduced_3"] ? "lowers" : "raises")};
 }
 
-// ---- P2, F3: what else takes long, in units of the step, and stiffness shaping: a proxy of the tool, in a step of
-// task 2; tandpasta, for the most contacts of task 2.
+// ---- P2, F3: computing time of one step over the time step [1], of another algorithm and of stiffness shaping: the
+// proxy in task 2 (P2); tandpasta for the largest number of contacts of task 2 (F3).
 
 MeasuredValues measure_proxy_cost(const Evidence& e) {
   MeasuredValues values;

@@ -17,21 +17,22 @@
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
-/// Claims of chapters 1 and 4: how far a drill pressed into the hole sinks in under other ways to merge forces, and
-/// what their plain sum does (1.1, 1.2, B.3.1); both depth models (4.2), and what else is discussed as limits.
+/// Claims of chapters 1 and 4: how deep a drill pressed into the hole sinks in with other methods of merging forces,
+/// and the plain sum of forces (1.1, 1.2, B.3.1); both depth models (4.2); and other limitations that the thesis
+/// discusses.
 namespace hapbench {
 namespace {
 
-// ---- V1, V2: a drill that a hand presses in the direction of that of task 2.
+// ---- V1, V2: a hand presses a drill with a constant tilt, in the direction of the hand of task 2.
 
 constexpr double kPressedTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
-/// Rows between evaluations of the depth: 4 ms.
-constexpr std::uint64_t kRowsBetweenLooks = 8;
-/// Rows before this time are ignored [s]: the start is not the resting place at every tilt.
+/// Steps between evaluations of the depth, 4 ms.
+constexpr std::uint64_t kStepsBetweenEvaluations = 8;
+/// Steps before this time [s] are ignored: at some tilts the drill does not start at its resting position.
 constexpr double kLanded = 0.5;
 
-/// The largest depth of the drill in the block after it has landed, at each tilt [m]. The largest one, because a drill
-/// that pops through has left the block at the end.
+/// Returns the largest depth of the drill in the block after kLanded, at each tilt [m]. The final depth would not do: a
+/// drill that pops through the block has left it at the end.
 MeasuredCase pressed(const Evidence& e, const std::string& name, const std::string& scene,
                      std::vector<std::string> overrides = {}) {
   MeasuredCase m{name, {}};
@@ -43,7 +44,7 @@ MeasuredCase pressed(const Evidence& e, const std::string& name, const std::stri
                                   make_cylinder(loaded.scenario.tool));
     double& deepest = m.values[fmt::format("at_{}", tilt)].emplace_back(0.0);
     for_each_row(checked(loaded), [&](const StepRecord& row) {
-      if (row.step % kRowsBetweenLooks != 0 || row.time < kLanded) return;
+      if (row.step % kStepsBetweenEvaluations != 0 || row.time < kLanded) return;
       ideal.on_step(row);
       if (ideal.error()) deepest = std::max(deepest, ideal.error()->interpenetration);
     });
@@ -51,12 +52,13 @@ MeasuredCase pressed(const Evidence& e, const std::string& name, const std::stri
   return m;
 }
 
-/// True if at every tilt `a` is at least `factor` times as deep as `b`.
+/// Returns true if the depth in case `a` is at least `factor` times the depth in case `b` at every tilt.
 bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
   return std::ranges::all_of(a.values, [&](const auto& depth) { return a[depth.first] >= factor * b[depth.first]; });
 }
 
-/// Whether the drill sinks in easily with the second case's law, beside shaping, the first one.
+/// Judges whether the drill sinks in easily with the law of the second case, compared with stiffness shaping (first
+/// case).
 Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
   const bool easily = deeper(m.at(1), m.at(0), threshold(p, "easily")), more = deeper(m.at(1), m.at(0), 1.0);
   return {decide(easily, more), fmt::format("with {} the drill sinks in {}", m.at(1).name,
@@ -66,16 +68,18 @@ Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
 }
 
 Measured measure_averaging(const Evidence& e) {
-  return {pressed(e, kProposedLaw, "press_towards_rim"),  // with the reduction, as the thesis has it
+  return {pressed(e, kProposedLaw, "press_towards_rim"),  // with the reduction, as in the thesis
           pressed(e, "mean", "press_towards_rim", {"rendering.algorithm=mean", "rendering.reduction=null"}),
           pressed(e, "mean after the reduction", "press_towards_rim", {"rendering.algorithm=mean"})};
 }
 
-// ---- B1b, B5: a drill that is turned in the hole, as B.3.1 has it, with the proposed algorithm and the original one
-// of appendix B: its depth while it is near the hole [m], and under which hands it goes through the block's surface.
+// ---- B1b, B5: a drill turned in the hole as in B.3.1, with the proposed algorithm and with the original algorithm of
+// appendix B: its depth while it is near the hole [m], and the number of hands with which it passes through the
+// surface.
 
 constexpr const char* kOriginalLaw = "original_averaging";
 
+/// Runs task 2 with a law and a hand of constant force [N].
 Result turned(const Evidence& e, const std::string& law, double force) {
   std::vector<std::string> overrides = {fmt::format("hand.force_N={}", force)};
   if (law == kOriginalLaw)
@@ -117,9 +121,10 @@ Finding judge_pop_through(const MeasuredCase& m, const PublishedNumbers&) {
       original > 0.0 ? "beyond the median line flipped gradients pull the drill on" : "the drill stays in the hole"};
 }
 
-// ---- S1, B4: the plain sum of all points, and the highest depth along the averaged direction, beside stiffness
-// shaping, in the planar peg and then in the turn of task 2: the vibrations, and with them "diverges", 1 or 0.
+// ---- S1, B4: the plain sum of all points (S1), and the highest depth along the averaged direction (B4), compared with
+// stiffness shaping, in the planar peg scene and in task 2. Measured are vibration() and "diverges", 1 or 0.
 
+/// Returns four cases: planar peg with the law, planar peg with shaping, task with the law, task with shaping.
 Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, const std::string& task,
                                    const std::vector<std::string>& overrides_of_task) {
   Measured measured;
@@ -154,9 +159,10 @@ Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
               peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
 }
 
-// ---- G1: the median line.
+// ---- G1: gradients on both sides of the tool's median line: the inner product of the gradients for two wall points,
+// by both depth models. Negative: the gradient flips.
 
-constexpr double kSameDirection = 0.999;
+constexpr double kSameDirection = 0.999;  ///< smallest inner product of equal directions
 
 MeasuredValues measure_median_line(const Evidence&) {
   const auto product = [](const char* model) {
@@ -173,24 +179,25 @@ Finding judge_median_line(const MeasuredCase& m, const PublishedNumbers&) {
                       steady ? "does not" : "turns, too")};
 }
 
-// ---- G1b: what the underestimated depth does in task 2. The thesis calls the error negligible on its system, because
-// depths are small there: judged are the force of the same contacts, up to the depth it names, and the way of a run
-// whose depth is that along the normal.
+// ---- G1b: the effect of the underestimated depth in task 2. The thesis calls the error negligible, because depths are
+// small on its system. Compared are the forces of the same contacts, up to the depth that the thesis names, and the
+// path of the tool in a run with the depth along the normal.
 
-/// Rows between samples: about 30 a second.
-constexpr std::uint64_t kRowsBetweenSamples = 64;
+/// Steps between samples, about 30 samples in a second.
+constexpr std::uint64_t kStepsBetweenSamples = 64;
 
 MeasuredValues measure_underestimation(const Evidence& e) {
   const double shallow = e.published["G1.negligible"].at_most;
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance");
   const Cylinder tool = make_cylinder(loaded.scenario.tool);
   const auto law = make_law(kProposedLaw, loaded.scenario.rendering);
+  // Compare depths and forces of the same contacts by both depth models, and record the path of the tool.
   std::vector<double> error, share;
-  std::vector<Vec3> way;
-  double apart = 0.0, force = 0.0;
+  std::vector<Vec3> path;
+  double difference = 0.0, force = 0.0;
   for_each_row(checked(loaded), [&](const StepRecord& row) {
-    if (row.step % kRowsBetweenSamples != 0) return;
-    way.push_back(row.tool.pose.position);
+    if (row.step % kStepsBetweenSamples != 0) return;
+    path.push_back(row.tool.pose.position);
     const auto with_depths = [&](const char* model) {
       ContactBuffer contacts(row.found->size());
       contacts.assign(*row.found);
@@ -202,46 +209,49 @@ MeasuredValues measure_underestimation(const Evidence& e) {
     if (exact.empty() || exact.largest_depth() > shallow) return;
     law->prepare(exact.size());
     const Vec3 right = law->evaluate(exact).spring;
-    apart += (law->evaluate(shortest).spring - right).squaredNorm();
+    difference += (law->evaluate(shortest).spring - right).squaredNorm();
     force += right.squaredNorm();
     for (std::size_t i = 0; i < exact.size(); ++i) {
       error.push_back(exact.depth[i] - shortest.depth[i]);
       if (exact.depth[i] > 0.0) share.push_back(error.back() / exact.depth[i]);
     }
   });
+  // Compare the path with the path of a run with the depth along the normal.
   std::sort(error.begin(), error.end());
   double distance = 0.0;
-  std::size_t place = 0;
+  std::size_t sample = 0;
   for_each_row(checked(e.load("task2_rotate_signed_distance", {"rendering.depth_model=normal_projection"})),
                [&](const StepRecord& row) {
-                 if (row.step % kRowsBetweenSamples != 0 || place >= way.size()) return;
-                 distance += (row.tool.pose.position - way[place++]).squaredNorm();
+                 if (row.step % kStepsBetweenSamples != 0 || sample >= path.size()) return;
+                 distance += (row.tool.pose.position - path[sample++]).squaredNorm();
                });
   return {{"contacts", {static_cast<double>(error.size())}},
           {"depth_mean", {mean_of(error)}},
           {"depth_95", {error.at(error.size() * 95 / 100)}},
           {"depth_max", {error.back()}},
           {"share", {mean_of(share)}},
-          {"force", {std::sqrt(apart / force)}},
-          {"way", {std::sqrt(distance / static_cast<double>(place))}}};
+          {"force", {std::sqrt(difference / force)}},
+          {"way", {std::sqrt(distance / static_cast<double>(sample))}}};
 }
 
 Finding judge_underestimation(const MeasuredCase& m, const PublishedNumbers& published) {
   const double small = threshold(published, "negligible"), shallow = published["G1.negligible"].at_most;
-  const bool force = m["force"] <= small, way = m["way"] <= small * shallow, depth = m["depth_95"] <= small * shallow;
-  return {decide(force && way, force || way || depth),
+  const bool force = m["force"] <= small, path = m["way"] <= small * shallow, depth = m["depth_95"] <= small * shallow;
+  return {decide(force && path, force || path || depth),
           fmt::format("the shortfall is {} of {} mm for 95 % of the contacts, and {} for the force and {} for the way",
                       depth ? "a negligible part" : "no negligible part", plain(1e3 * shallow),
-                      force ? "negligible" : "not negligible", way ? "negligible" : "not negligible")};
+                      force ? "negligible" : "not negligible", path ? "negligible" : "not negligible")};
 }
 
-// ---- G2: the time that a contact's depth takes [s], for contacts of task 2, along the normal and as in the thesis.
+// ---- G2: computing time of the depth of one contact [s], for contacts of task 2: along the normal, and as in the
+// thesis.
 
 MeasuredValues measure_depth_cost(const Evidence& e) {
   const std::vector<ContactBuffer> sets =
-      contact_sets(e.load("task2_rotate_signed_distance").scenario, kRowsBetweenSamples);
+      contact_sets(e.load("task2_rotate_signed_distance").scenario, kStepsBetweenSamples);
   double contacts = 0.0;
   for (const ContactBuffer& set : sets) contacts += static_cast<double>(set.size());
+  // Subtract the time of copying the contact sets.
   const double copying = seconds_with(sets, kRepetitions, [](ContactBuffer&) {});
   const auto of_contact = [&](const char* model) -> std::vector<double> {
     const auto depth = find_depth_model(model)->make();
@@ -259,16 +269,17 @@ Finding judge_depth_cost(const MeasuredCase& m, const PublishedNumbers& p) {
                       times)};
 }
 
-// ---- C8: on a flat, in task 1, the force of the highest depth, as [3] has it, and that of the points that are left.
+// ---- C8: on the flat of task 1, the largest difference between the force of the highest depth, as in reference [3] of
+// the thesis, and the force of the points after the reduction, over the largest force.
 
-constexpr double kIdentical = 1e-9;  // in the rule
+constexpr double kIdentical = 1e-9;  // stated in the rule's text
 
 MeasuredValues measure_one_direction(const Evidence& e) {
   const Scenario scenario = e.load("task1_flat_signed_distance").scenario;
   const auto reduction = make_gradient_reduction({});
   reduction->prepare({});
-  double apart = 0.0, largest = 0.0;
-  for (ContactBuffer& set : contact_sets(scenario, kRowsBetweenSamples)) {
+  double difference = 0.0, largest = 0.0;
+  for (ContactBuffer& set : contact_sets(scenario, kStepsBetweenSamples)) {
     const auto force_of = [&](const char* name) {
       const auto law = make_law(name, scenario.rendering);
       law->prepare(set.size());
@@ -276,10 +287,10 @@ MeasuredValues measure_one_direction(const Evidence& e) {
     };
     const Vec3 highest = force_of("highest_depth");
     reduction->process(set);
-    apart = std::max(apart, (force_of(kProposedLaw) - highest).norm());
+    difference = std::max(difference, (force_of(kProposedLaw) - highest).norm());
     largest = std::max(largest, highest.norm());
   }
-  return {{"apart", {apart / largest}}};
+  return {{"apart", {difference / largest}}};
 }
 
 Finding judge_one_direction(const MeasuredCase& m, const PublishedNumbers&) {
@@ -287,9 +298,9 @@ Finding judge_one_direction(const MeasuredCase& m, const PublishedNumbers&) {
   return {decide(same, false), same ? "the deepest of equal gradients is the one that is kept" : "the forces differ"};
 }
 
-// ---- C1: over-reduction.
+// ---- C1: over-reduction: the reduction leaves one point of many, which changes the force.
 
-constexpr double kPointsLeft = 1.0, kFewestPoints = 10.0;  // in words in the rule
+constexpr double kPointsLeft = 1.0, kFewestPoints = 10.0;  // stated in the rule's text
 
 MeasuredValues measure_over_reduction(const Evidence& e) {
   const char *reduced = "over_reduction_reduced", *unreduced = "over_reduction_unreduced";
@@ -314,8 +325,8 @@ Finding judge_over_reduction(const MeasuredCase& m, const PublishedNumbers& p) {
                     : "more than one point is left"};
 }
 
-// ---- C2, C7: a tool that a hand holds in place and turns into a wall, with the damping of the thesis, which does not
-// see the turn, and with one that does; as fast as the scene has it, and slowly.
+// ---- C2, C7: a hand holds a tool in place and turns it into a wall. Compared are the damping of the thesis, which
+// ignores the angular velocity, and a damping that includes it; at the scene's speed (C2) and slowly (C7).
 
 Measured measure_turn_into_wall(const Evidence& e, const std::vector<std::string>& overrides) {
   return {vibration("as in the thesis", e.run("turned_into_wall", overrides)),
@@ -338,7 +349,7 @@ Finding judge_slow_turn(const Measured& measured, const PublishedNumbers& p) {
   return finding;
 }
 
-// ---- C3: a drill between two parallel faces.
+// ---- C3: a drill between two parallel faces: its depth [m] and the rendered force [N].
 
 MeasuredValues measure_parallel_faces(const Evidence& e) {
   const Scenario scenario = e.load("parallel_faces").scenario;

@@ -25,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns the choice of a JSON entry. Throws Json::exception if a key is missing or has a wrong type.
 OpenChoice choice_of(const Json& json) {
   const Json& value = json.at("value");
   OpenChoice choice{.id = json.at("id").get<std::string>(),
@@ -38,21 +39,21 @@ OpenChoice choice_of(const Json& json) {
   return choice;
 }
 
+/// Returns true if a pattern of the field matches the scenario's name.
 bool concerns(const ChosenField& field, const std::string& scenario) {
   return std::ranges::any_of(field.scenarios, [&](const std::string& pattern) {
     return ::fnmatch(pattern.c_str(), scenario.c_str(), 0) == 0;
   });
 }
 
-using Place = std::pair<std::string, Json*>;  ///< a dotted path, and the value there
+using Location = std::pair<std::string, Json*>;  ///< a dotted path, and the value at this path
 
-/// The places below a place that a key of a dotted path stands for: the entry of this name, or all entries of a list
-/// for
-/// "*". Throws InputError when there is none.
-std::vector<Place> places_below(const Place& place, std::string_view key) {
-  const auto& [at, node] = place;
+/// Returns the children of a JSON location that a key of a dotted path matches: the entry with this name, or all
+/// entries of a list for "*". Throws InputError if a name has no entry.
+std::vector<Location> children_of(const Location& location, std::string_view key) {
+  const auto& [at, node] = location;
   const bool every = key == "*" && node->is_array();
-  std::vector<Place> below;
+  std::vector<Location> below;
   for (auto& [name, value] : node->items())
     if (every || name == key) below.emplace_back(at.empty() ? name : at + "." + name, &value);
   if (below.empty() && !every)
@@ -61,26 +62,26 @@ std::vector<Place> places_below(const Place& place, std::string_view key) {
   return below;
 }
 
-/// The places that a dotted path stands for. Throws InputError.
-std::vector<Place> places_of(Json& scenario, const std::string& path) {
-  std::vector<Place> places = {{"", &scenario}};
+/// Returns all locations that a dotted path matches. Throws InputError if there are none.
+std::vector<Location> locations_of(Json& scenario, const std::string& path) {
+  std::vector<Location> locations = {{"", &scenario}};
   for (const std::string_view key : parts_of(path, '.')) {
-    std::vector<Place> below;
-    for (const Place& place : places) {
-      const std::vector<Place> found = places_below(place, key);
+    std::vector<Location> below;
+    for (const Location& location : locations) {
+      const std::vector<Location> found = children_of(location, key);
       below.insert(below.end(), found.begin(), found.end());
     }
-    places = std::move(below);
+    locations = std::move(below);
   }
-  return places;
+  return locations;
 }
 
-/// The text of a choice's value at a place. Throws InputError.
-std::string chosen_text(const Place& place, const ChosenField& field, const std::string& value) {
+/// Returns the new value of a location, as text: `value`, or `value` times the present number. Throws InputError.
+std::string chosen_text(const Location& location, const ChosenField& field, const std::string& value) {
   if (!field.times) return value;
-  if (!place.second->is_number())
-    throw InputError(fmt::format("\"{}\" is no number, which a factor needs", place.first));
-  return cell_text(finite_number(value).value_or(1.0) * place.second->get<double>());
+  if (!location.second->is_number())
+    throw InputError(fmt::format("\"{}\" is no number, which a factor needs", location.first));
+  return cell_text(finite_number(value).value_or(1.0) * location.second->get<double>());
 }
 
 }  // namespace
@@ -104,16 +105,17 @@ std::vector<std::string> Choices::values_on_record() const {
 }
 
 std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<const std::string> values) const {
-  Json changed = effective_scenario(scenario, scenario.directory);  // with every default, so that every field exists
-  Json texts = Json::object();                                      // by path, in the order of their first change
+  // Apply the choices one after the other to the scenario's JSON, and remember the text of each changed field.
+  Json changed = effective_scenario(scenario, scenario.directory);  // with all defaults, so that every field exists
+  Json texts = Json::object();                                      // new value by path
   for (std::size_t i = 0; i < all_.size(); ++i) {
     for (const ChosenField& field : all_[i].fields) {
       if (!concerns(field, scenario.name)) continue;
       try {
-        for (const Place& place : places_of(changed, field.path)) {
-          const std::string text = chosen_text(place, field, values[i]);
-          *place.second = Json::accept(text) ? parse_json(text) : Json(text);
-          texts[place.first] = text;
+        for (const Location& location : locations_of(changed, field.path)) {
+          const std::string text = chosen_text(location, field, values[i]);
+          *location.second = Json::accept(text) ? parse_json(text) : Json(text);
+          texts[location.first] = text;
         }
       } catch (const InputError& error) {
         throw InputError(fmt::format("choice \"{}\": in scenario {}, {}", all_[i].id, scenario.name, error.what()));

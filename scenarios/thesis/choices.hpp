@@ -13,49 +13,50 @@
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
 
-/// Choices that the thesis leaves open and that the bundled scenarios make. results/reference/choices.json has them;
-/// choices.schema.json beside it says what each part means and what is allowed; a test checks the file by it.
+/// Choices: assumptions that the thesis leaves open and that the bundled scenarios make. They are stored in
+/// results/reference/choices.json; choices.schema.json documents the format, and a test validates the file against it.
 namespace hapbench {
 
-/// A field that a choice sets, in the scenarios that have it.
+/// A scenario field that a choice sets.
 struct ChosenField {
-  std::vector<std::string> scenarios;  ///< names of bundled ones; '*' stands for any characters
-  std::string path;                    ///< dotted, as in --set; '*' stands for every index of a list
-  bool times = false;                  ///< the choice multiplies what the file has, instead of replacing it
+  std::vector<std::string> scenarios;  ///< names of bundled scenarios; '*' matches any characters
+  std::string path;                    ///< dotted, as in --set; '*' matches every index of a list
+  bool times = false;                  ///< true: the choice multiplies the file's value; false: replaces it
 };
 
+/// One open assumption. Exactly one of `range` and `options` is given.
 struct OpenChoice {
   std::string id = {};
-  std::string value = {};                               ///< as the scenarios have it, a text as in --set
-  std::optional<std::pair<double, double>> range = {};  ///< plausible values of a number; exactly one of this …
-  std::vector<std::string> options = {};                ///< … and these, texts as in --set
-  std::vector<ChosenField> fields = {};                 ///< none for a number that rules read by the choice's id
-  std::string text = {};                                ///< all of it, as in the file
+  std::string value = {};                               ///< recorded value, which the scenarios have, as text for --set
+  std::optional<std::pair<double, double>> range = {};  ///< smallest and largest plausible value of a number
+  std::vector<std::string> options = {};                ///< plausible values of a text, as for --set
+  std::vector<ChosenField> fields = {};  ///< empty for a number that rules of claims read by the choice's id
+  std::string text = {};                 ///< JSON text of the whole entry
 };
 
-/// All choices on record.
+/// All recorded choices.
 class Choices {
  public:
-  /// Reads the file. Throws InputError with the JSON pointer of a choice that lacks a part or has another type of it.
+  /// Reads the file. Throws InputError with the JSON pointer of a choice that lacks a key or has a wrong type.
   explicit Choices(const std::filesystem::path& file);
 
   const std::vector<OpenChoice>& all() const { return all_; }
-  /// FNV-1a of the file's content, as 16 hexadecimal digits; spelling and white space do not count.
+  /// Returns the FNV-1a hash of the file's JSON content as 16 hexadecimal digits. White space does not change it.
   const std::string& hash() const { return hash_; }
 
-  /// Returns the values on record, one for each choice, as texts for --set.
+  /// Returns the recorded values, one for each choice, as texts for --set.
   std::vector<std::string> values_on_record() const;
 
-  /// Returns the changes that these values, one for each choice, make to a scenario, as overrides for load_scenario.
-  /// Choices of one field are applied in order. Throws InputError when a choice's path is no field of a scenario that
-  /// it names, or a field to multiply is no number.
+  /// Returns the overrides for load_scenario that apply `values`, one for each choice, to a scenario. Choices that set
+  /// the same field are applied in order. Throws InputError if a choice's path is not a field of a scenario that the
+  /// choice names, or if a field to multiply is not a number.
   std::vector<std::string> overrides(const Scenario& scenario, std::span<const std::string> values) const;
 
-  /// Returns the published numbers and the numbers of the choices without fields.
+  /// Returns `published` with the values of the choices without fields added, by the choices' ids.
   PublishedNumbers with_numbers(PublishedNumbers published, std::span<const std::string> values) const;
 
-  /// Returns a hash of the choices that reach a claim: choices that concern one of these scenarios, and numbers that
-  /// the rule's text names, as in <rule.easily>. Empty when none does.
+  /// Returns a hash of the choices that influence a claim: choices that set a field of one of `scenarios`, and choices
+  /// without fields that the text of the claim's `rule` names, such as <rule.easily>. Empty if there are none.
   std::string reach(std::span<const std::string> scenarios, const std::string& rule) const;
 
  private:

@@ -18,12 +18,14 @@
 namespace hapbench {
 
 std::vector<Claim> all_claims() {
+  // Collect the rules of all chapters by id.
   std::map<std::string, ClaimRule> rules;
   for (const auto chapter :
        {chapters_1_and_4, chapter_3, chapter_3_cost, appendix_a, appendix_b_c_f, appendix_d_experiments})
     for (const ClaimRule& rule : chapter()) rules[rule.id] = rule;
   const std::filesystem::path file = installed_folder("results/reference") / "rules.json";
   const auto text = [](const Json& row, const char* key) { return row.at(key).get<std::string>(); };
+  // Read the texts of each claim and add its rule.
   std::vector<Claim> claims;
   try {
     const Json json = read_json(file);
@@ -42,7 +44,7 @@ std::vector<Claim> all_claims() {
                                                .drawn = row.value("drawn", false)});
       if (const Json main = row.value("main", Json()); !main.is_null())
         claim.main = {text(main, "claim"), text(main, "published"), text(main, "ours")};
-      if (!claim.why.empty()) continue;
+      if (!claim.why.empty()) continue;  // no simulation can test this claim
       claim.measure = rules.at(claim.id).measure;
       claim.judge = rules.at(claim.id).judge;
     }

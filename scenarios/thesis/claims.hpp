@@ -13,18 +13,19 @@
 #include "scenarios/thesis/judging.hpp"
 #include "sim/tool/cylinder.hpp"
 
-/// The list of all claims. results/reference/rules.json has their texts, published.json the published numbers; the
-/// source of a chapter has what is measured and the rule of the verdict.
+/// The list of all claims. Their texts are in results/reference/rules.json, the published numbers in published.json.
+/// The source file of each chapter measures the claims and decides the verdicts.
 namespace hapbench {
 
-/// How a claim is measured, and judged by that alone. A constant that is no choice stands in the claim's text, too.
+/// The functions that measure a claim and decide its verdict from the measurement alone. A constant in them that is not
+/// a choice must also be stated in the claim's text.
 struct ClaimRule {
   const char* id = nullptr;
   Measure measure = nullptr;
   Judge judge = nullptr;
 };
 
-/// The rule of a claim with a single case.
+/// Returns the rule of a claim that is measured in a single case.
 template <MeasuredValues (*measure)(const Evidence&), Finding (*judge)(const MeasuredCase&, const PublishedNumbers&)>
 ClaimRule single_case(const char* id) {
   return {id,
@@ -34,10 +35,10 @@ ClaimRule single_case(const char* id) {
           [](const Measured& measured, const PublishedNumbers& p) { return judge(measured.at(0), p); }};
 }
 
-/// Returns all claims, in the order of the ledger. Throws InputError when rules.json lacks a part that a claim needs.
+/// Returns all claims, in the order of the ledger. Throws InputError if rules.json lacks a key that a claim needs.
 std::vector<Claim> all_claims();
 
-// The rules of a chapter or appendix, each in the source of this name, with the ids of its claims.
+// The rules of each chapter or appendix, defined in the source file of the same name, with the ids of their claims.
 
 std::vector<ClaimRule> chapters_1_and_4();        ///< V, S1, B1b, B5, G, B4, C1 to C3, C7, C8
 std::vector<ClaimRule> chapter_3();               ///< T1 to T3, T2b, J, C5, R, L

@@ -15,28 +15,29 @@
 /// The results and scenarios that claims are measured with.
 namespace hapbench {
 
-/// The published numbers, and access to the results and scenarios that a claim is measured with.
+/// Inputs of the measurement of a claim: the published numbers, and access to results and bundled scenarios.
 struct Evidence {
   PublishedNumbers published;
-  std::filesystem::path directory;  ///< of results, those of a scenario in a subdirectory of its name
-  /// Called with a scenario's name before its results are read, to run it.
+  std::filesystem::path directory;  ///< has a subdirectory of results for each scenario, named after it
+  /// Called with a scenario's name before its results are read. Runs the scenario if necessary.
   std::function<void(const std::string& scenario)> provide;
-  /// The overrides of a bundled scenario, as for load_scenario; empty for none.
+  /// Returns overrides for load_scenario of a bundled scenario. May be empty.
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
-  /// Called with the name of every bundled scenario that a claim loads by itself; may be empty.
+  /// Called with the name of each bundled scenario that a claim loads directly. May be empty.
   std::function<void(const std::string& scenario)> used = {};
 
-  // All functions throw InputError, also when the file of a result is missing or none of ours.
+  // All functions throw InputError, also if a result file is missing or has another format.
 
-  /// Returns a number of a scenario's summary.json, as in "metrics.force_max_N"; NaN for null.
+  /// Returns a number of a scenario's summary.json at a dotted path, such as "metrics.force_max_N"; NaN if it is
+  /// missing or null.
   double number(const std::string& scenario, const std::string& path) const;
-  /// Returns the columns of a CSV file among a scenario's results, by name; a cell without a number is NaN.
+  /// Returns the columns of a CSV result file of a scenario, by name. A cell without a number is NaN.
   std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const;
-  /// Returns a bundled scenario with `overrides`, and then with `more` overrides: a single case.
+  /// Returns a single case: a bundled scenario with `overrides` applied, followed by the overrides `more`.
   Cases scene(const std::string& name, const std::vector<std::string>& more = {}) const;
-  /// Loads that case.
+  /// Loads the case of scene().
   LoadedScenario load(const std::string& name, const std::vector<std::string>& more = {}) const;
-  /// Runs that case in memory.
+  /// Runs the case of scene() in memory, without result files.
   Result run(const std::string& name, const std::vector<std::string>& more = {}) const;
 };
 

@@ -9,8 +9,10 @@ namespace hapbench {
 
 Finding Claim::finding(const Evidence& evidence) const {
   if (judge == nullptr) return {Verdict::not_reproducible, why};
+  // Measure and judge.
   const Measured cases = measure(evidence);
   Finding finding = judge(cases, evidence.published);
+  // Insert the measured numbers into the texts: each name refers to the latest case, CASE.NAME to a given case.
   PublishedNumbers numbers = evidence.published;
   std::string of_cases;
   for (const MeasuredCase& m : cases) {

@@ -12,15 +12,17 @@
 /// A claim of the thesis, the numbers measured for it, and the verdict on it.
 namespace hapbench {
 
-/// The outcome of testing a published statement; the last two are those of findings of ours.
+/// The outcome of testing a claim. `holds` and `does_not_hold` are for findings of this project; the other verdicts are
+/// for claims of the thesis.
 enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible, holds, does_not_hold };
 
+/// Name and description of a verdict.
 struct VerdictText {
   std::string_view name;
   const char* meaning;
-  const char* mark;  ///< in bars
+  const char* mark;  ///< symbol in the bars of claims.md
 };
-/// In the order of the enumeration.
+/// The texts of all verdicts, in the order of Verdict.
 inline constexpr VerdictText kVerdicts[] = {
     {"reproduced",
      "another implementation, by other authors and from the text alone, meets the claim's rule with the published "
@@ -36,86 +38,90 @@ inline constexpr std::string_view verdict_name(Verdict verdict) {
   return kVerdicts[static_cast<std::size_t>(verdict)].name;
 }
 
-/// The verdict of a rule for "reproduced" and a weaker one for "reproduced in kind".
+/// Returns `reproduced` if its condition is true, otherwise `in_kind` if the weaker condition is true, otherwise
+/// `not_reproduced`.
 inline Verdict decide(bool reproduced, bool in_kind) {
   return reproduced ? Verdict::reproduced : in_kind ? Verdict::in_kind : Verdict::not_reproduced;
 }
-/// The verdict on a finding of ours.
+/// Returns the verdict on a finding of this project.
 inline Verdict found(bool holds) {
   return holds ? Verdict::holds : Verdict::does_not_hold;
 }
 
-/// Numbers by name, several under one name where each subject has its own.
+/// Measured numbers by name. A name has several numbers if, for example, each subject has its own number.
 using MeasuredValues = std::map<std::string, std::vector<double>>;
 
 /// The measurements in one case of a claim, such as a density or an algorithm.
 struct MeasuredCase {
-  std::string name;  ///< empty where the claim has a single case
+  std::string name;  ///< empty if the claim has a single case
   MeasuredValues values;
 
-  /// The first value of a name. Throws std::out_of_range for one without.
+  /// Returns the first number of a name. Throws std::out_of_range if there is none.
   double operator[](const std::string& value) const { return all(value).at(0); }
   const std::vector<double>& all(const std::string& value) const { return values.at(value); }
 };
 
-/// All numbers that decide a claim beside the published ones, so that it can be judged again at any time.
+/// All measured numbers that decide a claim. With the published numbers they suffice to judge the claim again.
 using Measured = std::vector<MeasuredCase>;
 
 /// The result of judging a claim, computed from measured numbers.
 struct Finding {
   Verdict verdict = Verdict::not_reproducible;
-  std::string why = {};       ///< one sentence: which part of the rule decided
-  std::string measured = {};  ///< the numbers, for people; empty where rules.json has their text
-  std::string brief = {};     ///< the deciding number, of a main result
-  Measured cases = {};        ///< what was judged
+  std::string why = {};       ///< one sentence: which condition of the rule decided
+  std::string measured = {};  ///< the numbers as text; a judge leaves it empty if rules.json has the text
+  std::string brief = {};     ///< deciding number as text; main results only
+  Measured cases = {};        ///< the measured numbers
 };
 
+/// Measures a claim.
 using Measure = Measured (*)(const Evidence& evidence);
+/// Decides the verdict on a claim from measured and published numbers.
 using Judge = Finding (*)(const Measured& measured, const PublishedNumbers& published);
 
-/// Appends an item to an enumeration in words.
+/// Appends an item to a list in text form.
 inline void append_item(std::string& list, std::string_view item, std::string_view separator = "; ") {
   if (!list.empty()) list += separator;
   list += item;
 }
 
-/// A row of rules.json with its rule. Texts hold published numbers by id, which PublishedNumbers::fill puts in. A
-/// threshold of ours is a choice on record without fields, such as rule.easily; the rule's text names it in the same
-/// way, which also tells that the choice reaches the claim.
+/// An entry of rules.json, with the functions of its rule. Texts contain ids of published numbers, such as <T2.raw>,
+/// which PublishedNumbers::fill replaces by the numbers. A threshold of this project is a choice without fields, such
+/// as rule.easily. The rule's text names it as <rule.easily>, from which Choices::reach finds that it influences the
+/// claim.
 struct Claim {
   std::string id = {};
-  std::string place = {};      ///< in the thesis
-  std::string claim = {};      ///< in our words
-  std::string published = {};  ///< its numbers, for people
-  std::string rule = {};       ///< of the verdict, for people, with its thresholds
-  std::string why = {};        ///< why no simulation can show it; empty where one can
-  std::string measured = {};   ///< for people, with measured numbers, as <rows> or <40 N.depth> of a case
-  std::string each = {};       ///< the same of each case, for whose name {} stands; after `measured`
-  Measure measure = nullptr;   ///< null, as `judge`, for a claim that no simulation can show
+  std::string place = {};      ///< section of the thesis
+  std::string claim = {};      ///< statement of the claim, in our words
+  std::string published = {};  ///< published numbers, as text
+  std::string rule = {};       ///< rule of the verdict with its thresholds, as text
+  std::string why = {};        ///< why no simulation can test it; empty if one can
+  std::string measured = {};   ///< text of the measured numbers, such as <rows> or <40 N.depth> of a case
+  std::string each = {};       ///< text repeated for each case after `measured`; {} is the case's name
+  Measure measure = nullptr;   ///< null if no simulation can test the claim, like `judge`
   Judge judge = nullptr;
-  bool timing = false;  ///< the finding holds times, so no two runs agree
-  bool ours = false;    ///< found on the way: no claim of the thesis, and not counted among those
-  bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (choices.hpp)
-  bool drawn = false;   ///< a figure draws the numbers of its cases, which the ledger then holds
+  bool timing = false;  ///< the finding contains run times, which differ between runs
+  bool ours = false;    ///< finding of this project; not counted as a claim of the thesis
+  bool costly = false;  ///< slow to measure: judged for a quarter of the readings only (robustness.hpp)
+  bool drawn = false;   ///< a figure plots the numbers of its cases; the ledger then stores them
 
-  /// A main result in a few words: claim, published and, with measured numbers, ours. Empty for other claims.
+  /// Short texts of a main result: the claim, the published numbers and the measured numbers. Empty for other claims.
   struct Main {
     std::string claim = {}, published = {}, ours = {};
   } main = {};
 
-  /// Measures and judges it. Throws InputError.
+  /// Measures the claim and returns the verdict on it. Throws InputError.
   Finding finding(const Evidence& evidence) const;
 };
 
-/// A claim with the verdict on it.
+/// A claim, the verdict on it, and the inputs of the verdict.
 struct JudgedClaim {
   Claim claim;
   Finding finding;
-  std::vector<std::string> scenarios = {};  ///< bundled ones that it was measured with, in the order of their names
-  std::string reach = {};                   ///< of the choices, as Choices::reach has it; empty: none reaches it
-  double seconds = 0.0;                     ///< to run its scenarios and to measure it
+  std::vector<std::string> scenarios = {};  ///< names of the bundled scenarios used, sorted
+  std::string reach = {};                   ///< Choices::reach(); empty if no choice influences the claim
+  double seconds = 0.0;                     ///< time to run its scenarios and to measure it [s]
 
-  /// Whether another reading of the choices could change the verdict.
+  /// Returns true if another reading of the choices can change the verdict.
   bool can_be_sampled() const {
     return !claim.timing && finding.verdict != Verdict::not_reproducible && !reach.empty();
   }

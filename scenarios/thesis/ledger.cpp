@@ -25,19 +25,21 @@ bool is_ours(const Json& claim) {
   return claim.at("ours").get<bool>();
 }
 
-/// Steady: more than half of the samples have the recorded verdict.
+/// Returns "steady" if more than half of the judged samples have the recorded verdict, otherwise "fragile"; "not
+/// sampled" without samples.
 const char* sureness(const Json& robustness) {
   if (robustness.is_null()) return kNotSampled;
   const auto judged = robustness.at("judged").get<std::size_t>(), holds = robustness.at("holds").get<std::size_t>();
   return 2 * holds > judged ? kSteady : kFragile;
 }
 
+/// Returns the verdict of a claim in claims.json.
 Verdict verdict_of(const Json& claim) {
   const auto* found = std::ranges::find(kVerdicts, text_at(claim, "verdict"), &VerdictText::name);
   return static_cast<Verdict>(found - std::begin(kVerdicts));
 }
 
-/// At most `most` characters of it: whole words, with an ellipsis for the rest.
+/// Returns the text, cut at a word boundary to at most `most` characters and an ellipsis if it is longer.
 std::string shortened(const std::string& text, std::size_t most) {
   if (characters_of(text) <= most) return text;
   std::size_t end = 0;
@@ -48,7 +50,7 @@ std::string shortened(const std::string& text, std::size_t most) {
   return text.substr(0, text.find_last_not_of(" ,;:", end) + 1) + " …";
 }
 
-/// The chapter or appendix of its first place with a number: "C" of "abstract, C.2".
+/// Returns the chapter or appendix of a claim's first numbered section, such as "C" for "abstract, C.2".
 std::string chapter_of(const Json& claim) {
   const std::string place = text_at(claim, "place");
   const std::size_t number = place.find_first_of("0123456789");
@@ -56,7 +58,7 @@ std::string chapter_of(const Json& claim) {
   return std::string(1, place.at(appendix ? number - 2 : number));
 }
 
-/// A line for each chapter, a mark for each of its claims.
+/// Returns a line for each chapter, with a symbol for each of its claims.
 std::string chapter_bars(const Json& claims) {
   std::map<std::string, std::array<std::string, std::size(kVerdicts)>> chapters;
   for (const Json& claim : claims) {
@@ -68,20 +70,21 @@ std::string chapter_bars(const Json& claims) {
   return text;
 }
 
-/// The heading of a table whose first columns are these two.
+/// Returns the heading of a table. `columns`: names of its first two columns.
 std::string heading(const char* columns) {
   return fmt::format(
       "| {} | published | ours | verdict | sureness | command | seconds |\n|---|---|---|---|---|---|---|---|\n",
       columns);
 }
 
-/// The last cells of a row, with the whole seconds that it takes to judge the claim.
+/// Returns the last cells of a table row: verdict, sureness, command and seconds.
 std::string last_cells(const Json& claim) {
   const double seconds = claim.at("seconds").get<double>();
   return fmt::format(" | {} | {} | `{}` | {} |", text_at(claim, "verdict"), text_at(claim, "sureness"),
                      text_at(claim, "command"), seconds < 1.0 ? "< 1" : fmt::format("{:.0f}", seconds));
 }
 
+/// Returns the table of the main results.
 std::string main_results(const Json& claims) {
   std::string text = heading("claim | place");
   for (const Json& claim : claims) {
@@ -93,8 +96,10 @@ std::string main_results(const Json& claims) {
   return text;
 }
 
+/// Returns the table row of a claim, with texts shortened to at most 300 characters in total.
 std::string row_of(const Json& claim) {
-  constexpr std::size_t kClaim = 90, kPublished = 50, kLongestRow = 300;  // characters; `describe ID` says the rest
+  constexpr std::size_t kClaim = 90, kPublished = 50,
+                        kLongestRow = 300;  // [characters]; `describe ID` prints the full texts
   const std::string before =
       fmt::format("| {} | {} | {} | ", text_at(claim, "id"), shortened(text_at(claim, "claim"), kClaim),
                   shortened(text_at(claim, "published"), kPublished));
@@ -103,7 +108,7 @@ std::string row_of(const Json& claim) {
   return before + shortened(text_at(claim, "measured"), room) + after + "\n";
 }
 
-/// The numbers of each case, lists where there are several.
+/// Returns the numbers of each case; a list if a name has several numbers.
 Json cases_json(const Measured& cases) {
   Json json = Json::array();
   for (const MeasuredCase& m : cases) {
@@ -113,7 +118,8 @@ Json cases_json(const Measured& cases) {
   return json;
 }
 
-/// The entry of a claim in robustness.json; null where that is not about this verdict and the choices that reach it.
+/// Returns the entry of a claim in robustness.json; null if there is none for this verdict and these choices. Throws
+/// InputError if the file has another format.
 Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
   try {
     for (const Json& claim : record.at("claims")) {
@@ -134,6 +140,7 @@ Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
 }  // namespace
 
 std::string headline_of(const Json& claims) {
+  // Count verdicts and sureness over the claims of the thesis.
   std::map<Verdict, std::size_t> verdicts;
   std::map<std::string, std::size_t> sure;
   std::size_t all = 0;
@@ -185,14 +192,17 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
 
 std::string ledger_markdown(const Json& ledger) {
   const Json& claims = ledger.at("claims");
+  // Main results, headline, bars by chapter and the meanings of the verdicts.
   std::string text =
       main_results(claims) + "\n" + text_at(ledger, "headline") + " By chapter:\n\n" + chapter_bars(claims) + "\n";
   for (std::size_t v = 0; v <= static_cast<std::size_t>(Verdict::not_reproducible); ++v)
     text += fmt::format("{} *{}*: {}.  \n", kVerdicts[v].mark, kVerdicts[v].name, kVerdicts[v].meaning);
+  // Table of all claims, contradicted claims first.
   text += "\nMore of a row: `hapbench describe ID`.\n\n" + heading("id | claim");
   for (const Verdict verdict : {Verdict::refuted, Verdict::not_reproduced, Verdict::in_kind, Verdict::reproduced})
     for (const Json& claim : claims)
       if (!is_ours(claim) && verdict_of(claim) == verdict) text += row_of(claim);
+  // List claims that no simulation can test, and the findings of this project.
   std::string unjudged, findings;
   for (const Json& claim : claims) {
     if (is_ours(claim)) findings += row_of(claim);

@@ -7,18 +7,19 @@
 #include "scenarios/thesis/judging.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
 
-/// The ledger: the verdicts on all claims as claims.json and claims.md.
+/// The ledger: the verdicts on all claims, written as claims.json and claims.md.
 namespace hapbench {
 
-/// Returns claims.json: the headline and the claims; with the cases of those whose numbers a figure draws. `robustness`
-/// has what robustness.json holds; of a claim it counts if the recorded verdict is this one and the choices that reach
-/// it are the same. Throws InputError when it is no such record.
+/// Returns the content of claims.json: the headline and the claims. Claims whose numbers a figure plots (Claim::drawn)
+/// include their cases. `robustness`: the content of robustness.json. Its entry for a claim is used only if its
+/// recorded verdict and its hash of the choices agree with `judged`. Throws InputError if `robustness` has another
+/// format.
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness);
-/// Returns the sentence that says how many claims have which verdict, and how many verdicts are steady.
+/// Returns a sentence with the number of claims for each verdict and for each sureness (steady, fragile, not sampled).
 std::string headline_of(const Json& claims);
 
-/// Returns claims.md, of what ledger_json returns: the main results, counts by chapter, the claims of the thesis, those
-/// that are contradicted first, what was found on the way.
+/// Returns the content of claims.md from the result of ledger_json: the main results, counts by chapter, the claims of
+/// the thesis (contradicted claims first), and the findings of this project.
 std::string ledger_markdown(const Json& ledger);
 
 }  // namespace hapbench

@@ -40,7 +40,7 @@ ContactBuffer wall_point(double beyond, const char* depth_model) {
 
 Scenario drill_in_hole(Scenario scenario) {
   scenario.device = IdealDeviceFields{input_force_limit(scenario.device)};
-  constexpr double kPeriod = 6.0;  // [s], of the tilt of task 2
+  constexpr double kPeriod = 6.0;  // period of the tilt in task 2 [s]
   const auto rows = static_cast<std::int64_t>(std::llround(kPeriod / scenario.time.step));
   scenario.time.steps = std::min(scenario.time.steps, rows);
   scenario.record = {};
@@ -90,7 +90,8 @@ bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const Publ
 }
 
 std::optional<double> damping_ratio_of_swings(std::span<const double> x) {
-  constexpr double kSmallest = 1e-6;  // [m]
+  constexpr double kSmallest = 1e-6;  // smallest extreme that counts [m]
+  // Collect the magnitudes of the extremes.
   std::vector<double> extremes;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
     if ((x[i] - x[i - 1]) * (x[i + 1] - x[i]) >= 0.0) continue;

@@ -18,55 +18,61 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 
-/// Measurements and scenes that several claims share.
+/// Measurements and scenes that several claims use.
 namespace hapbench {
 
 /// The algorithm that the thesis proposes.
 inline constexpr const char* kProposedLaw = "shaped_stiffness";
 
-/// Runs a scenario in memory and calls `row` for each row, with the contacts as found. Throws InputError.
+/// Runs a scenario in memory and calls `row` for each time step. StepRecord::found has the contacts before the point
+/// stages. Throws InputError.
 void for_each_row(const CheckedScenario& checked, const std::function<void(const StepRecord&)>& row);
 
+/// The default drill, and a tool pose with its tip at the origin and its axis pointing down.
 inline const Cylinder kDrill;
 inline const ToolPose kUpright{Vec3::Zero(), {0.0, 0.0, -1.0}};
 
-/// A wall point with normal +x, `beyond` the median line of an upright tool (so beyond > 0: the tool's axis is inside).
+/// Returns one contact of the upright drill with a wall point of normal +x at x = `beyond` [m], and the depth by
+/// `depth_model`. For beyond > 0 the tool's axis is inside the wall: the point is beyond the tool's median line.
 ContactBuffer wall_point(double beyond, const char* depth_model);
 
-/// How often what a claim times is repeated.
+/// Number of repetitions of a timing measurement.
 inline constexpr int kRepetitions = 20;
 
-/// Seconds of a call of `work`: the least of `repetitions`, or of as many as a second allows.
+/// Returns the smallest duration [s] of a call of `work` over up to `repetitions` calls. Stops after one second in
+/// total.
 template <class Work>
 double seconds_of(int repetitions, Work work) {
   using Clock = std::chrono::steady_clock;
-  double least = 0.0, all = 0.0;
+  double smallest = 0.0, all = 0.0;
   for (int i = 0; i < repetitions && all < 1.0; ++i) {
     const auto start = Clock::now();
     work();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    if (i == 0 || seconds < least) least = seconds;
+    if (i == 0 || seconds < smallest) smallest = seconds;
     all += seconds;
   }
-  return least;
+  return smallest;
 }
 
-/// A scenario in which a hand presses a drill into the block's hole, for measuring: with an ideal device of the same
-/// force limit, which adds no dynamics of its own, for one period of the tilt, and without records.
+/// Returns a scenario of a drill in the block's hole, prepared for measuring contacts: with an ideal device, which has
+/// no dynamics, and the original force limit; at most one period of the tilt long (6 s); without records.
 Scenario drill_in_hole(Scenario scenario);
 
-/// Before or after the scenario's point stages.
+/// The contacts before (`colliding`) or after (`rendered`) the scenario's point stages.
 enum class Points { colliding, rendered };
 
-/// The points of every `stride`-th row of drill_in_hole(scenario) that has contact, with depth and gradient.
+/// Returns the contacts, with depth and gradient, of every `stride`-th step of drill_in_hole(scenario). Skips steps
+/// without contact.
 std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride,
                                         Points points = Points::colliding);
 
-/// The largest set, of at least one, and its size, 0 without any.
+/// Returns the largest set. Precondition: there is a set.
 ContactBuffer largest_of(const std::vector<ContactBuffer>& sets);
+/// Returns the size of the largest set; 0 without sets.
 std::size_t largest_size(const std::vector<ContactBuffer>& sets);
 
-/// Seconds of `work` with a copy of each set, one after the other, and of copying them.
+/// Returns the smallest total duration [s] of copying each set and calling `work` with the copy.
 template <class Work>
 double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Work work) {
   ContactBuffer copy(largest_size(sets));
@@ -78,18 +84,21 @@ double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Wor
   });
 }
 
-/// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
+/// Returns the vibration measures of a run: total variation of the velocity [m/s], power of the velocity above 30 Hz
+/// [m^2/s^2], and number of force reversals.
 MeasuredCase vibration(const std::string& name, const Result& run);
 
-/// True if `a` has more variation and power.
+/// Returns true if `a` has a larger velocity variation and a larger vibration power than `b`.
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
-/// Whether an algorithm vibrates, compared with a smooth one: it has rule.vibrates times the total variation and the
-/// square of it times the power; or more of both, and so many times the reversals of the force.
+/// Returns true if `a` vibrates in comparison with a smooth algorithm `b`. With the factor f = rule.vibrates: either
+/// the velocity variation is at least f times and the vibration power at least f^2 times that of `b`; or
+/// vibrates_more() is true and the number of force reversals is at least f times that of `b`.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
 
-/// The damping ratio of a swing about zero [m], a value for each row, from the ratio q of successive extremes,
-/// zeta = -ln q / sqrt(pi^2 + ln^2 q). An extreme within a micrometre of zero ends the decay: rounding and grazing
-/// contact are no swings. None with fewer than two extremes.
+/// Returns the damping ratio zeta of an oscillation about zero, from positions `x` [m], one for each time step. With
+/// the mean ratio q of the magnitudes of successive extremes, zeta = -ln q / sqrt(pi^2 + ln^2 q). Ignores the
+/// oscillation from the first extreme within 1 um of zero on: rounding and grazing contact are not oscillations. Empty
+/// with fewer than two extremes.
 std::optional<double> damping_ratio_of_swings(std::span<const double> x);
 
 }  // namespace hapbench

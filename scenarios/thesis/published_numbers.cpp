@@ -39,7 +39,7 @@ const PublishedNumber& PublishedNumbers::operator[](const std::string& id) const
 
 namespace {
 
-/// The part of a number with this name, a mean for an unknown name.
+/// Returns the member of a number with this name; the mean for an unknown name.
 double part_of(const PublishedNumber& number, std::string_view name) {
   if (name == "spread") return number.spread;
   if (name == "at_least") return number.at_least;
@@ -47,7 +47,7 @@ double part_of(const PublishedNumber& number, std::string_view name) {
   return number.mean;
 }
 
-/// A number without a named part: "37.8 ± 17.7", or "37.8" without a spread.
+/// Returns the text of a number without a named member: "37.8 ± 17.7", or "37.8" without a spread.
 std::string mean_and_spread(const PublishedNumber& number) {
   return plain(number.mean) + (number.spread > 0.0 ? " ± " + plain(number.spread) : "");
 }
@@ -55,7 +55,7 @@ std::string mean_and_spread(const PublishedNumber& number) {
 }  // namespace
 
 std::string PublishedNumbers::fill(const std::string& text) const {
-  // Groups: an id, and perhaps a part of the number with a factor and a format.
+  // Groups of the expression: id, and optionally member, factor and format.
   static const std::regex kNumber(
       R"(<([^<>*:]+?)(?:\.(mean|spread|at_least|at_most)(?:\*([^<>:]+))?(?::([^<>]+))?)?>)");
   const auto text_of = [](const PublishedNumber& number, const std::smatch& match) -> std::string {
@@ -78,7 +78,7 @@ std::string PublishedNumbers::fill(const std::string& text) const {
 
 std::string plain(double number) {
   std::string text = fmt::format("{:g}", number);
-  // An exponent without its leading zero.
+  // Remove the leading zero of the exponent.
   if (const auto exponent = text.find("e-0"); exponent != std::string::npos) text.erase(exponent + 2, 1);
   return text;
 }

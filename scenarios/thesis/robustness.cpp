@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A cell of a choice's column.
+/// Returns a cell of a choice's column. Throws InputError if the choice does not allow its value.
 std::string allowed_value(const OpenChoice& choice, std::string_view cell, const fs::path& file, std::size_t line) {
   const auto& range = choice.range;
   const auto number = finite_number(cell);
@@ -38,7 +38,7 @@ std::string allowed_value(const OpenChoice& choice, std::string_view cell, const
   fail_in_line(file, line, fmt::format("{}: got \"{}\"; allowed: {}", choice.id, cell, allowed));
 }
 
-/// Runs a scenario for its results. Says what keeps them from being judged by; empty for nothing.
+/// Runs a scenario and writes its results. Returns why the results cannot be used; empty if they can.
 std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   try {
     const CheckedScenario scene = checked(evidence.load(name));
@@ -53,9 +53,9 @@ std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   }
 }
 
-/// The bins of these readings, for each choice.
+/// Returns for each choice the bin of each reading in `which`, for the sensitivity analysis.
 std::vector<std::vector<std::size_t>> bins_of_choices(const Readings& readings, const std::vector<std::size_t>& which) {
-  // Sixteen bins with sixteen points each, if there are enough points.
+  // At most 16 bins, with at least 16 readings each if there are enough.
   const std::size_t count = std::clamp<std::size_t>(which.size() / 16, 2, 16);
   std::vector<std::vector<std::size_t>> bins;
   for (std::size_t c = 0; c < readings.choices.all().size(); ++c) {
@@ -73,10 +73,11 @@ std::vector<std::vector<std::size_t>> bins_of_choices(const Readings& readings, 
   return bins;
 }
 
-/// What the verdicts on the claim of this index say.
+/// Returns the entry of claim number `c` in robustness.json.
 Json entry_of(const Readings& readings, const std::vector<ReadingVerdicts>& judged, std::size_t c) {
   const JudgedClaim& claim = readings.claims[c];
   const std::string on_record(verdict_name(claim.finding.verdict));
+  // Count the verdicts over the readings.
   std::map<std::string, std::size_t> counts;
   std::vector<std::size_t> with_verdict;
   std::vector<double> holds;
@@ -91,12 +92,13 @@ Json entry_of(const Readings& readings, const std::vector<ReadingVerdicts>& judg
     with_verdict.push_back(i);
     holds.push_back(verdict == on_record ? 1.0 : 0.0);
   }
-  // That of most readings; of several the one on record, if it is one of them.
+  // Most frequent verdict; the recorded verdict wins a tie.
   std::string majority = on_record;
   for (std::size_t most = same; const auto& [verdict, count] : counts) {
     if (count > most) majority = verdict;
     most = std::max(most, count);
   }
+  // Find the choice that decides whether the recorded verdict holds.
   Json decided_by = nullptr;
   if (const auto by = deciding_input(bins_of_choices(readings, with_verdict), holds, hash_of(claim.claim.id)))
     decided_by = {{"choice", readings.choices.all()[by->input].id}, {"index", by->index}};
@@ -118,20 +120,20 @@ std::vector<std::vector<std::string>> read_readings(const fs::path& file, const 
   const std::string text = read_named_file(file);
   CsvReader csv{LineReader(text), file};
   const std::vector<std::string> ids = names_of(choices.all(), &OpenChoice::id);
-  std::vector<std::size_t> places;  // of the columns, among the choices
+  std::vector<std::size_t> choice_of_column;  // index of the choice of each column
   for (const std::string_view column : csv.columns()) {
     const std::string id(column);
     require_valid_name(file.string() + ": got the column", id, ids, "scripts/readings.py 1");
-    const auto place = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
-    if (std::find(places.begin(), places.end(), place) != places.end())
+    const auto index = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
+    if (std::find(choice_of_column.begin(), choice_of_column.end(), index) != choice_of_column.end())
       fail_in_file(file, fmt::format("got the column \"{}\" twice; allowed: each once", id));
-    places.push_back(place);
+    choice_of_column.push_back(index);
   }
   std::vector<std::vector<std::string>> readings;
   while (csv.next()) {
     std::vector<std::string>& values = readings.emplace_back(choices.values_on_record());
-    for (std::size_t i = 0; i < places.size(); ++i)
-      values[places[i]] = allowed_value(choices.all()[places[i]], csv.cells()[i], file, csv.line());
+    for (std::size_t i = 0; i < choice_of_column.size(); ++i)
+      values[choice_of_column[i]] = allowed_value(choices.all()[choice_of_column[i]], csv.cells()[i], file, csv.line());
   }
   if (readings.empty()) fail_in_file(file, "got no row; allowed: a reading of the choices on record in each");
   return readings;
@@ -139,11 +141,13 @@ std::vector<std::vector<std::string>> read_readings(const fs::path& file, const 
 
 ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, const fs::path& directory) {
   const std::vector<std::string>& values = readings.values[reading];
+  // Remove the results at the end of this scope.
   const std::shared_ptr<void> results(nullptr, [&directory](void*) {
     std::error_code ignored;
     fs::remove_all(directory, ignored);
   });
-  std::map<std::string, std::string> problems;  // by scenario; empty where its results are there
+  // Run each scenario when its results are first needed.
+  std::map<std::string, std::string> problems;  // by scenario that was run; empty if its results can be used
   Evidence evidence{
       readings.choices.with_numbers(readings.published, values), directory, {}, [&](const Scenario& scenario) {
         return readings.choices.overrides(scenario, values);
@@ -153,6 +157,7 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
     if (is_new) found->second = problem_of_run(evidence, scenario);
     if (!found->second.empty()) throw InputError(found->second);
   };
+  // Judge the claims.
   ReadingVerdicts judged;
   for (const JudgedClaim& j : readings.claims) {
     if (j.claim.costly && reading >= readings.costly()) {
@@ -162,7 +167,7 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
     try {
       judged.verdicts.emplace_back(verdict_name(j.claim.finding(evidence).verdict));
     } catch (const IoError&) {
-      throw;  // a full disk says nothing about a claim
+      throw;  // a full disk is no result for the claim
     } catch (const std::exception& error) {
       judged.verdicts.emplace_back(kNotMeasured);
       judged.problems.push_back(fmt::format("sample {}, {}: {}", reading, j.claim.id, error.what()));

@@ -10,44 +10,50 @@
 #include "scenarios/thesis/judging.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
 
-/// Robustness of the verdicts: the claims judged again under other readings of the choices that the thesis leaves open.
+/// Robustness of the verdicts: the claims are judged again under other readings of the thesis. A reading assigns one
+/// value to each choice (choices.hpp) that the thesis leaves open.
 namespace hapbench {
 
-/// What is judged again. A reading has one value for each choice.
+/// The claims and the readings under which they are judged.
 struct Readings {
   Choices choices;
   PublishedNumbers published;
-  std::vector<JudgedClaim> claims;               ///< with the ledger's verdicts
-  std::vector<std::vector<std::string>> values;  ///< of each reading, as texts for --set
+  std::vector<JudgedClaim> claims;               ///< with the verdicts of the ledger
+  std::vector<std::vector<std::string>> values;  ///< by reading, then by choice, as texts for --set
 
-  /// Costly claims are judged in the first quarter of the readings only.
+  /// Returns the number of readings for costly claims, which are judged in the first quarter of the readings only.
   std::size_t costly() const { return (values.size() + 3) / 4; }
 };
 
-/// Reads the readings of a CSV file: a row each, a column for each choice that it reads otherwise than on record.
-/// Throws InputError for a column that is no choice's, a number out of the choice's range and a text that is no option.
+/// Reads the readings from a CSV file, with one row for each reading and one column for each choice that varies. Other
+/// choices have their recorded values. Throws InputError for a column that is not a choice, a number outside of the
+/// choice's range, or a text that is not an option of the choice.
 std::vector<std::vector<std::string>> read_readings(const std::filesystem::path& file, const Choices& choices);
 
-/// Cells of claims without a verdict: one that could not be measured (a run diverged where its scenario does not expect
-/// it, a field refuses the value), and a costly one beyond the readings for those.
+// Cells of claims without a verdict.
+
+/// The claim could not be measured: a run diverged unexpectedly, or a field does not allow the value.
 inline constexpr const char* kNotMeasured = "error";
+/// The claim is costly, and the reading is not among the first costly() readings.
 inline constexpr const char* kNotJudged = "";
 
-/// A reading's verdict on each claim, by name.
+/// The verdicts on all claims under one reading.
 struct ReadingVerdicts {
-  std::vector<std::string> verdicts;
-  std::vector<std::string> problems;  ///< of the claims that could not be measured, for people
+  std::vector<std::string> verdicts;  ///< verdict_name(), kNotMeasured or kNotJudged, by claim
+  std::vector<std::string> problems;  ///< why claims could not be measured, as text
 };
 
-/// Judges the claims under one reading. Scenarios run when a claim asks, once, into `directory`, which is removed
-/// afterwards. For several threads, with a directory each. Throws IoError.
+/// Judges the claims under one reading. Runs each scenario once, when a claim first needs it. Writes results into
+/// `directory` and removes the directory at the end. Thread-safe if each call has its own directory. Throws IoError.
 ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, const std::filesystem::path& directory);
 
-/// Returns robustness.csv: sample, a column for each choice and one for each claim.
+/// Returns the content of robustness.csv: the number of the reading ("sample"), a column for each choice, and a column
+/// with the verdict on each claim.
 std::string robustness_table(const Readings& readings, const std::vector<ReadingVerdicts>& judged);
 
-/// Returns robustness.json: what the readings' verdicts say of each claim, and the hash of the choices that reach it.
-/// Of claims that are not among the readings', it keeps what such a record from before has.
+/// Returns the content of robustness.json: for each claim, counts of its verdicts over the readings, and the hash of
+/// the choices that influence it. Entries of `before`, an earlier robustness.json, are kept for claims that are not
+/// among the claims of `readings`.
 Json robustness_json(const Readings& readings, const std::vector<ReadingVerdicts>& judged, const Json& before);
 
 }  // namespace hapbench

@@ -9,7 +9,7 @@
 namespace hapbench {
 namespace {
 
-/// None when no input has one.
+/// Returns the input with the largest first-order index; empty if all indices are NaN.
 std::optional<DecidingInput> largest_index(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
                                            std::span<const double> y) {
   std::optional<DecidingInput> largest;
@@ -36,12 +36,14 @@ double first_order_index(std::span<const std::size_t> bin, std::span<const doubl
   const auto n = static_cast<double>(y.size());
   const double mean = std::accumulate(y.begin(), y.end(), 0.0) / n;
   std::vector<double> sums(*std::max_element(bin.begin(), bin.end()) + 1), counts(sums.size());
+  // Sum deviations from the mean: total sum of squares (SST), and sums by bin.
   double total = 0.0;
   for (std::size_t i = 0; i < y.size(); ++i) {
     total += (y[i] - mean) * (y[i] - mean);
     sums[bin[i]] += y[i] - mean;
     counts[bin[i]] += 1.0;
   }
+  // Sum of squares between the bins (SSB), and the number of nonempty bins (B).
   double between = 0.0, filled = 0.0;
   for (std::size_t b = 0; b < sums.size(); ++b) {
     if (counts[b] == 0.0) continue;
@@ -63,7 +65,7 @@ std::optional<DecidingInput> deciding_input(const std::vector<std::vector<std::s
     random.shuffle(y);
     as_large += largest_index(bins_of_inputs, y)->index >= found->index ? 1U : 0U;
   }
-  // The order that was observed counts as one of them (Phipson and Smyth 2010).
+  // The observed order counts as one of the permutations (Phipson and Smyth 2010).
   const double p = static_cast<double>(as_large + 1) / static_cast<double>(permutations + 1);
   return p <= level ? found : std::nullopt;
 }

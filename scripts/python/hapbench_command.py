@@ -17,9 +17,8 @@ from contextlib import contextmanager
 
 from hapbench.errors import InputError
 
-SHARED = (
-    "as everywhere: hapbench --help"  # the help of an option that means the same in every command
-)
+# The help of an option that means the same in every command.
+SHARED = 'shared options; "hapbench --help" explains them'
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
 MOST_FAULTS = 20  # reported at once
 SILENCE = 2.0  # before a notice [s]
@@ -40,34 +39,36 @@ class Arguments(argparse.ArgumentParser):
 
 
 class CommandLine(Arguments):
-    """The words behind the name of a command of the program: help and errors are as those of the other commands."""
+    """The words behind the name of a command of the program: help and errors are as those of the other commands.
+    `notes`: paragraphs below the options. `examples`: command lines. `manual`: page and section."""
 
-    def __init__(self, name, summary, footer):
+    def __init__(self, name, summary, notes, examples, manual):
         super().__init__(
             prog=f"hapbench {name}",
             description=summary,
-            epilog=footer,
             add_help=False,
             allow_abbrev=False,
         )
         self.name = name
+        self.notes, self.examples, self.manual = notes, examples, manual
         self.add_argument("-h", "--help", action="help", help=SHARED)
 
-    def text(self, name, meaning, **more):
-        self.add_argument(name, metavar=more.pop("metavar", "TEXT"), help=meaning, **more)
+    def text(self, name, metavar, meaning, **more):
+        """`metavar`: the placeholder of the value in the help, such as "<file>"."""
+        self.add_argument(name, metavar=metavar, help=meaning, **more)
 
-    def texts(self, name, meaning):
+    def texts(self, name, metavar, meaning):
         """Several values in one word, separated by commas."""
         self.text(
             name,
+            metavar,
             meaning,
-            metavar="TEXT,...",
             action="extend",
             default=[],
             type=lambda text: [part.strip() for part in text.split(",") if part.strip()],
         )
 
-    def one_of(self, names, name, meaning):
+    def one_of(self, names, name, metavar, meaning):
         def checked(word):
             if word in names:
                 return word
@@ -76,7 +77,7 @@ class CommandLine(Arguments):
                 f'got "{word}"; allowed: {quoted}{nearest(word, names)}'
             )
 
-        self.text(name, meaning, type=checked)
+        self.text(name, metavar, meaning, type=checked)
 
     def flag(self, name, meaning):
         self.add_argument(name, action="store_true", help=meaning)
@@ -119,38 +120,31 @@ class CommandLine(Arguments):
 
     def format_help(self):
         width = min(shutil.get_terminal_size((100, 24)).columns, 100)
-        lines = [self.description, f"Usage: {self.prog} [OPTIONS]"]
+        usage, parts = f"Usage: {self.prog} [OPTIONS]", []
         for title, named in (("Arguments:", False), ("Options:", True)):
             actions = [action for action in self._actions if bool(action.option_strings) == named]
-            if actions:
-                lines += ["", title]
             shared = ", ".join(
                 action.option_strings[-1] for action in actions if action.help == SHARED
             )
+            parts += ["", title] if actions else []
             for action in actions:
                 if action.help == SHARED:
                     continue
-                word = (
-                    ",".join(action.option_strings)
-                    + (f" {action.metavar}" if action.nargs != 0 else "")
-                    if named
-                    else action.metavar
-                )
-                lines.append(entry(word, action.help, width))
-                if not named:
-                    several = f"{word}..." if action.nargs in ("+", "*") else word
-                    lines[1] += f" {several}" if action.required else f" [{several}]"
-            if shared:
-                lines.append(entry(shared, SHARED, width))
-        lines += [""] + [
-            textwrap.fill(
-                line,
-                width,
-                subsequent_indent=" " * (4 if line.startswith(" ") else 0),
-                **WHOLE_WORDS,
-            )
-            for line in self.epilog.splitlines()
-        ]
+                word = action.metavar
+                if named:
+                    value = f" {action.metavar}" if action.nargs != 0 else ""
+                    word = ",".join(action.option_strings) + value
+                else:
+                    word += "..." if action.nargs in ("+", "*") else ""
+                    usage += f" {word}" if action.required else f" [{word}]"
+                parts.append(entry(word, action.help, width))
+            if shared and named:
+                parts.append(entry(shared, SHARED, width))
+        lines = [textwrap.fill(self.description, width, **WHOLE_WORDS), "", usage, *parts]
+        for note in self.notes:
+            lines += ["", textwrap.fill(note, width, **WHOLE_WORDS)]
+        lines += ["", "Examples:", *(f"  {example}" for example in self.examples)]
+        lines += ["", textwrap.fill(f"Manual: {self.manual}", width, **WHOLE_WORDS)]
         return "\n".join(lines) + "\n"
 
 
@@ -159,7 +153,7 @@ WHOLE_WORDS = {"break_long_words": False, "break_on_hyphens": False}
 
 def entry(word, meaning, width):
     """A word with its meaning beside it, or below where the word is too long."""
-    column = 26
+    column = 28
     text = textwrap.fill(
         meaning, width, initial_indent=" " * column, subsequent_indent=" " * column, **WHOLE_WORDS
     )

@@ -15,7 +15,7 @@ constexpr AlignedDoubles Buffer::*kColumns[] = {&Buffer::x,  &Buffer::y,     &Bu
                                                 &Buffer::ny, &Buffer::nz,    &Buffer::ux,    &Buffer::uy,
                                                 &Buffer::uz, &Buffer::depth, &Buffer::weight};
 
-/// Sum of factor(i) u_i u_i^T, a pack at a time.
+/// Returns sum factor(i) u_i u_i^T. Computes one SIMD pack at a time.
 template <class Factor>
 Mat3 tensor_of(const ContactBuffer& contacts, const Factor& factor) {
   Pack xx(0.0), xy(0.0), xz(0.0), yy(0.0), yz(0.0), zz(0.0);
@@ -43,7 +43,7 @@ Mat3 tensor_of(const ContactBuffer& contacts, const Factor& factor) {
 }  // namespace
 
 ContactBuffer::ContactBuffer(std::size_t capacity) : capacity_(capacity) {
-  // Searches write whole packs behind the last contact.
+  // One pack more than the capacity, because searches write whole packs behind the last contact.
   const std::size_t padded = simd::padded(capacity) + simd::lanes;
   index.assign(padded, 0);
   for (const auto column : kColumns) (this->*column).assign(padded, 0.0);
@@ -82,13 +82,15 @@ void ContactBuffer::pad() {
 
 double ContactBuffer::largest_depth() const noexcept {
   if (empty()) return 0.0;
-  const Pack least(-std::numeric_limits<double>::infinity());
-  Pack largest = least;
+  const Pack lowest(-std::numeric_limits<double>::infinity());
+  Pack largest = lowest;
+  // Maximum over the whole packs.
   const std::size_t whole = size_ / simd::lanes * simd::lanes;
   for (std::size_t i = 0; i < whole; i += simd::lanes) largest = simd::max(largest, simd::load(&depth[i]));
+  // Maximum over the last pack without its padding.
   if (whole < size_) {
-    const simd::Mask own = simd::lanes_between(0, size_ - whole);
-    largest = simd::max(largest, simd::select(own, simd::load(&depth[whole]), least));
+    const simd::Mask in_use = simd::lanes_between(0, size_ - whole);
+    largest = simd::max(largest, simd::select(in_use, simd::load(&depth[whole]), lowest));
   }
   return simd::max_lane(largest);
 }
@@ -116,16 +118,16 @@ Vec3 weighted_depth(const ContactBuffer& contacts) {
 
 RatioRange ratio_range(const ContactBuffer& contacts, const Mat3& S) {
   if (contacts.empty()) return {};
-  constexpr double never = std::numeric_limits<double>::infinity();
-  Pack smallest(never), largest(-never);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Pack smallest(infinity), largest(-infinity);
   for (std::size_t i = 0; i < contacts.size(); i += simd::lanes) {
     const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
-    // Adds in the order of Eigen's inner products, a + (b + c).
+    // Same order of additions as Eigen's inner product, a + (b + c), so that results are bitwise identical.
     const auto along = [&](int row) { return Pack(S(row, 0)) * x + (Pack(S(row, 1)) * y + Pack(S(row, 2)) * z); };
     const Pack rho = x * along(0) + (y * along(1) + z * along(2));
-    const simd::Mask counts = simd::lanes_between(0, contacts.size() - i);  // excludes the padding
-    smallest = simd::min(smallest, simd::select(counts, rho, Pack(never)));
-    largest = simd::max(largest, simd::select(counts, rho, Pack(-never)));
+    const simd::Mask in_use = simd::lanes_between(0, contacts.size() - i);  // excludes the padding
+    smallest = simd::min(smallest, simd::select(in_use, rho, Pack(infinity)));
+    largest = simd::max(largest, simd::select(in_use, rho, Pack(-infinity)));
   }
   return {simd::min_lane(smallest), simd::max_lane(largest)};
 }

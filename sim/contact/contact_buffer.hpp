@@ -8,50 +8,57 @@
 
 namespace hapbench {
 
-/// Points of a shell from which contacts are copied, with numbers and normals: one array per quantity, aligned and
-/// padded to whole packs.
+/// Read-only view of shell points from which a search copies contacts: point numbers, positions [m] and unit
+/// normals, world frame. One array per quantity, aligned and padded to whole SIMD packs (simd.hpp).
 struct PointColumns {
   const std::uint32_t* index;
   const double *x, *y, *z, *nx, *ny, *nz;
 };
 
-/// The contacts of one step, one array per quantity, reused from step to step. The contact search fills index, point
-/// and normal; the depth model fills depth and gradient; point stages compact the buffer in place; a force law fills
-/// the weights of its springs.
+/// The contacts of one step, one array per quantity. The memory is reused in every step. Order of use: the
+/// contact search writes index, point and normal; the depth model writes depth and gradient; point stages merge
+/// or drop contacts in place; the force law writes the spring weights.
 ///
-/// Penetration depth d_i >= 0 (springs may have negative ones). Gradient u_i: unit vector from the colliding point to
-/// where it would leave the tool, so that the tool gets deeper along +u_i and the penalty force on it is -K d_i u_i.
+/// Depth d_i [m] is the penetration depth, >= 0 for contacts with a surface; springs may have negative depths.
+/// Gradient u_i is the unit vector along which the tool gets deeper: it points from the colliding point to
+/// where this point would leave the tool. The penalty force of contact i on the tool is -K d_i u_i, with the
+/// spring stiffness K [N/m].
 ///
-/// Arrays have room for whole packs and one more (see simd.hpp). After `pad`, depth, gradient and weight are zero
-/// beyond size(), the neutral element of every sum, so that no loop needs a tail.
+/// Every array has room for the capacity, rounded up to whole SIMD packs, plus one pack. After `pad`, depth,
+/// gradient and weight are zero beyond size(). Zero changes no sum, so loops over whole packs need no remainder
+/// loop.
 class ContactBuffer {
  public:
-  /// Allocates; nothing else does. No contact search may return more than `capacity` contacts.
+  /// Allocates all memory; no other function allocates. `capacity`: largest number of contacts that a search
+  /// may return.
   explicit ContactBuffer(std::size_t capacity);
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   std::size_t capacity() const { return capacity_; }
-  /// Inline, because loops that end by it would otherwise spill their registers around the call.
+  /// Size rounded up to whole SIMD packs. Inline, because a call in a loop condition would spill the loop's
+  /// registers.
   std::size_t padded_size() const { return simd::padded(size_); }
 
   void clear() { size_ = 0; }
   /// Appends a contact with zero depth, gradient and weight. Precondition: size() < capacity().
   void push(std::uint32_t index, const Vec3& point, const Vec3& normal);
-  /// Includes the n contacts already written behind the last one. Precondition: there is room.
+  /// Counts n more contacts, which the caller has already written behind the last contact. Precondition: size()
+  /// + n <= capacity().
   void extend(std::size_t n) { size_ += n; }
   /// Appends a copy of contact `from` of another buffer. Precondition: size() < capacity().
   void push_copy_of(const ContactBuffer& other, std::size_t from) { copy(other, from, size_++); }
-  /// Replaces the contents by the contacts of another buffer, padded. Precondition: other.size() <= capacity().
+  /// Replaces the contents by the contacts of another buffer and pads. Precondition: other.size() <=
+  /// capacity().
   void assign(const ContactBuffer& other);
   /// Overwrites contact `to` with contact `from`.
   void copy(std::size_t from, std::size_t to) { copy(*this, from, to); }
   /// Keeps the first n contacts. Precondition: n <= size().
   void shrink(std::size_t n) { size_ = n; }
-  /// Zeroes depth, gradient and weight beyond size(), at least to the end of the last pack.
+  /// Sets depth, gradient and weight to zero beyond size(), at least to the end of the last pack.
   void pad();
 
-  /// The largest depth, possibly negative; 0 without contacts. O(n).
+  /// Returns the largest depth [m], which may be negative; 0 without contacts. O(n).
   double largest_depth() const noexcept;
 
   Vec3 point(std::size_t i) const { return {x[i], y[i], z[i]}; }
@@ -63,12 +70,12 @@ class ContactBuffer {
     uz[i] = u.z();
   }
 
-  std::vector<std::uint32_t> index;  ///< of the shell point or spring
+  std::vector<std::uint32_t> index;  ///< number of the shell point or spring
   AlignedDoubles x, y, z;            ///< colliding point, world [m]
-  AlignedDoubles nx, ny, nz;         ///< outward surface normal of the environment
-  AlignedDoubles depth;              ///< d_i [m]
-  AlignedDoubles ux, uy, uz;         ///< gradient u_i
-  AlignedDoubles weight;             ///< c_i of the force law
+  AlignedDoubles nx, ny, nz;         ///< unit outward normal of the environment's surface
+  AlignedDoubles depth;              ///< penetration depth d_i [m]
+  AlignedDoubles ux, uy, uz;         ///< gradient u_i, a unit vector
+  AlignedDoubles weight;             ///< weight c_i that the force law gives the spring
 
  private:
   void copy(const ContactBuffer& other, std::size_t from, std::size_t to);
@@ -77,27 +84,33 @@ class ContactBuffer {
   std::size_t capacity_;
 };
 
-/// The stiffness tensor S = sum c_i u_i u_i^T in units of K, from the buffer's weights (thesis Eq. 3). It has six
-/// independent entries, so stiffness ratios cost O(n); the thesis's n x n matrix of squared inner products is never
-/// built. O(n), as all of the following. Precondition of all: the contacts are padded (ContactBuffer::pad).
+/// Returns the stiffness tensor S = sum c_i u_i u_i^T in units of the spring stiffness K, with the weights c_i
+/// and gradients u_i in the buffer (thesis Eq. 3). S has six independent entries, so all stiffness ratios
+/// together cost O(n). The thesis's n x n matrix of squared inner products is not needed. O(n). Precondition:
+/// the contacts are padded (ContactBuffer::pad).
 Mat3 stiffness_tensor(const ContactBuffer& contacts);
 
-/// Sum of c_i d_i u_i u_i^T over the contacts with c_i d_i > 0 [m]; times K, the loads along their directions, whose
-/// trace is their sum.
+/// Returns sum c_i d_i u_i u_i^T [m] over the contacts with c_i d_i > 0. Times K it is the tensor of the spring
+/// loads, and its trace is the sum of the loads [N]. O(n). Precondition: the contacts are padded.
 Mat3 load_tensor(const ContactBuffer& contacts);
 
-/// Sum c_i d_i u_i [m]: the rendered penetration depth vector, thesis Eq. 6.
+/// Returns sum c_i d_i u_i [m], the rendered penetration depth vector (thesis Eq. 6). O(n). Precondition: the
+/// contacts are padded.
 Vec3 weighted_depth(const ContactBuffer& contacts);
 
-/// Smallest and largest stiffness ratio rho_i = u_i^T S u_i (thesis Eq. 4) over the contacts; zeros without contacts.
+/// Smallest and largest stiffness ratio over the contacts. The ratio rho_i = u_i^T S u_i is the rendered
+/// stiffness along contact i divided by K (thesis Eq. 4).
 struct RatioRange {
   double min = 0.0;
   double max = 0.0;
 };
+/// Returns the range of the stiffness ratios for the stiffness tensor S; zeros without contacts. O(n).
+/// Precondition: the contacts are padded.
 RatioRange ratio_range(const ContactBuffer& contacts, const Mat3& S);
 
-/// Largest eigenvalue of a symmetric matrix, to rounding. Iterative, about 0.3 us: the closed form loses half of the
-/// digits if the largest eigenvalue is double, as it is for a well-shaped tensor.
+/// Returns the largest eigenvalue of a symmetric matrix, exact to rounding. Iterative, about 0.3 us. The closed
+/// form would lose half of the digits where the largest eigenvalue is double, as it is for a well-shaped
+/// stiffness tensor.
 double lambda_max(const Mat3& S);
 
 }  // namespace hapbench

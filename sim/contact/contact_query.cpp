@@ -10,8 +10,8 @@
 namespace hapbench {
 namespace {
 
-/// Compares every point of the shell with the tool, eight at a time: the reference for the search by neighbour lists.
-/// O(shell size), about 0.3 ns a point with 512-bit registers.
+/// Compares every point of the shell with the tool, eight points at a time. Reference for the search by
+/// neighbour lists. O(shell size), about 0.3 ns for each point with 512-bit registers.
 class ShellQuery final : public ContactQuery {
  public:
   ShellQuery(const PointShell& shell, const ToolShape& tool)
@@ -32,7 +32,7 @@ class ShellQuery final : public ContactQuery {
  private:
   const PointShell& shell_;
   const ToolShape& tool_;
-  std::vector<std::uint32_t> numbers_;  ///< 0, 1, … of the points
+  std::vector<std::uint32_t> numbers_;  ///< point numbers 0, 1, …
 };
 
 }  // namespace

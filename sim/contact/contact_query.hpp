@@ -11,12 +11,13 @@
 
 namespace hapbench {
 
-/// Work done by a contact search since its last reset.
+/// Counters of the work of a contact search since its last reset.
 struct SearchWork {
   std::uint64_t queries = 0;
   std::uint64_t points_tested = 0;  ///< shell points compared with the tool, without padding
-  std::uint64_t lists_rebuilt = 0;  ///< neighbour lists; 0 for a search without them
-  std::uint64_t skipped = 0;        ///< queries answered "nothing" from a clearance bound, without testing a point
+  std::uint64_t lists_rebuilt = 0;  ///< neighbour lists built; 0 for a search without lists
+  /// Queries answered with no contact by the clearance bound alone, without testing a point.
+  std::uint64_t skipped = 0;
 
   SearchWork& operator+=(const SearchWork& other) noexcept {
     queries += other.queries;
@@ -27,18 +28,19 @@ struct SearchWork {
   }
 };
 
-/// Finds the contacts that a tool in a given pose has. Of a search (make_contact_query) they are points of a shell,
-/// whose depths and gradients are left to a depth model.
+/// Finds the contacts of the tool in a given pose. A search (make_contact_query) finds points of a shell and
+/// leaves their depths and gradients to a depth model.
 class ContactQuery {
  public:
   virtual ~ContactQuery() = default;
 
-  /// Replaces the contents of `contacts` by the contacts at the pose: of a search the colliding points (inside the tool
-  /// or on its surface) in ascending index. Precondition: contacts.capacity() >= capacity(). Allocates nothing.
+  /// Replaces the contents of `contacts` by the contacts at the pose. A search returns the colliding points,
+  /// which lie inside the tool or on its surface, in ascending index. Precondition: contacts.capacity() >=
+  /// capacity(). Allocates nothing.
   virtual void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
-  /// Upper bound of the number of contacts at a pose.
+  /// Upper bound of the number of contacts at any pose.
   virtual std::size_t capacity() const noexcept = 0;
-  /// Returns to t = 0, counters included.
+  /// Returns to t = 0 and sets all counters to zero.
   virtual void reset() noexcept { work_ = {}; }
   virtual const SearchWork& work() const noexcept { return work_; }
 
@@ -46,8 +48,9 @@ class ContactQuery {
   SearchWork work_;
 };
 
-/// The search used by runs: neighbour lists, or with Skips::off brute force, which compares every point of the shell
-/// with the tool. Their answers are the same bit by bit. Shell and tool must outlive it. O(shell size).
+/// Returns the contact search of a run. With Skips::on it uses neighbour lists. With Skips::off it compares
+/// every point of the shell with the tool (brute force). Both return bitwise identical contacts. Shell and tool
+/// must outlive the search. O(shell size).
 std::unique_ptr<ContactQuery> make_contact_query(const PointShell& shell, const ToolShape& tool, Skips skips);
 
 }  // namespace hapbench

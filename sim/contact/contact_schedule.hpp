@@ -6,33 +6,35 @@
 
 namespace hapbench {
 
-/// How late contacts come: a slow loop finds them while a fast one renders (multi-rate rendering).
+/// Timing of multi-rate contacts: a slow loop finds the contacts while the fast loop renders the force in every
+/// step.
 struct Lateness {
-  std::int64_t every = 1;  ///< contacts are found at rows 0, every, 2 every, …
-  std::int64_t delay = 0;  ///< rows from a query until its contacts serve
-  bool linear = false;     ///< depths follow the tool until the next answer; else they are held
-  double dropout = 0.0;    ///< probability that a query after the first is lost
+  std::int64_t every = 1;  ///< contacts are searched in steps 0, every, 2 every, …
+  std::int64_t delay = 0;  ///< steps from a query until its contacts are used
+  bool linear = false;     ///< true: depths follow the tool's motion until the next result; false: depths are held
+  double dropout = 0.0;    ///< probability that a query is lost; the first query is never lost
 
-  /// False where every row has its own contacts.
+  /// Returns false if every step uses its own contacts: no hold, delay or loss.
   bool any() const { return every > 1 || delay > 0 || dropout > 0.0; }
 };
 
-/// When a source finds contacts that does not find them in every row, and which query serves in the present row. The
-/// source changes it at the first query of each row.
+/// State of multi-rate contacts: their timing and the query whose contacts are used in the current step. The
+/// contact source updates it at the first query of each step.
 struct ContactSchedule {
+  /// A query of the slow loop: the tool's pose and the step in which the query was sent.
   struct Query {
     ToolPose pose;
     std::uint64_t row = 0;
   };
 
-  Lateness lateness;
-  bool serves = false;      ///< a query has been answered
-  Query latest;             ///< the query that serves, if any does
-  std::uint64_t asked = 0;  ///< queries so far, lost queries included
+  Lateness timing;
+  bool has_result = false;  ///< true once a query has returned contacts
+  Query latest;             ///< query whose contacts are used; undefined while no query has returned
+  std::uint64_t asked = 0;  ///< queries sent so far, including lost queries
   std::uint64_t lost = 0;
 
-  /// The query whose contacts serve in the present row; null before the first.
-  const Query* used() const noexcept { return serves ? &latest : nullptr; }
+  /// Returns the query whose contacts are used in the current step, or null if no query has returned yet.
+  const Query* used() const noexcept { return has_result ? &latest : nullptr; }
 };
 
 }  // namespace hapbench

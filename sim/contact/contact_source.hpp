@@ -8,25 +8,26 @@ namespace hapbench {
 
 struct ContactSchedule;
 
-/// The environment as the step loop sees it: each contact comes with its depth and gradient, and the buffer is padded.
-/// A shell of points needs a search and a depth model for that (algorithms/depth/depth_model.hpp); springs know their
-/// depths, and so do modules (algorithms/module). Asked once in every step, and again within a step by some
-/// integrators.
+/// The environment as the step loop sees it: contacts with depth and gradient, in a padded buffer. A shell of
+/// points needs a search and a depth model for this (ShellSource in algorithms/depth/depth_model.hpp). Springs
+/// and modules (algorithms/module) compute their depths themselves. Queried once in every step, and again
+/// within a step by integrators that evaluate the force more than once.
 class ContactSource : public ContactQuery {
  public:
-  /// Hands over the number of the present row, which changes before the first query of each row, to sources whose
-  /// answer depends on more than the pose. Called once, before the first step, unless no Simulation steps the source.
+  /// Gives the source access to the number of the current step, for sources whose contacts depend on more than
+  /// the pose. `*row` changes before the first query of each step. Called once, before the first step. Not
+  /// called if no Simulation steps the source.
   void follow(const std::uint64_t* row) { row_ = row; }
-  /// The rows in which the source finds contacts; null if it finds them in every row. The pointer stays valid as long
-  /// as the source. Called before the first step, never within a step.
+  /// Returns the schedule of a source that does not find contacts in every step; null if it finds them in every
+  /// step. The pointer stays valid as long as the source. Called before the first step only.
   virtual const ContactSchedule* schedule() const noexcept { return nullptr; }
-  /// Description of a failure in external code since the last reset, which ends the run; null if there was none. Not
-  /// virtual, because every step reads it.
+  /// Returns a description of a failure in external code since the last reset, or null. A failure ends the run.
+  /// Not virtual, because every step reads it.
   const char* fault() const noexcept { return fault_; }
 
  protected:
   const char* fault_ = nullptr;
-  const std::uint64_t* row_ = nullptr;  ///< null where no Simulation counts rows
+  const std::uint64_t* row_ = nullptr;  ///< number of the current step; null if no Simulation steps the source
 };
 
 }  // namespace hapbench

@@ -8,13 +8,16 @@
 namespace hapbench {
 namespace {
 
-/// Edge of a cell, in distances between neighbouring points.
+/// Edge length of a cell, in distances between neighbouring points.
 constexpr double kSpacingsPerCell = 2.5;
-/// Maximum number of cells per point; most of them are empty anyway, because shells are surfaces.
+/// Maximum number of cells per point, which bounds the memory. Most cells are empty, because shells are
+/// surfaces.
 constexpr double kCellsPerPoint = 8.0;
-constexpr double kFewestCells = 4096.0;
+/// Number of cells that is always allowed, so that small shells keep cells of the wanted size.
+constexpr double kMinCells = 4096.0;
 
-/// Distance between neighbours if the points were spread evenly over the faces of their box [m].
+/// Returns the distance between neighbours [m] that n points would have if they were spread evenly over the
+/// faces of their box.
 double even_spacing(const Box& bounds, std::size_t n) {
   const Vec3 extent = bounds.size();
   const double points = static_cast<double>(std::max<std::size_t>(1, n));
@@ -22,28 +25,30 @@ double even_spacing(const Box& bounds, std::size_t n) {
   return area > 0.0 ? std::sqrt(area / points) : extent.maxCoeff() / points;
 }
 
-/// Indices 0 … n - 1 of points sorted by cell; points of one cell keep their order.
+/// Indices 0 … n - 1 of points, sorted by cell. Points of the same cell keep their order.
 struct SortedByCell {
-  std::vector<std::uint32_t> start;  ///< where each cell begins in `order`, and the end
+  std::vector<std::uint32_t> start;  ///< position of each cell's first point in `order`; the last entry is n
   std::vector<std::uint32_t> order;
 };
 
-/// Counting sort; `position(i)` returns the position of point i.
+/// Sorts the points by cell with a counting sort. `position(i)` returns the position of point i [m].
 template <class Position>
 SortedByCell sorted_by_cell(const GridCells& cells, std::size_t n, Position position) {
   SortedByCell sorted;
   sorted.start.assign(cells.count() + 1, 0);
   sorted.order.resize(n);
-  // Computes cells twice instead of storing them, to save memory for millions of points.
+  // Count the points of each cell. The cells are computed twice instead of stored, to save memory for millions
+  // of points.
   for (std::size_t i = 0; i < n; ++i) ++sorted.start[cells.cell_of(position(i))];
-  // The sums are each cell's end; filling each cell from the back turns them into its start.
+  // The partial sums are the end of each cell. Filling each cell from its end turns them into its start.
   std::partial_sum(sorted.start.begin(), sorted.start.end(), sorted.start.begin());
   for (std::size_t i = n; i-- > 0;)
     sorted.order[--sorted.start[cells.cell_of(position(i))]] = static_cast<std::uint32_t>(i);
   return sorted;
 }
 
-/// Replaces each of `count` numbers, `stride` apart, by the sum of `window` numbers starting with it.
+/// Replaces each of `count` numbers, `stride` entries apart, by the sum of `window` numbers that starts with
+/// it.
 void sum_windows(std::uint32_t* first, std::size_t count, std::size_t stride, std::size_t window) {
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = 1; k < window && i + k < count; ++k) first[i * stride] += first[(i + k) * stride];
@@ -61,7 +66,7 @@ GridCells::GridCells(const Box& bounds, std::size_t points, double edge)
   const Vec3 extent = bounds.size();
   const double number = static_cast<double>(std::max<std::size_t>(1, points));
   const auto cells = [&](int axis) { return std::floor(extent[axis] / size_) + 1.0; };
-  while (cells(0) * cells(1) * cells(2) > std::max(kFewestCells, kCellsPerPoint * number)) size_ *= 1.25;
+  while (cells(0) * cells(1) * cells(2) > std::max(kMinCells, kCellsPerPoint * number)) size_ *= 1.25;
   for (int axis = 0; axis < 3; ++axis) count_[axis] = static_cast<std::size_t>(cells(axis));
 }
 
@@ -76,7 +81,8 @@ std::uint32_t GridCells::cell_of(const Vec3& point) const {
 }
 
 GridCells::Range GridCells::range(double low, double high, int axis) const {
-  // The expression of cell_of, which is monotone in the coordinate, so no point in the box is in a cell outside.
+  // Uses the expression of cell_of, which is monotone in the coordinate. So a point in the box is never in a
+  // cell outside the range.
   const double first = std::floor((low - origin_[axis]) / size_), last = std::floor((high - origin_[axis]) / size_);
   const auto end = static_cast<double>(count_[axis] - 1);
   if (!(last >= 0.0 && first <= end)) return {};
@@ -93,11 +99,12 @@ GridIndex::GridIndex(const PointShell& shell)
   start_ = std::move(sorted.start);
   shell_index_ = std::move(sorted.order);
   keeps_order_ = std::is_sorted(shell_index_.begin(), shell_index_.end());
-  for (std::size_t place = 0; place < shell.size(); ++place) {
-    const std::uint32_t i = shell_index_[place];
-    x_[place] = shell.x()[i];
-    y_[place] = shell.y()[i];
-    z_[place] = shell.z()[i];
+  // Copy the coordinates in the order of the cells.
+  for (std::size_t k = 0; k < shell.size(); ++k) {
+    const std::uint32_t i = shell_index_[k];
+    x_[k] = shell.x()[i];
+    y_[k] = shell.y()[i];
+    z_[k] = shell.z()[i];
   }
   shell_index_.resize(shell.padded_size());
 }
@@ -116,11 +123,13 @@ std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points,
 
 std::size_t most_points_in(const PointShell& shell, const ToolShape::Cover& cover) {
   if (shell.size() == 0) return 0;
-  // Slightly larger than the radius, so that an interval as long as the ball's diameter meets at most three cells.
+  // Count the points in cells slightly larger than the balls' radius, so that an interval of one diameter meets
+  // at most three cells.
   const GridCells cells(shell.bounds(), shell.size(), cover.radius * (1.0 + 1e-6));
   const auto window = static_cast<std::size_t>(std::floor(2.0 * cover.radius / cells.size())) + 2;
   std::vector<std::uint32_t> points(cells.count());
   for (std::size_t i = 0; i < shell.size(); ++i) ++points[cells.cell_of(shell.point(i).position)];
+  // Sum the counts over cubes of `window` cells, along z, then y, then x.
   const std::size_t nx = cells.count(0), ny = cells.count(1), nz = cells.count(2);
   for (std::size_t column = 0; column < nx * ny; ++column) sum_windows(&points[column * nz], nz, 1, window);
   for (std::size_t i = 0; i < nx; ++i) {

@@ -10,26 +10,31 @@
 
 namespace hapbench {
 
-/// Cells of a uniform grid around points, 2.5 point spacings wide, the fastest size measured (0.25 mm for shells spaced
-/// by 0.1 mm). Their number is at most a few times the number of points, whatever the extent.
+/// Cells of a uniform grid around points. A cell is 2.5 point spacings wide, the fastest size measured: 0.25 mm
+/// for a shell with 0.1 mm spacing. The number of cells is at most a few times the number of points, whatever
+/// the extent.
 class GridCells {
  public:
-  /// Cells of the given edge [m], or larger ones if they would be too many.
+  /// Cells with edges of length `edge` [m], or longer edges if there would be too many cells.
   GridCells(const Box& bounds, std::size_t points, double edge);
-  /// `spacing` of neighbouring points [m]; 0 if it is unknown.
+  /// Cells for points with the given distance between neighbours, `spacing` [m]; 0 if it is unknown.
   static GridCells for_spacing(const Box& bounds, std::size_t points, double spacing);
 
+  /// Cell numbers first … last along one axis; empty if first > last.
   struct Range {
     std::size_t first = 1, last = 0;
     bool empty() const { return first > last; }
   };
-  /// The cells between two coordinates along an axis.
+  /// Returns the cells that meet the interval low … high [m] along an axis.
   Range range(double low, double high, int axis) const;
-  /// Cell (i, j, k) has the number (i * count(1) + j) * count(2) + k. Points out of bounds are in the nearest cell.
+  /// Returns the number of the cell that contains a point. Cell (i, j, k) has the number (i * count(1) + j) *
+  /// count(2) + k. A point outside the bounds belongs to the nearest cell.
   std::uint32_t cell_of(const Vec3& point) const;
+  /// Number of cells along an axis.
   std::size_t count(std::size_t axis) const { return count_[axis]; }
+  /// Number of all cells.
   std::size_t count() const { return count_[0] * count_[1] * count_[2]; }
-  /// Edge of a cell [m].
+  /// Edge length of a cell [m].
   double size() const { return size_; }
 
  private:
@@ -38,16 +43,16 @@ class GridCells {
   std::size_t count_[3];
 };
 
-/// The points of a shell sorted by the cells of a uniform grid, in compressed sparse rows. The points of the cells
-/// (i, j, k0 … k1) are one contiguous range of a copy of the shell, so that a search in a box reads one run of memory
-/// per column of cells.
+/// The points of a shell, sorted by the cells of a uniform grid and stored in compressed sparse row form. The
+/// points of the cells (i, j, k0 … k1) are contiguous in the sorted copy. A search in a box therefore reads one
+/// contiguous range of memory per column of cells, where a column is all cells with the same i and j.
 class GridIndex {
  public:
-  /// O(n).
+  /// Sorts the points. O(n).
   explicit GridIndex(const PointShell& shell);
 
-  /// Calls `visit(first, last)` for each column of cells that meets the box, with the range of its points in the sorted
-  /// arrays. Ranges ascend.
+  /// Calls `visit(first, last)` for each column of cells that meets the box, where first … last - 1 are
+  /// positions in the sorted arrays. The ranges ascend.
   template <class Visit>
   void for_each_run(const Box& box, Visit visit) const {
     const GridCells::Range x = cells_.range(box.min.x(), box.max.x(), 0), y = cells_.range(box.min.y(), box.max.y(), 1);
@@ -62,33 +67,38 @@ class GridIndex {
     }
   }
 
-  /// Sorted copies of the coordinates, padded as the shell's, and the shell index of each.
+  /// Sorted copies of the coordinates, padded like the shell, and the shell index of each sorted point.
   const double* x() const { return x_.data(); }
   const double* y() const { return y_.data(); }
   const double* z() const { return z_.data(); }
   const std::uint32_t* shell_indices() const { return shell_index_.data(); }
-  /// True if sorting changed nothing, so that runs come in ascending shell index.
+  /// Returns true if the shell was already sorted by cell, so that for_each_run visits points in ascending
+  /// shell index.
   bool keeps_order() const { return keeps_order_; }
   double cell_size() const { return cells_.size(); }
-  /// Upper bound of the number of runs that for_each_run visits.
+  /// Upper bound of the number of ranges that for_each_run visits.
   std::size_t columns() const { return cells_.count(0) * cells_.count(1); }
 
  private:
   GridCells cells_;
-  std::vector<std::uint32_t> start_;  ///< first point of each cell, one more at the end
+  /// Position of each cell's first point in the sorted arrays; the last entry is the number of points.
+  std::vector<std::uint32_t> start_;
   AlignedDoubles x_, y_, z_;
   std::vector<std::uint32_t> shell_index_;
   bool keeps_order_ = true;
 };
 
-/// Indices of the points in the order of the GridIndex of their shell. `cell_size` as for PointShell. O(n).
+/// Returns the indices of the points in the order of their shell's GridIndex. `cell_size` [m] is the
+/// PointShell's. O(n).
 std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, double cell_size);
-/// The points in that order: searches in a shell of them need not sort (GridIndex::keeps_order).
+/// Returns the points in this order. A search in a shell of these points need not sort
+/// (GridIndex::keeps_order).
 std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 
-/// Upper bound of the number of shell points that can lie in the balls at once, wherever the balls are, for the
-/// capacity of buffers: their number times the points in the fullest cube that holds such a ball, grid cells rounded
-/// up; for the thesis's drill a sixth of the block's points. O(shell size).
+/// Returns an upper bound of the number of shell points that can lie in the balls of `cover` at once, wherever
+/// the balls are. Used as the capacity of buffers. The bound is the number of balls times the number of points
+/// in the fullest cube of grid cells that can hold such a ball. For the thesis's drill it is a sixth of the
+/// block's points. O(shell size).
 std::size_t most_points_in(const PointShell& shell, const ToolShape::Cover& cover);
 
 }  // namespace hapbench

@@ -10,20 +10,22 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kAtOnce = 4;  ///< cells halved at once, whose eight halves the tool is asked about in one call
-/// A cell is halved some 60 times at most before it is smaller than the tolerance, and every time adds four to the
-/// stack.
-constexpr std::size_t kMostCells = 1024;
-constexpr std::size_t kMostLooks = 20000;
-/// Relative to the half width: a point this little outside the tool counts as in it; cells this small are not searched
-/// beyond the border.
+/// Cells that are halved together; the tool evaluates their eight halves in one call.
+constexpr std::size_t kAtOnce = 4;
+/// Maximum size of the stack of cells. A cell is smaller than the tolerance after at most about 60 halvings,
+/// and each halving adds four cells.
+constexpr std::size_t kMaxCells = 1024;
+/// Maximum number of distance evaluations in one search, which bounds its time.
+constexpr std::size_t kMaxEvaluations = 20000;
+/// Tolerances relative to the half width. A point at most kOnTool outside the tool counts as in the tool. Cells
+/// smaller than kCoarse are not searched beyond the border of an open surface.
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
-/// Relative to the half width: stretches this short are not halved, ones this long have one ball only; what outlines
-/// made of polylines leave out of round bodies.
+/// Lengths relative to the half width. Segments shorter than kShort are not halved. Segments longer than kLong
+/// have one ball only. kPolyline bounds the distance between a round body and its outline, which is a polyline.
 constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
-/// Centres to try around that of the smallest ball, in half widths.
-constexpr double kBeside[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
+/// Offsets of further ball centres from the centre of the smallest ball, in half widths.
+constexpr double kCentreOffsets[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
 
 }  // namespace
 
@@ -36,39 +38,42 @@ InsideSearch::InsideSearch(const ToolShape& tool, const Solid& solid)
       x_(2 * simd::lanes),
       y_(x_),
       z_(x_) {
-  cells_.reserve(kMostCells);
+  cells_.reserve(kMaxCells);
 }
 
 std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, double tolerance) noexcept {
   best_ = known;
-  looks_ += 8;  // of the tip and where it leads
+  evaluations_ += 8;  // about 8 evaluations: the tip centre and its improvement
   tolerance_ = tolerance;
   const SurfaceDistance tip = solid_.at(pose.position);
-  const LookedUp looked{pose.position, tip.value};
+  const LookedUp known_distance{pose.position, tip.value};
   beyond_border_ = !tip.known;
   cells_.clear();
-  improve(pose, pose.position);  // also finds what is less deep than the tolerance
+  improve(pose, pose.position);  // also finds depths smaller than the tolerance
+  // Start with the box in which tool and solid may overlap.
   const Box box = tool_.box_near(pose, 0.0, solid_.region());
   const Vec3 low = box.min.cwiseMax(solid_.region().min), high = box.max.cwiseMin(solid_.region().max);
   if ((low.array() <= high.array()).all()) {
     const Vec3 half = 0.5 * (high - low);
-    // Halved once at first, so that the whole box need not be looked at.
-    cells_.push_back({0.5 * (low + high), half, std::abs(tip.value) + 2.0 * tool_.reach(), looked});
+    // This cell is halved first, so its own depth bound may be coarse.
+    cells_.push_back({0.5 * (low + high), half, std::abs(tip.value) + 2.0 * tool_.reach(), known_distance});
   }
-  for (std::size_t looks = 0; !cells_.empty() && looks < kMostLooks; looks += 2 * kAtOnce) {
+  // Halve cells until none can hold a deeper point.
+  for (std::size_t evaluated = 0; !cells_.empty() && evaluated < kMaxEvaluations; evaluated += 2 * kAtOnce) {
     std::array<Cell, kAtOnce> parents;
     std::size_t count = 0;
     while (count < kAtOnce && !cells_.empty()) {
       if (may_be_deepest(cells_.back().bound)) parents[count++] = cells_.back();
       cells_.pop_back();
     }
-    look(pose, parents.data(), count);
+    halve(pose, parents.data(), count);
   }
   return best_ == 0.0 && beyond_border_ ? std::nullopt : std::optional(best_);
 }
 
 /// Halves the cells across their longest edges and keeps the halves that may hold a deeper point.
-void InsideSearch::look(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept {
+void InsideSearch::halve(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept {
+  // Halve the cells.
   std::array<Cell, 2 * kAtOnce> halves;
   points_.clear();
   for (std::size_t i = 0; i < count; ++i) {
@@ -83,41 +88,44 @@ void InsideSearch::look(const ToolPose& pose, const Cell* parents, std::size_t c
     }
   }
   if (points_.empty()) return;
+  // Keep the halves that meet the tool and may hold a deeper point.
   tool_.surface_constraints(pose, Vec3::Zero(), 0.0, points_);
   const std::size_t first = cells_.size();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     Cell cell = halves[i];
     double radius = cell.half.norm();
-    const double outside = -points_.depth[i];  // of the tool
+    const double outside = -points_.depth[i];  // distance outside the tool [m]
     if (!(outside <= radius)) continue;
-    // Projecting on a convex body brings no two points further apart.
-    Vec3 place = cell.centre;
+    // Move the centre of the cell to the nearest point of the tool. For a convex body, this projection
+    // increases no distance between points, so the radius stays valid.
+    Vec3 point = cell.centre;
     const Vec3 gradient = points_.gradient(i);
     if (outside > 0.0) {
-      place -= outside * gradient;
+      point -= outside * gradient;
       if (!tool_.convex()) radius += outside;
     }
-    // Nothing is deeper than the way to the surface that is known.
-    const double way = (place - cell.looked.place).norm();
-    if (!may_be_deepest(radius + way - cell.looked.value)) continue;
-    ++looks_;
-    const SurfaceDistance phi = solid_.at(place, &cell.looked);
+    // Skip the cell if the known distance alone proves that it is not deep enough.
+    const double distance = (point - cell.known_distance.place).norm();
+    if (!may_be_deepest(radius + distance - cell.known_distance.value)) continue;
+    ++evaluations_;
+    const SurfaceDistance phi = solid_.at(point, &cell.known_distance);
     if (phi.value >= radius) continue;
-    cell.looked = {place, phi.value};
+    cell.known_distance = {point, phi.value};
     cell.bound = std::min(cell.bound, radius - phi.value);
     if (!may_be_deepest(cell.bound)) continue;
     if (phi.known) {
-      if (-phi.value > best_ && (outside <= 0.0 || into_tool(pose, place))) improve(pose, place);
+      if (-phi.value > best_ && (outside <= 0.0 || into_tool(pose, point))) improve(pose, point);
     } else if (radius < kCoarse * tool_.half_width()) {
       beyond_border_ = beyond_border_ || phi.value < -best_;
       continue;
     }
-    if (cells_.size() < kMostCells) cells_.push_back(cell);
+    if (cells_.size() < kMaxCells) cells_.push_back(cell);
   }
   std::ranges::sort(cells_.begin() + static_cast<std::ptrdiff_t>(first), cells_.end(), {}, &Cell::bound);
 }
 
-/// Moves a point near the tool into it, unless it is there. The distances of a mesh are approximate.
+/// Moves a point near the tool into the tool, if it is not inside. Repeats, because the distances of a mesh
+/// tool are approximate. Returns false if the point is still outside.
 bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
   for (int round = 0; round < 3; ++round) {
     one_.clear();
@@ -129,29 +137,30 @@ bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
   return false;
 }
 
-/// Follows the depth from a place of the tool to deeper ones.
-void InsideSearch::improve(const ToolPose& pose, Vec3 place) noexcept {
+/// Moves from a point of the tool to deeper points of the tool and updates the largest depth.
+void InsideSearch::improve(const ToolPose& pose, Vec3 point) noexcept {
   constexpr int kMoves = 8, kHalvings = 6;
   const PlaceArrays answer{x_.data(), y_.data(), z_.data()};
-  LookedUp last{place, solid_.at(place).value};
-  const auto try_place = [&](Vec3 q) {
+  LookedUp last{point, solid_.at(point).value};
+  const auto try_point = [&](Vec3 q) {
     if (!into_tool(pose, q)) return false;
     const SurfaceDistance phi = solid_.at(q, &last);
     last = {q, phi.value};
     if (!phi.known || !(-phi.value > best_)) return false;
     best_ = -phi.value;
-    place = q;
+    point = q;
     return true;
   };
-  try_place(Vec3(place));
+  try_point(Vec3(point));
+  // Move towards the support point along -grad phi; halve the move until the depth increases.
   for (int move = 0; move < kMoves; ++move) {
     one_.clear();
-    one_.push(0, place, solid_.gradient(place, kNormalsOver * tool_.half_width()));
+    one_.push(0, point, solid_.gradient(point, kNormalsOver * tool_.half_width()));
     tool_.foremost_places(pose, one_, answer);
-    const Vec3 way = Vec3(x_[0], y_[0], z_[0]) - place;
+    const Vec3 displacement = Vec3(x_[0], y_[0], z_[0]) - point;
     bool moved = false;
-    double part = 1.0;
-    for (int i = 0; i < kHalvings && !moved; ++i, part *= 0.5) moved = try_place(place + part * way);
+    double fraction = 1.0;
+    for (int i = 0; i < kHalvings && !moved; ++i, fraction *= 0.5) moved = try_point(point + fraction * displacement);
     if (!moved) return;
   }
 }
@@ -161,102 +170,106 @@ InsideBound::InsideBound(const ToolShape& tool, const Solid& solid)
       solid_(solid),
       half_width_(tool.half_width()),
       outline_(tool.outline()),
-      // The outline of a tool on a grid may leave out a cell's diagonal.
+      // The outline of a tool on a grid may omit up to a cell's diagonal.
       margin_(kPolyline * half_width_ + 2.0 * tool.surface_error()) {
   const auto [far, tip] = std::ranges::minmax_element(outline_, {}, &ProfilePoint::s);
-  stretches_.push_back({far->s, tip->s});
+  segments_.push_back({far->s, tip->s});
 }
 
-/// Distance from a place of the axis to the furthest point of the stretch: one of the outline's points in it or where
-/// the outline crosses its ends.
-double InsideBound::radius(const Stretch& stretch, double place) const {
+/// Returns the distance from a position on the axis to the farthest point of the segment. This is a point of
+/// the outline within the segment, or a point at which the outline crosses an end of the segment.
+double InsideBound::radius(const Segment& segment, double position) const {
   double furthest = 0.0;
   for (std::size_t i = 0; i < outline_.size(); ++i) {
     const ProfilePoint& p = outline_[i];
-    if (p.s >= stretch.from && p.s <= stretch.to) furthest = std::max(furthest, math::hypot(p.s - place, p.rho));
+    if (p.s >= segment.from && p.s <= segment.to) furthest = std::max(furthest, math::hypot(p.s - position, p.rho));
     if (i + 1 == outline_.size()) break;
     const ProfilePoint& q = outline_[i + 1];
-    for (const double end : {stretch.from, stretch.to}) {
+    for (const double end : {segment.from, segment.to}) {
       if ((p.s - end) * (q.s - end) >= 0.0) continue;
       const double rho = p.rho + (end - p.s) / (q.s - p.s) * (q.rho - p.rho);
-      furthest = std::max(furthest, math::hypot(end - place, rho));
+      furthest = std::max(furthest, math::hypot(end - position, rho));
     }
   }
   return furthest + margin_;
 }
 
-std::vector<InsideBound::Ball> InsideBound::balls_of(const Stretch& stretch) const {
-  constexpr int kRounds = 24;  // each leaves two thirds of the way: to 1e-4 of it
-  double low = stretch.from - half_width_, high = stretch.to + half_width_;
+/// Returns the smallest ball around the segment and, for a short segment, further balls around it.
+std::vector<InsideBound::Ball> InsideBound::balls_of(const Segment& segment) const {
+  constexpr int kRounds = 24;  // each round keeps two thirds of the interval; 24 rounds leave 1e-4 of it
+  double low = segment.from - half_width_, high = segment.to + half_width_;
   for (int i = 0; i < kRounds; ++i) {
     const double third = (high - low) / 3.0;
-    // The distance to the furthest of some points is convex.
-    if (radius(stretch, low + third) < radius(stretch, high - third)) {
+    // Ternary search: the distance to the farthest of several points is convex in the centre.
+    if (radius(segment, low + third) < radius(segment, high - third)) {
       high -= third;
     } else {
       low += third;
     }
   }
   const double middle = 0.5 * (low + high);
-  std::vector<Ball> balls = {{middle, radius(stretch, middle), {}}};
-  if (stretch.to - stretch.from > kLong * half_width_) return balls;
-  for (const double beside : kBeside) {
-    const double place = middle - beside * half_width_;
-    balls.push_back({place, radius(stretch, place), {}});
+  std::vector<Ball> balls = {{middle, radius(segment, middle), {}}};
+  if (segment.to - segment.from > kLong * half_width_) return balls;
+  for (const double offset : kCentreOffsets) {
+    const double position = middle - offset * half_width_;
+    balls.push_back({position, radius(segment, position), {}});
   }
   return balls;
 }
 
-/// The bound by one ball, without a look where the last one tells that this is enough or, if only enough will do,
-/// cannot be.
-InsideBound::Look InsideBound::look(Ball& ball, const Question& q) {
-  const Vec3 centre = q.pose.position + ball.place * q.pose.axis;
-  const double beyond = ball.radius + q.moved + std::abs(ball.place) * q.turned;
+/// Returns the bound from one ball. Uses the ball's last evaluation, without a new one, if this bound is
+/// sufficient or, if only a sufficient bound is of use, clearly cannot become sufficient.
+InsideBound::Evaluation InsideBound::evaluate(Ball& ball, const BoundRequest& q) {
+  const Vec3 centre = q.pose.position + ball.position * q.pose.axis;
+  const double beyond = ball.radius + q.moved + std::abs(ball.position) * q.turned;
   if (ball.near) {
-    const double way = (centre - ball.near->place).norm(), bound = beyond - ball.near->value + way;
-    if (bound <= q.enough || (!q.best && bound - 2.0 * way > q.enough)) return {bound, true};
+    const double distance = (centre - ball.near->place).norm(), bound = beyond - ball.near->value + distance;
+    if (bound <= q.enough || (!q.best && bound - 2.0 * distance > q.enough)) return {bound, true};
   }
-  ++looks_;
+  ++evaluations_;
   const SurfaceDistance phi = solid_.at(centre, ball.near ? &*ball.near : nullptr);
   ball.near.reset();
   if (phi.known) ball.near = LookedUp{centre, phi.value};
   return {beyond - phi.value, phi.known};
 }
 
-double InsideBound::of(std::size_t k, const Question& question) {
-  if (stretches_[k].balls.empty()) stretches_[k].balls = balls_of(stretches_[k]);
-  double least = std::numeric_limits<double>::infinity();
+/// Returns the bound for segment k: the smallest bound of its balls, or the larger bound of its two halves if
+/// this is smaller.
+double InsideBound::bound_of_segment(std::size_t k, const BoundRequest& request) {
+  if (segments_[k].balls.empty()) segments_[k].balls = balls_of(segments_[k]);
+  double smallest = std::numeric_limits<double>::infinity();
   bool known = false;
-  for (Ball& ball : stretches_[k].balls) {
-    const Look look_here = look(ball, question);
-    known = known || look_here.known;
-    least = std::min(least, look_here.bound);
-    if (least <= question.enough) return least;
+  for (Ball& ball : segments_[k].balls) {
+    const Evaluation evaluation = evaluate(ball, request);
+    known = known || evaluation.known;
+    smallest = std::min(smallest, evaluation.bound);
+    if (smallest <= request.enough) return smallest;
   }
-  const double from = stretches_[k].from, to = stretches_[k].to;
-  if (to - from < kShort * half_width_) return known ? least : 0.0;
-  if (stretches_[k].halves == 0) {
-    stretches_[k].halves = stretches_.size();
-    stretches_.push_back({from, 0.5 * (from + to)});
-    stretches_.push_back({0.5 * (from + to), to});
+  const double from = segments_[k].from, to = segments_[k].to;
+  // Halve the segment if it is long enough.
+  if (to - from < kShort * half_width_) return known ? smallest : 0.0;
+  if (segments_[k].halves == 0) {
+    segments_[k].halves = segments_.size();
+    segments_.push_back({from, 0.5 * (from + to)});
+    segments_.push_back({0.5 * (from + to), to});
   }
-  const std::size_t halves = stretches_[k].halves;
-  const double front = of(halves + 1, question);
-  if (front > question.enough && !question.best) return least;
-  const double back = of(halves, question);
-  return std::min(least, std::max(front, back));
+  const std::size_t halves = segments_[k].halves;
+  const double front = bound_of_segment(halves + 1, request);
+  if (front > request.enough && !request.best) return smallest;
+  const double back = bound_of_segment(halves, request);
+  return std::min(smallest, std::max(front, back));
 }
 
 double InsideBound::at(const ToolPose& pose, double moved, double turned, double enough, bool best) {
   const Box box = tool_.box_near(pose, moved + turned * tool_.reach(), solid_.region());
   if ((box.min.array() > box.max.array()).any()) return 0.0;
   const double in_box = solid_.deepest_in(box);
-  return in_box <= enough ? in_box : std::min(in_box, of(0, {pose, moved, turned, enough, best}));
+  return in_box <= enough ? in_box : std::min(in_box, bound_of_segment(0, {pose, moved, turned, enough, best}));
 }
 
 double InsideBound::roughly_at(const ToolPose& pose, double moved, double turned) {
-  if (stretches_[0].balls.empty()) stretches_[0].balls = balls_of(stretches_[0]);
-  return look(stretches_[0].balls.front(), {pose, moved, turned, 0.0, true}).bound;
+  if (segments_[0].balls.empty()) segments_[0].balls = balls_of(segments_[0]);
+  return evaluate(segments_[0].balls.front(), {pose, moved, turned, 0.0, true}).bound;
 }
 
 }  // namespace hapbench

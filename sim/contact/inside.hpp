@@ -9,114 +9,127 @@
 
 namespace hapbench {
 
-inline constexpr double kNormalsOver = 1e-3;  ///< share of a tool's half width over which normals are measured
+/// Step for differences of phi (surface normals), relative to the tool's half width.
+inline constexpr double kNormalsOver = 1e-3;
 
-/// How deep a tool is in a solid: the largest distance below its surface of any point of the tool, max(0, -phi) over
-/// the tool's body. Not the depth of a contact, which ends at the tool's half width and is 0 for a tool that is inside
-/// as a whole.
+/// Computes how deep a tool is inside a solid: max(0, -phi) over the tool's body, where phi is the signed
+/// distance to the solid's surface, negative inside. This is not the depth of a contact, which saturates at the
+/// tool's half width and is 0 for a tool that lies inside as a whole.
 ///
-/// phi changes by at most the way between two points, so in a box of half diagonal R about c nothing is deeper than
-/// R - phi(c). Boxes that the tool meets are halved until none can hold a point deeper by more than the tolerance than
-/// the deepest one known. That one, at first the tip centre, is improved from where it was found: -grad phi leads to
-/// the tool's foremost place in this direction, from which the way back is halved until the place is deeper. So the
-/// answer is the exact depth of some point of the tool, as a rule the deepest.
+/// Method (branch and bound): phi changes by at most the distance between two points, so no point in a box with
+/// centre c and half diagonal R is deeper than R - phi(c). Boxes that meet the tool are halved until none can
+/// hold a point that is deeper than the best known point by more than the tolerance. The best known point, at
+/// first the tip centre, is improved whenever a deeper point is found: the search moves from it towards the
+/// tool's support point (extreme point) along -grad phi and halves the move until the depth increases. The
+/// result is therefore the exact depth of one point of the tool, usually the deepest point.
 ///
-/// Allocates in the constructor only. Some 100 to 1000 distances.
+/// Allocates in the constructor only. One search evaluates about 100 to 1000 distances.
 class InsideSearch {
  public:
-  /// Both must outlive the search.
+  /// Tool and solid must outlive the search.
   InsideSearch(const ToolShape& tool, const Solid& solid);
 
-  /// The depth [m]. None where the tip centre or the points that may be the deepest lie beyond the border of an open
-  /// surface. `known`: a depth that is known of another pose, which is the answer unless the tool is deeper.
-  /// `tolerance`: relative to the tool's half width; 2 % of the depth come on top.
+  /// Returns the depth [m] of the deepest point found, or `known` if that is larger. `known` [m]: a depth found in
+  /// another pose. Returns nullopt if this is 0 and the tip centre, or a point that may be inside, lies beyond the
+  /// border of an open surface, where inside and outside are unknown. `tolerance`: absolute tolerance relative to
+  /// the tool's half width; 2 % of the depth are added to it.
   std::optional<double> depth(const ToolPose& pose, double known = 0.0, double tolerance = kTolerance) noexcept;
 
+  /// Default of `tolerance`, relative to the tool's half width, and the relative tolerance of the depth.
   static constexpr double kTolerance = 0.02;
-  /// Additional depth error [m] from the tool's grid or from points that stand for a surface.
+  /// Additional error of the depth [m], from a tool sampled on a grid or from points that represent a surface.
   double error() const noexcept { return error_; }
-  std::size_t looks() const noexcept { return looks_; }  ///< distances of all searches so far, about
+  /// Approximate number of distances evaluated in all searches so far.
+  std::size_t looks() const noexcept { return evaluations_; }
 
  private:
+  /// A box of the search and the upper bound of the depth in it.
   struct Cell {
     Vec3 centre, half;
-    double bound;     ///< of the depth in the cell [m]
-    LookedUp looked;  ///< in it or in a cell that it is a part of
+    double bound;             ///< upper bound of the depth in the cell [m]
+    LookedUp known_distance;  ///< a known distance, in this cell or in a cell that contains it
   };
-  void look(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept;
+  void halve(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept;
   bool may_be_deepest(double bound) const noexcept {
     return bound > best_ + tolerance_ * tool_.half_width() + kTolerance * best_;
   }
   bool into_tool(const ToolPose& pose, Vec3& point) noexcept;
-  void improve(const ToolPose& pose, Vec3 place) noexcept;
+  void improve(const ToolPose& pose, Vec3 point) noexcept;
 
   const ToolShape& tool_;
   const Solid& solid_;
   double error_;
-  ContactBuffer points_;  ///< what the tool is asked about
-  ContactBuffer one_;
-  AlignedDoubles x_, y_, z_;  ///< an answer of the tool
-  std::vector<Cell> cells_;   ///< that may hold the deepest point, as a stack
+  ContactBuffer points_;      ///< query points for the tool
+  ContactBuffer one_;         ///< a single query point for the tool
+  AlignedDoubles x_, y_, z_;  ///< support point returned by the tool
+  std::vector<Cell> cells_;   ///< stack of cells that may hold the deepest point
+  /// Depth of the deepest point found so far [m], and the tolerance of the current search.
   double best_ = 0.0, tolerance_ = kTolerance;
-  std::size_t looks_ = 0;
-  bool beyond_border_ = false;  ///< a point there may be deeper
+  std::size_t evaluations_ = 0;
+  bool beyond_border_ = false;  ///< true if a point beyond the border may be deeper
 };
 
-/// An upper bound of how deep a tool is in a solid (InsideSearch), by a dozen look-ups instead of hundreds, for many
-/// poses of a run.
+/// Upper bound of the depth of a tool in a solid (InsideSearch), from a dozen distance evaluations instead of
+/// hundreds. Used for many poses of a run.
 ///
-/// The tool lies in the body of revolution of its outline, and a stretch of that in a ball about any place of the axis
-/// whose radius reaches to the stretch's furthest point. phi changes by at most the way between two points, so nothing
-/// in a ball about c of radius R is deeper than R - phi(c), and after a move of the tool by no more than the way of c
-/// besides. The smallest ball fits round tips and shanks; larger ones, about places ahead of the stretch and behind it,
-/// touch a rim or a flat end along the surface's normal and so fit those at any tilt. A stretch that no ball settles is
-/// halved.
+/// The tool lies in the body of revolution of its outline. Each segment of this body along the axis lies in a
+/// ball around any centre on the axis, if the radius reaches the segment's farthest point. The signed distance
+/// phi changes by at most the distance between two points, so no point in a ball of radius R around c is deeper
+/// than R - phi(c). When the tool moves, the bound grows by at most the displacement of c. The smallest ball
+/// fits round tips and shanks. Larger balls, with centres ahead of or behind the segment, touch a rim or a flat
+/// end along the surface's normal and fit these at any tilt. A segment for which no ball gives a sufficient
+/// bound is halved.
 class InsideBound {
  public:
-  /// Both must outlive the bound.
+  /// Tool and solid must outlive the bound.
   InsideBound(const ToolShape& tool, const Solid& solid);
 
-  /// No point of the tool in this pose is deeper [m], nor in any other whose tip centre lies within `moved` [m] of this
-  /// one's and whose axis differs by at most `turned` in length; negative where all are outside. A bound that is
-  /// `enough` is not improved, nor, unless `best` is wanted, one that clearly will not be. Unknown places count as
-  /// outside. Allocates when it looks at a stretch for the first time.
+  /// Returns an upper bound [m] of the depth of every point of the tool, negative if all points are outside. It
+  /// holds for this pose and for every pose whose tip centre is at most `moved` [m] away and whose axis, a unit
+  /// vector, differs by at most `turned` in length. A bound <= `enough` [m] is not improved. With `best` false,
+  /// a bound that clearly cannot fall to `enough` is not improved either. Points at which the solid's inside is
+  /// unknown count as outside. Allocates when it uses a segment of the tool for the first time.
   double at(const ToolPose& pose, double moved, double turned, double enough, bool best);
-  /// The same by the ball around the whole tool alone.
+  /// Returns a coarser bound with the same meaning, from one ball around the whole tool.
   double roughly_at(const ToolPose& pose, double moved, double turned);
 
-  std::size_t looks() const noexcept { return looks_; }
+  /// Number of distances evaluated so far.
+  std::size_t looks() const noexcept { return evaluations_; }
 
  private:
+  /// A ball around a segment of the tool.
   struct Ball {
-    double place, radius;          ///< of its centre on the axis from the tip centre on [m]
-    std::optional<LookedUp> near;  ///< where it was last, if that is known to be inside or outside
+    double position, radius;       ///< position of the centre on the axis, from the tip centre [m]; radius [m]
+    std::optional<LookedUp> near;  ///< last centre with a known distance; empty if unknown
   };
-  struct Stretch {
-    double from, to;  ///< on the axis [m]
+  /// A segment of the tool along its axis.
+  struct Segment {
+    double from, to;  ///< ends on the axis, from the tip centre [m]
     std::vector<Ball> balls = {};
-    std::size_t halves = 0;  ///< the first of two; 0 while there are none
+    std::size_t halves = 0;  ///< index of the first of its two halves; 0 if it is not halved
   };
-  struct Question {
+  /// The arguments of `at`.
+  struct BoundRequest {
     const ToolPose& pose;
     double moved, turned, enough;
     bool best;
   };
-  double radius(const Stretch& stretch, double place) const;
-  std::vector<Ball> balls_of(const Stretch& stretch) const;
-  struct Look {
-    double bound;  ///< by one ball [m]
-    bool known;    ///< the solid knows its centre
+  double radius(const Segment& segment, double position) const;
+  std::vector<Ball> balls_of(const Segment& segment) const;
+  struct Evaluation {
+    double bound;  ///< upper bound from one ball [m]
+    bool known;    ///< true if the solid knows whether the ball's centre is inside
   };
-  Look look(Ball& ball, const Question& question);
-  double of(std::size_t stretch, const Question& question);
+  Evaluation evaluate(Ball& ball, const BoundRequest& request);
+  double bound_of_segment(std::size_t segment, const BoundRequest& request);
 
   const ToolShape& tool_;
   const Solid& solid_;
   double half_width_;
   std::vector<ProfilePoint> outline_;
-  double margin_;  ///< by which the body may reach beyond the outline [m]
-  std::vector<Stretch> stretches_;
-  std::size_t looks_ = 0;
+  double margin_;  ///< distance by which the body may extend beyond the outline [m]
+  std::vector<Segment> segments_;
+  std::size_t evaluations_ = 0;
 };
 
 }  // namespace hapbench

@@ -4,15 +4,15 @@
 
 namespace hapbench {
 
-LateContacts::LateContacts(std::unique_ptr<ContactSource> source, const Lateness& lateness, bool may_pull,
+LateContacts::LateContacts(std::unique_ptr<ContactSource> source, const Lateness& timing, bool may_pull,
                            std::uint64_t seed)
     : source_(std::move(source)),
       may_pull_(may_pull),
       seed_(seed),
       random_(seed),
-      waiting_(static_cast<std::size_t>(lateness.delay / lateness.every) + 1),
+      waiting_(static_cast<std::size_t>(timing.delay / timing.every) + 1),
       found_(source_->capacity()) {
-  schedule_.lateness = lateness;
+  schedule_.timing = timing;
   source_->follow(&schedule_.latest.row);
 }
 
@@ -21,41 +21,41 @@ void LateContacts::reset() noexcept {
   fault_ = nullptr;
   random_ = Random(seed_);
   calls_ = schedule_.asked = schedule_.lost = 0;
-  last_row_.reset();
+  last_step_.reset();
   first_ = count_ = 0;
-  schedule_.serves = false;
+  schedule_.has_result = false;
   found_.clear();
 }
 
-void LateContacts::begin_row(std::uint64_t row, const ToolPose& pose) noexcept {
-  const Lateness& late = schedule_.lateness;
+void LateContacts::begin_step(std::uint64_t row, const ToolPose& pose) noexcept {
+  const Lateness& timing = schedule_.timing;
 
-  // Send the query of the row, if it has one.
-  if (row % static_cast<std::uint64_t>(late.every) == 0) {
-    const bool is_lost = schedule_.asked++ > 0 && late.dropout > 0.0 && random_.uniform() < late.dropout;
+  // Send a query if this step has one.
+  if (row % static_cast<std::uint64_t>(timing.every) == 0) {
+    const bool is_lost = schedule_.asked++ > 0 && timing.dropout > 0.0 && random_.uniform() < timing.dropout;
     if (is_lost)
       ++schedule_.lost;
     else
       waiting_[(first_ + count_++) % waiting_.size()] = {pose, row};
   }
 
-  // Take the answer that comes due. At most one does, because each query takes as long.
-  if (count_ == 0 || waiting_[first_].row + static_cast<std::uint64_t>(late.delay) > row) return;
+  // Take the result that is due. At most one is due, because all queries have the same delay.
+  if (count_ == 0 || waiting_[first_].row + static_cast<std::uint64_t>(timing.delay) > row) return;
   schedule_.latest = waiting_[first_];
   first_ = (first_ + 1) % waiting_.size();
   --count_;
-  schedule_.serves = true;
+  schedule_.has_result = true;
   source_->contacts_at(schedule_.latest.pose, found_);
   fault_ = source_->fault();
 }
 
 void LateContacts::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
-  // Integrators that query within a step get the contacts of the row.
+  // Integrators that query again within a step get the contacts of the step.
   const std::uint64_t row = row_ != nullptr ? *row_ : calls_++;
-  if (row != last_row_) begin_row(row, pose);
-  last_row_ = row;
+  if (row != last_step_) begin_step(row, pose);
+  last_step_ = row;
 
-  if (schedule_.lateness.linear && !found_.empty())
+  if (schedule_.timing.linear && !found_.empty())
     move_found_to(pose, contacts);
   else
     contacts.assign(found_);
@@ -67,8 +67,8 @@ void LateContacts::move_found_to(const ToolPose& pose, ContactBuffer& contacts) 
   const Vec3 moved = pose.position - from.position;
   const Mat3 turned = turn_matrix(from, pose) - Mat3::Identity();
   for (std::size_t i = 0; i < found_.size(); ++i) {
-    const Vec3 way = moved + turned * (found_.point(i) - from.position);
-    const double depth = found_.depth[i] + found_.gradient(i).dot(way);
+    const Vec3 displacement = moved + turned * (found_.point(i) - from.position);
+    const double depth = found_.depth[i] + found_.gradient(i).dot(displacement);
     if (!(depth > 0.0) && !may_pull_) continue;
     contacts.push_copy_of(found_, i);
     contacts.depth[contacts.size() - 1] = depth;

@@ -13,22 +13,25 @@
 
 namespace hapbench {
 
-/// The contacts of another source, found in some rows only and used until newer ones come; none before the first.
+/// Multi-rate contacts: the contacts of another source, found in some steps only and used until newer contacts
+/// arrive. There are no contacts before the first query has returned.
 ///
-/// Held contacts keep depth, point and gradient. Linear ones keep point and gradient, and their depth grows by the move
-/// of the tool's material at x_i since the query at p_q, with Q = turn_matrix of the two poses:
+/// Held contacts keep depth, point and gradient. Linear contacts keep point and gradient, and their depth
+/// follows the motion of the tool's material at the point x_i since the query:
 ///
-///   d_i + <u_i, (p - p_q) + (Q - I)(x_i - p_q)>.
+///   d_i + <u_i, (p - p_q) + (Q - I)(x_i - p_q)>
 ///
-/// Those not above 0 are left out, except springs that pull. Integrators that ask within a step get the row's contacts,
-/// held or moved to where they ask.
+/// with the tip centre p of the current pose, p_q of the query's pose, and Q = turn_matrix of the two poses.
+/// Contacts with a depth <= 0 are dropped, except for springs that may pull. Integrators that query within a
+/// step get the contacts of the step, held or moved to the pose of their query.
 ///
-/// The source is asked when its answer comes due, for the pose of the query: queries on their way keep no contacts, and
-/// sources with a memory still see them in order.
+/// The source is queried when the result is due, for the pose of the query. Pending queries therefore store no
+/// contacts, and a source with a memory still sees all queries in order.
 class LateContacts final : public ContactSource {
  public:
-  /// `may_pull`: depths below 0 are springs that pull. Precondition: every >= 1, delay >= 0.
-  LateContacts(std::unique_ptr<ContactSource> source, const Lateness& lateness, bool may_pull, std::uint64_t seed);
+  /// `may_pull`: contacts with negative depth are springs that pull and stay. `seed` determines which queries
+  /// are lost. Precondition: every >= 1, delay >= 0.
+  LateContacts(std::unique_ptr<ContactSource> source, const Lateness& timing, bool may_pull, std::uint64_t seed);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return source_->capacity(); }
@@ -38,9 +41,10 @@ class LateContacts final : public ContactSource {
   const ContactSchedule* schedule() const noexcept override { return &schedule_; }
 
  private:
-  /// Sends the query of the row, if it has one, and takes the answer that comes due.
-  void begin_row(std::uint64_t row, const ToolPose& pose) noexcept;
-  /// Replaces the contents of `contacts` by the found contacts with the depths that they have at this pose.
+  /// Sends the query of the step, if one is scheduled, and takes the result that is due.
+  void begin_step(std::uint64_t row, const ToolPose& pose) noexcept;
+  /// Replaces the contents of `contacts` by the found contacts with their depths at this pose (linear
+  /// contacts).
   void move_found_to(const ToolPose& pose, ContactBuffer& contacts) const noexcept;
 
   std::unique_ptr<ContactSource> source_;
@@ -48,12 +52,12 @@ class LateContacts final : public ContactSource {
   bool may_pull_;
   std::uint64_t seed_;
   Random random_;
-  std::uint64_t calls_ = 0;                ///< rows so far of a source that no Simulation steps
-  std::optional<std::uint64_t> last_row_;  ///< that has begun
+  std::uint64_t calls_ = 0;                 ///< steps so far, if no Simulation steps the source
+  std::optional<std::uint64_t> last_step_;  ///< last step that has begun; empty before the first
 
-  std::vector<ContactSchedule::Query> waiting_;  ///< ring of queries on their way
+  std::vector<ContactSchedule::Query> waiting_;  ///< ring buffer of pending queries
   std::size_t first_ = 0, count_ = 0;
-  ContactBuffer found_;  ///< contacts of the query that serves
+  ContactBuffer found_;  ///< contacts of the query in use
 };
 
 }  // namespace hapbench

@@ -11,39 +11,41 @@
 namespace hapbench {
 namespace {
 
-/// Skin in half widths of the tool. A thicker skin makes every step test more points, a thinner one makes more lists.
+/// Thickness of the skin in half widths of the tool. With a thicker skin every step tests more points. With a
+/// thinner skin lists must be rebuilt more often.
 constexpr double kSkinPerHalfWidth = 0.2;
-/// Maximum number of doublings of an empty skin while the tool is in free air.
-constexpr int kMostDoublings = 12;
-/// Relative slack, far above the rounding of the tool's motion and of the search.
+/// Maximum number of times that an empty skin is doubled while the tool is in free air.
+constexpr int kMaxDoublings = 12;
+/// Relative slack that covers rounding in the tool's motion and in the search.
 constexpr double kSlack = 1e-9;
 
-/// Upper bound of the coordinates [m] of a tool with points of the shell within twice its reach; a tool further away
-/// has no points to list.
+/// Upper bound of the coordinates [m] of a tool that has shell points within twice its reach. A tool farther
+/// away has no points to list.
 double largest_scale(const PointShell& shell, const ToolShape& tool) {
   const Box& box = shell.bounds();
   return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) + 4.0 * tool.reach();
 }
 
-/// The contact search of a run: a list of the points within a skin around the tool, taken from a uniform grid and used
-/// until the tool has moved or turned further than the skin. The answers are those of ShellQuery, bit by bit.
+/// The contact search of a run (Verlet neighbour lists). It keeps a list of the points within a skin around the
+/// tool, taken from a uniform grid, and uses the list until the tool has moved or turned farther than the skin.
+/// Its contacts are bitwise identical to ShellQuery's.
 ///
-/// Why no point is missed: every point of the tool lies within ToolShape::moved_at_most of where it was when the list
-/// was made, so a shell point that the tool touches is in the list as long as that is at most the skin, beyond which
-/// the list is made anew. The slow loop of thesis 2.2 thus only saves work here.
+/// No point is missed: a point of the tool moves by at most ToolShape::moved_at_most since the list was built.
+/// While this distance is at most the skin, every shell point that touches the tool is in the list. Beyond, the
+/// list is rebuilt. The slow loop of thesis 2.2 therefore only saves work here.
 ///
-/// Clearance: if a search finds no point near, it looks in ever larger skins. The largest empty one tells how far the
-/// tool may go before the next search: in free air a step costs one comparison.
+/// Clearance: if the list is empty, larger and larger skins are searched. The largest empty skin is the
+/// distance that the tool may move before the next search. In free air a step costs one comparison.
 class NeighbourListQuery final : public ContactQuery {
  public:
-  /// Builds the grid: O(n).
+  /// Builds the grid. O(n).
   NeighbourListQuery(const PointShell& shell, const ToolShape& tool)
       : shell_(&shell),
         tool_(&tool),
-        skin_wanted_(kSkinPerHalfWidth * tool.half_width()),
-        capacity_(most_points_in(shell, tool.cover(margin_of(skin_wanted_, largest_scale(shell, tool))))),
+        normal_skin_(kSkinPerHalfWidth * tool.half_width()),
+        capacity_(most_points_in(shell, tool.cover(margin_of(normal_skin_, largest_scale(shell, tool))))),
         grid_(shell),
-        // A run of n points meets at most n / 8 + 2 packs.
+        // A contiguous range of n points meets at most n / 8 + 2 packs.
         marks_(shell.size() / simd::lanes + 2 * grid_.columns()),
         list_(simd::padded(capacity_) + simd::lanes) {
     runs_.reserve(grid_.columns());
@@ -53,11 +55,12 @@ class NeighbourListQuery final : public ContactQuery {
     ++work_.queries;
     contacts.clear();
 
-    // Make a new list if the tool may have moved out of the skin. The comparison fails for a pose that is not finite.
+    // Rebuild the list if the tool may have moved out of the skin. The comparison is false for a pose that is
+    // not finite.
     const bool list_holds = has_list_ && tool_->moved_at_most(list_pose_, pose) * (1.0 + kSlack) <= skin_;
     if (!list_holds) rebuild(pose);
 
-    // Test the listed points. An empty list that holds proves that there are no contacts.
+    // Test the listed points. An empty list that is still valid proves that there are no contacts.
     if (list_size_ > 0) {
       const PointColumns points{list_.index.data(), list_.x.data(),  list_.y.data(), list_.z.data(),
                                 list_.nx.data(),    list_.ny.data(), list_.nz.data()};
@@ -79,34 +82,34 @@ class NeighbourListQuery final : public ContactQuery {
     has_list_ = true;
     list_pose_ = pose;
 
-    // List the points within the usual skin.
-    skin_ = skin_wanted_;
+    // List the points within the normal skin.
+    skin_ = normal_skin_;
     mark_near(pose, skin_);
     take_marked();
 
-    // In free air, double the skin as long as it stays empty.
+    // In free air, double the skin as long as it is empty.
     bool is_empty = list_size_ == 0;
-    for (int i = 0; i < kMostDoublings && is_empty; ++i) {
+    for (int i = 0; i < kMaxDoublings && is_empty; ++i) {
       mark_near(pose, 2.0 * skin_);
       for_each_hit([&](std::uint8_t, std::size_t) { is_empty = false; });
       if (is_empty) skin_ *= 2.0;
     }
   }
 
-  /// Search margin [m] that covers rounding, so that no point within the skin is lost; `scale` is the largest
-  /// coordinate.
+  /// Returns the search margin [m] for a skin [m]. It covers rounding, so that no point within the skin is
+  /// missed. `scale` is the largest coordinate [m].
   double margin_of(double skin, double scale) const noexcept {
     return skin + kSlack * (skin + tool_->reach()) + 1e-12 * scale;
   }
 
-  /// Marks the points within `skin` of the tool, and some just beyond.
+  /// Sets bits for the points within `skin` [m] of the tool, and for some points slightly farther away.
   void mark_near(const ToolPose& pose, double skin) noexcept {
     const double margin = margin_of(skin, pose.position.cwiseAbs().maxCoeff() + tool_->reach());
     runs_.clear();
     grid_.for_each_run(
         tool_->box_near(pose, margin, shell_->bounds()), [this](std::uint32_t first, std::uint32_t last) {
           const std::size_t end = (last + simd::lanes - 1) / simd::lanes;
-          // The first and the last pack may reach into neighbouring columns.
+          // The first and the last pack may contain points of neighbouring columns, which are masked out.
           runs_.push_back({first / simd::lanes, end, static_cast<std::uint8_t>(0xffu << first % simd::lanes),
                            static_cast<std::uint8_t>(0xffu >> (end * simd::lanes - last))});
           work_.points_tested += last - first;
@@ -114,7 +117,8 @@ class NeighbourListQuery final : public ContactQuery {
     tool_->mark_near(pose, margin, {grid_.x(), grid_.y(), grid_.z()}, runs_, marks_.data());
   }
 
-  /// Calls `take(hits, i)` where some of the eight points from i on are marked, in ascending order of the grid.
+  /// Calls `take(hits, i)` for each pack that has marked points, in the order of the grid. Bit k of `hits` is
+  /// point i + k.
   template <class Take>
   void for_each_hit(const Take& take) const {
     const std::uint8_t* marks = marks_.data();
@@ -125,11 +129,11 @@ class NeighbourListQuery final : public ContactQuery {
     }
   }
 
-  /// Fills the list with the marked points.
+  /// Fills the list with the marked points, in ascending shell index.
   void take_marked() noexcept {
     list_size_ = 0;
     if (grid_.keeps_order()) {
-      // Whole packs at a time.
+      // Copy whole packs at a time.
       const PointColumns points{grid_.shell_indices(), shell_->x(),  shell_->y(), shell_->z(),
                                 shell_->nx(),          shell_->ny(), shell_->nz()};
       for_each_hit([&, this](std::uint8_t hits, std::size_t i) {
@@ -152,18 +156,20 @@ class NeighbourListQuery final : public ContactQuery {
 
   const PointShell* shell_;
   const ToolShape* tool_;
-  double skin_wanted_;  ///< [m]
+  double normal_skin_;  ///< normal thickness of the skin [m]
   std::size_t capacity_;
   GridIndex grid_;
-  std::vector<PackRange> runs_;      ///< of the grid's points near the tool
-  std::vector<std::uint8_t> marks_;  ///< of the packs of the runs
+  std::vector<PackRange> runs_;      ///< ranges of the grid's points near the tool
+  std::vector<std::uint8_t> marks_;  ///< one byte for each pack of the ranges, one bit for each point
 
-  // The list: its pose, how far it reaches, and its points in ascending shell index, padded to whole packs.
+  // The list: the tool's pose when it was built, its skin [m], and its points in ascending shell index, padded
+  // to whole packs.
   bool has_list_ = false;
   ToolPose list_pose_;
   double skin_ = 0.0;
   std::size_t list_size_ = 0;
-  /// Has room for one pack more, because searches write whole packs behind the last point.
+  /// Columns of the listed points and their shell indices, with one extra pack because searches write whole
+  /// packs behind the last point.
   struct List : ShellColumns {
     explicit List(std::size_t room) : ShellColumns(room), index(room) {}
     std::vector<std::uint32_t> index;

@@ -8,8 +8,9 @@
 
 namespace hapbench {
 
-/// The search by neighbour lists, whose answers are those of brute force bit by bit (make_contact_query). It tests the
-/// points near the tool only. Shell and tool must outlive it. Builds a grid of the points: O(shell size).
+/// Returns the contact search with neighbour lists, which tests only points near the tool. Its contacts are
+/// bitwise identical to brute force (make_contact_query). Shell and tool must outlive the search. Builds a grid
+/// of the points: O(shell size).
 std::unique_ptr<ContactQuery> make_neighbour_list_query(const PointShell& shell, const ToolShape& tool);
 
 }  // namespace hapbench

@@ -11,18 +11,21 @@
 
 namespace hapbench {
 
-/// Springs attached to the tool's position, all with natural length at the origin (thesis A.2). Spring j has the unit
-/// gradient u_j and the penetration depth d_j = <p, u_j>. Bilateral springs push and pull: their depths are signed, or,
-/// following thesis 2.3 (d >= 0), |<p, u_j>| with the gradient along the displacement. The force is the same either
-/// way, but a law that averages gradients takes opposite springs for one direction instead of none. Unilateral springs
-/// are contacts only while d_j > 0.
+/// Springs between the tool's position p and the origin, where all have their rest length (thesis A.2). Spring
+/// j has the unit gradient u_j and the depth d_j = <p, u_j> [m].
+///
+/// Bilateral springs push and pull. Their depths are signed. Without signed depths, following thesis 2.3 (d >=
+/// 0), the depth is |<p, u_j>| and the gradient points along the displacement. The force is the same in both
+/// cases, but a law that averages gradients then sees opposite springs as one direction instead of as
+/// cancelling. Unilateral springs are contacts only while d_j > 0.
 struct SpringSet {
+  /// Unit vectors u_j.
   std::vector<Vec3> gradients;
   bool bilateral = true;
-  bool signed_depths = true;  ///< of bilateral springs
+  bool signed_depths = true;  ///< for bilateral springs; see above
 };
 
-/// The springs as contacts of the tool's position.
+/// Contact source of a spring set: each spring is a contact at the tool's position.
 class SpringSource final : public ContactSource {
  public:
   explicit SpringSource(std::shared_ptr<const SpringSet> springs) : springs_(std::move(springs)) {}
@@ -34,7 +37,8 @@ class SpringSource final : public ContactSource {
   std::shared_ptr<const SpringSet> springs_;
 };
 
-/// Appends the contact of one spring at the tool's position. Precondition: there is room.
+/// Appends one spring as a contact at the tool's position [m], with its depth [m] and unit gradient.
+/// Precondition: contacts.size() < contacts.capacity().
 void push_spring(std::size_t spring, const Vec3& position, double depth, const Vec3& gradient, ContactBuffer& contacts);
 
 }  // namespace hapbench

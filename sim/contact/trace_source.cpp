@@ -27,12 +27,13 @@ void TraceSource::contacts_at(const ToolPose&, ContactBuffer& contacts) noexcept
   ++work_.queries;
   contacts.clear();
 
-  // Find the recorded time nearest to the row's, which may be the time before or behind.
+  // Find the recorded time nearest to the time of the step: the first time not before it, or the time before
+  // that.
   const auto& times = trace_->times;
   auto at = std::partition_point(times.begin(), times.end(), [now](const auto& t) { return t.time < now; });
   if (at != times.begin() && (at == times.end() || now - std::prev(at)->time < at->time - now)) --at;
 
-  // Copy its contacts, if it is near enough.
+  // Copy the contacts of this time if it is within half a step.
   if (at != times.end() && std::abs(at->time - now) <= 0.5 * dt_) {
     const std::size_t end = trace_->end_of(static_cast<std::size_t>(at - times.begin()));
     for (std::size_t i = at->first; i < end; ++i) {

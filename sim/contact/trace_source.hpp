@@ -9,31 +9,33 @@
 
 namespace hapbench {
 
-/// Contacts that were recorded at times: by a run, or by another engine. Contacts of one time stand together.
+/// Recorded contacts, from a run or from another engine, sorted by time. The contacts of one time are
+/// contiguous.
 struct ContactTrace {
   struct Contact {
-    Vec3 point;     ///< [m]
+    Vec3 point;     ///< colliding point, world frame [m]
     Vec3 gradient;  ///< unit vector along which the tool gets deeper
-    double depth;   ///< [m]
+    double depth;   ///< penetration depth [m]
   };
   struct Time {
-    double time;        ///< [s], ascending
-    std::size_t first;  ///< its contacts are [first, first of the next time)
+    double time;        ///< [s], ascending from entry to entry
+    std::size_t first;  ///< index of its first contact; its last contact is before the next entry's first
   };
   std::vector<Time> times;
   std::vector<Contact> contacts;
 
-  /// One past the last contact of times[i].
+  /// Returns the index one past the last contact of times[i].
   std::size_t end_of(std::size_t i) const;
-  /// The most contacts of one time.
+  /// Returns the largest number of contacts at one time.
   std::size_t most() const;
 };
 
-/// Gives each row the recorded contacts of the time nearest to its own, none when that is more than half a step away.
-/// The pose has no part in it, so the motion is to be that of the recording. Index is the place among the contacts of
-/// the time, the normal is the reversed gradient.
+/// Plays back a contact trace. A step gets the contacts recorded nearest to its time, or none if the nearest
+/// time is more than half a step away. The pose has no effect, so the tool should move as in the recording. A
+/// contact's index is its position among the contacts of its time; its normal is the reversed gradient.
 class TraceSource final : public ContactSource {
  public:
+  /// `dt`: time step of the run [s].
   TraceSource(std::shared_ptr<const ContactTrace> trace, double dt);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;

@@ -7,69 +7,76 @@
 
 namespace hapbench {
 
-/// The handle held by the hand; the same as the tool for an ideal device.
+/// State of the handle that the hand holds. On an ideal device the handle coincides with the tool.
 struct HandleState {
   Vec3 position = Vec3::Zero();  ///< [m]
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
-/// The user's perception in one step, the handle in the hand and what the display shows: the simulation's own numbers.
+/// What the user perceives in one step: the handle in the hand, and the display. Exact simulated values.
 struct HandView {
   const HandleState& handle;
-  const ToolPose& tool;      ///< on the display
-  const Vec3& model_force;   ///< f_render of the previous step, for gauge and task [N]
-  const Vec3& spring_force;  ///< f_spring of the previous step, for gauge and task [N]
+  const ToolPose& tool;      ///< tool as shown on the display
+  const Vec3& model_force;   ///< f_render of the previous step, shown by the gauge and used by the task [N]
+  const Vec3& spring_force;  ///< f_spring of the previous step, shown by the gauge and used by the task [N]
 };
 
-/// Model of the human hand: its force on the handle as a function of time and perception.
+/// Model of the human hand: its force on the handle as a function of time and perception. One instance holds
+/// the state of one run.
 class Hand {
  public:
   virtual ~Hand() = default;
+  /// Returns to t = 0.
   virtual void reset() noexcept {}
-  /// Force of the hand on the handle at time t [N]. Called once a step.
+  /// Returns the force of the hand on the handle at time t [N]. Called once in every step.
   virtual Vec3 force(double t, const HandView& view) noexcept = 0;
-  /// The target task of the hand, or null. Lives as long as the hand.
+  /// Returns the target task that the hand performs, or null. The task lives as long as the hand.
   virtual const TargetTask* task() const noexcept { return nullptr; }
-  /// True once the hand's task is finished; the run ends with that row.
+  /// Returns true once the hand's task is finished. The run ends with that step.
   bool finished() const noexcept { return task() != nullptr && task()->finished(); }
 };
 
-/// The hand's force in one step, as the device measures and limits it [N].
+/// The hand's force in one step, as measured and limited by the device [N].
 struct MeasuredForce {
-  Vec3 measured = Vec3::Zero();  ///< f_meas: reading of the sensor
-  Vec3 input = Vec3::Zero();     ///< f_meas*: drives the virtual mass, after the limiter; 0 without such a mass
+  Vec3 measured = Vec3::Zero();  ///< f_meas: reading of the force sensor
+  Vec3 input = Vec3::Zero();     ///< f_meas*: limited reading that drives the virtual mass; 0 without a virtual mass
 };
 
-/// Energy balance of a device's moving parts since its last reset [J]. Up to rounding, stored = hand + actuator +
-/// dissipated.
+/// Energy balance of a device's moving parts since the last reset [J]. Up to rounding, stored = hand + actuator
+/// + dissipated.
 struct DeviceEnergy {
-  double hand = 0.0;        ///< work of the hand on the handle
-  double actuator = 0.0;    ///< work of the actuator
-  double dissipated = 0.0;  ///< work of friction and of the damping in the structure; never positive
-  double stored = 0.0;      ///< kinetic and elastic energy of the parts, above that at the reset
+  double hand = 0.0;        ///< work done by the hand on the handle
+  double actuator = 0.0;    ///< work done by the actuator
+  double dissipated = 0.0;  ///< energy lost to friction and structural damping; never positive
+  double stored = 0.0;      ///< kinetic and elastic energy of the parts, relative to the reset
 
+  /// Returns the balance with `energy` [J] added to the stored energy.
   DeviceEnergy plus_stored(double energy) const noexcept { return {hand, actuator, dissipated, stored + energy}; }
 };
 
-/// The haptic device. Either it measures the hand's force and moves the handle after the tool, which is a virtual mass,
-/// or its handle moves the tool (`moves_tool`) and there is no virtual mass.
+/// The haptic device. There are two kinds. On an admittance-type device, the tool is a virtual mass: the device
+/// measures the hand's force, and the handle follows the tool. On an impedance-type device (`moves_tool`), the
+/// handle moves the tool, and there is no virtual mass.
 class Device {
  public:
   virtual ~Device() = default;
-  /// Returns to t = 0 with the handle on the tool.
+  /// Returns to t = 0 with the handle at the tool.
   virtual void reset(const ToolState& tool) noexcept = 0;
+  /// Returns the hand's force [N] as measured in this step.
   virtual MeasuredForce measure(const Vec3& hand_force) noexcept = 0;
-  /// Follows the tool's motion over one step of dt seconds, while the hand pushes on the handle.
+  /// Moves the handle with the tool over one step of dt [s], while the hand applies `hand_force` [N].
   virtual void advance(const ToolState& /*tool*/, const Vec3& /*hand_force*/, double /*dt*/) noexcept {}
   virtual const HandleState& handle() const noexcept = 0;
-  /// Returns nothing if the handle is the tool itself and has no mass or friction of its own.
+  /// Returns the energy balance; nullopt if the handle is the tool itself and has no mass or friction.
   virtual std::optional<DeviceEnergy> energy() const noexcept { return std::nullopt; }
 
-  /// True if the handle moves the tool. `drive` then replaces the integrator and `advance`.
+  /// Returns true if the handle moves the tool. `drive` then replaces the integrator and `advance`.
   virtual bool moves_tool() const noexcept { return false; }
-  /// Moves on from row k to row k + 1, with f_render and the hand's force of row k [N].
+  /// Moves the handle from step k to step k + 1, under f_render and the hand's force of step k [N]. Called only
+  /// if moves_tool().
   virtual void drive(const Vec3& /*rendered*/, const Vec3& /*hand_force*/) noexcept {}
-  /// Position and velocity of the handle as measured by such a device; those of the tool.
+  /// Returns position and velocity of the handle as measured by the device; they become the tool's. Called only
+  /// if moves_tool().
   virtual HandleState sampled() const noexcept { return handle(); }
 };
 

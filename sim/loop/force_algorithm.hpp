@@ -12,74 +12,82 @@
 
 namespace hapbench {
 
-/// The scene as known to a force algorithm before the first step. Everything pointed to outlives the algorithm.
+/// The scene as a force algorithm sees it before the first step. All objects behind the pointers outlive the
+/// algorithm.
 struct Scene {
   std::size_t capacity = 0;            ///< maximum number of contacts in a step
-  const ToolShape* tool = nullptr;     ///< for algorithms that keep a proxy of it
-  const PointShell* shell = nullptr;   ///< the environment, unless it is springs
-  const SpringSet* springs = nullptr;  ///< the environment, unless it is a shell
+  const ToolShape* tool = nullptr;     ///< the tool, for algorithms that keep a proxy of it
+  const PointShell* shell = nullptr;   ///< the environment; null if it is a spring set
+  const SpringSet* springs = nullptr;  ///< the environment; null if it is a shell
   double dt = 0.0005;                  ///< time step [s]
-  /// When algorithms that look for contacts themselves have to look; null: in every row.
+  /// Steps in which an algorithm with its own contact search may search; null: in every step.
   const ContactSchedule* schedule = nullptr;
-  /// The present row and its f_in [N], which drives the tool together with f_render over the coming step. They change
-  /// before the first `compute` of each row. Null if the algorithm is not stepped by a Simulation.
+  /// Number of the current step, and its input force f_in [N], which drives the tool together with f_render
+  /// over the coming step. Both change before the first `compute` of each step. Null if no Simulation steps the
+  /// algorithm.
   const std::uint64_t* row = nullptr;
   const Vec3* input = nullptr;
   bool position_is_free = true;    ///< false: a script moves the tool
-  bool handle_moves_tool = false;  ///< the tool follows the measured handle; there is no virtual mass
+  bool handle_moves_tool = false;  ///< true: the tool follows the measured handle; there is no virtual mass
 };
 
-/// What dry friction does in one step.
+/// State of dry friction in one step.
 enum class Friction : std::uint8_t { none, sticks, slides };
 
-/// The result of an algorithm in one step.
+/// The result of an algorithm for one state of the tool.
 struct RenderedForce {
-  Vec3 spring = Vec3::Zero();    ///< f_spring [N], on the tool
-  Vec3 rendered = Vec3::Zero();  ///< f_render = spring + damping + friction, limited [N]
-  Mat3 S = Mat3::Zero();         ///< stiffness tensor in units of K
-  double depth_max = 0.0;        ///< largest penetration depth of the colliding points, before any point stage [m]
+  Vec3 spring = Vec3::Zero();          ///< f_spring, force of the penalty springs on the tool [N]
+  Vec3 rendered = Vec3::Zero();        ///< f_render = spring + damping + friction, after limits [N]
+  Mat3 S = Mat3::Zero();               ///< stiffness tensor in units of the spring stiffness K
+  double depth_max = 0.0;              ///< largest depth of the colliding points, before any point stage [m]
   Friction friction = Friction::none;  ///< none without load or without dry friction
 };
 
-/// Elastic energy of the penalty springs of one step, and the torque that they would exert: moment = sum r_i x f_i
-/// about the tip centre, over the rendered contacts, whose contributions f_i add up to f_spring:
-///   - laws with weights: f_i = -K c_i d_i u_i;
-///   - virtual_coupling, least_squares: the penalty springs as relieved by the coupling,
-///     f_i = -K_p (d_i + <u_i, s>) u_i, s the stretch of the coupling, K_p = K or K / eps. They push and pull against
-///     each other, so that the moment may be far larger than force and arms suggest;
-///   - original_averaging, highest_depth: their one spring has no place; each of n contacts has f_spring / n;
-///   - proxy: f_i = -K lambda_i m_i of the points that hold the proxy, r_i from the proxy's tip centre; reduced, as its
-///     motion is, for points inside the proxy, which it leaves slowly. Of several that hold it equally well it uses
-///     any, so that its force is unique but its moment need not be;
-///   - a passivity controller scales all contributions like the springs.
-/// Damping, friction and force limits act on the tool as a whole and do not contribute. Environment springs act at the
-/// tip centre.
+/// Elastic energy of the penalty springs in one step, and the moment that they would exert about the tip
+/// centre, sum r_i x f_i over the rendered contacts. r_i is the vector from the tip centre to contact i. The
+/// contact forces f_i sum to f_spring. They depend on the algorithm:
+///
+///  - Laws with weights: f_i = -K c_i d_i u_i.
+///  - virtual_coupling and least_squares: f_i = -K_p (d_i + <u_i, s>) u_i, the penalty springs after the
+///    coupling has stretched by s. K_p is K or K / eps. These forces push and pull against each other, so the
+///    moment may be much larger than force times arm suggests.
+///  - original_averaging and highest_depth: the law has one spring without a point of application, so each of
+///    the n contacts gets f_spring / n.
+///  - proxy: f_i = -K lambda_i m_i for the points that hold the proxy, with multiplier lambda_i and tool normal
+///    m_i, and r_i from the proxy's tip centre. For points inside the proxy it is scaled down like the slow
+///    motion that frees the proxy. If several sets of points hold the proxy equally well, any of them is used,
+///    so the force is unique but the moment may not be.
+///  - A passivity controller scales all contact forces like the springs.
+///
+/// Damping, friction and force limits act on the tool as a whole and do not contribute. The springs of a spring
+/// set act at the tip centre.
 struct SpringState {
   double energy = 0.0;         ///< elastic energy [J]
-  Vec3 moment = Vec3::Zero();  ///< on the tool about its tip centre [N m]; the device renders none
+  Vec3 moment = Vec3::Zero();  ///< moment on the tool about its tip centre [N m]; the device does not render it
 };
 
-/// False if the result of an algorithm leaves nothing that could store energy; `spring_state` is then zero.
+/// Returns false if the result of an algorithm contains no spring that could store energy. `spring_state` is
+/// then zero.
 inline bool has_springs(const ContactBuffer& rendered, const RenderedForce& force) noexcept {
   return !rendered.empty() || !force.spring.isZero(0.0);
 }
 
-/// Response of the rendered force to small motions of the tool, for implicit integrators:
-/// df = -stiffness dp - damping dv.
+/// Linearisation of the rendered force for small motions of the tool, for implicit integrators: df = -stiffness
+/// dp - damping dv, with displacement dp [m] and velocity change dv [m/s].
 struct ForceJacobian {
-  Mat3 stiffness = Mat3::Zero();  ///< K S [N/m]
-  Mat3 damping = Mat3::Zero();    ///< B S of normal damping and friction on the rest [N s/m]
+  Mat3 stiffness = Mat3::Zero();  ///< K S, stiffness [N/m]
+  Mat3 damping = Mat3::Zero();    ///< B S for normal damping, plus friction in the remaining directions [N s/m]
 };
 
-/// Work done by an algorithm since its last reset.
+/// Counters of the work of an algorithm since its last reset.
 struct AlgorithmWork {
-  std::uint64_t iterations = 0;        ///< of the law's inner solver (shaping, Newton), over all steps
-  std::uint64_t points_dropped = 0;    ///< contacts beyond the capacity of a buffer (reduction's max_points)
-  SearchWork search = {};              ///< of the algorithm's own queries, at other poses
+  std::uint64_t iterations = 0;        ///< iterations of the law's solver (shaping, Newton), over all steps
+  std::uint64_t points_dropped = 0;    ///< contacts dropped because a buffer was full (max_points of the reduction)
+  SearchWork search = {};              ///< work of the algorithm's own contact searches, at other poses than the tool's
   std::uint64_t steps_controlled = 0;  ///< steps in which a passivity controller changed the force
 
   std::uint64_t steps_staged = 0;  ///< steps in which a force stage changed the force
-  double energy_staged = 0.0;      ///< energy that the stage kept the force from giving to the tool [J]
+  double energy_staged = 0.0;      ///< energy [J] that a force stage prevented the force from giving to the tool
 
   AlgorithmWork& operator+=(const AlgorithmWork& other) noexcept {
     iterations += other.iterations;
@@ -92,29 +100,31 @@ struct AlgorithmWork {
   }
 };
 
-/// Computes the force on the tool from the contacts and the tool's state. One object is the state of one run.
+/// Computes the force on the tool from its contacts and its state. One instance holds the state of one run.
 class ForceAlgorithm {
  public:
   virtual ~ForceAlgorithm() = default;
 
-  /// Called once before the first step; the only call that may allocate or throw.
+  /// Called once before the first step. Only this function may allocate or throw.
   virtual void prepare(const Scene& scene) = 0;
-  /// Returns to t = 0, bit for bit.
+  /// Returns to t = 0; the next run is bitwise identical.
   virtual void reset() noexcept = 0;
-  /// Computes one step or, for some integrators, one state within a step after that of the row. `contacts` holds the
-  /// contacts at the tool's pose, with depth and gradient (ContactSource); on return it holds the rendered ones, with
-  /// their weights.
+  /// Computes the force for the state of the step. Some integrators then also call it for states within the
+  /// step. On entry, `contacts` holds the contacts at the tool's pose with depth and gradient (ContactSource).
+  /// On return it holds the rendered contacts with their weights.
   virtual void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept = 0;
-  /// Elastic energy and moment of the springs in the last `compute`, given its contacts. Called only if an observer or
-  /// controller needs them.
+  /// Returns elastic energy and moment of the springs of the last `compute`; the arguments are its tool and its
+  /// rendered contacts. Called only if an observer or a controller needs them.
   virtual SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept = 0;
-  /// Jacobian of the force of the last `compute`, for constant contacts. Only implicit integrators call it.
+  /// Returns the Jacobian of the force of the last `compute` with the contacts held constant. Called by
+  /// implicit integrators only.
   virtual ForceJacobian jacobian() const noexcept = 0;
-  /// Cut-off frequency [Hz] of the low-pass through which `compute` reads the tool's angular velocity, infinite for the
-  /// unfiltered velocity; nullopt if `compute` does not read it, which is then not computed.
+  /// Returns the cut-off frequency [Hz] of the low-pass filter through which `compute` reads the tool's angular
+  /// velocity: infinite for the unfiltered velocity, nullopt if `compute` does not read it. In the last case it
+  /// is not computed.
   virtual std::optional<double> angular_velocity_cutoff() const noexcept { return std::nullopt; }
-  /// If a failure in external code made the result of the last `compute` invalid, its description; else null. Called
-  /// when a run diverges.
+  /// Returns the description of a failure in external code that made the result of the last `compute` invalid,
+  /// or null. Called when a run diverges.
   virtual const char* fault() const noexcept { return nullptr; }
   virtual AlgorithmWork work() const noexcept { return {}; }
 };

@@ -9,23 +9,23 @@
 
 namespace hapbench {
 
-/// The force between row k and row k + 1, for the integrator. Reuses the contact buffer, which is not read any more
-/// once the observers have seen the row.
+/// The force between step k and step k + 1, for the integrator. It overwrites the contact buffer, which is not
+/// read any more after the observers have been notified.
 class Simulation::ForceWithinStep final : public ForceField {
  public:
   explicit ForceWithinStep(Simulation& simulation) : s_(simulation) {}
 
-  Vec3 force_at(double part, const Vec3& position, const Vec3& velocity) noexcept override {
-    const double t = (static_cast<double>(s_.row_) + part) * s_.config_.dt;
+  Vec3 force_at(double fraction, const Vec3& position, const Vec3& velocity) noexcept override {
+    const double t = (static_cast<double>(s_.row_) + fraction) * s_.config_.dt;
     const Vec3 axis = s_.parts_.motion->axis_at(t);
     const double roll = s_.roll_at(t);
     ToolState tool{{position, axis, s_.tool_rolls_ ? roll : 0.0}, velocity};
-    if (s_.angular_velocity_cutoff_) tool.angular_velocity = s_.angular_velocity_after(part, axis, roll);
+    if (s_.angular_velocity_cutoff_) tool.angular_velocity = s_.angular_velocity_after(fraction, axis, roll);
     s_.parts_.source->contacts_at(tool.pose, s_.contacts_);
     s_.parts_.algorithm->compute(tool, s_.contacts_, s_.within_step_);
     return s_.record_.hand.input + s_.within_step_.rendered;
   }
-  /// The sum over the rendered contacts does not depend on their order.
+  /// Sum of the hashes of the rendered contacts' indices. A sum does not depend on their order.
   std::uint64_t contact_set() const noexcept override {
     std::uint64_t set = 0;
     for (std::size_t i = 0; i < s_.contacts_.size(); ++i) {
@@ -46,6 +46,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
       parts_(std::move(parts)),
       observers_(std::move(observers)),
       contacts_(parts_.source->capacity()) {
+  // Collect what the observers read.
   ratio_wanted_ = springs_wanted_ = energy_wanted_ = config_.skips == Skips::off;
   for (const Observer* observer : observers_) {
     ratio_wanted_ |= observer->wants_ratio();
@@ -54,13 +55,15 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     roll_wanted_ |= observer->wants_roll();
     if (observer->wants_found() && !found_) found_ = std::make_unique<ContactBuffer>(contacts_.capacity());
   }
+  // Find out what moves the tool and the handle, and whether the roll angle is needed.
   position_is_free_ = parts_.motion->position_is_free();
-  handle_is_apart_ = parts_.device->energy().has_value();
+  handle_is_separate_ = parts_.device->energy().has_value();
   handle_moves_tool_ = position_is_free_ && parts_.device->moves_tool();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
   tool_rolls_ = parts_.tool && !parts_.tool->is_axisymmetric();
   turn_rolls_ = tool_rolls_ || parts_.motion->scripts_roll();
   roll_wanted_ |= tool_rolls_ || (turn_rolls_ && angular_velocity_cutoff_);
+  // Give source and algorithm access to the current step, and prepare the algorithm.
   parts_.source->follow(&record_.step);
   parts_.algorithm->prepare({.capacity = parts_.source->capacity(),
                              .tool = parts_.tool.get(),
@@ -83,7 +86,7 @@ void Simulation::reset() noexcept {
   record_.handle_moves_tool = handle_moves_tool_;
   record_.found = found_.get();
   tool_ = {{config_.position, Vec3::Zero()}, config_.velocity};
-  parts_.hand->reset();  // first, because a hand may determine the orientation
+  parts_.hand->reset();  // first, because the hand may determine the orientation
   move_tool_by_script();
   parts_.source->reset();
   parts_.algorithm->reset();
@@ -95,37 +98,40 @@ double Simulation::roll_at(double t) const noexcept {
   return roll_wanted_ ? parts_.motion->roll_at(t) : 0.0;
 }
 
-/// Angular velocity from the row's orientation to the given one, `part` of a step later, through a first-order low-pass
-/// that takes the fraction 1 - e^(-2 pi f t) of the new value.
-Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept {
-  const double time = part * config_.dt;
+/// Returns the angular velocity [rad/s] of the turn from the current step's orientation to the given orientation, in
+/// the time `fraction` dt. A first-order low-pass with cut-off frequency f weights the new value with
+/// 1 - e^(-2 pi f t), where t is this time.
+Vec3 Simulation::angular_velocity_after(double fraction, const Vec3& axis, double roll) const noexcept {
+  const double time = fraction * config_.dt;
   const double taken = -math::expm1(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
   const ToolPose from{Vec3::Zero(), tool_.pose.axis, turn_rolls_ ? roll_ : 0.0};
   const ToolPose to{Vec3::Zero(), axis, turn_rolls_ ? roll : 0.0};
   return (1.0 - taken) * tool_.angular_velocity + taken * turn(from, to) / time;
 }
 
-/// The orientation always follows the script, with omega_k from the turn of the last step and omega_0 = 0. A prescribed
-/// position also gives the velocity, (p_k - p_{k-1}) / dt, and v_0 = v_1.
+/// Moves the tool to its scripted pose at the current step. The orientation always follows the script; omega_k
+/// is the rotation of the last step divided by dt, and omega_0 = 0. A prescribed position also gives the
+/// velocity, v_k = (p_k - p_{k-1}) / dt, and v_0 = v_1.
 void Simulation::move_tool_by_script() noexcept {
   const double t = static_cast<double>(row_) * config_.dt;
   const Vec3 axis = parts_.motion->axis_at(t);
   const double roll = roll_at(t);
   if (angular_velocity_cutoff_ && row_ > 0) tool_.angular_velocity = angular_velocity_after(1.0, axis, roll);
   tool_.pose.axis = axis;
-  // The pose of a solid of revolution omits the roll, so that no result can depend on it.
+  // The pose of a solid of revolution omits the roll, so that no result depends on it.
   if (tool_rolls_) tool_.pose.roll = roll;
   roll_ = roll;
   if (position_is_free_) return;
   const Vec3 position = parts_.motion->position_at(t);
-  const Vec3 way =
+  const Vec3 displacement =
       row_ == 0 ? Vec3(parts_.motion->position_at(config_.dt) - position) : Vec3(position - tool_.pose.position);
-  tool_.velocity = way / config_.dt;
+  tool_.velocity = displacement / config_.dt;
   tool_.pose.position = position;
 }
 
 void Simulation::put_tool_on_handle() noexcept {
   const HandleState sampled = parts_.device->sampled();
+  /// Copies the measured position and velocity of the handle to the tool.
   tool_.pose.position = sampled.position;
   tool_.velocity = sampled.velocity;
 }
@@ -145,7 +151,7 @@ bool Simulation::step() noexcept {
   r.task = parts_.hand->task();
   r.hand = parts_.device->measure(r.hand_force);
 
-  // Find contacts.
+  // Find the contacts.
   parts_.source->contacts_at(tool_.pose, contacts_);
   if (parts_.source->fault() != nullptr) {
     result_.divergence = {row_, r.time, "contacts", std::nan(""), 0.0, parts_.source->fault()};
@@ -155,11 +161,11 @@ bool Simulation::step() noexcept {
   if (found_) found_->assign(contacts_);
   r.colliding = contacts_.size();
 
-  // Render the force.
+  // Compute the rendered force.
   parts_.algorithm->compute(tool_, contacts_, r.force);
   if (!check_bounds()) return true;
 
-  // Notify the observers, which get what they want of the row.
+  // Notify the observers. Optional quantities are computed only if an observer reads them.
   r.rendered = &contacts_;
   if (ratio_wanted_) r.ratio = ratio_range(contacts_, r.force.S);
   if (springs_wanted_) r.springs = {};
@@ -170,7 +176,7 @@ bool Simulation::step() noexcept {
   ++result_.rows;
   if (check_stop_rules()) return true;
 
-  // Integrate: the forces of the row move the handle that the tool follows, or the virtual tool.
+  // Integrate. The forces of this step move the handle, which the tool follows, or the virtual tool.
   if (handle_moves_tool_) {
     parts_.device->drive(r.force.rendered, r.hand_force);
     put_tool_on_handle();
@@ -180,7 +186,7 @@ bool Simulation::step() noexcept {
                              config_.event_tolerance);
   }
 
-  // Begin the next row.
+  // Begin the next step.
   ++row_;
   if (row_ == config_.steps) {
     end(Ending::completed);
@@ -212,11 +218,12 @@ bool Simulation::check_bounds() noexcept {
                             within("handle velocity", record_.handle.velocity, bounds.speed) &&
                             within("measured force", record_.hand.measured, bounds.force)));
   };
-  // Nearly every step takes this fast path on squares; NaN fails the comparison.
+  // Nearly every step takes this fast path, which compares squares; NaN fails the comparison.
   const auto well_inside = [](const char*, const Vec3& v, double bound) {
     return v.squaredNorm() <= 0.5 * bound * bound;
   };
-  if (all(well_inside, handle_is_apart_)) return true;
+  if (all(well_inside, handle_is_separate_)) return true;
+  // Find the quantity that exceeds its bound and report it.
   const auto inside = [this](const char* quantity, const Vec3& v, double bound) {
     const double magnitude = v.norm();
     if (magnitude <= bound) return true;  // false for NaN

@@ -8,7 +8,8 @@
 namespace hapbench {
 namespace {
 
-/// Moves a first-order low-pass on by dt seconds, in which its input is held. Without a cutoff it takes the input over.
+/// Updates the output of a first-order low-pass over dt [s], with its input held. Without a cut-off, output =
+/// input.
 void follow(double& output, double input, std::optional<double> cutoff, double dt) noexcept {
   output = cutoff ? output - math::expm1(-2.0 * std::numbers::pi * *cutoff * dt) * (input - output) : input;
 }
@@ -36,6 +37,7 @@ Vec3 TargetTask::error(const Vec3& tip) const noexcept {
 }
 
 void TargetTask::advance(const Vec3& tip, double spring, double rendered, double dt) noexcept {
+  // Update the gauge that the subject sees and the force that the task checks.
   if (rules_.gauge) {
     follow(reading_, spring, rules_.gauge->cutoff, dt);
   } else {
@@ -46,6 +48,7 @@ void TargetTask::advance(const Vec3& tip, double spring, double rendered, double
   } else {
     checked_ = reading_;
   }
+  // Activate the target at the first press.
   if (finished()) return;
   const bool pressed = is_pressed(dt);
   if (pressed && !active_) {
@@ -53,12 +56,14 @@ void TargetTask::advance(const Vec3& tip, double spring, double rendered, double
     shown_ = 0.0;
   }
   shown_ += dt;
+  // Update the time on the target.
   const LowForce low = active_ && !pressed && rules_.threshold ? rules_.threshold->low : LowForce::restarts;
   if (!(error(tip).norm() <= rules_.tolerance) || (!pressed && low == LowForce::restarts)) {
     held_ = 0.0;
   } else if (pressed || low == LowForce::nothing) {
     held_ += dt;
   }
+  // Remove the target after the holding time, or let it disappear at the time limit.
   if (held_ >= rules_.hold) {
     next_target(true, shown_);
   } else if (shown_ >= rules_.time_limit || (!pressed && low == LowForce::closes)) {
@@ -66,7 +71,8 @@ void TargetTask::advance(const Vec3& tip, double spring, double rendered, double
   }
 }
 
-/// True if the force is at least least_press or, while a target is active, was so within the grace.
+/// Returns true if the checked force is at least least_press. For an active target, also returns true if the
+/// force has been lower for no longer than the grace time.
 bool TargetTask::is_pressed(double dt) noexcept {
   if (checked_ >= rules_.least_press) {
     low_for_ = 0.0;

@@ -1,11 +1,11 @@
-/* A force law in C++ with hapbench's library: the sum of all springs, scaled down where it would be too stiff. With
- * hapbench installed below /usr (elsewhere: -IPREFIX/include/hapbench and -LPREFIX/lib), from this folder:
+/* A force law in C++ with hapbench's library: the sum of all springs, scaled down if it is too stiff. Build from this
+ * folder, with hapbench installed in /usr (elsewhere: -IPREFIX/include/hapbench and -LPREFIX/lib):
  *
  *     g++ -std=c++20 -O2 -fPIC -shared -ffp-contract=off -DEIGEN_DONT_VECTORIZE -I/usr/include/hapbench \
  *         -I/usr/include/eigen3 capped_summation.cpp -lhapbench_algorithms -lhapbench_sim -o capped_summation.so
  *     hapbench --module ./capped_summation.so compare peg_in_hole_2d_shaped_stiffness
  *
- * CMake knows the flags: find_package(hapbench), add_library(capped_summation MODULE capped_summation.cpp),
+ * With CMake, which adds the flags: find_package(hapbench), add_library(capped_summation MODULE capped_summation.cpp),
  * target_link_libraries(capped_summation PRIVATE hapbench::algorithms). */
 #include <algorithm>
 #include <algorithms/module/law_module.hpp>

@@ -1,9 +1,9 @@
-/* A force law in C: contacts weigh by a power of their depth. From the root of hapbench's tree:
+/* A force law in C: weights proportional to a power of the depth. Build and run from the root of hapbench's tree:
  *
  *     gcc -std=c11 -O2 -fPIC -shared -Ialgorithms/module algorithms/module/examples/depth_weighted.c -lm -o law.so
  *     hapbench --module ./law.so compare peg_in_hole_2d_shaped_stiffness
  *
- * With hapbench installed: -IPREFIX/include, no -I where PREFIX is /usr. */
+ * With hapbench installed: use -IPREFIX/include; if PREFIX is /usr, no -I is needed. */
 #include <hapbench_module.h>
 #include <math.h>
 #include <stdlib.h>

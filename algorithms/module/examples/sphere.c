@@ -1,8 +1,8 @@
-/* A source of contacts: a sphere about the origin that a round tip or a ball touches.
+/* A contact source in C: a sphere at the origin, for a tool with a round tip or a ball. Build:
  *
  *     gcc -std=c11 -O2 -fPIC -shared -Ialgorithms/module algorithms/module/examples/sphere.c -lm -o sphere.so
  *
- * and in a scenario "contact_source": {"type": "plugin", "file": "sphere.so", "config": {"radius_m": 0.002}}. */
+ * Use in a scenario: "contact_source": {"type": "plugin", "file": "sphere.so", "config": {"radius_m": 0.002}}. */
 #include <hapbench_module.h>
 #include <math.h>
 #include <stdio.h>
@@ -30,7 +30,7 @@ static int step(void* state, const HapbenchPose* pose, HapbenchContacts* c, Hapb
   const double *p = pose->tip, distance = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
   c->n = distance > 0.0 && distance <= sphere->radius + sphere->tool;
   if (c->n == 0) return 0;
-  const double x = p[0] / distance, y = p[1] / distance, z = p[2] / distance; /* out of the sphere */
+  const double x = p[0] / distance, y = p[1] / distance, z = p[2] / distance; /* outward normal of the sphere */
   c->index[0] = 0;
   c->depth[0] = sphere->radius + sphere->tool - distance;
   c->gx[0] = -x, c->gy[0] = -y, c->gz[0] = -z;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kErrorLevels = 3;
 constexpr double kErrorRatio = 2.0;
 
-/// The levels of the distance between the points; or why there are none.
+/// Returns the levels of the spacing between surface points. Throws InputError if the spacing cannot be refined.
 LevelSweep spacing_levels(const LoadedScenario& loaded, bool has_points) {
   const auto distance = point_distance(loaded);
   if (!distance)
@@ -41,6 +41,7 @@ std::optional<double> KnownError::sum() const {
 
 FinerRuns::FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs)
     : comparison_(comparison), reports_(reports) {
+  // Collect the refined cases of all scenes; a refinement that is impossible records its reason.
   std::vector<Cases> finer;
   std::size_t runs = 0;
   const auto part_of = [&](const Cases& cases, const std::function<LevelSweep()>& levels) {

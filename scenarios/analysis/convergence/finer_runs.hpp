@@ -11,36 +11,41 @@
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
-/// The errors of the numbers of a comparison, by runs with a finer step and a finer spacing of the points.
+/// Estimates discretization errors of the metrics of a comparison, from runs with smaller time steps and finer point
+/// spacing.
 namespace hapbench {
 
-/// Error of a number, in its unit: by step and by spacing the error of the coarsest of three levels (convergence_of).
+/// Error estimate of a metric, in the metric's unit. The errors by time step and point spacing are the errors of the
+/// coarsest of three levels (convergence_of).
 struct KnownError {
-  std::optional<double> step, spacing;  ///< empty where a finer run ends otherwise or has no such number
-  bool has_points = true;               ///< false: there is no spacing to be halved
-  double tolerance = 0.0;               ///< of the metric itself, as that of a quantile of a histogram
+  std::optional<double> step, spacing;  ///< empty if a finer run has another outcome or no such metric
+  bool has_points = true;               ///< false if the scene has no point spacing to refine
+  double tolerance = 0.0;               ///< error of the metric's computation, such as a histogram's quantile
 
-  /// The whole error; empty if a part that can be known is not.
+  /// Returns the sum of the errors; empty if the error by step, or by an existing spacing, is unknown.
   std::optional<double> sum() const;
 };
 
-/// The runs of a comparison again, by step and by spacing.
+/// The runs of a comparison, repeated with refined time steps and refined point spacing.
 class FinerRuns {
  public:
-  /// Runs them, without files. `reports` are those of `comparison`; both have to outlive this. Throws Stopped.
+  /// Makes all refined runs, without result files. `reports`: the results of the runs of `comparison`, in its order.
+  /// Both must outlive this object. Throws Stopped.
   FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs);
 
-  /// Error of a metric of the run with that number in the comparison; metrics are taken at the times of its own rows.
+  /// Returns the error estimate of a metric of run number `run` of the comparison. Metrics of refined runs are sampled
+  /// at the times of the original run's steps.
   KnownError known_error(std::size_t run, const std::string& metric) const;
 
-  /// Returns a clause that names the refinements of a scene, and the reason for each refinement that was left out.
+  /// Returns a clause that names the refinements of a scene, and the reason for each refinement that was not made.
   std::string refined(std::size_t scene) const;
 
  private:
+  /// The refinement of one field in one scene.
   struct Part {
     LevelSweep levels = {};
-    std::size_t first = 0;     ///< number of the first finer run
-    std::string why_not = {};  ///< why there are no levels; empty otherwise
+    std::size_t first = 0;     ///< index in finer_ of the first refined run
+    std::string why_not = {};  ///< why no refinement was made; empty if one was made
   };
   struct Scene {
     Part step, spacing;
@@ -51,7 +56,7 @@ class FinerRuns {
   const Comparison& comparison_;
   std::span<const Result> reports_;
   std::vector<Scene> scenes_;
-  std::vector<Result> finer_;  ///< by part, then by level, then as in the comparison
+  std::vector<Result> finer_;  ///< by refinement, then by level, then in the order of the comparison
 };
 
 }  // namespace hapbench

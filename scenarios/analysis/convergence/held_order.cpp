@@ -9,55 +9,61 @@
 namespace hapbench {
 namespace {
 
-std::string joined(std::span<const std::size_t> places, std::span<const std::string> names, const char* between) {
+/// Returns the names at these positions, joined by `between`.
+std::string joined(std::span<const std::size_t> positions, std::span<const std::string> names, const char* between) {
   std::vector<std::string> found;
-  for (const std::size_t i : places) found.push_back(names[i]);
+  for (const std::size_t i : positions) found.push_back(names[i]);
   return fmt::format("{}", fmt::join(found, between));
 }
 
 }  // namespace
 
 HeldOrder held_order(std::span<const NumberWithError> numbers) {
+  // Sort the numbers that have a value and an error.
   const auto comes_before = [&](std::size_t a, std::size_t b) { return is_less(numbers[a], numbers[b]); };
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i].value && numbers[i].error) order.push_back(i);
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return *numbers[i].value; });
-  HeldOrder held;
-  const auto is_alike = [&](std::size_t a) {
+  // Separate numbers that differ significantly from no other number.
+  HeldOrder order_found;
+  const auto is_indistinguishable = [&](std::size_t a) {
     return std::ranges::none_of(order, [&](std::size_t b) { return comes_before(a, b) || comes_before(b, a); });
   };
-  std::ranges::copy_if(order, std::back_inserter(held.unplaced), is_alike);
-  if (held.unplaced.size() == order.size()) held.unplaced.clear();
-  std::erase_if(order, [&](std::size_t a) { return std::ranges::find(held.unplaced, a) != held.unplaced.end(); });
+  std::ranges::copy_if(order, std::back_inserter(order_found.indistinguishable), is_indistinguishable);
+  if (order_found.indistinguishable.size() == order.size()) order_found.indistinguishable.clear();
+  std::erase_if(order, [&](std::size_t a) {
+    return std::ranges::find(order_found.indistinguishable, a) != order_found.indistinguishable.end();
+  });
+  // Start a new group wherever all numbers on the left are significantly smaller than all on the right.
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::span left = std::span(order).first(k), right = std::span(order).subspan(k);
     const bool is_cut = std::ranges::all_of(left, [&](std::size_t a) {
       return std::ranges::all_of(right, [&](std::size_t b) { return comes_before(a, b); });
     });
-    if (is_cut) held.groups.emplace_back();
-    held.groups.back().push_back(order[k]);
+    if (is_cut) order_found.groups.emplace_back();
+    order_found.groups.back().push_back(order[k]);
   }
-  return held;
+  return order_found;
 }
 
 std::string held_text(std::span<const NumberWithError> numbers, std::span<const std::string> names) {
-  const auto [groups, unplaced] = held_order(numbers);
+  const auto [groups, indistinguishable] = held_order(numbers);
   std::vector<std::string> parts;
-  std::size_t placed = 0;
+  std::size_t grouped = 0;
   for (const std::vector<std::size_t>& group : groups) {
     parts.push_back(joined(group, names, " ~ "));
-    placed += group.size();
+    grouped += group.size();
   }
-  std::vector<std::size_t> unknown;
+  std::vector<std::size_t> without_error;
   for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (numbers[i].value && !numbers[i].error) unknown.push_back(i);
-  const char* says = groups.size() == 1                            ? "no order holds: "
-                     : groups.size() == placed && unplaced.empty() ? "the order holds: "
-                                                                   : "the order holds in part: ";
-  std::string text = placed < 2 ? "there is nothing to compare" : fmt::format("{}{}", says, fmt::join(parts, " < "));
-  if (!unplaced.empty()) text += "; too uncertain for a place: " + joined(unplaced, names, ", ");
-  if (!unknown.empty()) text += "; no error is known of " + joined(unknown, names, ", ");
+    if (numbers[i].value && !numbers[i].error) without_error.push_back(i);
+  const char* prefix = groups.size() == 1                                      ? "no order holds: "
+                       : groups.size() == grouped && indistinguishable.empty() ? "the order holds: "
+                                                                               : "the order holds in part: ";
+  std::string text = grouped < 2 ? "there is nothing to compare" : fmt::format("{}{}", prefix, fmt::join(parts, " < "));
+  if (!indistinguishable.empty()) text += "; too uncertain for a place: " + joined(indistinguishable, names, ", ");
+  if (!without_error.empty()) text += "; no error is known of " + joined(without_error, names, ", ");
   return text;
 }
 

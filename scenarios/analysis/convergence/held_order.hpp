@@ -7,20 +7,21 @@
 
 #include "scenarios/batch/number_with_error.hpp"
 
-/// The order of numbers that is significant at their errors.
+/// The order of numbers with errors: which numbers are significantly smaller than others.
 namespace hapbench {
 
-/// Places of numbers in the order that their errors leave.
+/// An order of groups of numbers, given as indices of the numbers.
 struct HeldOrder {
-  /// Each number of a group is less (is_less()) than every number of the groups behind it.
+  /// Groups in increasing order: each number is significantly smaller (is_less()) than every number of later groups.
   std::vector<std::vector<std::size_t>> groups;
-  std::vector<std::size_t> unplaced;  ///< numbers that are apart from no other, where others are
+  std::vector<std::size_t> indistinguishable;  ///< numbers that differ significantly from no other number
 };
 
-/// Numbers without a value or an error have no place.
+/// Returns the significant order of numbers. Omits numbers without a value or an error. `indistinguishable` is empty if
+/// no two numbers differ significantly; then all numbers are in one group.
 HeldOrder held_order(std::span<const NumberWithError> numbers);
 
-/// The same in a sentence about named numbers: "the order holds: mean < proxy".
+/// Returns held_order() as a sentence about named numbers, such as "the order holds: mean < proxy".
 std::string held_text(std::span<const NumberWithError> numbers, std::span<const std::string> names);
 
 }  // namespace hapbench

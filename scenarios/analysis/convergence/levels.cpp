@@ -21,7 +21,7 @@
 namespace hapbench {
 namespace {
 
-/// Formal order in the step. A device samples: between its samples the force is held, which is of the first order.
+/// Returns the formal order of convergence in the time step. A device holds the force between samples: first order.
 double order_in_step(const Scenario& scenario) {
   const IntegratorEntry& integrator = *scenario.integrator.type;
   if (has_device(scenario)) return 1.0;
@@ -29,6 +29,7 @@ double order_in_step(const Scenario& scenario) {
   return normal_damping(r) > 0.0 || r.has_friction() ? integrator.damped_order : integrator.order;
 }
 
+/// Returns why noise prevents convergence in the step; empty without noise.
 std::string noise_reason(const Scenario& scenario) {
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
   if (std::holds_alternative<TrackingHandFields>(scenario.hand))
@@ -37,6 +38,7 @@ std::string noise_reason(const Scenario& scenario) {
   return senses ? "the noise of the force sensor is drawn anew in every step" : "";
 }
 
+/// Returns the levels of the time step. Throws InputError if the ratio is not an integer.
 LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double ratio) {
   if (ratio != std::round(ratio))
     fail_in_option("--ratio",
@@ -46,7 +48,7 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
   std::int64_t times = 1;
   for (std::size_t i = 0; i < levels; ++i, times *= static_cast<std::int64_t>(ratio)) {
     std::vector<std::string> overrides = {fmt::format("time.steps={}", times * scenario.time.steps)};
-    if (const double delay = delay_of(scenario); delay > 0.0)  // which keeps its length
+    if (const double delay = delay_of(scenario); delay > 0.0)  // keeps the delay [s] constant
       overrides.push_back(fmt::format("{}={}", delay_path(scenario), static_cast<double>(times) * delay));
     sweep.axis.values.push_back(fmt::format("{}", scenario.time.step / static_cast<double>(times)));
     sweep.axis.along.push_back({std::move(overrides), times});
@@ -54,6 +56,8 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
   return sweep;
 }
 
+/// Returns the value of the first level: the scenario's value, or the mean vertex distance for a spacing that is not
+/// given. Throws InputError if there is neither.
 double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
   const Json own = current_value(loaded.scenario, path);
   if (own.is_number_float() && own.get<double>() > 0.0) return own.get<double>();
@@ -79,12 +83,14 @@ LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, st
 }
 
 Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
+  // Drop the first level, which is the original case.
   Axis axis = levels.axis;
   axis.values.erase(axis.values.begin());
   if (!axis.along.empty()) axis.along.erase(axis.along.begin());
   std::vector<Axis> axes = cases.axes();
   axes.insert(axes.begin(), axis);
   Cases finer(cases.scenes(), cases.sets(), std::move(axes));
+  // Validate one case of each level.
   for (std::size_t i = 0; i < axis.values.size(); ++i) {
     try {
       checked(finer.load(i * cases.size()));

@@ -7,26 +7,28 @@
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
-/// Levels of a field, from the scenario's value to finer ones: h, h/r, h/r^2, …
+/// Refinement levels of a field, such as the time step: h, h/r, h/r^2, …, with the scenario's value h and a ratio r.
 namespace hapbench {
 
 inline constexpr const char* kStepPath = "time.step_s";
 
-/// The levels of a scene's field, from the scenario's own value to finer ones.
+/// The refinement levels of a field of a scene, coarsest first.
 struct LevelSweep {
-  Axis axis;                  ///< the field's values, with what has to change along with them
-  double ratio = 2.0;         ///< of each value to the next
-  double formal_order = 2.0;  ///< of the integrator, or of whatever a distance between points or of a grid approximates
-  std::string no_order = {};  ///< why no metric of this scene can have an order; empty otherwise
+  Axis axis;                  ///< the field's values, and the overrides that each value needs
+  double ratio = 2.0;         ///< r: each value over the next value
+  double formal_order = 2.0;  ///< order of the integrator in the step; 2 for a spacing
+  std::string no_order = {};  ///< why metrics of this scene have no convergence order; empty if they can
 };
 
-/// With shorter steps the run lasts as long, delays of devices keep their length, and metrics of motion, force and
-/// contact are taken at the times of the coarsest rows. A mesh without a spacing begins with the mean distance of its
-/// vertices. Throws InputError when the field is not a number > 0 or an integer, and for a ratio of steps that is not
-/// whole.
+/// Returns `levels` levels of the field at `path`, each finer by `ratio`.
+///
+/// For the time step, the duration of the run and the delays [s] of devices stay constant, and metrics of motion, force
+/// and contact are sampled at the times of the coarsest level. For a mesh without a given spacing, the first level is
+/// the mean distance of its vertices. Throws InputError if the field is not a floating-point number > 0, or if the
+/// ratio of time steps is not an integer.
 LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
 
-/// The cases at the levels behind the first. Throws InputError where one of them cannot be run.
+/// Returns the cases at all levels except the first. Throws InputError if a case is not valid.
 Cases finer_cases(const LevelSweep& levels, const Cases& cases);
 
 }  // namespace hapbench

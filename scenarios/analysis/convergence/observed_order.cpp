@@ -12,12 +12,13 @@
 namespace hapbench {
 namespace {
 
-/// Smaller differences, relative to the results, are rounding errors of up to 10^6 steps and say nothing of the order.
+/// Differences below this fraction of the results are rounding errors of up to 10^6 steps, from which no order follows.
 constexpr double kRoundingShare = 1e-10;
-constexpr double kGciSafety = 1.25;        // Roache's factor for three and more levels
-constexpr double kAsymptoticWithin = 0.1;  // of GCI_21 / (r^p GCI_32) from 1
-constexpr std::size_t kLeastLevels = 3;
+constexpr double kGciSafety = 1.25;        // Roache's safety factor for three or more levels
+constexpr double kAsymptoticWithin = 0.1;  // largest |GCI_21 / (r^p GCI_32) - 1|
+constexpr std::size_t kMinLevels = 3;
 
+/// Returns why fewer than three levels count. `first`: index of the first level that counts.
 std::string too_few_reason(std::span<const LevelResult> levels, std::size_t first) {
   const std::size_t count = levels.size() - first;
   if (first == 0) return fmt::format("{} levels are fewer than three", count);
@@ -28,7 +29,7 @@ std::string too_few_reason(std::span<const LevelResult> levels, std::size_t firs
   return fmt::format("the run at {} {}, which leaves {} levels; an order takes three", last.setting, why, count);
 }
 
-/// The first count of contacts that differs between the levels.
+/// Returns a clause about the first contact count that differs between the levels; empty if none differs.
 std::string switching_reason(std::span<const LevelResult> last) {
   for (std::size_t i = 0; i < last.front().contacts.size(); ++i) {
     const auto& [name, coarse] = last.front().contacts[i];
@@ -41,7 +42,8 @@ std::string switching_reason(std::span<const LevelResult> last) {
   return "";
 }
 
-/// Why the orders and differences of the last four levels, or three, are not credible.
+/// Returns why the differences or orders of the last four (or three) results are not credible; empty if they are. `f`:
+/// results, coarsest first. `most`: largest credible order.
 std::string incredible_reason(std::span<const double> f, std::span<const std::optional<double>> orders, double most) {
   const std::size_t last = f.size() - 1, from = last >= 3 ? last - 3 : 0;
   for (std::size_t i = from + 2; i <= last; ++i) {
@@ -56,16 +58,17 @@ std::string incredible_reason(std::span<const double> f, std::span<const std::op
   return "";
 }
 
-/// The results of the levels that count: the last levels, which all end as the finest one and have a result.
+/// The levels that count: the finest consecutive levels that have a result and the outcome of the finest level.
 struct CountedLevels {
-  std::size_t first = 0;  ///< number of the first of them
+  std::size_t first = 0;  ///< index of the first level that counts
   std::vector<double> f;  ///< their results, coarsest first
-  double largest = 0.0;   ///< largest magnitude of them
+  double largest = 0.0;   ///< largest magnitude of the results
 
   std::size_t count() const { return f.size(); }
   bool is_rounding(double difference) const { return std::abs(difference) <= kRoundingShare * largest; }
 };
 
+/// Finds the levels that count.
 CountedLevels counted_levels(std::span<const LevelResult> levels) {
   CountedLevels counted;
   std::size_t first = levels.size();
@@ -78,7 +81,7 @@ CountedLevels counted_levels(std::span<const LevelResult> levels) {
   return counted;
 }
 
-/// Adds the observed order of each level over it and the two coarser levels.
+/// Writes the observed order of each level, from its result and the results of the two next coarser levels.
 void add_orders(const LevelSweep& sweep, const CountedLevels& counted, Convergence& c) {
   const std::vector<double>& f = counted.f;
   for (std::size_t i = 2; i < f.size(); ++i) {
@@ -88,11 +91,11 @@ void add_orders(const LevelSweep& sweep, const CountedLevels& counted, Convergen
   }
 }
 
-/// Adds the band of the last levels, and the errors of all levels without an order.
+/// Writes the band of the last levels, and the error estimates that hold without an order.
 void add_band(const CountedLevels& counted, Convergence& c) {
   const std::vector<double>& f = counted.f;
   if (f.size() < 2) return;
-  const auto last = f.end() - static_cast<std::ptrdiff_t>(std::min(f.size(), kLeastLevels));
+  const auto last = f.end() - static_cast<std::ptrdiff_t>(std::min(f.size(), kMinLevels));
   c.band = {*std::min_element(last, f.end()), *std::max_element(last, f.end())};
   for (std::size_t i = 0; i < f.size(); ++i) {
     double error = c.band->second - c.band->first;
@@ -109,13 +112,13 @@ std::string no_order_reason(const LevelSweep& sweep, std::span<const LevelResult
     return fmt::format("{} has no effect here: all runs are the same, bit for bit", sweep.axis.path);
   if (!sweep.no_order.empty()) return sweep.no_order;
   const std::vector<double>& f = counted.f;
-  if (f.size() < kLeastLevels) return too_few_reason(levels, counted.first);
+  if (f.size() < kMinLevels) return too_few_reason(levels, counted.first);
   if (counted.is_rounding(f[f.size() - 2] - f.back())) return "the last levels differ by rounding only";
-  if (std::string reason = switching_reason(levels.last(kLeastLevels)); !reason.empty()) return reason;
+  if (std::string reason = switching_reason(levels.last(kMinLevels)); !reason.empty()) return reason;
   return incredible_reason(f, orders.subspan(counted.first), 2.0 * sweep.formal_order);
 }
 
-/// Adds what the observed order gives: Richardson's value, the grid convergence index and the errors of all levels.
+/// Writes what follows from the observed order: Richardson's value, the GCI and the error estimates of all levels.
 /// Precondition: the last level has an order.
 void add_extrapolation(const LevelSweep& sweep, const CountedLevels& counted, Convergence& c) {
   const std::vector<double>& f = counted.f;
@@ -125,11 +128,11 @@ void add_extrapolation(const LevelSweep& sweep, const CountedLevels& counted, Co
   c.extrapolated = f[count - 1] + fine / (growth - 1.0);
   if (f[count - 1] != 0.0) c.gci = kGciSafety * std::abs(fine) / (std::abs(f[count - 1]) * (growth - 1.0));
   for (std::size_t i = 0; i < count; ++i) c.errors[counted.first + i] = kGciSafety * std::abs(f[i] - *c.extrapolated);
-  const auto in_range = [&](std::size_t i) {  // of the levels i - 2, i - 1 and i
+  const auto in_range = [&](std::size_t i) {  // asymptotic range of the levels i - 2, i - 1 and i
     const double gci_21 = (f[i - 1] - f[i - 2]) / std::abs(f[i - 1]), gci_32 = (f[i] - f[i - 1]) / std::abs(f[i]);
     return std::abs(gci_21 / (growth * gci_32) - 1.0) <= kAsymptoticWithin;
   };
-  c.asymptotic = in_range(count - 1) && (count == kLeastLevels || in_range(count - 2));
+  c.asymptotic = in_range(count - 1) && (count == kMinLevels || in_range(count - 2));
 }
 
 }  // namespace
@@ -148,8 +151,8 @@ Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult>
 
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary,
                          const std::string& metric) {
-  // Counts at the rows that the metrics take in, by which contacts are said to switch. Other points come with another
-  // surface: then it is the first that tells whether the tool meets the same things.
+  // Contact counts that detect switching contacts. A refined surface has other points, so that only the number of
+  // landings is comparable.
   constexpr const char* kContactCounts[] = {"landings", "steps_in_contact", "colliding_mean", "rendered_mean"};
   const std::string& path = levels.axis.path;
   LevelResult result{.setting = fmt::format("{} = {}", path, levels.axis.values[level]),

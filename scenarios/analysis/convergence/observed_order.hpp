@@ -10,45 +10,49 @@
 #include "scenarios/analysis/convergence/levels.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
-/// How far a number is from converged in a scene's step or any other field: observed order, Richardson's value and grid
-/// convergence index (Roache 1994; ASME V&V 20) at the levels of the field; or why no order can be stated.
+/// Convergence of a metric in a field such as the time step: observed order, Richardson extrapolation and grid
+/// convergence index (GCI; Roache 1994, ASME V&V 20) over refinement levels, or the reason why no order can be stated.
 namespace hapbench {
 
-/// Result of the run at one level.
+/// A metric of the run at one level.
 struct LevelResult {
-  std::string setting;           ///< the field's value, for reasons
-  std::string outcome;           ///< how the run ended
-  std::optional<double> result;  ///< empty where the run failed or has no such number
-  /// Counts of contacts, by name; where they differ between levels, contacts have switched.
+  std::string setting;           ///< the field and its value, as text
+  std::string outcome;           ///< name of the run's outcome
+  std::optional<double> result;  ///< the metric; empty if the run diverged or lacks the metric
+  /// Contact counts by name. If they differ between levels, contacts switched on or off.
   std::vector<std::pair<std::string, double>> contacts = {};
-  std::uint64_t state_hash = 0;  ///< equal for runs that are the same, bit for bit
+  std::uint64_t state_hash = 0;  ///< equal for bitwise equal runs
 };
 
-/// The verdict on a metric.
+/// Convergence of one metric. r: ratio of the levels; p: observed order; f*: Richardson's value.
 struct Convergence {
-  std::optional<double> order;         ///< observed at the three finest levels; empty where none is credible
-  std::string reason;                  ///< why there is none, in a clause; empty with an order
-  std::optional<double> extrapolated;  ///< Richardson's value; only with an order, as the next two
-  std::optional<double> gci;           ///< of the finest level, relative to its result; empty where that is 0
-  /// GCI_21 / (r^p GCI_32) is 1 within 0.1 at the three finest levels, and where a fourth one counts with the same p at
-  /// the three before.
+  std::optional<double> order;         ///< p at the three finest levels; empty if it is not credible
+  std::string reason;                  ///< why there is no order, as a clause; empty with an order
+  std::optional<double> extrapolated;  ///< f*; only with an order
+  std::optional<double> gci;  ///< GCI of the finest level, relative to its result; only with an order and a result != 0
+  /// True if the levels are in the asymptotic range: |GCI_21 / (r^p GCI_32) - 1| <= 0.1 for the three finest levels,
+  /// and, if a fourth level counts, also for the second to fourth finest levels with the same p.
   bool asymptotic = false;
-  /// Least and largest result of the last three levels that count, or of two; none with fewer.
+  /// Smallest and largest result of the last three levels that count, or of two levels; empty with fewer.
   std::optional<std::pair<double, double>> band;
-  /// The observed order of each level over it and the two coarser levels, if defined.
+  /// Observed order at each level, from it and the two next coarser levels; empty if undefined.
   std::vector<std::optional<double>> orders;
-  /// The estimated error of each level [metric's unit], no bound: with an order 1.25 |f - f*|, at the finest level its
-  /// GCI; otherwise the largest distance to a finer level, and at least the width of the band.
+  /// Error estimate (not a bound) of each level [metric's unit]. With an order: 1.25 |f - f*|, which equals the GCI at
+  /// the finest level. Without: the largest distance to a finer level, at least the width of the band.
   std::vector<std::optional<double>> errors;
 };
 
-/// Returns the result of a metric at a level. The result is empty if the run has no such metric or diverges.
+/// Returns a metric of the run at a level. `summary`: the result of this run.
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary, const std::string& metric);
 
-/// Judges the results of all levels. Those count that follow the last one that ended otherwise than the finest or has
-/// no result. No order is stated where all runs are the same; for the reason that the levels have (`no_order`); with
-/// fewer than three that count; where contacts switch between the last three or the last two differ by rounding only;
-/// where within the last four differences change their sign or an order is not in (0, 2 formal].
+/// Returns the convergence of a metric from its results at all levels. Only the finest consecutive levels that have a
+/// result and the same outcome as the finest level count. No order is stated if:
+/// - all runs are bitwise equal;
+/// - the levels have a reason (LevelSweep::no_order);
+/// - fewer than three levels count;
+/// - the last two results differ by rounding only;
+/// - contacts switch between the last three levels;
+/// - within the last four levels, differences change their sign or an order is not in (0, 2 formal_order].
 Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels);
 
 }  // namespace hapbench

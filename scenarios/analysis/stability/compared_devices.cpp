@@ -17,7 +17,7 @@
 namespace hapbench {
 namespace {
 
-/// Reads the device of a file: the file is a device, or a scenario of which only the device is read.
+/// Reads a device from the JSON of a device, or from the field "device" of a scenario. Throws InputError.
 DeviceFields read_device(const Json& file) {
   const bool is_scenario = file.contains("device");
   if (!is_scenario && !file.contains("type"))
@@ -29,7 +29,7 @@ DeviceFields read_device(const Json& file) {
   return device;
 }
 
-/// Returns the hand of the scene without its mass; null if it has none.
+/// Returns the scene's hand without its mass, as a hand of type "impedance"; null if the hand has no mass.
 Json massless_hand(const ScenarioText& scene) {
   const auto hand = scene.json.find("hand");
   if (hand == scene.json.end() || !hand->is_object() || hand->value("type", Json()) != "mass_spring_damper") return {};

@@ -18,6 +18,7 @@
 namespace hapbench {
 namespace {
 
+/// Throws InputError if the sampling rate is too low to measure vibration above kVibrationCutoff.
 void check_sampling(const LoadedScenario& loaded) {
   const double step = loaded.scenario.time.step;
   if (kVibrationCutoff * step < 0.5) return;
@@ -26,15 +27,15 @@ void check_sampling(const LoadedScenario& loaded) {
                       kVibrationCutoff, 0.5 / kVibrationCutoff));
 }
 
-/// The runs of a search. Each value is run once.
-class JudgedRuns {
+/// The runs of a search. Runs each value once and caches its result.
+class RunCache {
  public:
-  explicit JudgedRuns(const LimitQuestion& question) : question_(question) {}
+  explicit RunCache(const LimitQuestion& question) : question_(question) {}
 
-  /// Runs the values at these parameters in parallel, except those that were run before.
-  void run_ahead(std::span<const double> parts) {
+  /// Runs the values at these parameters in parallel. Skips values that were run before.
+  void run_ahead(std::span<const double> parameters) {
     std::vector<double> values;
-    for (const double t : parts) {
+    for (const double t : parameters) {
       const double value = question_.search.value_at(t);
       if (runs_.try_emplace(value).second) values.push_back(value);
     }
@@ -45,7 +46,7 @@ class JudgedRuns {
     });
   }
 
-  /// Returns true if the run at a parameter is stable; runs it first if necessary.
+  /// Returns true if the run at a parameter is stable by the question's rule. Runs the value if it is not cached.
   bool is_stable_at(double t) {
     run_ahead({&t, 1});
     return question_.rule.holds(at(t).verdict);
@@ -66,38 +67,38 @@ class JudgedRuns {
   std::map<double, RunStability> runs_;
 };
 
-/// Evaluates the first values: the middles of intervals that are stable in theory, and a scan of the range.
-TriedParts first_values(JudgedRuns& runs, std::vector<double> parts) {
-  for (int i = 0; i <= kEdgeIntervals; ++i) parts.push_back(static_cast<double>(i) / kEdgeIntervals);
-  runs.run_ahead(parts);
-  TriedParts tried;
-  for (const double t : parts) tried[t] = runs.is_stable_at(t);
-  return tried;
+/// Evaluates the given parameters (middles of the intervals that are stable in theory) and the end points of a scan.
+EvaluatedParameters evaluate_first(RunCache& runs, std::vector<double> parameters) {
+  for (int i = 0; i <= kEdgeIntervals; ++i) parameters.push_back(static_cast<double>(i) / kEdgeIntervals);
+  runs.run_ahead(parameters);
+  EvaluatedParameters evaluated;
+  for (const double t : parameters) evaluated[t] = runs.is_stable_at(t);
+  return evaluated;
 }
 
-FoundEdge searched_edge(const LimitQuestion& question, JudgedRuns& runs, TriedParts tried, bool near) {
+FoundEdge find_interval(const LimitQuestion& question, RunCache& runs, EvaluatedParameters evaluated, bool near) {
   const auto is_stable = [&](double t) { return runs.is_stable_at(t); };
-  const auto run_ahead = [&](std::span<const double> parts) { runs.run_ahead(parts); };
-  return question.between ? find_tried_edge(question.search, tried, is_stable, near, run_ahead)
-                          : find_edge(question.search, tried, is_stable, true);
+  const auto run_ahead = [&](std::span<const double> parameters) { runs.run_ahead(parameters); };
+  return question.between ? find_tried_edge(question.search, evaluated, is_stable, near, run_ahead)
+                          : find_edge(question.search, evaluated, is_stable, true);
 }
 
-/// Adds the interval that was found.
-void add_interval(const LimitQuestion& question, const FoundEdge& edge, const JudgedRuns& runs, FieldLimit& limit) {
+/// Writes the interval that was found into the limit.
+void add_interval(const LimitQuestion& question, const FoundEdge& interval, const RunCache& runs, FieldLimit& limit) {
   const SearchWay& search = question.search;
-  limit.scattered = edge.scattered;
-  if (edge.stable) {
+  limit.scattered = interval.scattered;
+  if (interval.stable) {
     limit.tried_between = question.between ? kTriedBetween : 0;
-    limit.end.value = search.value_at(*edge.stable);
+    limit.end.value = search.value_at(*interval.stable);
     limit.settled = runs.of(*limit.end.value).settled;
   }
-  if (edge.beyond) limit.end.beyond = runs.at(*edge.beyond);
-  if (edge.first) limit.other.value = search.value_at(*edge.first);
-  if (edge.before) limit.other.beyond = runs.at(*edge.before);
-  if (search.own_part()) limit.own = runs.at(*search.own_part());
+  if (interval.beyond) limit.end.beyond = runs.at(*interval.beyond);
+  if (interval.first) limit.other.value = search.value_at(*interval.first);
+  if (interval.before) limit.other.beyond = runs.at(*interval.before);
+  if (search.current_parameter()) limit.own = runs.at(*search.current_parameter());
 }
 
-/// Adds the runs of the search, and which of them contradict the limit.
+/// Writes all runs of the search into the limit, and the runs that contradict the interval.
 void add_runs(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   const auto is_before = [&](double a, double b) { return question.search.smallest ? a > b : a < b; };
   for (const auto& [value, run] : runs) {
@@ -113,14 +114,14 @@ void add_runs(const LimitQuestion& question, const std::map<double, RunStability
   });
 }
 
-/// Adds whether hand and device are unstable by themselves.
+/// Writes whether hand and device are unstable without contact.
 void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   const JudgedValue suspect = limit.end.beyond ? *limit.end.beyond : limit.runs.front();
   limit.unstable_alone = !question.rule.holds(suspect.verdict) &&
                          unstable_without_contact(checked(question.at(suspect.value)), question.rule.most_vibration);
 }
 
-/// Adds the limits by formulas, and the linear limit in contact.
+/// Writes the limits by closed forms, and the linear limit in contact.
 void add_formulas(const LimitQuestion& question, FieldLimit& limit) {
   limit.closed_form = inequality_limit(question).value;
   WallLimits wall = wall_limits(question);
@@ -145,14 +146,16 @@ bool FieldLimit::is_beyond_linear(double resolution) const {
 FieldLimit field_limit(const LimitQuestion& question) {
   if (question.rule.most_vibration) check_sampling(load_scenario(*question.scene, question.overrides));
   FieldLimit limit;
+  // Find the linear limit, where the theory applies.
   TheoreticalLimit theory = eigenvalue_limit(question);
   limit.theory = theory.value;
   limit.theory_has_none = theory.has_none;
-  JudgedRuns runs(question);
-  TriedParts tried = first_values(runs, std::move(theory.islands));
+  // Search the interval by runs. Samples near the limit are needed only if no theory confirms the limit.
+  RunCache runs(question);
+  EvaluatedParameters evaluated = evaluate_first(runs, std::move(theory.islands));
   const bool near = !limit.theory;
-  const FoundEdge edge = searched_edge(question, runs, std::move(tried), near);
-  add_interval(question, edge, runs, limit);
+  const FoundEdge interval = find_interval(question, runs, std::move(evaluated), near);
+  add_interval(question, interval, runs, limit);
   add_runs(question, runs.by_value(), limit);
   add_cause(question, limit);
   add_formulas(question, limit);

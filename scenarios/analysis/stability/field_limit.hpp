@@ -8,11 +8,11 @@
 #include "scenarios/analysis/stability/limit_question.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
 
-/// Stability limits: the largest or smallest value of a scenario's field at which its run is stable
+/// Stability limits: the largest or smallest value of a scenario's field at which the run of the scenario is stable
 /// (run_stability.hpp).
 namespace hapbench {
 
-/// A value and the verdict on the run with it.
+/// A value of the field, and the verdict on the run with this value.
 struct JudgedValue {
   double value = 0.0;
   RunVerdict verdict = RunVerdict::stable;
@@ -20,54 +20,55 @@ struct JudgedValue {
 
 /// An end of the interval of stable values.
 struct IntervalEnd {
-  std::optional<double> value;        ///< the last stable value; empty if no run is stable
-  std::optional<JudgedValue> beyond;  ///< the first unstable value beyond it; empty if the range ends stable
+  std::optional<double> value;        ///< outermost stable value; empty if no run is stable
+  std::optional<JudgedValue> beyond;  ///< nearest unstable value beyond it; empty if the end of the range is stable
 
-  /// Returns how far beyond the value the limit may lie: the distance to the first unstable value; empty without one.
+  /// Returns |beyond - value|: the limit lies between the two. Empty if one of them is empty.
   std::optional<double> tolerance() const;
 };
 
-/// The answer to a question for a limit.
+/// The result of a search for a stability limit.
 struct FieldLimit {
   IntervalEnd end;    ///< the limit: the end of the interval that the question asks for
   IntervalEnd other;  ///< the other end of the interval
-  /// Linear limit by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) if the whole
-  /// range is stable, empty where there is no theory or nothing is stable.
+  /// Linear limit by the eigenvalues of a step, for springs that stay in contact. Infinite (smallest: 0) if the whole
+  /// range is stable; empty if the theory does not apply or no value is stable.
   std::optional<double> theory;
-  bool theory_has_none = false;  ///< by theory no value of the range is stable
-  /// Limit by the integrator's inequality, where the tool is alone with the springs; empty where it has none.
+  bool theory_has_none = false;  ///< true if the theory applies and no value of the range is stable
+  /// Limit by the integrator's stability inequality, for a tool without hand and device on springs; empty otherwise.
   std::optional<double> closed_form;
-  /// Linear limit of a device at a surface that only pushes, where there is no theory: the limit of the loop of device,
-  /// hand and the stiffness rendered at the simulated limit, while contact lasts, without dry friction and encoder.
-  /// Friction, encoder and lost contact hold up a simulated limit beyond it. Infinite if the whole range is stable.
+  /// Linear limit of a device on a surface that can be left, if `theory` is empty: the stability limit of the loop of
+  /// device, hand and a permanent contact with the stiffness rendered at the simulated limit. Dry friction and encoder
+  /// are ignored; they and loss of contact can raise the simulated limit above it. Infinite if the whole range is
+  /// stable.
   std::optional<double> linear;
-  /// Limits of K on a wall that holds the handle of an impedance device from both sides (WallLimits); empty elsewhere.
+  /// WallLimits::closed_forms [N/m].
   std::vector<std::optional<double>> closed_forms;
-  std::optional<double> worst_hand;
-  std::string no_theory;
-  SettledState settled;            ///< of the run at the limit
-  std::optional<JudgedValue> own;  ///< the run at the scenario's current value, if that is in the range
-  /// unstable_without_contact() at the first value beyond the limit, or without a limit at the first value of the
-  /// range.
+  std::optional<double> worst_hand;  ///< WallLimits::worst_hand [N/m]
+  std::string no_theory;             ///< WallLimits::no_theory
+  SettledState settled;              ///< settled state of the run at the limit
+  std::optional<JudgedValue> own;    ///< the run at the scenario's value; empty if the value is outside of the range
+  /// Result of unstable_without_contact() at the nearest value beyond the limit; without a limit, at the smallest
+  /// evaluated value.
   bool unstable_alone = false;
-  bool has_effect = true;                 ///< false if the handle moved alike, bit for bit, in all runs
-  std::size_t tried_between = 0;          ///< verification samples between the ends of the interval, all stable
-  bool scattered = false;                 ///< there are stable values, but no contiguous stable interval of kNear
-  std::vector<JudgedValue> runs;          ///< all, by value
-  std::vector<JudgedValue> inconsistent;  ///< runs that are unstable in the interval, or stable outside of it
-  std::size_t undecided = 0;              ///< runs that were too short to judge (RunStability::undecided)
+  bool has_effect = true;         ///< false if the handle's motion is bitwise equal in all runs
+  std::size_t tried_between = 0;  ///< number of verification samples in the interval, all stable
+  bool scattered = false;         ///< true if stable values exist, but no contiguous stable interval as long as kNear
+  std::vector<JudgedValue> runs;  ///< all runs, by increasing value
+  std::vector<JudgedValue> inconsistent;  ///< unstable runs inside the interval and stable runs outside of it
+  std::size_t undecided = 0;              ///< number of runs that were too short to judge (RunStability::undecided)
 
-  /// Returns true if the limit lies beyond `linear` by more than this relative distance. Contact at stable values
-  /// beyond `linear` is intermittent, so that `linear` is the limit to quote.
+  /// Returns true if the limit exceeds `linear` by more than the relative distance `resolution`. Contact is
+  /// intermittent at stable values beyond `linear`; then `linear` is the limit to quote.
   bool is_beyond_linear(double resolution) const;
-  /// Returns the linear limit: `theory`, or else `linear`.
+  /// Returns the linear limit: `theory` if it has a value, otherwise `linear`.
   const std::optional<double>& linear_edge() const { return theory ? theory : linear; }
 };
 
-/// Answers a question: evaluates 17 values, the scenario's current value and the middles of intervals that are stable
-/// in theory, then searches the interval (find_edge with `beside`, or find_tried_edge for LimitQuestion::between).
-/// Makes 35 to 120 runs; verification takes 56 more each time that it fails. Throws InputError, with the file, if the
-/// rule limits vibration and the sampling rate is 60 Hz or less.
+/// Finds a stability limit. Evaluates 17 equidistant parameters, the scenario's value and the middles of intervals that
+/// are stable in theory, then searches the interval: with find_edge (`beside`), or with find_tried_edge if
+/// LimitQuestion::between. Makes 35 to 120 runs; each failed verification costs up to 56 more. Throws InputError, with
+/// the file, if the rule limits vibration and the sampling rate is 60 Hz or less.
 FieldLimit field_limit(const LimitQuestion& question);
 
 }  // namespace hapbench

@@ -11,83 +11,85 @@
 namespace hapbench {
 namespace {
 
-bool is_stable_part(const TriedParts::value_type& tried) {
-  return tried.second;
+bool is_stable_entry(const EvaluatedParameters::value_type& evaluated) {
+  return evaluated.second;
 }
 
-bool is_unstable_part(const TriedParts::value_type& tried) {
-  return !tried.second;
+bool is_unstable_entry(const EvaluatedParameters::value_type& evaluated) {
+  return !evaluated.second;
 }
 
-/// One search of find_edge.
-class EdgeSearch {
+/// The search of find_edge.
+class TransitionSearch {
  public:
-  EdgeSearch(const SearchWay& way, TriedParts& tried, const IsStable& stable)
-      : way_(way), tried_(tried), stable_(stable) {}
+  TransitionSearch(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable)
+      : options_(options), evaluated_(evaluated), stable_(stable) {}
 
-  /// Returns the first transition without a look at its surroundings.
+  /// Returns the first transition without samples beside it: only `stable` and `beyond`.
   FoundEdge first() {
     start();
     const std::optional<Transition> transition = next_transition();
-    return transition ? edge_of(*transition) : FoundEdge{};
+    return transition ? bisected_transition(*transition) : FoundEdge{};
   }
 
-  /// Returns the first transition that samples on either side of it confirm, and the other end of its interval.
+  /// Returns the first transition that samples on either side confirm, with the other end of its interval.
   FoundEdge confirmed() {
-    constexpr int kRounds = 6;  // of bisection, each at the transition that samples beside the last one revealed
+    constexpr int kMaxRounds = 6;  // bisections, each at the transition that the previous samples revealed
     start();
-    FoundEdge edge;
-    for (int round = 0; round < kRounds; ++round) {
+    FoundEdge interval;
+    for (int round = 0; round < kMaxRounds; ++round) {
       const std::optional<Transition> transition = next_transition();
       if (!transition) return {};
-      const bool is_confirmed = transition->high && edge.stable == transition->low;
+      const bool is_confirmed = transition->high && interval.stable == transition->low;
       if (is_confirmed) break;
-      edge = edge_of(*transition);
-      if (!edge.beyond) break;
-      try_beside(transition->first_stable, edge);
+      interval = bisected_transition(*transition);
+      if (!interval.beyond) break;
+      evaluate_beside(transition->first_stable, interval);
     }
-    add_other_end(edge);
-    return edge;
+    add_other_end(interval);
+    return interval;
   }
 
  private:
-  /// Two neighbours among the evaluated parameters, the first stable and the second unstable.
+  /// A contiguous group of stable parameters, and the unstable parameter above the group.
   struct Transition {
-    double first_stable;         ///< where the stable parameters begin
-    double low;                  ///< the last stable one
-    std::optional<double> high;  ///< the unstable one above it; empty if the range ends stable
+    double first_stable;         ///< smallest stable parameter of the group
+    double low;                  ///< largest stable parameter of the group
+    std::optional<double> high;  ///< next parameter, unstable; empty if t = 1 is stable
   };
 
   bool evaluate(double t) {
     const bool is_stable = stable_(t);
-    tried_[t] = is_stable;
+    evaluated_[t] = is_stable;
     return is_stable;
   }
 
-  /// The search starts at the current value, or at t = 0 if that is unstable.
+  /// Sets the start of the search: the current value, or t = 0 if the current value is unstable.
   void start() {
-    const std::optional<double> own = way_.own_part();
-    start_ = own && evaluate(*own) ? *own : 0.0;
+    const std::optional<double> current = options_.current_parameter();
+    start_ = current && evaluate(*current) ? *current : 0.0;
   }
 
+  /// Returns the first group of stable parameters at or above the start; empty if there is none.
   std::optional<Transition> next_transition() const {
-    const auto first = std::find_if(tried_.lower_bound(start_), tried_.end(), is_stable_part);
-    if (first == tried_.end()) return std::nullopt;
-    const auto end = std::find_if(first, tried_.end(), is_unstable_part);
+    const auto first = std::find_if(evaluated_.lower_bound(start_), evaluated_.end(), is_stable_entry);
+    if (first == evaluated_.end()) return std::nullopt;
+    const auto end = std::find_if(first, evaluated_.end(), is_unstable_entry);
     Transition transition{first->first, std::prev(end)->first, std::nullopt};
-    if (end != tried_.end()) transition.high = end->first;
+    if (end != evaluated_.end()) transition.high = end->first;
     return transition;
   }
 
-  FoundEdge edge_of(const Transition& transition) {
+  FoundEdge bisected_transition(const Transition& transition) {
     if (!transition.high) return {.stable = transition.low};
     const auto [stable, unstable] = bisected(transition.low, *transition.high);
     return {.stable = stable, .beyond = unstable};
   }
 
-  /// Bisects between a stable and an unstable parameter.
+  /// Bisects between a stable and an unstable parameter down to the resolution. Returns the final stable and unstable
+  /// parameter.
   std::pair<double, double> bisected(double stable, double unstable) {
-    while (way_.apart(stable, unstable)) {
+    while (options_.needs_bisection(stable, unstable)) {
       const double middle = 0.5 * (stable + unstable);
       if (evaluate(middle))
         stable = middle;
@@ -97,32 +99,32 @@ class EdgeSearch {
     return {stable, unstable};
   }
 
-  /// Evaluates parameters on either side of a transition, up to an interval of the scan away.
-  void try_beside(double first_stable, const FoundEdge& edge) {
-    constexpr int kBeside = 3;  // on either side
+  /// Evaluates three parameters on either side of a transition, within one interval of the scan.
+  void evaluate_beside(double first_stable, const FoundEdge& interval) {
+    constexpr int kBeside = 3;  // samples on either side
     constexpr double kInterval = 1.0 / kEdgeIntervals;
-    const double before = std::max(first_stable, *edge.stable - kInterval);
-    const double behind = std::min(1.0, *edge.beyond + kInterval);
+    const double before = std::max(first_stable, *interval.stable - kInterval);
+    const double behind = std::min(1.0, *interval.beyond + kInterval);
     for (int i = 1; i <= kBeside; ++i) {
-      const double share = static_cast<double>(i) / (kBeside + 1);
-      evaluate(before + share * (*edge.stable - before));
-      evaluate(*edge.beyond + share * (behind - *edge.beyond));
+      const double fraction = static_cast<double>(i) / (kBeside + 1);
+      evaluate(before + fraction * (*interval.stable - before));
+      evaluate(*interval.beyond + fraction * (behind - *interval.beyond));
     }
   }
 
-  /// Finds the other end of the interval of stable parameters.
-  void add_other_end(FoundEdge& edge) {
-    auto first = tried_.find(*edge.stable);
-    while (first != tried_.begin() && std::prev(first)->second) --first;
-    edge.first = first->first;
-    if (first == tried_.begin()) return;
+  /// Bisects the lower end of the interval of stable parameters.
+  void add_other_end(FoundEdge& interval) {
+    auto first = evaluated_.find(*interval.stable);
+    while (first != evaluated_.begin() && std::prev(first)->second) --first;
+    interval.first = first->first;
+    if (first == evaluated_.begin()) return;
     const auto [stable, unstable] = bisected(first->first, std::prev(first)->first);
-    edge.first = stable;
-    edge.before = unstable;
+    interval.first = stable;
+    interval.before = unstable;
   }
 
-  const SearchWay& way_;
-  TriedParts& tried_;
+  const SearchWay& options_;
+  EvaluatedParameters& evaluated_;
   const IsStable& stable_;
   double start_ = 0.0;
 };
@@ -134,86 +136,89 @@ double SearchWay::value_at(double t) const {
   return whole ? std::round(value) : value;
 }
 
-std::optional<double> SearchWay::own_part() const {
-  if (!own) return std::nullopt;
+std::optional<double> SearchWay::current_parameter() const {
+  if (!current) return std::nullopt;
   const auto [from, to, logarithmic] = range;
-  const double t = logarithmic ? math::log(*own / from) / math::log(to / from) : (*own - from) / (to - from);
+  const double t = logarithmic ? math::log(*current / from) / math::log(to / from) : (*current - from) / (to - from);
   return smallest ? 1.0 - t : t;
 }
 
-bool SearchWay::apart(double a, double b) const {
+bool SearchWay::needs_bisection(double a, double b) const {
   const auto [low, high] = std::minmax({value_at(a), value_at(b)});
   if (whole) return high - low > 1.0;
   if (range.logarithmic) return high > (1.0 + resolution) * low;
   return high - low > resolution * (range.to - range.from);
 }
 
-TriedParts scanned(int intervals, const IsStable& stable) {
-  TriedParts tried;
+EvaluatedParameters scanned(int intervals, const IsStable& stable) {
+  EvaluatedParameters evaluated;
   for (int i = 0; i <= intervals; ++i) {
     const double t = static_cast<double>(i) / intervals;
-    tried[t] = stable(t);
+    evaluated[t] = stable(t);
   }
-  return tried;
+  return evaluated;
 }
 
-FoundEdge find_edge(const SearchWay& way, TriedParts& tried, const IsStable& stable, bool beside) {
-  EdgeSearch search(way, tried, stable);
+FoundEdge find_edge(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable, bool beside) {
+  TransitionSearch search(options, evaluated, stable);
   return beside ? search.confirmed() : search.first();
 }
 
-double may_fail_share(std::size_t tried) {
-  return 1.0 - math::pow(0.05, 1.0 / static_cast<double>(tried));
+double may_fail_share(std::size_t samples) {
+  return 1.0 - math::pow(0.05, 1.0 / static_cast<double>(samples));
 }
 
-std::vector<double> parts_between(double from, double to, std::size_t count) {
+std::vector<double> parameters_between(double from, double to, std::size_t count) {
   constexpr double kGolden = std::numbers::phi - 1.0;
-  std::vector<double> parts;
-  double share = 0.0;
+  std::vector<double> parameters;
+  double fraction = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    share += kGolden;
-    share -= std::floor(share);
-    parts.push_back(from + share * (to - from));
+    fraction += kGolden;
+    fraction -= std::floor(fraction);
+    parameters.push_back(from + fraction * (to - from));
   }
-  return parts;
+  return parameters;
 }
 
-std::vector<double> parts_below(const SearchWay& way, double t) {
-  const auto [from, to, logarithmic] = way.range;
+std::vector<double> parameters_below(const SearchWay& options, double t) {
+  const auto [from, to, logarithmic] = options.range;
   const double near = logarithmic ? math::log(1.0 + kNear) / math::log(to / from)
-                                  : kNear * std::max(std::abs(way.value_at(t)) / (to - from), way.resolution);
-  return parts_between(t, std::max(0.0, t - near), kTriedNear);
+                                  : kNear * std::max(std::abs(options.value_at(t)) / (to - from), options.resolution);
+  return parameters_between(t, std::max(0.0, t - near), kTriedNear);
 }
 
-FoundEdge find_tried_edge(const SearchWay& way, TriedParts& tried, const IsStable& stable, bool near,
+FoundEdge find_tried_edge(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable, bool near,
                           const std::function<void(std::span<const double>)>& ahead) {
   bool scattered = false;
-  double scattered_up_to = -1.0;  // up to here the stable parameters are scattered, and none counts as stable
+  // Stable parameters up to this value are isolated samples. They count as unstable.
+  double scattered_up_to = -1.0;
   const auto counts_as_stable = [&](double t) { return t > scattered_up_to && stable(t); };
-  // Returns the first of these samples that is not stable; `tried` then has it.
+  // Evaluates the samples in order and adds them to `evaluated`. Stops at the first unstable sample and returns it.
   const auto first_failing = [&](const std::vector<double>& samples) -> std::optional<double> {
     ahead(samples);
     for (const double t : samples) {
-      tried[t] = counts_as_stable(t);
-      if (!tried[t]) return t;
+      evaluated[t] = counts_as_stable(t);
+      if (!evaluated[t]) return t;
     }
     return std::nullopt;
   };
   while (true) {
-    const FoundEdge edge = find_edge(way, tried, counts_as_stable, true);
-    if (!edge.stable) return {.scattered = scattered};
-    const double first = edge.first.value_or(*edge.stable);
-    if (first_failing(parts_between(first, *edge.stable, kTriedBetween))) continue;
-    if (!near || way.whole || !edge.beyond) return edge;
-    const std::optional<double> failing = first_failing(parts_below(way, *edge.stable));
-    if (!failing) return edge;
+    const FoundEdge interval = find_edge(options, evaluated, counts_as_stable, true);
+    if (!interval.stable) return {.scattered = scattered};
+    const double first = interval.first.value_or(*interval.stable);
+    // Verify the whole interval, then the neighbourhood of its limit.
+    if (first_failing(parameters_between(first, *interval.stable, kTriedBetween))) continue;
+    if (!near || options.whole || !interval.beyond) return interval;
+    const std::optional<double> failing = first_failing(parameters_below(options, *interval.stable));
+    if (!failing) return interval;
     if (*failing > first) continue;
-    // A sample below the interval fails: the interval is shorter than kNear. The search continues above it.
+    // The unstable sample lies below the interval: the interval is shorter than kNear. Search above the interval,
+    // except if the interval has the current value.
     scattered = true;
-    const std::optional<double> own = way.own_part();
-    if (own && first <= *own && *own <= *edge.stable) return {.scattered = true};
-    scattered_up_to = *edge.stable;
-    for (auto& [t, is_stable] : tried) is_stable = is_stable && t > scattered_up_to;
+    const std::optional<double> current = options.current_parameter();
+    if (current && first <= *current && *current <= *interval.stable) return {.scattered = true};
+    scattered_up_to = *interval.stable;
+    for (auto& [t, is_stable] : evaluated) is_stable = is_stable && t > scattered_up_to;
   }
 }
 

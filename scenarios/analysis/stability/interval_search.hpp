@@ -9,73 +9,83 @@
 
 #include "scenarios/batch/axis.hpp"
 
-/// Searches the interval of stable values in a range, whatever makes a value stable.
+/// Searches a range for the interval of stable values. The caller's predicate (IsStable) decides what stable means.
 ///
 /// A search works on the parameter t in [0, 1] of the range: t = 0 is the end that is expected to be stable, t = 1 the
-/// other end. Its answer is the interval of stable parameters around the current value, found by a scan and bisection.
+/// other end. The result is the interval of stable parameters around the current value, found by a scan and bisection.
 namespace hapbench {
 
-inline constexpr int kEdgeIntervals = 16;        ///< equal intervals of a scan before bisection
-inline constexpr double kEdgeResolution = 1e-3;  ///< default relative width at which bisection on runs stops
+inline constexpr int kEdgeIntervals = 16;        ///< number of equal intervals of the scan before bisection
+inline constexpr double kEdgeResolution = 1e-3;  ///< default relative width at which bisection stops
 
-/// A range of values, and how it is searched.
+/// The range of a search and its settings.
 struct SearchWay {
-  Range range;                     ///< where the limit may lie, from < to; both ends are evaluated
-  std::optional<double> own = {};  ///< the current value, at which the search starts if it lies in the range
-  bool whole = false;              ///< values are integers
-  bool smallest = false;           ///< the search starts at the high end and finds the smallest stable value
-  /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
+  Range range;  ///< from < to; both ends are evaluated
+  /// Scenario's value, where the search starts; empty if it is outside of the range.
+  std::optional<double> current = {};
+  bool whole = false;     ///< true: values are integers
+  bool smallest = false;  ///< true: t = 0 is the high end, and the result is the smallest stable value
+  /// Width at which bisection stops: relative to the value in a logarithmic range, relative to the range in a linear
+  /// range.
   double resolution = kEdgeResolution;
 
-  /// Returns the value at a parameter.
+  /// Returns the value at the parameter `t`, rounded if `whole`.
   double value_at(double t) const;
   /// Returns the parameter of the current value; empty if there is none.
-  std::optional<double> own_part() const;
-  /// Returns true while bisection has to go on between two parameters.
-  bool apart(double a, double b) const;
+  std::optional<double> current_parameter() const;
+  /// Returns true if the values at two parameters differ by more than the resolution (`whole`: by more than 1).
+  bool needs_bisection(double a, double b) const;
 };
 
-/// The result of a search, in parameters: the interval of stable parameters from `first` to `stable`, and the unstable
-/// parameters next to it, `before` and `beyond`.
+/// The interval of stable parameters that a search found, from `first` to `stable`, and its unstable neighbours.
 struct FoundEdge {
-  std::optional<double> stable = {}, beyond = {};
-  std::optional<double> first = {}, before = {};
+  std::optional<double> stable = {};  ///< largest stable parameter of the interval; empty without an interval
+  std::optional<double> beyond = {};  ///< unstable parameter just above `stable`; empty if t = 1 is stable
+  std::optional<double> first = {};   ///< smallest stable parameter of the interval; empty without the other end
+  std::optional<double> before = {};  ///< unstable parameter just below `first`; empty if t = 0 is stable
   bool scattered = false;  ///< there are stable parameters, but no contiguous stable interval as long as kNear
 };
 
-/// The parameters that were evaluated, and whether they are stable.
-using TriedParts = std::map<double, bool>;
-/// Evaluates a parameter: returns true if it is stable.
+/// Evaluated parameters, each with true if it is stable.
+using EvaluatedParameters = std::map<double, bool>;
+/// Evaluates a parameter. Returns true if it is stable.
 using IsStable = std::function<bool(double t)>;
 
-/// Evaluates the ends of `intervals` equal intervals of the range, from t = 0 on.
-TriedParts scanned(int intervals, const IsStable& stable);
+/// Evaluates the `intervals` + 1 end points of equal intervals of [0, 1], from t = 0 to t = 1.
+EvaluatedParameters scanned(int intervals, const IsStable& stable);
 
 /// Bisects the first stable-to-unstable transition above the current value, or above the first stable parameter if the
-/// current value is unstable. `tried` has the parameters evaluated before, at least both ends; those of the search are
-/// added. With `beside`, evaluates three more parameters on either side of the transition. If they show an earlier
-/// transition, bisects that one instead, up to five times, and at the end bisects the other end of the interval.
-FoundEdge find_edge(const SearchWay& way, TriedParts& tried, const IsStable& stable, bool beside);
+/// current value is unstable. Returns an empty interval if no parameter is stable. On input `evaluated` has at least
+/// both ends of the range; the search adds all parameters that it evaluates.
+///
+/// Without `beside`, only `stable` and `beyond` are found. With `beside`, also evaluates three parameters on either
+/// side of the transition. If they show an earlier transition, bisects the earlier transition instead, up to five
+/// times. Finally bisects the other end of the interval.
+FoundEdge find_edge(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable, bool beside);
 
-// Bisection can miss unstable values inside an interval: loops in contact have islands of unstable values that are 1 %
-// of a range wide. An interval is therefore verified by further samples.
+// Bisection can miss unstable values inside an interval: feedback loops in contact have islands of unstable values as
+// narrow as 1 % of a range. Further samples therefore verify an interval.
 inline constexpr std::size_t kTriedBetween = 48;  ///< verification samples between the ends of the interval
 inline constexpr std::size_t kTriedNear = 8;      ///< further samples just below the limit
-inline constexpr double kNear = 0.02;             ///< largest relative distance of these from the limit
+/// Largest distance of the kTriedNear samples from the limit, relative to the limit.
+inline constexpr double kNear = 0.02;
 
-/// Returns the largest fraction of an interval that is unstable at 95 % confidence if `tried` samples are all stable.
-double may_fail_share(std::size_t tried);
+/// Returns the upper 95 % confidence bound on the unstable fraction of an interval if `samples` samples in it are all
+/// stable: 1 - 0.05^(1 / samples).
+double may_fail_share(std::size_t samples);
 
-/// Returns `count` parameters between two others: the first n of them fill the interval evenly for every n.
-std::vector<double> parts_between(double from, double to, std::size_t count);
+/// Returns `count` parameters between `from` and `to`: a golden-ratio sequence, whose first n parameters fill the
+/// interval evenly for every n.
+std::vector<double> parameters_between(double from, double to, std::size_t count);
 
 /// Returns kTriedNear parameters below `t` whose values are within kNear of its value.
-std::vector<double> parts_below(const SearchWay& way, double t);
+std::vector<double> parameters_below(const SearchWay& options, double t);
 
-/// Finds a transition as find_edge does with `beside`, and verifies its interval: by samples between its ends and, with
-/// `near`, just below the limit. The first sample that is not stable ends the interval, and the search continues from
-/// there. Calls `ahead` with parameters before it evaluates them, so that they can be evaluated in parallel.
-FoundEdge find_tried_edge(const SearchWay& way, TriedParts& tried, const IsStable& stable, bool near,
+/// Finds an interval as find_edge does with `beside`, and verifies it: by kTriedBetween samples between its ends and,
+/// with `near`, by kTriedNear samples just below the limit. If a sample is unstable, searches again with this sample as
+/// an unstable parameter. Calls `ahead` with parameters before it evaluates them, so that the caller can evaluate them
+/// in parallel.
+FoundEdge find_tried_edge(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable, bool near,
                           const std::function<void(std::span<const double>)>& ahead);
 
 }  // namespace hapbench

@@ -11,19 +11,20 @@
 namespace hapbench {
 namespace {
 
-/// Returns the value nearest to 2^10 (sign 1) or 2^-10 (sign -1) times the current value that the field allows.
+/// Returns the farthest value that the field allows among current * 2^(sign * n), n = 10, 9, …, 0.
 double allowed_end(const LimitQuestion& question, double current, int sign) {
   for (int doublings = 10; doublings > 0; --doublings) {
     const double end = std::ldexp(current, sign * doublings);
     try {
       question.at(end);
       return end;
-    } catch (const InputError&) {  // try a nearer one
+    } catch (const InputError&) {  // not allowed: try a value closer to the current value
     }
   }
   return current;
 }
 
+/// Throws InputError if the tool cannot move freely or the run is too short to classify.
 void check_scene(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   if (!position_is_free(scenario.motion))
@@ -34,8 +35,9 @@ void check_scene(const LoadedScenario& loaded) {
             fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
 }
 
+/// Returns the range from 2^-10 to 2^10 times the current value. Throws InputError if that is not a number above 0.
 Range default_range(const LimitQuestion& question, const Json& current) {
-  // A field that does not exist or is no number is refused by its own error.
+  // For a field that does not exist or is not a number, question.at() throws a more specific error.
   if (!current.is_number()) question.at(1.0);
   if (!current.is_number() || !(current.get<double>() > 0.0))
     fail_in({.about_options = {"--vary"}},
@@ -63,13 +65,14 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
   question.overrides = overrides;
   question.path = path;
   question.search.whole = current.is_number_integer();
+  // Both ends of the range must be allowed values.
   const Range searched = range ? *range : default_range(question, current);
   question.at(searched.from);
   const LoadedScenario last = question.at(searched.to);
   question.warnings = with_files(last, last.warnings);
   question.search.range = {searched.from, searched.to, searched.from > 0.0};
   if (current.is_number() && current.get<double>() >= searched.from && current.get<double>() <= searched.to)
-    question.search.own = current.get<double>();
+    question.search.current = current.get<double>();
   return question;
 }
 

@@ -14,20 +14,21 @@ namespace {
 
 using IsTrueOf = std::function<bool(const Scenario&)>;
 
-// Theory costs a thousandth of a run: its scan is finer, and it is bisected to rounding.
+// An evaluation costs a thousandth of a run. The scan can therefore be finer, and bisection goes down to rounding.
 constexpr int kTheoryIntervals = 256;
 constexpr double kTheoryResolution = 1e-12;
 
-/// Returns true for springs that stay in contact, with a tool that is alone or a device whose loop is linear.
+/// Returns true for springs in permanent contact with a tool without hand and device, or with a device whose loop is
+/// linear.
 bool has_eigenvalues(const Scenario& scenario) {
   if (!springs_stay(scenario)) return false;
   if (has_device(scenario)) return device_loop(scenario, 1.0).no_theory.empty();
   return std::holds_alternative<NoHandFields>(scenario.hand);
 }
 
-/// Returns true if no mode of the springs leaves the unit circle, alone or in the loop of the device.
+/// Returns true if all eigenvalues of a step lie inside the unit circle, for each principal stiffness of the springs.
 bool step_is_stable(const Scenario& scenario) {
-  constexpr double kNoWall = 1e-12;  // a direction without springs, in which the handle is free
+  constexpr double kNoWall = 1e-12;  // [K]; below: a direction without springs, where the handle moves freely
   const Vec3 lambdas = stiffness_eigenvalues(scenario);
   return std::all_of(lambdas.begin(), lambdas.end(), [&](double lambda) {
     if (!has_device(scenario)) return tool_on_spring(scenario, lambda).is_stable();
@@ -35,25 +36,26 @@ bool step_is_stable(const Scenario& scenario) {
   });
 }
 
-/// Returns true if the integrator has an inequality for stable steps.
+/// Returns true if the integrator has a stability inequality that applies to the scenario.
 bool has_inequality(const Scenario& scenario) {
   return !has_device(scenario) && has_eigenvalues(scenario) && scenario.integrator.type->stability_margin != nullptr;
 }
 
+/// Returns true if the stiffest direction satisfies the integrator's stability inequality.
 bool keeps_inequality(const Scenario& scenario) {
   const double lambda = stiffness_eigenvalues(scenario)[2];
   return scenario.integrator.type->stability_margin(tool_on_spring(scenario, lambda)) >= 0.0;
 }
 
-/// Returns the middles of the contiguous intervals of stable parameters.
-std::vector<double> stable_intervals(const TriedParts& tried) {
+/// Returns the midpoints of the contiguous intervals of stable parameters.
+std::vector<double> stable_intervals(const EvaluatedParameters& evaluated) {
   std::vector<double> middles;
   std::optional<double> begin, end;
   const auto close = [&] {
     if (begin) middles.push_back(0.5 * (*begin + *end));
     begin.reset();
   };
-  for (const auto& [t, is_stable] : tried) {
+  for (const auto& [t, is_stable] : evaluated) {
     if (!is_stable) {
       close();
       continue;
@@ -65,21 +67,22 @@ std::vector<double> stable_intervals(const TriedParts& tried) {
   return middles;
 }
 
-/// Returns the limit by the condition `stable`; empty unless `applies` to the scene at both ends of the range.
+/// Returns the limit of the condition `stable`. Empty if `applies` is false at an end of the range. `intervals`: number
+/// of intervals of the scan.
 TheoreticalLimit limit_by(const LimitQuestion& question, const IsTrueOf& applies, const IsTrueOf& stable,
                           int intervals) {
   const auto scenario_at = [&](double t) { return question.at(question.search.value_at(t)).scenario; };
   const auto holds = [&](double t) { return stable(scenario_at(t)); };
   TheoreticalLimit limit;
   if (!applies(scenario_at(0.0)) || !applies(scenario_at(1.0))) return limit;
-  TriedParts tried = scanned(intervals, holds);
-  limit.islands = stable_intervals(tried);
+  EvaluatedParameters evaluated = scanned(intervals, holds);
+  limit.islands = stable_intervals(evaluated);
   limit.has_none = limit.islands.empty();
-  SearchWay way = question.search;
-  way.resolution = kTheoryResolution;
-  const FoundEdge edge = find_edge(way, tried, holds, false);
-  if (edge.stable) limit.value = way.smallest ? 0.0 : std::numeric_limits<double>::infinity();
-  if (edge.beyond) limit.value = way.value_at(*edge.stable);
+  SearchWay options = question.search;
+  options.resolution = kTheoryResolution;
+  const FoundEdge interval = find_edge(options, evaluated, holds, false);
+  if (interval.stable) limit.value = options.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+  if (interval.beyond) limit.value = options.value_at(*interval.stable);
   return limit;
 }
 
@@ -110,7 +113,7 @@ WallLimits wall_limits(const LimitQuestion& question) {
   if (question.path != kStiffnessPath || question.search.smallest || !springs_stay(scenario) ||
       !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device))
     return limits;
-  // The formulas take a damping B that does not depend on K.
+  // The closed forms assume a damping B that does not depend on K. A damping ratio makes B depend on K.
   if (!scenario.rendering.damping && scenario.rendering.damping_ratio != 0.0) return limits;
   const double lambda = stiffness_eigenvalues(scenario)[2];
   const DeviceLoop start = device_loop(scenario, lambda);

@@ -6,38 +6,43 @@
 
 #include "scenarios/analysis/stability/limit_question.hpp"
 
-/// Limits of a field that theory gives, without runs. An evaluation costs about a thousandth of a run.
+/// Stability limits of a field from linear theory, without runs. One evaluation costs about a thousandth of a run.
 namespace hapbench {
 
-/// The limit by a condition on the scene, along the whole range of a question.
+/// The limit of a stability condition over the range of a question.
 struct TheoreticalLimit {
-  /// The last stable value before the first transition. Infinite (smallest: 0) if the whole range is stable; empty
-  /// where the condition does not apply to the scene or nothing is stable.
+  /// Last stable value before the first stable-to-unstable transition. Infinite (smallest: 0) if the whole range is
+  /// stable; empty if the condition does not apply to the scene or no value is stable.
   std::optional<double> value = {};
-  /// The middles of all contiguous intervals of stable parameters. Runs evaluate them too, since an interval may lie
-  /// between two values of their scan.
+  /// Midpoints of all contiguous intervals of stable parameters. field_limit() also runs these, because its coarser
+  /// scan could miss a narrow interval.
   std::vector<double> islands = {};
-  bool has_none = false;  ///< the condition applies, and no value is stable
+  bool has_none = false;  ///< true if the condition applies and no value is stable
 };
 
-/// Returns the limit by the eigenvalues of a step, for springs that stay in contact with a tool that is alone, or with
-/// a device whose loop is linear.
+/// Returns the limit by the eigenvalues of one time step (all inside the unit circle). Applies to springs in permanent
+/// contact, with a tool without hand and device, or with a device whose feedback loop is linear.
 TheoreticalLimit eigenvalue_limit(const LimitQuestion& question);
 
-/// Returns the limit by the integrator's inequality, for springs that stay in contact with a tool that is alone.
+/// Returns the limit by the integrator's stability inequality. Applies to springs in permanent contact with a tool
+/// without hand and device.
 TheoreticalLimit inequality_limit(const LimitQuestion& question);
 
-/// Returns the limit by the eigenvalues of the loop of device, hand and a surface of the stiffness K `lambda` while
-/// they touch; infinite if the whole range is stable, empty without a device.
+/// Returns the limit by the eigenvalues of the loop of device, hand and a permanent contact of stiffness K `lambda`
+/// (`lambda`: largest eigenvalue of the stiffness tensor S, in units of K). Infinite if the whole range is stable;
+/// empty without a device.
 std::optional<double> contact_limit(const LimitQuestion& question, double lambda);
 
-/// Limits of K on a wall that holds the handle of an impedance device from both sides.
+/// Limits of the stiffness K [N/m] on a two-sided wall that holds the handle of an impedance device.
 struct WallLimits {
-  /// The values of stiffness_limits(), in their order; empty if the question is another one.
+  /// Limits by the closed forms of stiffness_limits(), in their order; an entry is empty if its form does not apply.
+  /// Empty if the question does not concern K on such a wall.
   std::vector<std::optional<double>> closed_forms = {};
-  std::optional<double> worst_hand = {};  ///< smallest limit over hand_family() in place of the scene's hand
-  std::string no_theory = {};             ///< why the eigenvalues of the loop do not give a limit; empty if they do
+  std::optional<double> worst_hand = {};  ///< smallest limit over the hands of hand_family()
+  std::string no_theory = {};             ///< why the eigenvalues of the loop give no limit; empty if they do
 };
+/// Returns the limits of K if the question varies K on a two-sided wall with an impedance device; otherwise empty
+/// limits.
 WallLimits wall_limits(const LimitQuestion& question);
 
 }  // namespace hapbench

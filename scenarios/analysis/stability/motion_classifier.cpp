@@ -6,8 +6,10 @@
 namespace hapbench {
 namespace {
 
+// Ratios of amplitudes: growth from quarter to quarter, remainder of a decayed motion, smallest sustained amplitude,
+// and speed at rest relative to the largest speed.
 constexpr double kGrowth = 1.01, kLeft = 0.01, kSustained = 0.9, kRest = 1e-12;
-constexpr double kFelt = 1e-3;  // [m/s]
+constexpr double kFelt = 1e-3;  // smallest speed that a hand can feel [m/s]
 
 }  // namespace
 
@@ -39,7 +41,8 @@ bool MotionClassifier::is_undecided() const noexcept {
 MotionClass MotionClassifier::motion_class(Ending ending) const noexcept {
   if (ending == Ending::diverged) return MotionClass::diverged;
   if (at_rest()) return MotionClass::stable;
-  // A hand that comes to rest may swing a little more for a while: below 30 Hz that is not called growth.
+  // After the script ends, a hand may swing with a growing amplitude for a while. This slow motion counts as vibrating
+  // at most, not as diverged.
   return std::max(all_.motion_class(is_moved_ ? kFelt : 0.0),
                   std::min(held_.motion_class(kFelt), MotionClass::vibrating));
 }

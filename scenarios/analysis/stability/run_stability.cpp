@@ -16,7 +16,8 @@
 namespace hapbench {
 namespace {
 
-/// Steps the simulation, which `classifier` observes, until it ends or comes to rest.
+/// Steps the simulation until it ends or comes to rest, and returns the class of its motion. Precondition: `classifier`
+/// observes the simulation.
 MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) {
   const SimulationResult result = run_to_end(simulation, [&] {
     bool more = true;
@@ -26,18 +27,20 @@ MotionClass classify(Simulation& simulation, const MotionClassifier& classifier)
   return classifier.motion_class(result.ending);
 }
 
+/// Returns the classifier for the scenario. It depends on whether a script moves the tool.
 MotionClassifier classifier_of(const Scenario& scenario) {
   const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
   if (!is_moved(scenario)) return MotionClassifier(steps);
   return MotionClassifier::of_moved_tool(steps, scenario.time.step, script_moves_until(scenario) / scenario.time.step);
 }
 
+/// Returns the verdict by the vibration if `most_vibration` has a value [m/s rms]; otherwise the class of the motion.
 RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> most_vibration) {
   if (!most_vibration || motion == MotionClass::diverged) return motion;
   return settled.vibration && *settled.vibration <= *most_vibration ? RunVerdict::stable : RunVerdict::vibrating;
 }
 
-/// Returns the verdict with the name of an outcome; empty if only the motion decides.
+/// Returns the verdict with the same name as the outcome; empty if the outcome has no verdict of its own.
 std::optional<RunVerdict> verdict_of(Outcome outcome) {
   const auto texts = run_verdict_texts();
   const auto found = std::ranges::find(texts, outcome_name(outcome), &RunVerdictText::name);
@@ -45,29 +48,32 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
   return static_cast<RunVerdict>(found - texts.begin());
 }
 
+/// Runs the scenario once with its given length and returns the verdict.
 RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
                          const std::shared_ptr<const PointShell>& shell, const StabilityRule& rule) {
+  // Run the scenario with observers of its motion, its end and its outcome.
   MotionClassifier classifier = classifier_of(scenario);
-  LastRows last(scenario);
+  RunEndObserver run_end(scenario);
   SimulationParts parts = assemble(scenario, files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
-  const auto seen = outcome_observer(scenario, files, parts);
-  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, seen.get()});
+  const auto outcome_seen = outcome_observer(scenario, files, parts);
+  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &run_end, outcome_seen.get()});
   const MotionClass motion = classify(simulation, classifier);
-  const SettledState settled = last.state(classifier.at_rest());
-  const Outcome outcome = seen->outcome(simulation.result().ending);
+  const SettledState settled = run_end.state(classifier.at_rest());
+  const Outcome outcome = outcome_seen->outcome(simulation.result().ending);
+  // Decide in this order: divergence, outcome, bounces, vibration or motion.
   const auto verdict = [&] {
     if (motion == MotionClass::diverged) return RunVerdict::diverged;
     if (outcome == Outcome::went_through) return RunVerdict::went_through;
-    if (!last.touched()) return RunVerdict::no_contact;
-    if (outcome == Outcome::leaves_hole || (shell && last.has_left(*shell, tool->reach())))
+    if (!run_end.touched()) return RunVerdict::no_contact;
+    if (outcome == Outcome::leaves_hole || (shell && run_end.has_left(*shell, tool->reach())))
       return RunVerdict::thrown_out;
     if (const auto known = verdict_of(outcome)) return *known;
     const bool only_fast = rule.most_vibration || is_moved(scenario);
-    if (only_fast && last.goes_on_bouncing()) return RunVerdict::vibrating;
+    if (only_fast && run_end.keeps_bouncing()) return RunVerdict::vibrating;
     return verdict_of(motion, settled, rule.most_vibration);
   };
-  RunStability run{verdict(), settled, last.motion_hash()};
+  RunStability run{verdict(), settled, run_end.motion_hash()};
   run.undecided = is_stable(run.verdict) && classifier.is_undecided();
   return run;
 }
@@ -76,16 +82,19 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
 
 RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const PointShell> shell,
                           const StabilityRule& rule) {
-  constexpr int kLengthenings = 3;
-  constexpr std::int64_t kTimes = 4, kMostLengthened = 1'000'000;  // steps
+  constexpr int kMaxExtensions = 3;
+  constexpr std::int64_t kExtensionFactor = 4, kMaxExtendedSteps = 1'000'000;  // steps
+  // Extend a run that is too short to judge.
   RunStability run = judged_once(checked.scenario(), checked.files(), shell, rule);
   Scenario longer = checked.scenario();
-  for (int i = 0; run.undecided && i < kLengthenings && longer.time.steps * kTimes <= kMostLengthened; ++i) {
-    longer.time.steps *= kTimes;
+  for (int i = 0; run.undecided && i < kMaxExtensions && longer.time.steps * kExtensionFactor <= kMaxExtendedSteps;
+       ++i) {
+    longer.time.steps *= kExtensionFactor;
     const std::uint64_t motion_hash = run.motion_hash;
     run = judged_once(longer, checked.files(), shell, rule);
-    run.motion_hash = motion_hash;  // of the scenario's own length, as in other runs
+    run.motion_hash = motion_hash;  // of the unextended run, so that it compares with other runs
   }
+  // Check the bounds on metrics in a complete run.
   if (!is_stable(run.verdict) || rule.bounds.empty()) return run;
   const Result whole = run_with_shell(checked, shell);
   if (!unmet_expectations({{whole.end.outcome}, rule.bounds}, whole).empty()) run.verdict = RunVerdict::beyond_bound;
@@ -96,16 +105,16 @@ bool unstable_without_contact(const CheckedScenario& checked, std::optional<doub
   Scenario scenario = checked.scenario();
   if (spring_of(scenario.hand) == nullptr || std::holds_alternative<SpringsEnvironment>(scenario.environment))
     return false;
-  // Dry friction only takes energy: vibration from sticking and slipping is no instability of the loop.
+  // Remove dry friction: it only dissipates energy, and stick-slip vibration is not an instability of the loop.
   if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) device->coulomb = 0.0;
   MotionClassifier classifier = classifier_of(scenario);
-  LastRows last(scenario, true);
-  constexpr double kCells = 1.0;  // [m], of the grid that local_average needs
+  RunEndObserver run_end(scenario, true);
+  constexpr double kCells = 1.0;  // cell size of the grid that local_average needs [m]
   const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, kCells);
   Simulation simulation(simulation_config(scenario), assemble(scenario, checked.files(), nothing, {}),
-                        {&classifier, &last});
+                        {&classifier, &run_end});
   const MotionClass motion = classify(simulation, classifier);
-  return !is_stable(verdict_of(motion, last.state(classifier.at_rest()), most_vibration));
+  return !is_stable(verdict_of(motion, run_end.state(classifier.at_rest()), most_vibration));
 }
 
 }  // namespace hapbench

@@ -5,6 +5,7 @@
 namespace hapbench {
 namespace {
 
+/// Returns the text of a verdict that is an outcome.
 RunVerdictText of_outcome(Outcome outcome) {
   const OutcomeInfo& info = outcome_infos()[static_cast<std::size_t>(outcome)];
   return {info.name, info.meaning};
@@ -13,7 +14,7 @@ RunVerdictText of_outcome(Outcome outcome) {
 }  // namespace
 
 std::span<const RunVerdictText> run_verdict_texts() noexcept {
-  // In the order of the enumeration.
+  // In the order of RunVerdict.
   static const RunVerdictText kTexts[] = {
       {"stable", "at rest, died out or creeping", "all else: at rest, died out, creeping"},
       {"dying_out", "still oscillates, but comes to rest if the run goes on",

@@ -7,7 +7,7 @@
 /// The verdicts on a run: stable, or the reason why it is not.
 namespace hapbench {
 
-/// Classes of motion, then outcomes of a run of the same name, then a bound on a metric that is not kept.
+/// Verdict on a run: four classes of motion, then outcomes of the run (outcome.hpp), then a violated bound on a metric.
 enum class RunVerdict {
   stable,
   dying_out,
@@ -21,22 +21,23 @@ enum class RunVerdict {
   stuck,
   beyond_bound
 };
-/// One of the first four.
+/// One of the first kMotionClasses verdicts.
 using MotionClass = RunVerdict;
 inline constexpr std::size_t kMotionClasses = 4;
 
-/// A verdict in words.
+/// Name and description of a verdict.
 struct RunVerdictText {
-  std::string_view name;  ///< also in result files: "stable", "dying_out", ...
-  const char* meaning;
-  const char* rule = "";  ///< by which a run belongs to a class of motion
+  std::string_view name;  ///< as in result files: "stable", "dying_out", …
+  const char* meaning;    ///< for the user
+  const char* rule = "";  ///< criterion of a class of motion; empty for other verdicts
 };
-/// Returns the texts in the order of the enumeration.
+/// Returns the texts of all verdicts, in the order of RunVerdict.
 std::span<const RunVerdictText> run_verdict_texts() noexcept;
 
+/// Returns RunVerdictText::name of a verdict.
 std::string_view run_verdict_name(RunVerdict verdict) noexcept;
 
-/// Returns true for runs that come to rest in contact: stable and dying_out.
+/// Returns true for `stable` and `dying_out`: the run comes to rest in contact.
 bool is_stable(RunVerdict verdict) noexcept;
 
 }  // namespace hapbench

@@ -7,22 +7,22 @@ namespace hapbench {
 
 void SlowBounces::add(const StepRecord& record, const JudgedRows& judged) noexcept {
   if (record.colliding == 0) {
-    fly(record);
+    leave(record);
     return;
   }
-  if (rows_away_ > 0) land(record.step, judged);
+  if (steps_away_ > 0) land(record.step, judged);
   touch(record);
 }
 
 void SlowBounces::touch(const StepRecord& record) noexcept {
-  ++rows_touching_;
-  rows_away_ = 0;
+  ++steps_in_contact_;
+  steps_away_ = 0;
   last_contact_ = record.handle.position;
   if (record.force.rendered.squaredNorm() > 0.0) up_ = record.force.rendered.normalized();
 }
 
-void SlowBounces::fly(const StepRecord& record) noexcept {
-  if (rows_away_++ == 0) height_ = 0.0;
+void SlowBounces::leave(const StepRecord& record) noexcept {
+  if (steps_away_++ == 0) height_ = 0.0;
   const double height = (record.handle.position - last_contact_).dot(up_);
   if (!(height > height_)) return;
   height_ = height;
@@ -30,18 +30,19 @@ void SlowBounces::fly(const StepRecord& record) noexcept {
 }
 
 void SlowBounces::land(std::uint64_t step, const JudgedRows& judged) noexcept {
-  const std::uint64_t touching = std::exchange(rows_touching_, 0);
-  const bool slow = static_cast<double>(touching + rows_away_) > longest_vibration_;
-  if (!slow || touching >= rows_away_ || !is_pressed_ || !judged.contain(step)) return;
+  const std::uint64_t in_contact = std::exchange(steps_in_contact_, 0);
+  // Count the bounce only if it is slow, longer than the contact before it, and against a hand that presses.
+  const bool slow = static_cast<double>(in_contact + steps_away_) > longest_vibration_;
+  if (!slow || in_contact >= steps_away_ || !is_pressed_ || !judged.contain(step)) return;
   const std::size_t half = 2 * (step - *judged.begin()) / (judged.end() - *judged.begin());
   ++counts_[half];
   highest_[half] = std::max(highest_[half], height_);
 }
 
-bool SlowBounces::go_on() const noexcept {
-  constexpr int kLeast = 2;
-  constexpr double kFallen = 0.99;
-  return counts_[0] >= kLeast && counts_[1] >= kLeast && highest_[1] > kFallen * highest_[0];
+bool SlowBounces::persist() const noexcept {
+  constexpr int kMinBounces = 2;
+  constexpr double kLowered = 0.99;  // ratio of the highest bounces of both halves
+  return counts_[0] >= kMinBounces && counts_[1] >= kMinBounces && highest_[1] > kLowered * highest_[0];
 }
 
 }  // namespace hapbench

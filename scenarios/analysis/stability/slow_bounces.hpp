@@ -6,37 +6,38 @@
 #include "results/observe/contact_forces.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Bounces that are slower than the vibration of a handle (30 Hz).
+/// Detection of bounces whose period is longer than 1/30 s, the period of the slowest vibration.
 namespace hapbench {
 
-/// Detects a tool that goes on bouncing more slowly than what counts as vibration. In a bounce the tool leaves the
-/// surface for longer than the contact before it lasted, and returns against a hand that presses. The height of a
-/// bounce is the largest distance from the position where the handle lost contact, along the force there.
+/// Detects a tool that keeps bouncing with a period longer than 1 / kVibrationCutoff (1/30 s). In a
+/// bounce the tool is out of contact for longer than the preceding contact, and the hand presses it back. The height of
+/// a bounce is the largest distance of the handle from its last position in contact, along the last contact force.
 class SlowBounces {
  public:
   /// `dt`: time step [s].
   explicit SlowBounces(double dt) : longest_vibration_(1.0 / (kVibrationCutoff * dt)) {}
 
+  /// Adds one time step. `judged`: the steps over which bounces are counted.
   void add(const StepRecord& record, const JudgedRows& judged) noexcept;
 
-  /// Returns true if each half of the judged rows has two bounces or more, and those of the second half do not get
-  /// lower by 1 %.
-  bool go_on() const noexcept;
+  /// Returns true if each half of the judged steps has at least two bounces, and the highest bounce of the second half
+  /// is less than 1 % lower than that of the first half.
+  bool persist() const noexcept;
 
  private:
   void touch(const StepRecord& record) noexcept;
-  void fly(const StepRecord& record) noexcept;
+  void leave(const StepRecord& record) noexcept;
   void land(std::uint64_t step, const JudgedRows& judged) noexcept;
 
-  double longest_vibration_;          ///< rows of a period of the cutoff
-  std::uint64_t rows_touching_ = 0;   ///< of the last contact
-  std::uint64_t rows_away_ = 0;       ///< since then
-  Vec3 last_contact_ = Vec3::Zero();  ///< the handle's last position in contact [m]
-  Vec3 up_ = Vec3::Zero();            ///< direction of the last force
-  double height_ = 0.0;               ///< of the current bounce so far [m]
-  bool is_pressed_ = false;           ///< the hand pressed at this height
-  std::array<int, 2> counts_{};       ///< in each half of the judged rows
-  std::array<double, 2> highest_{};   ///< likewise [m]
+  double longest_vibration_;            ///< number of steps of a period of kVibrationCutoff
+  std::uint64_t steps_in_contact_ = 0;  ///< duration of the last contact [steps]
+  std::uint64_t steps_away_ = 0;        ///< steps since the last contact; 0 in contact
+  Vec3 last_contact_ = Vec3::Zero();    ///< the handle's last position in contact [m]
+  Vec3 up_ = Vec3::Zero();              ///< unit vector along the last contact force
+  double height_ = 0.0;                 ///< height of the current bounce so far [m]
+  bool is_pressed_ = false;             ///< true if the hand pressed towards the surface at `height_`
+  std::array<int, 2> counts_{};         ///< number of bounces in each half of the judged steps
+  std::array<double, 2> highest_{};     ///< highest bounce in each half of the judged steps [m]
 };
 
 }  // namespace hapbench

@@ -7,26 +7,25 @@
 #include "scenarios/analysis/stability/run_verdict.hpp"
 #include "scenarios/scene/scenario.hpp"
 
-/// The rule by which a run is stable.
+/// The rule that decides whether a run is stable.
 namespace hapbench {
 
-/// Conditions that a run has to meet to be stable.
+/// Conditions that a stable run satisfies.
 struct StabilityRule {
-  /// Largest vibration of the handle in the judged rows [m/s rms]. With it the vibration decides instead of the motion:
-  /// a motion that is too small to be felt is stable, a motion that is felt is not, although it may die out. A run
-  /// without a measured vibration is not stable. A tool that bounces below 30 Hz vibrates while its bounces do not get
-  /// lower by 1 %.
+  /// Largest allowed vibration of the handle over the judged steps [m/s rms]. If set, the vibration decides instead of
+  /// the class of motion: a smaller vibration is stable, a larger vibration is not, even if it decays. A run without a
+  /// measured vibration is not stable. A tool with persistent slow bounces (SlowBounces) is vibrating.
   std::optional<double> most_vibration = {};
-  /// Bounds on metrics of summary.json; a metric without a value is out of bounds.
+  /// Bounds on metrics of summary.json, by name. A metric without a value violates its bound.
   std::map<std::string, MetricBound> bounds = {};
-  bool bounded = false;  ///< a run that vibrates without growing is also stable
+  bool bounded = false;  ///< true: a vibrating run, which does not grow, is also stable
 
-  /// Returns true if the rule calls a run with this verdict stable.
+  /// Returns true if a run with this verdict is stable by this rule.
   bool holds(RunVerdict verdict) const noexcept;
 };
 
-/// Returns the default rule of a scenario: the motion decides. If a script moves the tool, the vibration decides
-/// (kMostVibration), except at sampling rates of 60 Hz or less.
+/// Returns the default rule of a scenario. The class of motion decides; if a script moves the tool, the vibration
+/// decides (limit: kMostVibration). At sampling rates of 60 Hz or less, the class of motion always decides.
 StabilityRule rule_of(const Scenario& scenario);
 
 }  // namespace hapbench

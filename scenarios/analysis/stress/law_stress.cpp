@@ -16,27 +16,29 @@
 namespace hapbench {
 namespace {
 
-/// Relative rounding error allowed in sums over at most kMostContacts contacts and in exact_shaping's weights, which
+/// Relative rounding error allowed in sums over at most kMaxContacts contacts and in exact_shaping's weights, which
 /// its epsilon of 1e-6 makes sensitive.
 constexpr double kForceRounding = 1e-6;
-constexpr std::uint64_t kSetsOfAJob = 1000;
+constexpr std::uint64_t kSetsPerJob = 1000;
 
-/// Damping is B S v, and friction is off: |f_render| <= |f_spring| + B lambda_max(S) |v|.
+/// Returns true if |f_render| <= |f_spring| + B lambda_max(S) |v|, which holds for a damping force B S v without
+/// friction.
 bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   const double B = 2.0 * set.rendering.damping_ratio * std::sqrt(set.rendering.stiffness * set.rendering.mass);
   const double bound = force.spring.norm() + B * lambda_max(force.S) * set.velocity.norm();
   return force.rendered.norm() <= (1.0 + kForceRounding) * bound;
 }
 
-/// The force of an algorithm for a set, and its bound.
+/// The force of an algorithm for a contact set, and its bound.
 struct StressedForce {
   RenderedForce force;
-  double unit = 0.0;            ///< K times the deepest depth [N]
-  std::optional<double> bound;  ///< of |f_spring| [N]; none for algorithms without one
+  double unit = 0.0;            ///< K times the largest depth [N]
+  std::optional<double> bound;  ///< bound of |f_spring| [N]; empty for algorithms without a bound
   bool in_contact = false;
   std::uint64_t points_dropped = 0;
 };
 
+/// Computes the force of `config`'s algorithm for a contact set.
 StressedForce force_on(const ContactSet& set, const PointShell& shell, const RenderingConfig& config) {
   ShellSource source(shell, set.tool, make_contact_query(shell, set.tool, Skips::off), make_depth_model(config));
   ContactBuffer contacts(source.capacity());
@@ -45,7 +47,7 @@ StressedForce force_on(const ContactSet& set, const PointShell& shell, const Ren
   algorithm->reset();
   source.contacts_at(set.pose, contacts);
   StressedForce stressed;
-  stressed.in_contact = !contacts.empty();  // before the algorithm, which may change the contacts
+  stressed.in_contact = !contacts.empty();  // read before compute(), which may change the contacts
   algorithm->compute({set.pose, set.velocity}, contacts, stressed.force);
   stressed.points_dropped = algorithm->work().points_dropped;
   const double depth_max = stressed.force.depth_max;
@@ -60,15 +62,16 @@ bool all_finite(const RenderedForce& force) {
          std::isfinite(force.depth_max);
 }
 
-/// Precondition: all numbers of the force are finite.
+/// Returns true if force, depth and damping are within their bounds. Precondition: all numbers of the force are finite.
 bool all_in_bound(const ContactSet& set, const StressedForce& stressed) {
-  constexpr double kAllowed = 1.0 + kForceRounding;
+  constexpr double kMaxRatio = 1.0 + kForceRounding;
   const RenderedForce& force = stressed.force;
-  if (stressed.bound && !(force.spring.norm() <= kAllowed * *stressed.bound)) return false;
-  if (!(force.depth_max >= 0.0 && force.depth_max <= kAllowed * set.tool.longest_exit())) return false;
+  if (stressed.bound && !(force.spring.norm() <= kMaxRatio * *stressed.bound)) return false;
+  if (!(force.depth_max >= 0.0 && force.depth_max <= kMaxRatio * set.tool.longest_exit())) return false;
   return damping_in_bound(set, force);
 }
 
+/// Computes the force of one set and adds it to the counts of an algorithm. `number`: index of the set.
 void count_set(const ContactSet& set, std::uint64_t number, const PointShell& shell, StressCounts& counts) {
   RenderingConfig config = set.rendering;
   config.algorithm = counts.algorithm;
@@ -88,6 +91,7 @@ void count_set(const ContactSet& set, std::uint64_t number, const PointShell& sh
     counts.largest_share = std::max(*counts.largest_share, size / *stressed.bound);
 }
 
+/// Returns zero counts for all algorithms.
 std::vector<StressCounts> no_counts() {
   std::vector<StressCounts> counts;
   for (const AlgorithmEntry& entry : algorithms()) {
@@ -98,7 +102,7 @@ std::vector<StressCounts> no_counts() {
   return counts;
 }
 
-/// Adds the counts of other sets, in whatever order they come.
+/// Adds the counts of other sets. The result does not depend on the order of the additions.
 void add(const StressCounts& other, StressCounts& all) {
   if (other.first_bad) all.first_bad = std::min(*other.first_bad, all.first_bad.value_or(*other.first_bad));
   all.sets += other.sets;
@@ -115,10 +119,10 @@ void add(const StressCounts& other, StressCounts& all) {
 std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, const JobOptions& options) {
   std::vector<StressCounts> all = no_counts();
   std::mutex mutex;
-  for_each_job((count + kSetsOfAJob - 1) / kSetsOfAJob, options, [&](std::size_t job) {
+  for_each_job((count + kSetsPerJob - 1) / kSetsPerJob, options, [&](std::size_t job) {
     std::vector<StressCounts> part = no_counts();
-    const std::uint64_t end = std::min(count, (job + 1) * kSetsOfAJob);
-    for (std::uint64_t i = job * kSetsOfAJob; i < end; ++i) {
+    const std::uint64_t end = std::min(count, (job + 1) * kSetsPerJob);
+    for (std::uint64_t i = job * kSetsPerJob; i < end; ++i) {
       const ContactSet set = stress_set(seed, i);
       const PointShell shell(set.points, 0.0);
       for (StressCounts& counts : part) count_set(set, i, shell, counts);

@@ -12,60 +12,64 @@
 namespace hapbench {
 namespace {
 
-/// A number whose logarithm is uniform.
+/// Returns a random number with a uniformly distributed logarithm.
 double log_uniform(Random& random, double low, double high) {
   return low * math::pow(high / low, random.uniform());
 }
 
-/// A vector in a random direction whose length is log-uniform. Its draws are statements of their own: compilers take
-/// the operands of a product in either order.
+/// Returns a vector with a random direction and a log-uniform length. The two draws are separate statements, because
+/// the order of evaluation within an expression is unspecified.
 Vec3 log_uniform_vector(Random& random, double low, double high) {
   const Vec3 direction = random.direction();
   return log_uniform(random, low, high) * direction;
 }
 
+/// Returns true with a probability.
 bool chance(Random& random, double probability) {
   return random.uniform() < probability;
 }
 
-/// A unit vector that differs from u by 1e-16 (rounding) … 1.
+/// Returns a unit vector that differs from u by 1e-16 (rounding) to 1.
 Vec3 nearly(Random& random, const Vec3& u) {
   return (u + log_uniform_vector(random, 1e-16, 1.0)).normalized();
 }
 
+/// Returns u or -u at random.
 Vec3 sign_of(Random& random, const Vec3& u) {
   return chance(random, 0.5) ? u : Vec3(-u);
 }
 
-/// A point at radius and height along the axis, in a random direction.
+/// Returns a point at a radius from the tool's axis and a height [m] along it, in a random direction around the axis.
 Vec3 at(Random& random, const ContactSet& set, double radius, double height) {
   const Vec3 e = set.pose.axis.unitOrthogonal(), d = random.direction_in_plane();
   return set.pose.position + height * set.pose.axis + radius * (d.x() * e + d.y() * set.pose.axis.cross(e));
 }
 
+/// Returns a uniformly distributed point in the tool.
 Vec3 in_tool(Random& random, const ContactSet& set) {
   const double radius = set.tool.radius() * std::sqrt(random.uniform());
   return at(random, set, radius, -set.tool.length() * random.uniform());
 }
 
+/// Draws a random vector.
 using Draw = std::function<Vec3()>;
 
+/// Returns a generator of point positions, of a random kind.
 Draw positions(Random& random, const ContactSet& set) {
   const double radius = set.tool.radius(), length = set.tool.length();
   switch (random.below(5)) {
     case 0:  // coincident
       return [place = in_tool(random, set)] { return place; };
-    case 1: {  // on the axis, where no radial direction exists, or in the tip centre
+    case 1: {  // on the axis, where the radial direction is undefined, or all in the tip centre
       const double height = chance(random, 0.3) ? 0.0 : length;
       return [&, height] { return Vec3(set.pose.position - height * random.uniform() * set.pose.axis); };
     }
-    case 2:  // on the side, in the tip plane, on its rim; the depth is 0 up to rounding, and the search drops those
-             // outside
+    case 2:  // on the side, in the tip plane or on the rim: depth 0 up to rounding; the search drops points outside
       return [&, radius, length] {
         const double away = chance(random, 0.6) ? radius : radius * std::sqrt(random.uniform());
         return at(random, set, away, chance(random, 0.6) ? 0.0 : -length * random.uniform());
       };
-    case 3: {  // on both sides of the axis, from where gradients of shortest_distance cancel
+    case 3: {  // on both sides of the axis, where gradients of shortest_distance cancel
       const Vec3 wall = radius * log_uniform(random, 1e-16, 1.0) * set.pose.axis.unitOrthogonal();
       return
           [&, wall, length] { return Vec3(set.pose.position - 0.5 * length * set.pose.axis + sign_of(random, wall)); };
@@ -75,10 +79,11 @@ Draw positions(Random& random, const ContactSet& set) {
   }
 }
 
+/// Returns a generator of point normals, of a random kind.
 Draw normals(Random& random, const ContactSet& set) {
   const Vec3 u = chance(random, 0.2) ? set.pose.axis : random.direction();
   switch (random.below(5)) {
-    case 0: {  // some zero, or all
+    case 0: {  // some or all normals are zero
       const double share = chance(random, 0.3) ? 1.0 : 0.5;
       return [&, share] { return chance(random, share) ? Vec3(Vec3::Zero()) : random.direction(); };
     }
@@ -93,6 +98,7 @@ Draw normals(Random& random, const ContactSet& set) {
   }
 }
 
+/// Draws the tool's size, pose and velocity.
 void draw_tool(Random& random, ContactSet& set) {
   // A fifth of the scenes at each end of the scale, the others in between.
   const double which = random.uniform();
@@ -104,11 +110,12 @@ void draw_tool(Random& random, ContactSet& set) {
   if (chance(random, 0.5)) set.velocity = log_uniform_vector(random, 1e-12, 1e3);
 }
 
+/// Draws the settings of the rendering.
 void draw_rendering(Random& random, RenderingConfig& config) {
   config.depth_model = depth_models()[random.below(depth_models().size())].info->name;
   config.iterations = static_cast<int>(chance(random, 0.8) ? 3 : 1 + random.below(50));
   if (chance(random, 0.3)) config.stiffness = log_uniform(random, 1.0, 1e12);
-  // n_ext far below the number of contacts overflows.
+  // A limit n_ext far below the number of contacts makes the reduction overflow.
   if (chance(random, 0.5)) config.reduction = ReductionConfig{0.995, chance(random, 0.5) ? 3u : 100u, std::nullopt};
 }
 
@@ -120,8 +127,9 @@ ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
   draw_tool(random, set);
   draw_rendering(random, set.rendering);
   const Draw position = positions(random, set), normal = normals(random, set);
-  // Every fifth set has one point. Other sizes are log-uniform: small ones, degenerate most often, are common.
-  const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMostContacts));
+  // A fifth of the sets has one point. Other sizes are log-uniform, so that small sets, which are degenerate most
+  // often, are common.
+  const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMaxContacts));
   set.points.resize(static_cast<std::size_t>(n));
   for (SurfacePoint& point : set.points) {
     point.position = position();

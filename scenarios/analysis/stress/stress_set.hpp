@@ -8,25 +8,25 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/cylinder.hpp"
 
-/// Random contact situations, most of them degenerate, in which a force may stop being finite. All tools are cylinders:
-/// directions are lost on their axis, side and rims.
+/// Random contact sets, most of them degenerate, for which an algorithm may compute a force that is not finite. All
+/// tools
 namespace hapbench {
 
-/// A tool among points that it touches, and how they are rendered.
+/// A tool, surface points in contact with it, and the settings of the rendering.
 struct ContactSet {
   Cylinder tool;
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();      ///< [m/s]
-  std::vector<SurfacePoint> points;  ///< in the tool but for rounding; normals are unit vectors or zero
-  RenderingConfig rendering;         ///< all but the algorithm
+  std::vector<SurfacePoint> points;  ///< inside the tool up to rounding; normals are unit vectors or zero
+  RenderingConfig rendering;         ///< without the algorithm
 };
 
-/// Most points of a set; the reduction of some keeps fewer (n_ext).
-inline constexpr std::size_t kMostContacts = 200;
+/// Largest number of points of a set. In some sets the reduction keeps fewer points (n_ext).
+inline constexpr std::size_t kMaxContacts = 200;
 
-/// Returns set number `i` of a seed; StressCounts::first_bad is such a number. Points lie on the axis, on the surface
-/// or coincide; normals are zero, equal, opposite, nearly so, or more different than n_ext; scenes measure 1e-12 to 1e3
-/// m.
+/// Returns set number `i` of a seed (StressCounts::first_bad is such a number). Points are random, coincident, on the
+/// tool's axis or on its surface. Normals are random, zero, or exactly or nearly equal or opposite. The number of
+/// different normals can exceed n_ext. Scenes measure 1e-12 to 1e3 m.
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 
 }  // namespace hapbench

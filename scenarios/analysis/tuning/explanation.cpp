@@ -14,18 +14,18 @@
 namespace hapbench {
 namespace {
 
+/// Returns a clause about the K and setting that become feasible.
 std::string then_text(const TuneTrial& trial) {
   return fmt::format("then K = {:.4g} N/m{}", trial.stiffness, setting_text(trial.setting));
 }
 
-/// Returns the value to which a limit has to be relaxed for a trial: the limit of the user, or the rule of low
-/// vibration.
+/// Returns a clause about the relaxed value of a limit with which the trial keeps it, including the metric's error.
 std::string relaxed(const Trials& trials, const TuneTrial& trial, const std::string& name) {
   const auto worst = value_in(trial.worst, name);
   if (!worst) return fmt::format("drop the limit on {}, which has no value here", name);
   const double more = value_in(trials.error(), name).value_or(0.0);
-  const auto asked = trials.question().limits.find(name);
-  const MetricBound& bound = asked == trials.question().limits.end() ? trials.limit_on(name) : asked->second;
+  const auto requested = trials.question().limits.find(name);
+  const MetricBound& bound = requested == trials.question().limits.end() ? trials.limit_on(name) : requested->second;
   if (bound.max) return fmt::format("{} <= {:.3g} in place of {:.3g}", name, (*worst + more) * 1.001, *bound.max);
   return fmt::format("{} >= {:.3g} in place of {:.3g}", name, (*worst - more) * 0.999, bound.min.value_or(0.0));
 }
@@ -33,25 +33,28 @@ std::string relaxed(const Trials& trials, const TuneTrial& trial, const std::str
 /// Returns for each limit the smallest relaxation of this limit alone with which a trial keeps all limits; if there is
 /// no such trial, the relaxations that the nearest trial needs.
 std::string relaxations(const Trials& trials, const TuneTrial& nearest) {
-  std::map<std::string, std::pair<double, const TuneTrial*>> least;
+  // For each limit, find the trial that violates only this limit, by the smallest ratio.
+  std::map<std::string, std::pair<double, const TuneTrial*>> smallest;
   for (const auto& [key, trial] : trials.all()) {
-    const TuneMetrics broken = trial.limits_alone ? trials.broken_limits(trial) : TuneMetrics();
-    if (broken.size() != 1) continue;
-    const auto& [name, times] = *broken.begin();
-    const auto place = least.try_emplace(name, times, &trial).first;
-    if (times < place->second.first) place->second = {times, &trial};
+    const TuneMetrics violated = trial.limits_alone ? trials.violated_limits(trial) : TuneMetrics();
+    if (violated.size() != 1) continue;
+    const auto& [name, ratio] = *violated.begin();
+    const auto entry = smallest.try_emplace(name, ratio, &trial).first;
+    if (ratio < entry->second.first) entry->second = {ratio, &trial};
   }
   std::vector<std::string> texts;
-  for (const auto& [name, trial] : least)
+  for (const auto& [name, trial] : smallest)
     texts.push_back(relaxed(trials, *trial.second, name) + "; " + then_text(*trial.second));
   if (!texts.empty()) return fmt::format("{}", fmt::join(texts, "; or "));
-  for (const auto& [name, times] : trials.broken_limits(nearest)) texts.push_back(relaxed(trials, nearest, name));
+  // No trial violates a single limit only: name all relaxations that the nearest trial needs.
+  for (const auto& [name, ratio] : trials.violated_limits(nearest)) texts.push_back(relaxed(trials, nearest, name));
   return fmt::format("{}; {}", fmt::join(texts, "; "), then_text(nearest));
 }
 
 }  // namespace
 
 void explain(Trials& trials, TunedLaw& law) {
+  // Choose the trial to explain.
   const TuneTrial* nearest = trials.nearest();
   const auto lacks_margin = [](const auto& tried) { return tried.second.binding == "margin"; };
   const auto found = std::ranges::find_if(trials.all(), lacks_margin);
@@ -64,11 +67,11 @@ void explain(Trials& trials, TunedLaw& law) {
     law.relax += " a gentler hand, a wider tool or another device, or other runs with --family";
     return;
   }
-  if (!trials.is_quiet()) trials.set_error(known_errors(trials, trial));
+  if (!trials.requires_low_vibration()) trials.set_error(known_errors(trials, trial));
   if (const auto error = value_in(trials.error(), law.binding); error.value_or(0.0) > 0.0)
     law.why += fmt::format(" +- {:.2g}", *error);
   law.relax = relaxations(trials, trial);
-  if (trials.is_quiet())
+  if (trials.requires_low_vibration())
     law.relax += "; a limit of your own, such as --bound force_rms_above_30Hz_N=0.05, takes the place of what is quiet";
 }
 

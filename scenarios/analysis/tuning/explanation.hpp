@@ -6,8 +6,9 @@
 /// Explains why no setting is feasible.
 namespace hapbench {
 
-/// Writes into the answer why nothing is feasible: the constraint that is violated, and the limit to relax. If no limit
-/// is violated alone, explains a trial that lacks only the margin, or else the last trial.
+/// Writes into `law` why no setting is feasible: the violated constraint, and the limit to relax. Explains the trial
+/// nearest to keeping its limits (Trials::nearest). If there is no such trial, explains a trial that lacks only the
+/// margin; if there is none either, the last trial.
 void explain(Trials& trials, TunedLaw& law);
 
 }  // namespace hapbench

@@ -5,23 +5,25 @@
 
 #include "scenarios/scene/load_scenario.hpp"
 
-/// Families of runs, in each of which a setting has to hold.
+/// Sets of scene variants (hands, seeds, speeds). A setting must be feasible in every variant.
 namespace hapbench {
 
-/// The families of runs besides the scene's own run:
-///   hands   springs with the scene's damping: the ends of hand_family(), 100 and 1000 N/m, on an impedance device's
-///           handle with 0.1 and 0.5 kg each
-///   seeds   four further seeds, with starts 10 um away, which is less than a hand's repeatability
-///   speeds  the script of hand and tool at half and twice its speed
+/// Names of the variant sets, which add runs to the run of the scene itself:
+///   hands   hand stiffnesses of 100 and 1000 N/m (the extremes of hand_family()) with the scene's damping; a hand with
+///   a
+///           mass also gets masses of 0.1 and 0.5 kg
+///   seeds   four further seeds, with start positions shifted by 10 um, less than the repeatability of a hand
+///   speeds  the scripts of hand and tool at half and twice their speed
 inline constexpr const char* kFamilies[] = {"hands", "seeds", "speeds"};
 
-struct FamilyMember {
-  std::string name;                         ///< in words, such as "a hand of 0.5 kg and 1000 N/m"
-  std::vector<std::string> overrides = {};  ///< empty: the scene's own run
+/// A variant of a scene.
+struct SceneVariant {
+  std::string name;                         ///< for the user, such as "a hand of 0.5 kg and 1000 N/m"
+  std::vector<std::string> overrides = {};  ///< overrides that make the variant; empty: the scene itself
 };
 
-/// Returns the members of a family. Empty if the scene has nothing to vary, such as a hand whose force is a script.
-/// Precondition: `family` is one of kFamilies.
-std::vector<FamilyMember> family_of(const LoadedScenario& loaded, const std::string& family);
+/// Returns the variants of a set. Empty if the scene has nothing to vary, such as a hand whose force is a script.
+/// Precondition: `family` is an element of kFamilies.
+std::vector<SceneVariant> family_of(const LoadedScenario& loaded, const std::string& family);
 
 }  // namespace hapbench

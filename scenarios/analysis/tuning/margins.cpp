@@ -19,68 +19,71 @@
 namespace hapbench {
 namespace {
 
-/// Returns verification samples below the parameter `last`: kTriedBetween of them, for delays also every quarter of a
-/// sample, and for whole numbers all.
-std::vector<double> parts_up_to(const SearchWay& way, double last) {
-  std::vector<double> parts;
-  if (!way.whole) parts = parts_between(0.0, last, kTriedBetween);
-  if (way.range.logarithmic) return parts;
-  const double samples = way.whole ? 1.0 : 0.25;
-  const double step = samples / (way.range.to - way.range.from);
-  for (double part = step; part < last; part += step) parts.push_back(part);
-  return parts;
+/// Returns verification parameters between 0 and `last`. Logarithmic range: kTriedBetween parameters. Delays: also
+/// every quarter of a sample. Integers: every integer.
+std::vector<double> parameters_up_to(const SearchWay& options, double last) {
+  std::vector<double> parameters;
+  if (!options.whole) parameters = parameters_between(0.0, last, kTriedBetween);
+  if (options.range.logarithmic) return parameters;
+  const double samples = options.whole ? 1.0 : 0.25;
+  const double step = samples / (options.range.to - options.range.from);
+  for (double t = step; t < last; t += step) parameters.push_back(t);
+  return parameters;
 }
 
-/// Returns the last value of a range up to which the trial is settled under its override, verified by samples between.
-double last_settled(Trials& trials, const TuneTrial& trial, const SearchWay& way,
+/// Returns the largest value of a range up to which all variants of the trial are settled. `override_of`: override that
+/// sets a value. Verifies the interval by samples; a sample that fails shortens it.
+double last_settled(Trials& trials, const TuneTrial& trial, const SearchWay& options,
                     const std::function<std::string(double value)>& override_of) {
-  const auto holds = [&](double part) {
-    const auto with_part = [&](std::size_t) { return override_of(way.value_at(part)); };
-    return !trials.first_failing(trial, trials.family_size(), with_part);
+  const auto holds = [&](double t) {
+    const auto override_at = [&](std::size_t) { return override_of(options.value_at(t)); };
+    return !trials.first_failing(trial, trials.variant_count(), override_at);
   };
-  bool so_far = true;  // values beyond the first failure are not run: they do not change the answer
-  const auto holds_so_far = [&](double part) {
-    so_far = so_far && holds(part);
+  bool so_far = true;  // values beyond the first failure do not change the result and are not run
+  const auto holds_so_far = [&](double t) {
+    so_far = so_far && holds(t);
     return so_far;
   };
-  TriedParts tried = scanned(kEdgeIntervals, holds_so_far);
+  // Search the limit, verify the values below it, and repeat with each sample that fails.
+  EvaluatedParameters evaluated = scanned(kEdgeIntervals, holds_so_far);
   while (true) {
-    const double last = find_edge(way, tried, holds, false).stable.value_or(0.0);
-    const std::vector<double> parts = parts_up_to(way, last);
-    const auto at_part = [&](std::size_t i) { return override_of(way.value_at(parts[i])); };
-    const auto failing = trials.first_failing(trial, parts.size(), at_part);
-    if (!failing) return way.value_at(last);
-    tried[parts[failing->run]] = false;
+    const double last = find_edge(options, evaluated, holds, false).stable.value_or(0.0);
+    const std::vector<double> parameters = parameters_up_to(options, last);
+    const auto override_at = [&](std::size_t i) { return override_of(options.value_at(parameters[i])); };
+    const auto failing = trials.first_failing(trial, parameters.size(), override_at);
+    if (!failing) return options.value_at(last);
+    evaluated[parameters[failing->run]] = false;
   }
 }
 
-/// Returns the damping ratio of the least damped mode of the loop in contact; empty if there is no loop.
-std::optional<double> least_damping_ratio(const Scenario& scenario, double lambda, bool over_hands) {
-  std::optional<double> least;
-  if (!(lambda > 0.0)) return least;
+/// Returns the damping ratio of the least damped mode of the loop in contact; empty without contact. `lambda`:
+/// stiffness in contact, in units of K. `over_hands`: also over the hands of hand_family().
+std::optional<double> smallest_damping_ratio(const Scenario& scenario, double lambda, bool over_hands) {
+  std::optional<double> smallest;
+  if (!(lambda > 0.0)) return smallest;
   for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands)) {
     for (const std::complex<double>& z : eigenvalues(step)) {
-      const double size = math::hypot(z.real(), z.imag());
-      if (size < 1e-9) continue;  // a delay line
-      const double decay = -math::log(size), ratio = decay / math::hypot(decay, math::atan2(z.imag(), z.real()));
-      if (decay != 0.0) least = std::min(least.value_or(1.0), ratio);
+      const double magnitude = math::hypot(z.real(), z.imag());
+      if (magnitude < 1e-9) continue;  // a state of a delay line, no mode
+      const double decay = -math::log(magnitude), ratio = decay / math::hypot(decay, math::atan2(z.imag(), z.real()));
+      if (decay != 0.0) smallest = std::min(smallest.value_or(1.0), ratio);
     }
   }
-  return least;
+  return smallest;
 }
 
-/// Returns the largest factor on K; empty if no K beyond the margin can be run.
+/// Returns the largest factor on K; empty if the range of K ends at the required margin.
 std::optional<double> gain_margin(Trials& trials, const TuneTrial& choice) {
   const double G = trials.question().margin, largest = trials.ranges().stiffness.to;
-  const double most = std::min(largest, trials.refuted()) / choice.stiffness;
-  if (most > G * (1.0 + kTuneResolution)) {
-    const SearchWay gains{.range = {G, std::min(kMostGain, most), true}, .resolution = kTuneResolution};
+  const double largest_gain = std::min(largest, trials.smallest_unstable()) / choice.stiffness;
+  if (largest_gain > G * (1.0 + kTuneResolution)) {
+    const SearchWay gains{.range = {G, std::min(kMostGain, largest_gain), true}, .resolution = kTuneResolution};
     return last_settled(trials, choice, gains, [&](double gain) { return with_gain(choice, gain); });
   }
-  return trials.refuted() < largest ? std::optional(G) : std::nullopt;
+  return trials.smallest_unstable() < largest ? std::optional(G) : std::nullopt;
 }
 
-/// Returns the largest further delay; empty for an ideal device.
+/// Returns the largest additional delay [samples]; empty for an ideal device.
 std::optional<double> delay_margin(Trials& trials, const TuneTrial& choice, const Scenario& scenario) {
   if (!has_device(scenario)) return std::nullopt;
   const bool whole = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
@@ -97,7 +100,7 @@ TuneMargins margins_of(Trials& trials, const TuneTrial& choice) {
   margins.gain = gain_margin(trials, choice);
   const Scenario scenario = trials.load(choice.setting, choice.stiffness).scenario;
   margins.delay_samples = delay_margin(trials, choice, scenario);
-  margins.damping_ratio = least_damping_ratio(scenario, trials.lambda_of(choice), trials.over_hands());
+  margins.damping_ratio = smallest_damping_ratio(scenario, trials.lambda_of(choice), trials.over_hands());
   return margins;
 }
 

@@ -2,23 +2,24 @@
 
 #include <optional>
 
-/// Margins of a choice.
+/// Robustness margins of a tuned setting.
 namespace hapbench {
 
-/// The margins of a choice until the worst run of the families is not settled any more, at most kMostGain and
-/// kMostDelay; empty where a margin has no meaning, such as the delay of an ideal device.
+/// Margins up to which all variants of a choice stay settled. Limited to kMostGain and kMostDelay. A margin is empty if
+/// it has no meaning, such as the delay of an ideal device.
 struct TuneMargins {
-  std::optional<double> gain;           ///< factor on K
-  std::optional<double> delay_samples;  ///< more delay of the device's force, or of an admittance device's servo
-  std::optional<double> damping_ratio;  ///< of the least damped mode of the loop in contact
+  std::optional<double> gain;           ///< largest factor on K
+  std::optional<double> delay_samples;  ///< largest additional delay of the device's force or servo [samples]
+  std::optional<double> damping_ratio;  ///< damping ratio of the least damped mode of the loop in contact
 };
+/// Largest margins that are searched: factor on K, and delay [samples].
 inline constexpr double kMostGain = 64.0, kMostDelay = 64.0;
 
 class Trials;
 struct TuneTrial;
 
-/// Finds the margins of a verified choice by runs of all members of the families, and by the eigenvalues of the loop in
-/// contact.
+/// Computes the margins of a verified choice: gain and delay by runs of all variants, damping ratio by the eigenvalues
+/// of the loop in contact.
 TuneMargins margins_of(Trials& trials, const TuneTrial& choice);
 
 }  // namespace hapbench

@@ -20,35 +20,34 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// Returns " (NAME)" of a member; empty for the scene's own run.
-std::string with(const FamilyMember& member) {
-  return member.overrides.empty() ? "" : fmt::format(" ({})", member.name);
+/// Returns " (NAME)" of a variant; empty for the scene itself.
+std::string with(const SceneVariant& variant) {
+  return variant.overrides.empty() ? "" : fmt::format(" ({})", variant.name);
 }
 
-std::string verdict_with(const RunStability& run, const FamilyMember& member) {
-  return std::string(run_verdict_name(run.verdict)) + with(member);
+std::string verdict_with(const RunStability& run, const SceneVariant& variant) {
+  return std::string(run_verdict_name(run.verdict)) + with(variant);
 }
 
-/// Notes the worst value of a limited metric over the family; none if a run has no value.
+/// Writes the worst value of a limited metric over the variants into the trial; no value if a run has no value.
 void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bound,
-                std::span<const TuneMetrics> metrics, std::span<const FamilyMember> family) {
+                std::span<const TuneMetrics> metrics, std::span<const SceneVariant> variants) {
   for (std::size_t i = 0; i < metrics.size(); ++i) {
     const auto value = value_in(metrics[i], name);
     if (!value) {
       trial.worst.erase(name);
-      trial.worst_text[name] = name + " has no value" + with(family[i]);
+      trial.worst_text[name] = name + " has no value" + with(variants[i]);
       return;
     }
     const auto [worst, is_first] = trial.worst.try_emplace(name, *value);
     const bool is_worse = bound.max ? *value > worst->second : *value < worst->second;
     if (!is_first && !is_worse) continue;
     worst->second = *value;
-    trial.worst_text[name] = fmt::format("{} {:.4g}{}", name, *value, with(family[i]));
+    trial.worst_text[name] = fmt::format("{} {:.4g}{}", name, *value, with(variants[i]));
   }
 }
 
-/// Returns the ratio of a value to its limit, or of the limit to the value, whichever is above 1; infinite if one of
-/// the two is not above 0.
+/// Returns far / near, at least slightly above 1; infinite if `far` or `near` is not above 0.
 double ratio_beyond(double far, double near) {
   if (!(far > 0.0 && near > 0.0)) return kInfinite;
   return std::max(far / near, std::nextafter(1.0, 2.0));
@@ -61,44 +60,46 @@ Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
       algorithm_(algorithm),
       ranges_(tune_ranges(question, algorithm)),
       over_hands_(std::ranges::find(question.families, "hands") != question.families.end()),
-      is_quiet_(question.limits.empty()),
+      requires_low_vibration_(question.limits.empty()),
       limits_(question.limits),
-      family_({{"the scene's own run"}}),
-      refuted_(kInfinite),
+      variants_({{"the scene's own run"}}),
+      smallest_unstable_(kInfinite),
       cap_(ranges_.stiffness.to) {
+  // Collect the variants and the stiffness of springs in permanent contact.
   const LoadedScenario own = load({}, ranges_.stiffness.from);
   shell_ = make_shell(own.scenario, own.files);
-  for (const std::string& family : question_.families)
-    for (FamilyMember& member : family_of(own, family)) family_.push_back(std::move(member));
+  for (const std::string& set : question_.families)
+    for (SceneVariant& variant : family_of(own, set)) variants_.push_back(std::move(variant));
   if (springs_stay(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
-  if (is_quiet_)
-    for (const Diagnosed& rule : diagnosis_rules(is_quiet_)) limits_[rule.rule].max = rule.threshold;
+  // Without limits of the user, use the thresholds of the diagnosis.
+  if (requires_low_vibration_)
+    for (const Diagnosed& rule : diagnosis_rules(requires_low_vibration_)) limits_[rule.rule].max = rule.threshold;
   end_.fail("range", "the end of the range that was searched");
 }
 
 // ---- The question
 
 std::vector<std::string> Trials::overrides(const TuneSetting& setting, double stiffness) const {
-  std::vector<std::string> words = question_.overrides;
-  words.push_back("rendering.algorithm=" + algorithm_);
+  std::vector<std::string> fields = question_.overrides;
+  fields.push_back("rendering.algorithm=" + algorithm_);
   if (setting.damping_ratio) {
-    words.push_back("rendering.damping_N_s_per_m=null");
-    words.push_back(fmt::format("rendering.damping_ratio={}", *setting.damping_ratio));
+    fields.push_back("rendering.damping_N_s_per_m=null");
+    fields.push_back(fmt::format("rendering.damping_ratio={}", *setting.damping_ratio));
   }
-  if (setting.mass) words.push_back(fmt::format("rendering.mass_kg={}", *setting.mass));
-  if (!setting.filter.empty()) words.push_back("device.velocity_filter=" + setting.filter);
-  words.push_back(fmt::format("{}={}", kStiffnessPath, stiffness));
-  return words;
+  if (setting.mass) fields.push_back(fmt::format("rendering.mass_kg={}", *setting.mass));
+  if (!setting.filter.empty()) fields.push_back("device.velocity_filter=" + setting.filter);
+  fields.push_back(fmt::format("{}={}", kStiffnessPath, stiffness));
+  return fields;
 }
 
 LoadedScenario Trials::load(const TuneSetting& setting, double stiffness) const {
-  return load(setting, stiffness, family_.front());
+  return load(setting, stiffness, variants_.front());
 }
 
-LoadedScenario Trials::load(const TuneSetting& setting, double stiffness, const FamilyMember& member,
+LoadedScenario Trials::load(const TuneSetting& setting, double stiffness, const SceneVariant& variant,
                             const std::string& more) const {
   std::vector<std::string> fields = overrides(setting, stiffness);
-  fields.insert(fields.end(), member.overrides.begin(), member.overrides.end());
+  fields.insert(fields.end(), variant.overrides.begin(), variant.overrides.end());
   if (!more.empty()) fields.push_back(more);
   return load_scenario(question_.scenario, fields);
 }
@@ -106,8 +107,8 @@ LoadedScenario Trials::load(const TuneSetting& setting, double stiffness, const 
 // ---- Trials
 
 TuneTrial& Trials::mutable_trial(const TuneSetting& setting, double stiffness) {
-  const auto [place, is_new] = all_.try_emplace({setting, stiffness});
-  TuneTrial& trial = place->second;
+  const auto [entry, is_new] = all_.try_emplace({setting, stiffness});
+  TuneTrial& trial = entry->second;
   if (!is_new) return trial;
   trial.setting = setting;
   trial.algorithm = algorithm_;
@@ -116,15 +117,15 @@ TuneTrial& Trials::mutable_trial(const TuneSetting& setting, double stiffness) {
   return trial;
 }
 
-const TuneTrial& Trials::tried(const TuneSetting& setting, double stiffness) {
+const TuneTrial& Trials::trial_at(const TuneSetting& setting, double stiffness) {
   return mutable_trial(setting, stiffness);
 }
 
 const TuneTrial& Trials::beyond(const TuneSetting& setting, double K) {
-  return K <= cap_ ? tried(setting, K) : end_;
+  return K <= cap_ ? trial_at(setting, K) : end_;
 }
 
-void Trials::try_and_measure(const TuneSetting& setting, double stiffness) {
+void Trials::evaluate_and_measure(const TuneSetting& setting, double stiffness) {
   TuneTrial& trial = mutable_trial(setting, stiffness);
   if (trial.settled) measure(trial);
 }
@@ -141,14 +142,15 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
   const double lambda = lambda_of(trial), K = trial.stiffness;
   std::vector<std::string> why(count);
   in_parallel(count, [&](std::size_t i) {
-    const FamilyMember& member = family_[i % family_.size()];
-    const CheckedScenario scene = checked(load(trial.setting, K, member, more(i)));
+    const SceneVariant& variant = variants_[i % variants_.size()];
+    const CheckedScenario scene = checked(load(trial.setting, K, variant, more(i)));
+    // Check the linear loop in contact, then run.
     if (unstable_loop(scene.scenario(), lambda, K, scene.scenario().rendering.stiffness)) {
-      why[i] = "unstable in contact" + with(member);
+      why[i] = "unstable in contact" + with(variant);
       return;
     }
     const RunStability run = stability_of(scene, shell_, rule_of(scene.scenario()));
-    if (!is_stable(run.verdict)) why[i] = verdict_with(run, member);
+    if (!is_stable(run.verdict)) why[i] = verdict_with(run, variant);
   });
   for (std::size_t i = 0; i < count; ++i)
     if (!why[i].empty()) return Failing{i, why[i]};
@@ -171,23 +173,24 @@ TuneMetrics Trials::metrics_of(const Result& run) const {
   return metrics;
 }
 
-// ---- Judgement, in the order of cost
+// ---- Evaluation of the constraints, the cheapest first
 
 void Trials::judge(TuneTrial& trial) {
-  if (springs_lambda_ && !judge_loop(trial, family_[0], *springs_lambda_, "the device alone")) return;
+  if (springs_lambda_ && !judge_loop(trial, variants_[0], *springs_lambda_, "the device alone")) return;
   if (runs_ >= kMostTuneRuns) {
     trial.fail("runs", fmt::format("the search ended after {} runs", runs_));
     return;
   }
   judge_motion(trial, 0, 1);
-  if (trial.feasible() && family_.size() > 1) judge_motion(trial, 1, family_.size());
+  if (trial.feasible() && variants_.size() > 1) judge_motion(trial, 1, variants_.size());
   if (trial.feasible()) judge_limits(trial);
 }
 
-/// Returns the hand with which the loop is unstable at some stiffness from K to `most`; empty if there is none.
+/// Returns the first hand with which the loop in contact is unstable at a stiffness between K and `most` [N/m]; empty
+/// if all loops are stable. Samples the stiffness in steps of 10 %.
 std::optional<std::string> Trials::unstable_loop(Scenario scenario, double lambda, double K, double most) const {
-  constexpr double kStride = 1.1;
-  for (double at = most; lambda > 0.0 && at * kStride > K; at /= kStride) {
+  constexpr double kStiffnessStep = 1.1;
+  for (double at = most; lambda > 0.0 && at * kStiffnessStep > K; at /= kStiffnessStep) {
     scenario.rendering.stiffness = at;
     for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands_))
       if (!is_stable_step(step)) return hand;
@@ -195,23 +198,23 @@ std::optional<std::string> Trials::unstable_loop(Scenario scenario, double lambd
   return std::nullopt;
 }
 
-/// Returns false if the loop of a member in contact is unstable up to the margin.
-bool Trials::judge_loop(TuneTrial& trial, const FamilyMember& member, double lambda,
+/// Returns false, and fails the trial, if the loop of a variant in contact is unstable between K and G K.
+bool Trials::judge_loop(TuneTrial& trial, const SceneVariant& variant, double lambda,
                         const std::string& own_hand) const {
   const double K = trial.stiffness;
-  const auto hand = unstable_loop(load(trial.setting, K, member).scenario, lambda, K, question_.margin * K);
+  const auto hand = unstable_loop(load(trial.setting, K, variant).scenario, lambda, K, question_.margin * K);
   if (!hand) return true;
   trial.fail("margin", fmt::format("below {:g} K the loop in contact is unstable with {}", question_.margin,
                                    hand->empty() ? own_hand : *hand));
   return false;
 }
 
-/// Runs the members from `first` to before `last` at K and at G K, and finds the first that is not settled.
+/// Runs the variants [first, last) at K and at G K. Fails the trial at the first run that is not settled.
 void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
-  std::vector<RunStability> judged(2 * (last - first));  // of each member at K and at G K
+  std::vector<RunStability> judged(2 * (last - first));  // of each variant at K, then at G K
   in_parallel(judged.size(), [&](std::size_t job) {
     const double gain = job % 2 != 0 ? question_.margin : 1.0;
-    const CheckedScenario scene = checked(load(trial.setting, gain * trial.stiffness, family_[first + job / 2]));
+    const CheckedScenario scene = checked(load(trial.setting, gain * trial.stiffness, variants_[first + job / 2]));
     judged[job] = stability_of(scene, shell_, rule_of(scene.scenario()));
   });
   if (first == 0) trial.lambda_max = judged[0].settled.lambda_max;
@@ -219,43 +222,43 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
     const RunStability &at_K = judged[2 * (i - first)], &at_GK = judged[2 * (i - first) + 1];
     if (!is_stable(at_K.verdict)) {
       trial.too_soft = at_K.verdict >= RunVerdict::thrown_out && at_K.verdict <= RunVerdict::went_through;
-      return trial.fail("settled", verdict_with(at_K, family_[i]));
+      return trial.fail("settled", verdict_with(at_K, variants_[i]));
     }
     trial.settled = true;
     if (!is_stable(at_GK.verdict))
-      return trial.fail("margin", fmt::format("at {:g} K {}", question_.margin, verdict_with(at_GK, family_[i])));
-    // With springs the loop was judged before the runs (judge).
-    if (!springs_lambda_ && !judge_loop(trial, family_[i], at_K.settled.lambda_max, family_[i].name)) return;
+      return trial.fail("margin", fmt::format("at {:g} K {}", question_.margin, verdict_with(at_GK, variants_[i])));
+    // For springs in permanent contact, judge() checked the loop before the runs.
+    if (!springs_lambda_ && !judge_loop(trial, variants_[i], at_K.settled.lambda_max, variants_[i].name)) return;
   }
 }
 
-/// Measures the limited metrics over the family, and finds the first limit that is violated.
+/// Measures the limited metrics over the variants. Fails the trial at the first violated limit.
 void Trials::judge_limits(TuneTrial& trial) {
-  // Low vibration is judged by the scene's own run, limits of the user by the runs of all members.
-  std::vector<TuneMetrics> metrics(is_quiet_ ? 1 : family_.size());
+  // Low vibration concerns the run of the scene itself only; limits of the user concern all variants.
+  std::vector<TuneMetrics> metrics(requires_low_vibration_ ? 1 : variants_.size());
   in_parallel(metrics.size(), [&](std::size_t i) {
-    const CheckedScenario scene = checked(load(trial.setting, trial.stiffness, family_[i]));
+    const CheckedScenario scene = checked(load(trial.setting, trial.stiffness, variants_[i]));
     const Result run = run_with_shell(scene, shell_);
     metrics[i] = metrics_of(run);
-    if (!is_quiet_) return;
+    if (!requires_low_vibration_) return;
     for (const Diagnosed& number : quiet_numbers(scene.loaded(), run)) {
       trial.worst[number.rule] = number.value;
       trial.worst_text[number.rule] = number.says;
     }
   });
   trial.metrics = metrics[0];
-  for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, metrics, family_);
+  for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, metrics, variants_);
   judge_worst(trial);
 }
 
-/// Notes the first violated limit. Precondition as for broken_limits().
+/// Fails the trial at the first violated limit. Precondition: TuneTrial::worst is filled.
 void Trials::judge_worst(TuneTrial& trial) const {
-  const TuneMetrics broken = broken_limits(trial);
+  const TuneMetrics violated = violated_limits(trial);
   trial.binding.clear();
   trial.too_soft = false;
-  trial.limits_alone = !broken.empty();
-  if (broken.empty()) return;
-  const std::string& name = broken.begin()->first;
+  trial.limits_alone = !violated.empty();
+  if (violated.empty()) return;
+  const std::string& name = violated.begin()->first;
   const bool is_depth = name.starts_with("inside") || name.starts_with("depth");
   trial.too_soft = limits_.at(name).max && trial.worst.contains(name) && is_depth;
   trial.fail(name, trial.worst_text.at(name));
@@ -263,22 +266,22 @@ void Trials::judge_worst(TuneTrial& trial) const {
 
 // ---- Limits on metrics
 
-TuneMetrics Trials::broken_limits(const TuneTrial& trial) const {
-  TuneMetrics broken;
+TuneMetrics Trials::violated_limits(const TuneTrial& trial) const {
+  TuneMetrics violated;
   for (const auto& [name, bound] : limits_) {
     const auto value = value_in(trial.worst, name);
-    if (!value && !is_quiet_) broken[name] = kInfinite;
-    if (value && bound.min && *value < *bound.min) broken[name] = ratio_beyond(*bound.min, *value);
-    if (value && bound.max && *value > *bound.max) broken[name] = ratio_beyond(*value, *bound.max);
+    if (!value && !requires_low_vibration_) violated[name] = kInfinite;
+    if (value && bound.min && *value < *bound.min) violated[name] = ratio_beyond(*bound.min, *value);
+    if (value && bound.max && *value > *bound.max) violated[name] = ratio_beyond(*value, *bound.max);
   }
-  return broken;
+  return violated;
 }
 
 std::pair<std::size_t, double> Trials::excess(const TuneTrial& trial) const {
-  const TuneMetrics broken = broken_limits(trial);
+  const TuneMetrics violated = violated_limits(trial);
   double largest = 0.0;
-  for (const auto& [name, times] : broken) largest = std::max(largest, times);
-  return {broken.size(), largest};
+  for (const auto& [name, times] : violated) largest = std::max(largest, times);
+  return {violated.size(), largest};
 }
 
 const TuneTrial* Trials::nearest() const {
@@ -312,7 +315,7 @@ bool Trials::tighten_limits(const TuneTrial& choice) {
 // ---- The largest K
 
 void Trials::note_unstable(double K) {
-  refuted_ = std::min(refuted_, K);
+  smallest_unstable_ = std::min(smallest_unstable_, K);
 }
 
 void Trials::set_cap(double cap, std::string constraint, std::string reason) {

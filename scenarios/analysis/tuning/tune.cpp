@@ -9,12 +9,12 @@
 namespace hapbench {
 namespace {
 
-/// Tries stiffnesses from a thirtieth to thirty times that of the choice, for pictures.
-void try_along_stiffness(Trials& trials, const TuneTrial& choice) {
+/// Evaluates the choice's setting at stiffnesses from 1/30 to 30 times the choice's K, for plots.
+void evaluate_along_stiffness(Trials& trials, const TuneTrial& choice) {
   const Range around{choice.stiffness / 30.0, choice.stiffness * 30.0, true}, whole = trials.ranges().stiffness;
   for (int i = 0; i <= kEdgeIntervals; ++i) {
     const double K = around.value_at(static_cast<double>(i) / kEdgeIntervals);
-    if (K > whole.from && K < whole.to / trials.question().margin) trials.try_and_measure(choice.setting, K);
+    if (K > whole.from && K < whole.to / trials.question().margin) trials.evaluate_and_measure(choice.setting, K);
   }
 }
 
@@ -25,7 +25,7 @@ TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
   law.algorithm = algorithm;
   Trials trials(question, algorithm);
   TuneSearch search(trials);
-  // A choice that fails a verification lowers the bounds of the next search.
+  // Search and verify. A choice that fails its verification lowers cap() or a limit for the next search.
   do {
     law.choice = search.best();
   } while (law.choice && !is_verified(trials, *law.choice, law));
@@ -34,7 +34,7 @@ TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
     law.why = search.beyond().why;
     law.margins = margins_of(trials, *law.choice);
     law.overrides = trials.overrides(law.choice->setting, law.choice->stiffness);
-    try_along_stiffness(trials, *law.choice);
+    evaluate_along_stiffness(trials, *law.choice);
   } else {
     explain(trials, law);
   }

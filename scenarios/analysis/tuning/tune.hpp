@@ -10,41 +10,43 @@
 #include "scenarios/analysis/tuning/trial.hpp"
 #include "scenarios/analysis/tuning/tune_question.hpp"
 
-/// Tunes a force law in a scene: finds the largest K, over damping ratio, velocity filter and virtual mass, at which
-/// the worst run of the families is settled with a gain margin and keeps limits on its metrics.
+/// Tunes a force law in a scene. Finds the largest K, over damping ratio, velocity filter and virtual mass, at which
+/// all variants of the scene are settled with a gain margin and keep the limits on their metrics.
 namespace hapbench {
 
-/// The answer for one law.
+/// The result for one law.
 struct TunedLaw {
   std::string algorithm;
-  std::optional<TuneTrial> choice;  ///< none: nothing is feasible
-  /// The constraint that a stiffness just beyond the choice violates, or that the nearest trial violates if nothing is
-  /// feasible; and the same in words.
-  std::string binding, why;
-  std::string relax;  ///< where nothing is feasible: which limit to relax, and by how much
+  std::optional<TuneTrial> choice;  ///< empty: no setting is feasible
+  /// Constraint (TuneTrial::binding) that a slightly larger K violates; without a choice, the constraint that the
+  /// nearest trial violates.
+  std::string binding;
+  std::string why;    ///< reason of the violation, for the user
+  std::string relax;  ///< without a choice: which limit to relax, and by how much
   TuneMargins margins;
-  FieldLimit edge;  ///< limit of K in the scene as chosen, with its own hand, as `limit` finds it
-  /// Largest change of each metric of the own run when the step and the point spacing are halved and depth is evaluated
-  /// at every step; none for a metric that such a run does not have.
+  FieldLimit edge;  ///< stability limits of K in the scene with the choice and the scene's hand
+  /// Error estimates: largest change of each metric of the scene's run if the step is halved, the point spacing is
+  /// halved, or depth is evaluated at every step. Without an entry for a metric that such a run lacks.
   TuneMetrics error;
-  std::vector<TuneTrial> trials;       ///< all, by setting and K, with trials along K at the choice's setting
-  std::size_t runs = 0;                ///< simulations in all
-  std::size_t verified = 0;            ///< verification runs between K and G K, all settled (kTriedBetween, kTriedNear)
-  std::vector<std::string> overrides;  ///< make the scene the choice
+  std::vector<TuneTrial> trials;       ///< all trials, by setting and K
+  std::size_t runs = 0;                ///< total number of simulations
+  std::size_t verified = 0;            ///< number of verification runs between K and G K, all settled
+  std::vector<std::string> overrides;  ///< overrides that apply the choice to the scene
 };
 
-/// Tunes one law. The number of threads changes nothing.
+/// Tunes one law. The result does not depend on the number of threads. G: TuneQuestion::margin.
 ///
 /// A setting at K is feasible if
-/// - the run at K is settled (rule_of) and keeps the limits, for the scene's own run and every member of the families.
-///   Without limits of a user, the own run must have low vibration (quiet_numbers in diagnosis.hpp).
-/// - the run at G K is settled, for all of them.
-/// - the loop in contact has stable eigenvalues up to G K (contact_loops; with hand_family() on an impedance device
-/// that a
-///   hand holds).
+/// - every variant of the scene, including the scene itself, is settled at K (rule_of) and keeps the limits on metrics.
+///   Without limits of the user, the run of the scene itself must have low vibration (quiet_numbers in diagnosis.hpp).
+/// - every variant is settled at G K.
+/// - the loop in contact has stable eigenvalues from K to G K (contact_loops; for an impedance device that a hand
+/// holds,
+///   with every hand of hand_family()).
+///
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified
-/// (verification.hpp); if it fails, the search continues below it. Throws InputError for a scene without a free
-/// position, and Stopped.
+/// (verification.hpp). If the verification fails, the search is repeated with stricter bounds. Throws InputError for a
+/// scene without a free position, and Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench

@@ -12,19 +12,19 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
   overrides.push_back("rendering.algorithm=" + algorithm);
   TuneRanges ranges;
   ranges.stiffness = limit_question(question.scenario, overrides, kStiffnessPath, {}).search.range;
-  const Scenario own = load_scenario(question.scenario, overrides).scenario;
-  if (!own.rendering.hunt_crossley) {
+  const Scenario scene = load_scenario(question.scenario, overrides).scenario;
+  if (!scene.rendering.hunt_crossley) {
     ranges.damping_ratio = question.damping_ratio;
     ranges.damping_ratio->logarithmic = true;
-    // zeta is that of the virtual mass; what moves is the handle.
-    if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&own.device)) {
-      const double scale = std::sqrt(device->handle_mass / own.rendering.mass);
+    // The scenario's zeta refers to the virtual mass, but the mass that moves is the handle: convert the range.
+    if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scene.device)) {
+      const double scale = std::sqrt(device->handle_mass / scene.rendering.mass);
       ranges.damping_ratio->from *= scale;
       ranges.damping_ratio->to *= scale;
     }
   }
-  if (std::holds_alternative<AdmittanceDeviceConfig>(own.device))
-    ranges.mass = question.mass.value_or(Range{0.5 * own.rendering.mass, 2.0 * own.rendering.mass, true});
+  if (std::holds_alternative<AdmittanceDeviceConfig>(scene.device))
+    ranges.mass = question.mass.value_or(Range{0.5 * scene.rendering.mass, 2.0 * scene.rendering.mass, true});
   return ranges;
 }
 

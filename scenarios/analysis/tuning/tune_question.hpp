@@ -10,32 +10,37 @@
 #include "scenarios/batch/axis.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
-/// The question of `tune`, and the ranges that it searches.
+/// The inputs of `tune`, and the ranges that it searches.
 namespace hapbench {
 
-/// The search for a law ends at this number of simulations; margins, errors and verification take a few hundred more.
+/// Largest number of simulations of the search for one law. Margins, error estimates and verification need a few
+/// hundred more.
 inline constexpr std::size_t kMostTuneRuns = 6000;
 
+/// Inputs of tuned_law().
 struct TuneQuestion {
   ScenarioText scenario;
   std::vector<std::string> overrides;
-  double margin = 2.0;  ///< G: settled up to G K
-  /// Limits on metrics of every run at K; without any, the own run must have low vibration by the rules of the
-  /// diagnosis.
+  double margin = 2.0;  ///< gain margin G: runs must be settled up to G K
+  /// Limits on metrics, for all variants at K. Empty: the run of the scene itself must have low vibration by the rules
+  /// of the diagnosis.
   std::map<std::string, MetricBound> limits = {};
-  std::vector<std::string> families = {"hands"};  ///< all their runs have to hold (family.hpp)
-  Range damping_ratio = {0.01, 10.0, true};       ///< zeta; of an impedance device by the mass of its handle
-  std::optional<Range> mass = {};  ///< virtual mass on an admittance device [kg]; none: half to twice the scene's
-  bool filters = false;            ///< also try velocity filters of an impedance device
-  unsigned threads = 1;
-  std::function<void(std::size_t runs)> on_runs = {};  ///< called now and then with the number of runs so far
+  std::vector<std::string> families = {"hands"};  ///< variant sets, from kFamilies
+  Range damping_ratio = {0.01, 10.0, true};       ///< zeta; on impedance devices computed with the handle's mass
+  /// Virtual mass of an admittance device [kg]; empty: half to twice the scene's virtual mass.
+  std::optional<Range> mass = {};
+  bool filters = false;                                ///< also search velocity filters of impedance devices
+  unsigned threads = 1;                                ///< number of parallel runs; does not change the result
+  std::function<void(std::size_t runs)> on_runs = {};  ///< called repeatedly with the number of runs so far
 };
 
-/// The ranges that are searched; zeta and the virtual mass have none where they have no effect.
+/// The ranges that are searched.
 struct TuneRanges {
-  Range stiffness;
-  std::optional<Range> damping_ratio, mass;
+  Range stiffness;                     ///< K [N/m]
+  std::optional<Range> damping_ratio;  ///< zeta; empty if it has no effect
+  std::optional<Range> mass;           ///< virtual mass [kg]; empty if it has no effect
 };
+/// Returns the ranges for one law in the scene of the question.
 TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench

@@ -15,12 +15,12 @@ constexpr const char* kFilters[] = {R"({"type":"difference"})", R"({"type":"low_
                                     R"({"type":"low_pass","cutoff_Hz":100})", R"({"type":"low_pass","cutoff_Hz":200})",
                                     R"({"type":"adaptive_window"})"};
 
-/// The settings to begin with, the scene's own first: with equal K it stays.
-std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& own) {
+/// Returns the initial settings. The scene's setting comes first: a later setting replaces it only with a larger K.
+std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& scene) {
   std::vector<std::optional<double>> ratios = {std::nullopt};
   if (ranges.damping_ratio) {
     const auto [from, to, logarithmic] = *ranges.damping_ratio;
-    ratios = {std::clamp(own.rendering.damping_ratio, from, to)};
+    ratios = {std::clamp(scene.rendering.damping_ratio, from, to)};
     const int parts = std::max(1, static_cast<int>(std::round(4.0 * math::log(to / from) / math::log(10.0))));
     for (int i = 0; i <= parts; ++i)
       ratios.emplace_back(ranges.damping_ratio->value_at(static_cast<double>(i) / parts));
@@ -28,7 +28,7 @@ std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& o
   std::vector<std::optional<double>> masses = {std::nullopt};
   if (ranges.mass) {
     const auto [from, to, logarithmic] = *ranges.mass;
-    masses = {std::clamp(own.rendering.mass, from, to), from, to};
+    masses = {std::clamp(scene.rendering.mass, from, to), from, to};
   }
   std::vector<TuneSetting> settings;
   for (const auto& mass : masses)
@@ -36,21 +36,23 @@ std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& o
   return settings;
 }
 
-constexpr double kFinest = 1.004;  // ratio of zeta, or of the mass, at which the search ends
+constexpr double kFinestRatio = 1.004;  // factor on zeta and mass at which refinement ends
 
 }  // namespace
 
 TuneSearch::TuneSearch(Trials& trials) : trials_(trials) {
-  const Scenario own = trials.load({}, trials.ranges().stiffness.from).scenario;
-  settings_ = settings_of(trials.ranges(), own);
-  if (trials.question().filters && handle_moves_tool(own.device)) filters_ = kFilters;
+  const Scenario scene = trials.load({}, trials.ranges().stiffness.from).scenario;
+  settings_ = settings_of(trials.ranges(), scene);
+  if (trials.question().filters && handle_moves_tool(scene.device)) filters_ = kFilters;
 }
 
 std::optional<TuneTrial> TuneSearch::best() {
+  // Search K for each initial setting.
   best_.reset();
   for (const TuneSetting& setting : settings_) improve(setting);
   if (!best_) approach();
   if (!best_) return best_;
+  // Search velocity filters, then refine.
   for (const char* filter : filters_)
     for (const TuneSetting& setting : settings_)
       if (setting.mass == best_->setting.mass) improve({setting.damping_ratio, setting.mass, filter});
@@ -63,50 +65,53 @@ Range TuneSearch::stiffnesses() const {
   return {whole.from, whole.to / trials_.question().margin, true};
 }
 
-/// Raises K at this setting if it can be raised beyond the best K. Returns true if it was raised.
+/// Finds the largest feasible K of a setting if it exceeds the best K, and makes it the best trial. Returns true if so.
 bool TuneSearch::improve(const TuneSetting& setting) {
-  SearchWay way{.range = stiffnesses(), .resolution = kTuneResolution};
+  // Search only above the best K.
+  SearchWay options{.range = stiffnesses(), .resolution = kTuneResolution};
   if (best_) {
-    way.range.from = best_->stiffness * (1.0 + kTuneResolution);
-    if (!(way.range.from < way.range.to)) return false;
-    if (!trials_.feasible(setting, way.range.from)) {
-      if (setting == best_->setting) beyond_ = trials_.beyond(setting, way.range.from);
+    options.range.from = best_->stiffness * (1.0 + kTuneResolution);
+    if (!(options.range.from < options.range.to)) return false;
+    if (!trials_.feasible(setting, options.range.from)) {
+      if (setting == best_->setting) beyond_ = trials_.beyond(setting, options.range.from);
       return false;
     }
   }
-  const auto holds = [&](double t) { return trials_.feasible(setting, way.value_at(t)); };
-  TriedParts scan = scanned(kEdgeIntervals, holds);
-  if (const auto between = window(setting, way, scan)) scan[*between] = true;
-  const FoundEdge edge = find_edge(way, scan, holds, false);
-  if (!edge.stable) return false;
-  best_ = trials_.tried(setting, way.value_at(*edge.stable));
-  beyond_ = edge.beyond ? trials_.beyond(setting, way.value_at(*edge.beyond)) : trials_.end();
+  const auto holds = [&](double t) { return trials_.feasible(setting, options.value_at(t)); };
+  EvaluatedParameters scan = scanned(kEdgeIntervals, holds);
+  if (const auto between = window(setting, options, scan)) scan[*between] = true;
+  const FoundEdge interval = find_edge(options, scan, holds, false);
+  if (!interval.stable) return false;
+  best_ = trials_.trial_at(setting, options.value_at(*interval.stable));
+  beyond_ = interval.beyond ? trials_.beyond(setting, options.value_at(*interval.beyond)) : trials_.end();
   return true;
 }
 
-bool TuneSearch::is_too_soft(const TuneSetting& setting, const SearchWay& way, double t) {
-  return trials_.tried(setting, way.value_at(t)).too_soft;
+bool TuneSearch::is_too_soft(const TuneSetting& setting, const SearchWay& options, double t) {
+  return trials_.trial_at(setting, options.value_at(t)).too_soft;
 }
 
-/// Finds a feasible value between a value that is too soft and the next one, which is too stiff: the scan may step over
-/// it.
-std::optional<double> TuneSearch::window(const TuneSetting& setting, const SearchWay& way, const TriedParts& scan) {
+/// Returns the parameter of a feasible value that lies between two values of the scan, the lower too soft and the upper
+/// too stiff; empty if there is none.
+std::optional<double> TuneSearch::window(const TuneSetting& setting, const SearchWay& options,
+                                         const EvaluatedParameters& scan) {
   for (auto at = scan.begin(); std::next(at) != scan.end(); ++at) {
     const auto next = std::next(at);
-    if (at->second || !is_too_soft(setting, way, at->first)) continue;
-    if (next->second || is_too_soft(setting, way, next->first)) continue;
-    if (const auto found = feasible_between(setting, way, at->first, next->first)) return found;
+    if (at->second || !is_too_soft(setting, options, at->first)) continue;
+    if (next->second || is_too_soft(setting, options, next->first)) continue;
+    if (const auto found = feasible_between(setting, options, at->first, next->first)) return found;
   }
   return std::nullopt;
 }
 
-/// Bisects between a parameter that is too soft and one that is too stiff, until one is feasible.
-std::optional<double> TuneSearch::feasible_between(const TuneSetting& setting, const SearchWay& way, double soft,
+/// Bisects between a parameter that is too soft and a parameter that is too stiff. Returns the first feasible
+/// parameter; empty if there is none.
+std::optional<double> TuneSearch::feasible_between(const TuneSetting& setting, const SearchWay& options, double soft,
                                                    double stiff) {
-  while (way.apart(soft, stiff)) {
+  while (options.needs_bisection(soft, stiff)) {
     const double middle = 0.5 * (soft + stiff);
-    if (trials_.feasible(setting, way.value_at(middle))) return middle;
-    if (is_too_soft(setting, way, middle))
+    if (trials_.feasible(setting, options.value_at(middle))) return middle;
+    if (is_too_soft(setting, options, middle))
       soft = middle;
     else
       stiff = middle;
@@ -114,35 +119,35 @@ std::optional<double> TuneSearch::feasible_between(const TuneSetting& setting, c
   return std::nullopt;
 }
 
-/// Refines the best setting in smaller and smaller ratios.
+/// Refines zeta and mass of the best setting by a pattern search with decreasing factors.
 void TuneSearch::refine() {
   const auto is_better = [this](const TuneTrial& neighbour) { return improve(neighbour.setting); };
-  for (double ratio = math::pow(10.0, 0.125); ratio > kFinest; ratio = std::sqrt(ratio))
+  for (double ratio = math::pow(10.0, 0.125); ratio > kFinestRatio; ratio = std::sqrt(ratio))
     while (std::ranges::any_of(neighbours(*best_, ratio), is_better)) {
     }
 }
 
-/// If only limits are violated, walks from the trial that is nearest to keeping them all towards them.
+/// Called if no trial is feasible. Descends by a pattern search from the trial that is nearest to keeping its limits,
+/// until a trial is feasible.
 void TuneSearch::approach() {
   const TuneTrial* at = trials_.nearest();
   if (at == nullptr) return;
   const auto is_better = [&](const TuneTrial& neighbour) {
     const Range range = stiffnesses();
     const double K = std::clamp(neighbour.stiffness, range.from, std::min(trials_.cap(), range.to));
-    const TuneTrial& next = trials_.tried(neighbour.setting, K);
+    const TuneTrial& next = trials_.trial_at(neighbour.setting, K);
     if (next.feasible()) best_ = next;
     if (!best_ && !(next.limits_alone && trials_.excess(next) < trials_.excess(*at))) return false;
     at = &next;
     return true;
   };
-  for (double ratio = math::pow(10.0, 0.25); ratio > kFinest && !best_; ratio = std::sqrt(ratio))
+  for (double ratio = math::pow(10.0, 0.25); ratio > kFinestRatio && !best_; ratio = std::sqrt(ratio))
     while (!best_ && std::ranges::any_of(neighbours(*at, ratio), is_better)) {
     }
   if (best_) improve(best_->setting);
 }
 
-/// Returns the settings and stiffnesses around a trial: each of its numbers times and over the ratio, and other
-/// filters.
+/// Returns the neighbours of a trial: K, zeta or mass multiplied or divided by `ratio`, and other filters.
 std::vector<TuneTrial> TuneSearch::neighbours(const TuneTrial& trial, double ratio) const {
   std::vector<TuneTrial> all;
   const auto add_scaled = [&](std::optional<double> TuneSetting::*number, const std::optional<Range>& range,

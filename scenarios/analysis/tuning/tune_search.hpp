@@ -7,38 +7,40 @@
 #include "scenarios/analysis/stability/interval_search.hpp"
 #include "scenarios/analysis/tuning/trials.hpp"
 
-/// The search for the setting with the largest feasible K.
+/// Search for the setting with the largest feasible stiffness K.
 namespace hapbench {
 
 /// Searches the settings of a law for the largest feasible K.
 ///
-/// Tries damping ratios zeta in steps of a factor of 10^(1/4), and the ends of the range of the virtual mass. Where K
-/// can be raised by half a percent, raises it to its first limit. If only limits on metrics are violated, walks from
-/// the trial that is nearest to keeping them towards them. Then tries filters with the best mass, and refines zeta and
-/// mass until a change by 0.4 % does not raise K any more.
+/// Starts from damping ratios zeta in factors of 10^(1/4), with the scene's mass and both ends of the range of the
+/// virtual mass. For each setting that allows a K larger than the best K by 0.5 %, searches its largest feasible K. If
+/// no trial is feasible but some violate only limits on metrics, descends from the nearest trial towards the limits.
+/// Then evaluates velocity filters with the best mass. Finally refines zeta and mass until a change by 0.4 % no longer
+/// raises K.
 class TuneSearch {
  public:
   /// `trials` must outlive this.
   explicit TuneSearch(Trials& trials);
 
-  /// Returns the best trial; empty if nothing is feasible.
+  /// Returns the feasible trial with the largest K; empty if no trial is feasible.
   std::optional<TuneTrial> best();
-  /// Returns the trial just beyond the best one.
+  /// Returns the infeasible trial just above the best trial's K. Precondition: best() returned a trial.
   const TuneTrial& beyond() const { return beyond_; }
 
  private:
   Range stiffnesses() const;
   bool improve(const TuneSetting& setting);
-  std::optional<double> window(const TuneSetting& setting, const SearchWay& way, const TriedParts& scan);
-  std::optional<double> feasible_between(const TuneSetting& setting, const SearchWay& way, double soft, double stiff);
-  bool is_too_soft(const TuneSetting& setting, const SearchWay& way, double t);
+  std::optional<double> window(const TuneSetting& setting, const SearchWay& options, const EvaluatedParameters& scan);
+  std::optional<double> feasible_between(const TuneSetting& setting, const SearchWay& options, double soft,
+                                         double stiff);
+  bool is_too_soft(const TuneSetting& setting, const SearchWay& options, double t);
   void refine();
   void approach();
   std::vector<TuneTrial> neighbours(const TuneTrial& trial, double ratio) const;
 
   Trials& trials_;
-  std::vector<TuneSetting> settings_;     ///< to begin with
-  std::span<const char* const> filters_;  ///< that are also searched
+  std::vector<TuneSetting> settings_;     ///< initial settings
+  std::span<const char* const> filters_;  ///< velocity filters to search; empty for none
   std::optional<TuneTrial> best_;
   TuneTrial beyond_;
 };

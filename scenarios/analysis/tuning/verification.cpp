@@ -17,9 +17,9 @@
 namespace hapbench {
 namespace {
 
-constexpr double kMuchLess = 1.25;  // factor by which K is reduced if a choice is not settled in a longer run
+constexpr double kStiffnessReduction = 1.25;  // K is divided by this if a longer run is not settled
 
-/// Lets nothing be tried any more that reaches K, which is not settled, within its margin. Returns true.
+/// Records that K is not settled, and limits the search to stiffnesses whose margin stays below K. Returns true.
 bool refute(Trials& trials, const TuneTrial& choice, double K, const std::string& why) {
   trials.note_unstable(K);
   trials.set_cap(K / trials.question().margin * (1.0 - kTuneResolution), "margin",
@@ -27,21 +27,21 @@ bool refute(Trials& trials, const TuneTrial& choice, double K, const std::string
   return true;
 }
 
-/// Returns true if a run between the values that were tried, or just below G K, is not settled.
+/// Returns true if a run at a gain between 1 and G, or just below G, is not settled.
 bool fails_between(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   const SearchWay gains{.range = {1.0, trials.question().margin, true}};
-  std::vector<double> parts = parts_between(0.0, 1.0, kTriedBetween);
-  const std::vector<double> near = parts_below(gains, 1.0);
-  parts.insert(parts.end(), near.begin(), near.end());
-  const auto at_part = [&](std::size_t i) { return with_gain(choice, gains.value_at(parts[i])); };
-  if (const auto failing = trials.first_failing(choice, parts.size(), at_part))
-    return refute(trials, choice, choice.stiffness * gains.value_at(parts[failing->run]), failing->why);
-  law.verified = parts.size();
+  std::vector<double> parameters = parameters_between(0.0, 1.0, kTriedBetween);
+  const std::vector<double> near = parameters_below(gains, 1.0);
+  parameters.insert(parameters.end(), near.begin(), near.end());
+  const auto override_at = [&](std::size_t i) { return with_gain(choice, gains.value_at(parameters[i])); };
+  if (const auto failing = trials.first_failing(choice, parameters.size(), override_at))
+    return refute(trials, choice, choice.stiffness * gains.value_at(parameters[failing->run]), failing->why);
+  law.verified = parameters.size();
   return false;
 }
 
-/// Finds the limits of K in the scene as chosen. Returns true if the own run has one before G K.
-bool own_edge_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
+/// Finds the stability limits of K in the scene with the choice. Returns true if there is a limit below G K.
+bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   const ScenarioText& scene = trials.question().scenario;
   const std::vector<std::string> chosen = trials.overrides(choice.setting, choice.stiffness);
   LimitQuestion question = limit_question(scene, chosen, kStiffnessPath, {});
@@ -50,6 +50,7 @@ bool own_edge_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   law.edge = field_limit(question);
   trials.count_runs(law.edge.runs.size());
   const double G_K = trials.question().margin * choice.stiffness;
+  // Reject a choice without a contiguous stable interval, or with a limit below G K.
   if (!law.edge.end.value) return refute(trials, choice, G_K, "stable values are scattered");
   if (!law.edge.end.beyond) return false;
   const auto& [K, verdict] = *law.edge.end.beyond;
@@ -58,22 +59,22 @@ bool own_edge_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   return false;
 }
 
-/// Returns true if a run twice as long is not settled.
-bool fails_later(Trials& trials, const TuneTrial& choice) {
-  const Scenario own = trials.load(choice.setting, choice.stiffness).scenario;
-  const double duration = own.time.step * static_cast<double>(own.time.steps);
-  // A script that leads on reaches positions beyond the end of the scene.
-  if (script_moves_until(own) > duration && script_period(own) == 0.0) return false;
-  const auto twice = [&](std::size_t) { return fmt::format("time.steps={}", 2 * own.time.steps); };
-  const auto failing = trials.first_failing(choice, trials.family_size(), twice);
+/// Returns true if a run twice as long is not settled, in any variant.
+bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
+  const Scenario scenario = trials.load(choice.setting, choice.stiffness).scenario;
+  const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
+  // A script that moves on after the end of the scene would reach other positions: skip this verification.
+  if (script_moves_until(scenario) > duration && script_period(scenario) == 0.0) return false;
+  const auto twice = [&](std::size_t) { return fmt::format("time.steps={}", 2 * scenario.time.steps); };
+  const auto failing = trials.first_failing(choice, trials.variant_count(), twice);
   if (!failing) return false;
-  trials.set_cap(choice.stiffness / kMuchLess, "settled",
+  trials.set_cap(choice.stiffness / kStiffnessReduction, "settled",
                  fmt::format("at {:.4g} N/m{} in a run twice as long {}", choice.stiffness,
                              setting_text(choice.setting), failing->why));
   return true;
 }
 
-/// Returns true if a limit of the user is not kept by as much as the metric's error. Then the limits are tightened.
+/// Returns true if a limit of the user is violated within the metric's error. Then tightens the limits.
 bool is_beyond_limits(Trials& trials, TuneTrial& choice, TunedLaw& law) {
   trials.measure(choice);
   law.error = known_errors(trials, choice);
@@ -90,30 +91,31 @@ std::string with_gain(const TuneTrial& trial, double gain) {
 TuneMetrics known_errors(Trials& trials, const TuneTrial& trial) {
   const ScenarioText& scene = trials.question().scenario;
   const std::vector<std::string> chosen = trials.overrides(trial.setting, trial.stiffness);
-  const LoadedScenario own = load_scenario(scene, chosen);
+  const LoadedScenario scenario = load_scenario(scene, chosen);
   const Cases once({scene}, chosen, std::vector<Axis>{});
-  std::vector<Cases> finer = {finer_cases(level_sweep(own, kStepPath, 2, 2.0), once)};
-  if (const auto distance = point_distance(own)) {
-    finer.push_back(finer_cases(level_sweep(own, distance->path, 2, 2.0), once));
+  std::vector<Cases> finer = {finer_cases(level_sweep(scenario, kStepPath, 2, 2.0), once)};
+  if (const auto distance = point_distance(scenario)) {
+    finer.push_back(finer_cases(level_sweep(scenario, distance->path, 2, 2.0), once));
     finer.emplace_back(std::vector{scene}, chosen, std::vector<Axis>{{.path = "record.inside", .values = {"true"}}});
   }
   trials.count_runs(finer.size());
   const std::vector<Result> runs = run_all(finer, {trials.question().threads, ""});
+  // The error of a metric is its largest change; a metric that a run lacks has none.
   TuneMetrics error;
   for (const auto& [name, value] : trial.metrics) {
-    double most = 0.0;
+    double largest = 0.0;
     for (const Result& run : runs) {
       const double moved = number_of(run.metrics, name).value_or(std::numeric_limits<double>::infinity());
-      most = std::max(most, std::abs(moved - value));
+      largest = std::max(largest, std::abs(moved - value));
     }
-    if (std::isfinite(most)) error[name] = most;
+    if (std::isfinite(largest)) error[name] = largest;
   }
   return error;
 }
 
 bool is_verified(Trials& trials, TuneTrial& choice, TunedLaw& law) {
-  return !fails_between(trials, choice, law) && !own_edge_is_near(trials, choice, law) &&
-         !fails_later(trials, choice) && !is_beyond_limits(trials, choice, law);
+  return !fails_between(trials, choice, law) && !scene_limit_is_near(trials, choice, law) &&
+         !fails_in_longer_run(trials, choice) && !is_beyond_limits(trials, choice, law);
 }
 
 }  // namespace hapbench

@@ -166,33 +166,39 @@ int compare(const CompareOptions& options, ProgramContext& context) {
 }  // namespace
 
 void add_compare(CommandLine& line) {
-  auto [command, options] =
-      line.command("compare", "Run scenarios through several algorithms side by side; several scenarios give a league",
-                   compare, "the folders of finished runs are kept, but no table is written");
-  command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them");
+  auto [command, options] = line.command(
+      "compare", "Run scenarios with several force laws and show the results side by side, or rank the laws.", compare,
+      "the folders of finished runs are kept, but no table is written");
+  command.add("scenarios <scenario>...", options.scenarios,
+              "scenario files, names of bundled scenarios, or of groups of scenarios");
   add_algorithms(command, options.question.algorithms, "all");
-  command.add("--seeds", options.question.seeds, "run each K times, time k with the scenario's seed + k (default: 1)",
+  command.add("--seeds <n>", options.question.seeds,
+              "repeat each run n times, repetition k with the scenario's seed + k (default: 1)",
               {.range = {{1, 10'000}}});
   command.add(
-      "--jitter", options.question.jitter,
-      "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
-      "algorithms: gives a spread where nothing else is random");
-  command.add("--by", options.metrics,
-              "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
-                  fmt::format("{}", fmt::join(kDefaultMetrics, ",")) +
-                  "; fidelity where every scene has a reference force)",
+      "--jitter <m>", options.question.jitter,
+      "shift the start by a random vector of this length [m], the same for all laws; needed for a spread over seeds "
+      "if nothing else is random");
+  command.add("--by <metric,...>", options.metrics,
+              "metrics of the ranking; smaller is better, except for success rates (default: " +
+                  fmt::format("{}", fmt::join(kDefaultMetrics, ", ")) +
+                  "; if every scenario has a reference force, fidelity metrics instead)",
               {.comma_separated = true});
-  add_common(command, options, "compare_NAME, of several scenarios results/out/compare");
-  command.flag("--errors", options.errors,
-               "also run each at half and a quarter of the step and of the distance of the shell's points, and say of "
-               "each metric how far that moves it and which laws' order holds");
+  add_common(command, options, "compare_NAME; of several scenarios: results/out/compare");
+  command.flag(
+      "--errors", options.errors,
+      "repeat all runs at half and a quarter of the time step and of the point spacing, to print errors and check "
+      "which ranks hold; about 9 times the work");
   command.footer(
-      "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several, and "
-      "comparison.csv of each scenario beside them. Several scenarios or seeds, or --by, give a league: rank, mean "
-      "and spread over the seeds, and where each algorithm fails; league.csv has all of it. A run fails when it "
-      "diverges, has no contact or loses it, goes through the surface, is not dragged or stuck, or ends otherwise "
-      "than its scenario allows; it ranks behind all others. The results of an earlier comparison in OUT are "
-      "removed, other files are not.");
+      "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
+      "of laws that are better by more than 0.1 % and by more than the errors of both. Laws with a failed run rank "
+      "last.\n\n"
+      "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "
+      "along, or does not end as its scenario expects.\n\n"
+      "Files: comparison.csv (one row per run), ranking.csv (one row per scenario, law and metric), and each run in "
+      "OUT/[SCENARIO/]ALGORITHM[/seed_K]; the parts in brackets exist if there are several. An earlier comparison in "
+      "the folder is removed, other files stay.\n\n"
+      "Exit status: 0 also if laws fail, except: 3 if a run diverges and its scenario does not expect that.");
 }
 
 }  // namespace hapbench

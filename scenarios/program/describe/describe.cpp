@@ -124,16 +124,20 @@ int describe(const DescribeOptions& options, ProgramContext& context) {
 }  // namespace
 
 void add_describe(CommandLine& line) {
-  auto [command, options] = line.command("describe", "Explain a name; without one, or by a kind: a list", describe);
-  command.add(
-      "name", options.name,
-      "an algorithm, a depth model, an integrator, an environment, a hand, a device, a scenario, a study; a kind of "
-      "these such as algorithms, or a group of scenarios such as thesis, for a list; a field such as "
-      "rendering.limits, \"scenario\" (all fields), \"schema\", \"choices_schema\", \"stability\", \"diagnosis\"; a "
-      "metric, \"metrics\" or \"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as "
-      "trajectory.csv; a claim such as C5, a choice such as planar.first_tilt or a place such as \"Fig. A.2\"; a term of the "
-      "glossary such as \"linear limit\", \"terms\" for all of them");
-  command.add("--grep", options.grep, "list only things with this text in their name, description or source");
+  auto [command, options] = line.command("describe", "Explain a name, or list what exists.", describe);
+  command.add("name <name>", options.name, "what to explain, see below; without it, everything is listed");
+  command.add("--grep <text>", options.grep, "list only entries with this text in name, description or source");
+  command.footer(
+      "A list: algorithms, scenarios, studies, devices, metrics, columns, claims, terms, or a group of scenarios such "
+      "as thesis.\n\n"
+      "Scenario files: \"scenario\" (all fields), a field such as rendering.limits (unit, allowed values, default), or "
+      "\"schema\".\n\n"
+      "Results: a file such as trajectory.csv (all its columns with units), a column, a metric, or the heading of a "
+      "table such as \">30Hz rms N\".\n\n"
+      "Concepts: \"stability\", \"diagnosis\", or a term of the glossary such as \"linear limit\".\n\n"
+      "Models: the name of a force law, depth model, integrator, environment, hand, device, scenario or study.\n\n"
+      "Thesis: a claim such as C5, an assumption such as planar.first_tilt, a place such as \"Fig. A.2\", or "
+      "\"choices_schema\".");
 }
 
 }  // namespace hapbench

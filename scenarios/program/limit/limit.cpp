@@ -80,50 +80,56 @@ int limit(const LimitOptions& options, ProgramContext& context) {
 
 void add_limit(CommandLine& line) {
   auto [command, options] = line.command(
-      "limit", "Find how far any field may go, on which device, with which algorithm, by bisection on runs", limit,
+      "limit", "Find the largest (or smallest) value of a field at which the runs of a scenario are stable.", limit,
       "no limit is written");
-  command.add("scenarios", options.scenarios, "scenario files, or names of bundled scenarios", {.required = true});
-  command.add("--vary", options.field, fmt::format("the field (default: {})", options.field));
-  command.add("--between", options.between,
-              "a:b, the range to search (default: a thousandth to a thousandfold of the scenario's value)");
-  command.flag("--smallest", options.smallest, "find the smallest stable value instead, as of a mass");
-  add_algorithms(command, options.algorithms, "each scenario's own");
-  command.add("--device", options.devices,
-              "in place of each scene's own: presets, ideal, admittance, files NAME.json, all, or impedance for all "
-              "presets, separated by commas; a preset also at both ends of what nobody published of it",
-              {.comma_separated = true});
-  command.add("--friction", options.friction,
-              "in place of these ends each device's dry friction times factors, such as 0,2; none: neither",
-              {.comma_separated = true});
-  command.add("--over", options.over,
-              "ask for each value of another field, which it takes as sweep --vary does; repeatable",
+  command.add("scenarios <scenario>...", options.scenarios,
+              "scenario files, names of bundled scenarios, or the name of a study (\"hapbench describe studies\")",
+              {.required = true});
+  command.add("--vary <field>", options.field, fmt::format("field to search (default: {})", options.field));
+  command.add("--between <a:b>", options.between,
+              "range to search, in the unit of the field (default: 0.001 to 1000 times the current value)");
+  command.flag("--smallest", options.smallest, "find the smallest stable value instead, for example of a mass");
+  add_algorithms(command, options.algorithms, "the scenario's algorithm");
+  command.add(
+      "--device <name,...>", options.devices,
+      "devices instead of the scenario's: presets, ideal, admittance, files NAME.json, all, or impedance for all "
+      "presets; presets also run at both ends of their unpublished parameters",
+      {.comma_separated = true});
+  command.add(
+      "--friction <factor,...>", options.friction,
+      "with --device: instead of these ends, multiply the dry friction of each device by factors such as 0,2; none: "
+      "no variation",
+      {.comma_separated = true});
+  command.add("--over <field=values>", options.over,
+              "repeat the search for each value of another field, written like sweep --vary; repeatable",
               {.several = true});
   command.add(
-      "--stable", options.stable,
-      "what a run has to do: be settled (come to rest), bounded (vibrating also counts) or still (a handle that "
-      "does not vibrate; default where a script moves the tool, elsewhere settled)",
+      "--stable <rule>", options.stable,
+      "settled: comes to rest or decays; bounded: may also vibrate; still: little vibration of the handle (default: "
+      "settled; if a script moves the tool, still)",
       {.one_of = {"settled", "bounded", "still"}});
+  command.add("--vibration <m/s>", options.vibration,
+              fmt::format("for the rule still: largest vibration of the handle, rms above 30 Hz (default: {})",
+                          kMostVibration));
+  command.add("--bound <metric=range>", options.bounds,
+              "a stable run must also keep METRIC=MAX or METRIC=MIN:MAX, such as inside_settled_m=3e-4; repeatable");
   command.add(
-      "--vibration", options.vibration,
-      fmt::format("of still: the largest vibration of the handle above 30 Hz [m/s rms] (default: {})", kMostVibration));
-  command.add("--bound", options.bounds,
-              "a stable run also keeps metric=most or metric=least:most, as inside_settled_m=3e-4; repeatable");
-  command.add("--resolution", options.resolution,
-              "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
+      "--resolution <ratio>", options.resolution,
+      "relative width of the interval that encloses the limit (default: 0.001); relative to the range if the range "
+      "reaches 0 or below");
   add_common(command, options, "limit_NAME");
   command.footer(
-      "A run is stable when it comes to rest or dies out; where a script moves the tool, when its handle does not "
-      "vibrate. \"hapbench describe stability\" has all classes. Oscillations slower than a quarter of the run are "
-      "not seen. The range is tried at 17 values. The first edge upwards of the scenario's own value (of the first "
-      "stable value, if that one is not stable; with --smallest downwards, from the high end) is bisected, then the "
-      "other end of the interval of stable values, below which a surface may be too soft; three values are tried on "
-      "either side of the first edge, which may reveal an earlier edge. Of one scene and device the interval is then "
-      "tried at 48 values between its ends and 8 just below its edge, and ends at the first that is not stable; "
-      "where no 2 % of values are stable, there is no edge. The linear edge, of the loop in contact, is the answer "
-      "where stable runs beyond it are intermittent contact. The column inconsistent counts unstable values in the "
-      "interval and stable ones outside of it. Where the hand is an impedance, a run without environment tells "
-      "whether hand and device alone are unstable beyond the edge. A hand with a mass loses it on ideal and "
-      "admittance, where the virtual mass stands for it. limit_runs.csv has every run.");
+      "Stable: the run comes to rest or its oscillation decays; if a script moves the tool, the handle hardly "
+      "vibrates. A run that diverges, passes through the surface, loses contact, sticks or never touches is unstable. "
+      "\"hapbench describe stability\" defines all classes.\n\n"
+      "Result: two limits. The simulated limit is found by bisection on runs. The linear limit (- if there is none) "
+      "follows from the eigenvalues of the loop in contact. If the linear limit is the smaller one, rely on it: above "
+      "it, only bounces, dry friction or the end of the run keep runs stable.\n\n"
+      "Files: limit.csv has one row per search, limit_runs.csv one row per run with its class. They replace the files "
+      "of an earlier search in the same folder.\n\n"
+      "Time: 100 to 400 runs for one search, and 30 to 50 for each row with --device or --over, which skip the "
+      "verification samples.\n\n"
+      "Exit status: 0 also if no value is stable; 2 bad input; 130 stopped by Ctrl-C.");
 }
 
 }  // namespace hapbench

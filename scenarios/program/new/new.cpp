@@ -86,21 +86,28 @@ int write_new(const NewOptions& options, ProgramContext& context) {
 }  // namespace
 
 void add_new(CommandLine& line) {
-  auto [command, options] = line.command("new", "Write a scenario to start from and explain its fields", write_new);
-  command.add("kind", options.kind, "the kind of scenario; without it, the kinds are listed");
-  command.add("--from", options.from, "the file of the mesh, shell or stroke to start from");
-  command.add("--on", options.on, "of a stroke: the mesh that it is played back over, in place of a plane");
-  command.add(
-      "--extent", options.extent,
-      "size of the mesh, the longest edge of its box, with a unit: 12mm, 1.2cm, 0.012m, 0.5in (default: the file is "
-      "in metres)");
-  command.add("--side", options.side, "from which the tool comes: x, y, z (default), or --side=-x, -y, -z",
+  auto [command, options] =
+      line.command("new", "Write a scenario file to start from, and explain its fields.", write_new);
+  command.add("kind <kind>", options.kind,
+              "kind of scenario, such as drag, mesh, hole or stroke; without it, all kinds are listed");
+  command.add("--from <file>", options.from, "mesh, point shell or stroke to start from");
+  command.add("--on <mesh>", options.on, "of kind stroke: mesh to play the stroke over (default: a plane)");
+  command.add("--extent <length>", options.extent,
+              "true length of the mesh's longest edge with a unit: 12mm, 1.2cm, 0.012m or 0.5in (default: the file is "
+              "in metres)");
+  command.add("--side <axis>", options.side,
+              "side from which the tool approaches: x, y, z (default), --side=-x, --side=-y or --side=-z",
               {.one_of = {"x", "y", "z", "-x", "-y", "-z"}});
-  command.add("--path", options.path, "X,Y,Z [m] of a point to drag over; give it for each, two or more",
+  command.add("--path <x,y,z>", options.path, "point [m] of the path over which the tool is dragged; give two or more",
               {.several = true});
-  command.add("--at", options.at, "X,Y,Z [m]: start over the place of the surface that is nearest to it");
-  command.flag("--preview", options.preview, "run the scene and draw it: the surface, the tool on its way; FILE.svg");
-  command.add("--out", options.out, "the file to write, which must not exist (default: [FROM_]KIND.json)");
+  command.add("--at <x,y,z>", options.at, "start above the surface point nearest to this point [m]");
+  command.flag("--preview", options.preview,
+               "also run the scenario and draw surface, tool and path to OUT with the ending .svg");
+  command.add("--out <file.json>", options.out,
+              "scenario to write (default: KIND.json, or FROM_KIND.json, in the current folder)");
+  command.footer(
+      "Files: the scenario, and with --preview a picture next to it (mine.json: mine.svg) and the run in results/out. "
+      "An existing scenario or picture is never overwritten: exit status 2.");
 }
 
 }  // namespace hapbench

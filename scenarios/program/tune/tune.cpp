@@ -80,37 +80,42 @@ int tune(const TuneOptions& options, ProgramContext& context) {
 }  // namespace
 
 void add_tune(CommandLine& line) {
-  auto [command, options] =
-      line.command("tune", "Say which stiffness and damping to use, in a scene on a device", tune);
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
-  command.add("--device", options.device, "a preset, ideal, admittance, or a file NAME.json (default: the scene's)");
-  add_algorithms(command, options.algorithms, "the scene's own");
-  command.add("--margin", options.question.margin, "settled up to so many times K (default: 2)");
-  command.add("--bound", options.bounds,
-              "what the choice has to keep: metric=most or metric=least:most, as inside_max_m=3e-4 [m], "
-              "force_rms_above_30Hz_N=0.05 or settled_force_step_max_N=0.2; repeatable");
-  command.add("--family", options.family,
-              "families of runs that have to hold: hands, seeds, speeds, or all (default: hands)",
+  auto [command, options] = line.command(
+      "tune",
+      "Find the largest stiffness K of a scenario that is stable with a margin, with its damping and force law.", tune);
+  command.add("scenario <scenario>", options.scenario, "scenario file or name of a bundled scenario",
+              {.required = true});
+  command.add("--device <name>", options.device,
+              "a preset, ideal, admittance, or a file NAME.json (default: the scenario's device)");
+  add_algorithms(command, options.algorithms, "the scenario's algorithm");
+  command.add("--margin <factor>", options.question.margin,
+              "runs must be stable at K and at this factor times K (default: 2; more than 1, at most 16)");
+  command.add("--bound <metric=range>", options.bounds,
+              "runs at K must keep METRIC=MAX or METRIC=MIN:MAX, such as inside_max_m=3e-4 or "
+              "force_rms_above_30Hz_N=0.05; repeatable (default: low vibration, see below)");
+  command.add("--family <name,...>", options.family,
+              "further runs that must be stable: hands, seeds, speeds, or all (default: hands)",
               {.comma_separated = true});
-  command.add("--damping-ratio", options.damping_ratio,
-              "a:b, range of zeta; on an impedance device by the mass of its handle (default: 0.01:10)");
-  command.add("--mass", options.mass,
-              "a:b, range of the virtual mass on an admittance device [kg] (default: half to twice the scene's)");
-  command.flag("--filters", options.question.filters, "on an impedance device also choose the velocity filter");
+  command.add("--damping-ratio <a:b>", options.damping_ratio,
+              "range of the damping ratio zeta (default: 0.01:10); on an impedance device, B follows from zeta and the "
+              "mass of the handle");
+  command.add("--mass <a:b>", options.mass,
+              "range of the virtual mass on an admittance device [kg] (default: half to twice the scenario's)");
+  command.flag("--filters", options.question.filters, "on an impedance device, choose the velocity filter too");
   add_common(command, options, "tune_NAME");
   command.footer(fmt::format(
-      "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own "
-      "run and each of the family is settled (\"hapbench describe stability\"; where a script moves the tool, no "
-      "more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of device, hand and surface "
-      "while they touch is stable as far by its eigenvalues, and all limits are kept at K; without limits of yours "
-      "the own run is quiet, by the rules of \"hapbench describe diagnosis\": buzz, pop, chatter, energy. Hands are "
-      "springs of 100 and 1000 N/m, on an impedance device's handle with 0.1 and 0.5 kg; the loop's, also none. "
-      "Recommended is the law that settles least deep; on springs, the one that renders most stiffness. At most {} "
-      "runs a law search. The choice is verified by {} runs of full length between K and margin x K, and by longer "
-      "ones; it keeps your limits by as much as half the step, half the spacing and a look at the depth in every row "
-      "move a number. Where nothing is feasible, it says which limit to relax. Files: tune.csv, tune_trials.csv, "
-      "NAME_tuned.json, which run takes.",
-      kMostTuneRuns, kTriedBetween + kTriedNear));
+      "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
+      "limit "
+      "is at least margin x K, and every --bound holds at K. Without --bound the scenario's run must have low "
+      "vibration: no buzz, pop, chatter or created energy (\"hapbench describe diagnosis\").\n\n"
+      "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with "
+      "their errors. {} verification samples between K and margin x K check the choice. If nothing is feasible, tune "
+      "names the bound to relax.\n\n"
+      "Files: NAME_tuned.json is the tuned scenario, for \"hapbench run\". tune.csv has one row per law, "
+      "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder.\n\n"
+      "Time: seconds to minutes; the search for a law ends after {} runs.\n\n"
+      "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
+      kTriedBetween + kTriedNear, kMostTuneRuns));
 }
 
 }  // namespace hapbench

@@ -24,23 +24,24 @@ from .fit import fit
 from .log import read_log
 from .model import FRICTION_TOLD, KINDS, NAMES, design, force_to_ask, travel_of
 
-FOOTER = """\
-Fits m x'' = u(t - delay) + offset - b x' - c sign(x') to the positions by least squares, \
-integrated exactly. The delay is found in \
-fractions of a sample. Intervals are of 95 %, wider where the residual is correlated, as while \
-the handle dwells in one step of \
-the encoder. What the log cannot tell is not written, and a warning says why. The noise is what \
-the residual has beyond the \
-encoder's step. A constant force besides the commands is told and not part of a device.
---columns: time, force and position, by default time_s, force_N and position_m. Forces are as \
-commanded at the time of the row, \
-positive in the direction of the position.
---design: force, the largest [N], default 1; travel, the way that the handle has [m], default \
-0.05; mass, the least that it may have \
-[kg], default 0.05; rate of the samples [Hz], default 1000; duration [s], default 5.
-  hapbench import device --design chirp,force=2,travel=0.08,mass=0.1 --out chirp.csv
-  hapbench import device log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
-  hapbench limit tap_wall --device log_device.json"""
+NOTES = [
+    "Log: a CSV file of one axis while no hand holds the handle: time, commanded force and "
+    "position, named time_s, force_N and position_m, or as --columns and --scale say. The force of "
+    "a row is the one commanded at its time, positive in the direction of the position.",
+    "Result: mass, viscous and dry friction, delay, encoder step and noise, each with a 95 % "
+    "interval. A parameter that the log cannot determine is not written; a warning gives the "
+    "reason. A constant offset force is printed, but is not part of the device.",
+    "Design: force (largest, default 1 N), travel (of the handle, default 0.05 m), mass (smallest "
+    "possible, default 0.05 kg), rate (default 1000 Hz), duration (default 5 s).",
+    "Files: LOG_device.json, for --device of limit and tune, and a picture of the residual next to "
+    "it; or the signal, signal_KIND.csv. They replace earlier ones. A log that cannot be used gives"
+    " exit status 2.",
+]
+EXAMPLES = [
+    "hapbench import device --design chirp,force=2,travel=0.08 --out chirp.csv",
+    "hapbench import device log.csv --columns time=t,force=3 --scale time=1e-6",
+    "hapbench limit tap_wall --device log_device.json",
+]
 UNITS = {
     "handle_mass_kg": "kg",
     "viscous_N_s_per_m": "N s/m",
@@ -64,25 +65,36 @@ IN_DEVICE = (
 
 def command_line():
     line = CommandLine(
-        "import device", "Make a device's file from its log: mass, friction, delay, encoder", FOOTER
+        "import device",
+        "Identify the mass, friction, delay and encoder of a device from a log, and write its device file.",
+        NOTES,
+        EXAMPLES,
+        'device_model/README.md, section "The numbers of your own device"',
     )
-    line.text(
-        "log",
-        "CSV of one axis: time, commanded force, position of the handle, no hand on it",
-        nargs="?",
-        metavar="log",
+    line.text("log", "<log.csv>", "log of one axis: time, commanded force, position", nargs="?")
+    line.texts(
+        "--columns",
+        "<name=column,...>",
+        "columns of time, force and position, by name or number from 1",
     )
-    line.texts("--columns", "where quantities are, by name or number from 1 (below)")
-    line.texts("--scale", "what units are: time [s], force [N], position [m] (below)")
-    line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
+    line.texts(
+        "--scale",
+        "<name=factor,...>",
+        "units of the log: seconds per unit of time, and so on for force [N] and position [m]",
+    )
+    line.flag(
+        "--skip-bad-rows", "leave out invalid rows and list them, instead of refusing the log"
+    )
     line.texts(
         "--design",
-        "instead of reading a log, make the signal to play: chirp, steps or multisine, and numbers (below)",
+        "<kind,name=n,...>",
+        "instead of reading a log, write a signal to command: chirp, steps or multisine, "
+        "with numbers (see below)",
     )
     line.text(
         "--out",
-        "the device, LOG_device.json by default, with a picture of the residual beside it; or the "
-        "signal, signal_KIND.csv",
+        "<file>",
+        "device to write (default: LOG_device.json), or signal (default: signal_KIND.csv)",
     )
     line.add_output_options()
     return line

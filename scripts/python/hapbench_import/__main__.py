@@ -15,65 +15,97 @@ from hapbench_command import (
 
 from .options import FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
 
-FOOTER = """\
---columns: time, and position, orientation and force by the first of their columns, or each by \
-itself as px, py, pz, qw, qx, qy, \
-qz, mfx, mfy, mfz. --orientation is none, axis (the direction out of the tip), quat_wxyz, \
-quat_xyzw, axis_angle (axis, angle) or \
-matrix (r11, r12 ... r33, row by row); it turns the tool's frame into the world's.
---set: sample_rate_Hz of a file without times; tip_axis, the direction out of the tip in the \
-tool's frame, default 0,0,-1; shift, \
-added to the places of the tip [m]; force_by_tool=true, forces are the tool's on the object and \
-are turned round; max_speed, faster \
-jumps are refused [m/s], default 5; max_gap, longer gaps are refused, not bridged [s], default \
-0.5; floats=true, hapi-binary has \
-numbers of four bytes.
-Rows with wrong numbers, times that do not increase, quaternions not of unit length and jumps are \
-refused with their lines, and \
-nothing is written.
-  hapbench import stroke
-  hapbench import stroke log.txt --preset hapi --smooth window=11,order=3 --out stroke.csv
-  hapbench import stroke rec.csv --columns time=t,position=5,orientation=8,force=fx \\
-    --orientation quat_xyzw --scale time=1e-6,position=0.001"""
+NOTES = [
+    "Columns: time, position, orientation and force, each given by its first column, or single "
+    "ones: px, py, pz, qw, qx, qy, qz, mfx, mfy, mfz. Numbers count from 1.",
+    "Orientation: none, axis (direction out of the tip), quat_wxyz, quat_xyzw, axis_angle (axis, "
+    "angle) or matrix (r11, r12 ... r33, row by row). It turns the tool's frame into the frame of "
+    "the scene.",
+    "Fields of --set: sample_rate_Hz (for a file without times), tip_axis (direction out of the tip"
+    " in the tool's frame, default 0,0,-1), shift (added to the positions [m]), force_by_tool=true "
+    "(forces act on the object; their sign is changed), floats=true (hapi-binary with 4-byte "
+    "numbers), max_speed, max_gap.",
+    "Refused: invalid numbers, times that do not increase, quaternions not of unit length, jumps "
+    "faster than max_speed (default 5 m/s), gaps longer than max_gap (default 0.5 s). All such rows"
+    " are listed, nothing is written, and the exit status is 2.",
+    "Files: the stroke, a CSV file with one pose per row; it replaces an earlier one.",
+]
+EXAMPLES = [
+    "hapbench import stroke",
+    "hapbench import stroke log.txt --preset hapi --out stroke.csv",
+    "hapbench import stroke rec.csv --columns time=t,position=5,orientation=8 \\\n"
+    "    --orientation quat_xyzw --scale time=1e-6,position=0.001",
+]
 
 
 def command_line():
     line = CommandLine(
         "import stroke",
-        "Make a stroke to play back from a recording: poses and measured forces",
-        FOOTER,
+        "Convert a recording of poses (and measured forces) into a stroke that a scenario plays back.",
+        NOTES,
+        EXAMPLES,
+        'scenarios/README.md, section "Strokes in"',
     )
+    line.text("file", "<recording>", "the recording; without it, the presets are listed", nargs="?")
     line.text(
-        "file", "the recording; without it, the presets are listed", nargs="?", metavar="file"
+        "--preset",
+        "<preset>",
+        "layout of the recording: a name or FILE.json; other options override it",
     )
-    line.text("--preset", "a layout by name or from FILE.json; options below override it")
     line.text(
         "--set",
-        "any field of such a file: NAME=VALUE (below); repeatable",
-        metavar="TEXT ...",
+        "<field=value>",
+        "any field of a preset, see below; repeatable",
         action="append",
         default=[],
     )
     line.one_of(
-        FORMATS, "--format", "csv (default), traj (blanks between numbers), hapi, hapi-binary"
+        FORMATS,
+        "--format",
+        "<format>",
+        "csv (default), traj (separated by blanks), hapi or hapi-binary",
     )
-    line.texts("--columns", "where quantities are, by name or number from 1 (below)")
-    line.texts("--scale", "what units are: time [s], position [m], angle [rad], force [N] (below)")
+    line.texts(
+        "--columns",
+        "<name=column,...>",
+        "columns of the quantities, by name or number, such as time=t,position=5; "
+        "required without --preset",
+    )
+    line.texts(
+        "--scale",
+        "<name=factor,...>",
+        "units of the file: seconds per unit of time, and so on for position [m], angle [rad] "
+        "and force [N]; "
+        "time=1e-6,position=0.001 are microseconds and millimetres",
+    )
     line.one_of(
         list(ORIENTATIONS),
         "--orientation",
-        "what its columns hold; default none: the tool never turns",
+        "<kind>",
+        "what the orientation columns hold, see below (default: none; the tool does not turn)",
     )
-    line.texts("--frame", "recorded directions that are the scenario's x, y, z; y up: x,-z,y")
+    line.texts(
+        "--frame",
+        "<axis,axis,axis>",
+        "recorded directions that become x, y and z (default: x,y,z); for y up: x,-z,y",
+    )
     line.text(
         "--rate",
-        "[Hz] of the stroke; default: as recorded, or the median's if irregular",
-        metavar="FLOAT",
+        "<Hz>",
+        "sample rate of the stroke (default: as recorded; if irregular, from the median interval)",
         type=float,
     )
-    line.texts("--smooth", "window=N,order=M: Savitzky-Golay over N samples, an odd number")
-    line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
-    line.text("--out", "the stroke; default: FILE_stroke.csv here")
+    line.texts(
+        "--smooth",
+        "<window=n,order=m>",
+        "smooth the poses with a Savitzky-Golay filter over n samples, an odd number",
+    )
+    line.flag(
+        "--skip-bad-rows", "leave out invalid rows and list them, instead of refusing the file"
+    )
+    line.text(
+        "--out", "<file.csv>", "stroke to write (default: FILE_stroke.csv in the current folder)"
+    )
     line.add_output_options()
     return line
 

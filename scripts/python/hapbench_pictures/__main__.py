@@ -5,75 +5,97 @@ from pathlib import Path
 
 from hapbench_command import SHARED, CommandLine, exit_status
 
-PLOT_FOOTER = """\
---y takes force, spring, measured, input, reference, force_error, torque (needs record.torque), \
-depth, ratio, contacts, rendered, \
-speed, x, y, z, path, energy, input_energy, or any column of the runs' tables; by default force, \
-depth, ratio, contacts, path, and \
-energy where it was recorded. force, speed and the like are lengths of vectors, drawn as \
-|rendered force|; --y fx_N,fy_N,fz_N \
-draws the components.
-A comparison's folder stands for all its runs. Runs have the colour of their algorithm; several \
-runs of one algorithm have \
-colours of their own. Triangles mark the first touch. A peak of more than three times the range \
-of settled contact is cut off, \
-and its value written there. Of long runs the least and the greatest value for each pixel are \
-drawn, so that no spike is lost.
-Of a sampled sweep the metric is drawn over each field, with how much each matters: Spearman's \
-rank correlation and the \
-first-order Sobol index.
-  hapbench plot results/out/drag_molar
-  hapbench plot results/out/compare_drag_molar --y force,depth --out drag.png
-  hapbench plot results/out/sweep_tap_wall --metric force_max_N"""
-REPORT_FOOTER = """\
-One HTML file that needs no server and no network. The replay shows up to four runs side by side, \
-with their depths if they were \
-run with --set record.contacts=true. Of two runs, what differs comes first.
-For a regression test keep the results of a good version and compare every new one with them by \
---tolerance: outcome, metrics, \
-warnings, trajectory.csv and sweep.csv, and with 0 the state hash. What one of them alone has \
-makes them differ; fields are shown \
-but do not count; provenance, times and counted work are not looked at.
-  hapbench report results/out/drag_molar
-  hapbench report results/out/compare_drag_molar
-  hapbench report results/good results/out --tolerance 1e-9"""
+PLOT_NOTES = [
+    "Quantities of --y: force, spring, measured, input, reference, force_error, torque (with "
+    "record.torque), depth, ratio, contacts, rendered, speed, x, y, z, path, energy, input_energy, "
+    "or any column of the runs' tables. force, speed and other vectors are drawn as their length; "
+    "--y fx_N,fy_N,fz_N draws components.",
+    "Runs: the folder of a comparison stands for all its runs. Each force law has its colour. A "
+    "triangle marks the first touch. A peak of more than three times the range of settled contact "
+    "is cut off and labelled with its value.",
+    "A sampled sweep: the metric over each field, with the influence of the field: Spearman's rank "
+    "correlation and first-order Sobol index.",
+    "Files: plot.svg in the folder of the runs; for several runs, in the nearest folder that "
+    "contains them all. It replaces an earlier picture.",
+]
+PLOT_EXAMPLES = [
+    "hapbench plot results/out/drag_molar",
+    "hapbench plot results/out/compare_drag_molar --y force,depth --out drag.png",
+    "hapbench plot results/out/sweep_tap_wall --metric force_max_N",
+]
+REPORT_NOTES = [
+    "Page: one HTML file that needs no other file, no server and no network. It shows curves, "
+    "metrics, scenarios and commands, and replays up to four runs side by side. Runs with --set "
+    "record.contacts=true also show depths. For two runs, their differences come first.",
+    "A sweep: use sweep --keep-runs, then report FOLDER/runs.",
+    "--tolerance compares outcome, metrics, warnings, trajectory.csv and sweep.csv, and with 0 also"
+    " the state hash. A result that only one folder has counts as a difference. Provenance, run "
+    "times and counts of work are ignored; different fields are shown, but do not count.",
+    "Exit status: with --tolerance 0 if the folders agree, 3 if they differ; 2 bad input.",
+]
+REPORT_EXAMPLES = [
+    "hapbench report results/out/drag_molar",
+    "hapbench report results/out/compare_drag_molar",
+    "hapbench report results/good results/out --tolerance 1e-9",
+]
+MANUAL = 'results/README.md, section "Pictures and pages of your own runs"'
 
 
 def plot_line():
-    line = CommandLine("plot", "Draw runs over time and in space, a sweep, limits", PLOT_FOOTER)
-    line.text("runs", "folders that run, compare, sweep or limit wrote", nargs="+", metavar="RUN")
+    line = CommandLine(
+        "plot",
+        "Draw runs over time and in space, sweeps, and limits.",
+        PLOT_NOTES,
+        PLOT_EXAMPLES,
+        MANUAL,
+    )
+    line.text("runs", "<dir>", "folders of run, compare, sweep, limit, converge or tune", nargs="+")
     line.text(
-        "--out", "FILE.svg, .png or .pdf (default: plot.svg in the folder of the runs)", type=Path
+        "--out",
+        "<file>",
+        "picture to write, ending in .svg, .png or .pdf (default: plot.svg, see below)",
+        type=Path,
     )
     line.flag("--quiet", SHARED)
-    line.texts("--y", "the quantities to draw, separated by commas (below)")
-    line.text("--metric", "for a sweep: the column of sweep.csv to draw")
+    line.texts(
+        "--y",
+        "<name,...>",
+        "quantities to draw (default: force, depth, ratio, contacts, path, and energy if recorded)",
+    )
+    line.text("--metric", "<name>", "for a sweep: column of sweep.csv to draw")
     line.text(
         "--where",
-        "for a sweep: only runs with this, as 'inside_max_m<3e-4' (sweep --help)",
-        metavar="TEXT ...",
+        "<condition>",
+        "for a sweep: draw only runs that meet it, such as 'inside_max_m<3e-4' (sweep --help); repeatable",
         action="append",
         default=[],
     )
-    line.text("--from", "time from which to draw [s]", dest="start")
-    line.text("--to", "time up to which to draw [s]", dest="end")
+    line.text("--from", "<s>", "start of the time span to draw", dest="start")
+    line.text("--to", "<s>", "end of the time span to draw", dest="end")
     return line
 
 
 def report_line():
     line = CommandLine(
         "report",
-        "Write a page of runs: curves, replay with sound, metrics, scenario, commands",
-        REPORT_FOOTER,
+        "Write a page that shows and replays runs, or compare the results of two folders.",
+        REPORT_NOTES,
+        REPORT_EXAMPLES,
+        MANUAL,
     )
-    line.text("runs", "folders that run or compare wrote", nargs="+", metavar="RUN")
-    line.text("--out", "FILE.html (default: report.html in the folder of the runs)", type=Path)
+    line.text("runs", "<dir>", "folders of run or compare", nargs="+")
+    line.text(
+        "--out",
+        "<file.html>",
+        "page to write (default: report.html in the folder of the runs)",
+        type=Path,
+    )
     line.flag("--quiet", SHARED)
     line.text(
         "--tolerance",
-        "no page: compare the results of two folders, in status 3 if they differ by more than "
-        "this, of a metric relative "
-        "to the larger of the two, of a column to its largest magnitude; 0: the same digits",
+        "<ratio>",
+        "write no page; compare two folders instead and allow this relative difference, "
+        "of a column relative to its largest value; 0: identical digits",
     )
     return line
 

@@ -10,13 +10,13 @@
 namespace hapbench {
 namespace {
 
-/// The integrator that the thesis calls leapfrog (Eq. A.1), which is semi-implicit, symplectic Euler.
+/// The integrator that the thesis calls leapfrog (Eq. A.1). It is semi-implicit (symplectic) Euler.
 void leapfrog(ToolState& tool, const Vec3& force, double mass, double dt, ForceField&, double) noexcept {
   tool.velocity += force / mass * dt;
   tool.pose.position += tool.velocity * dt;
 }
 
-/// Eq. A.2.
+/// Returns the matrix of a leapfrog step, thesis Eq. A.2.
 Eigen::Matrix2d step_matrix(const SpringDamper& s) {
   const double k = s.lambda * s.K * s.dt / s.M, b = s.lambda * s.B * s.dt / s.M;
   Eigen::Matrix2d A;
@@ -24,24 +24,28 @@ Eigen::Matrix2d step_matrix(const SpringDamper& s) {
   return A;
 }
 
-double margin(const SpringDamper& s) {
+/// Returns the stability margin of leapfrog, which is positive if and only if a step is stable.
+double leapfrog_margin(const SpringDamper& s) {
   return 4.0 - 2.0 * s.lambda * s.B * s.dt / s.M - s.lambda * s.K * s.dt * s.dt / s.M;
 }
 
-/// Velocity Verlet: half a kick with the row's force, drift, half a kick with the force at the new position and the
-/// velocity after the first half, so that damping sees velocities of half a step before. With k = K dt^2 / M,
-/// b = B dt / M and c = 1 - b/2 it is stable on one spring-damper while b < 4 and k (1 + c) < 4 (1 + c^2): k < 4 for
-/// B = 0, as with leapfrog, and b < 4 for K = 0, twice as far. Symplectic on undamped springs: the energy swings by a
-/// fraction of k/4 about its value and does not drift. Two forces a step, because the next row needs the force at the
-/// final velocity.
+/// Velocity Verlet: a half kick (velocity change over half a step) with the force at the start of the step, a
+/// drift over the whole step, and a half kick with the force at the new position and the velocity after the
+/// first half kick. Damping therefore uses a velocity that is half a step old.
+///
+/// Stability on one spring-damper, with k = K dt^2 / M, b = B dt / M and c = 1 - b/2: b < 4 and k (1 + c) < 4
+/// (1 + c^2). For B = 0 this is k < 4, as with leapfrog. For K = 0 it is b < 4, twice the limit of leapfrog.
+/// Symplectic on undamped springs: the energy oscillates about its value by up to the fraction k/4 and does not
+/// drift. Needs two forces in each step, because the next step needs the force at the final velocity.
 void velocity_verlet(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
   const Vec3 half = tool.velocity + force / mass * (0.5 * dt);
   tool.pose.position += half * dt;
   tool.velocity = half + field.force_at(1.0, tool.pose.position, half) / mass * (0.5 * dt);
 }
 
-/// A piece of a step by the classical Runge-Kutta method of order 4: from the part `from` of the step of dt on, `h`
-/// long [s], with the force at its begin. Calls `stage` after each force but the first. Returns position and velocity.
+/// Advances position and velocity by an interval of `h` [s] with the classical Runge-Kutta method of order 4.
+/// The interval starts at the fraction `from` of the step of `dt` [s]. `force` is the force at its start. Calls
+/// `stage` after each further force. Returns position and velocity at its end.
 template <class Stage>
 std::pair<Vec3, Vec3> runge_kutta(const Vec3& p, const Vec3& v1, const Vec3& force, double mass, double from, double h,
                                   double dt, ForceField& field, const Stage& stage) noexcept {
@@ -58,81 +62,91 @@ std::pair<Vec3, Vec3> runge_kutta(const Vec3& p, const Vec3& v1, const Vec3& for
   return {p + (v1 + 2.0 * v2 + 2.0 * v3 + v4) * (h / 6.0), v1 + (a1 + 2.0 * a2 + 2.0 * a3 + a4) * (h / 6.0)};
 }
 
-/// The classical Runge-Kutta method of order 4 (the axis at t, t + dt/2 and t + dt), the reference for smooth forces;
-/// contacts that come and go within a step, and the held force f_in, reduce it to order 1.
+/// The classical Runge-Kutta method of order 4, with the axis at t, t + dt/2 and t + dt. Reference for smooth
+/// forces. Contacts that begin or end within a step reduce its order to 1, and so does the held force f_in.
 ///
-/// An undamped spring is stable while K dt^2 / M < 8 and loses the fraction (K dt^2 / M)^3 / 72 of its energy in a
-/// step.
+/// Stable on an undamped spring while K dt^2 / M < 8. Each step then loses the fraction (K dt^2 / M)^3 / 72 of
+/// the energy.
 void rk4(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
   std::tie(tool.pose.position, tool.velocity) =
       runge_kutta(tool.pose.position, tool.velocity, force, mass, 0.0, dt, dt, field, [] {});
 }
 
-/// Rk4 in pieces in which the same contacts act: where a piece meets a contact on or off, it is halved until it is
-/// shorter than the tolerance, and the next piece begins behind the event. A reference for how contacts begin and end:
-/// the energy that an explicit step creates there is of first order in the step, here in the tolerance. f_in is held.
+/// Runge-Kutta of order 4 with event location. The step is split into intervals in which the set of contacts is
+/// constant. If a contact begins or ends within an interval, the interval is halved until it is shorter than
+/// the tolerance, and the next interval begins after the event. Reference for the onset and release of
+/// contacts: there, an explicit step creates energy of first order in the step size, this method of first order
+/// in the tolerance. f_in is held over the step.
 ///
-/// Each event costs about 10 log2(dt / tolerance) forces. A step of more than kMostPieces goes on without looking.
+/// Each event costs about 10 log2(dt / tolerance) forces. After kMaxIntervals intervals, the step continues
+/// without locating events.
 void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double tolerance) noexcept {
-  constexpr int kMostPieces = 10'000;
+  constexpr int kMaxIntervals = 10'000;
   Vec3 acting = force;
   std::uint64_t set = field.contact_set();
   double done = 0.0, h = dt;
-  for (int piece = 0; done < dt; ++piece) {
+  for (int interval = 0; done < dt; ++interval) {
     const bool last = h >= dt - done;
     if (last) h = dt - done;
+    // Try an interval and check at every stage whether the set of contacts is still the same.
     bool same = true;
-    const auto look = [&] { same = same && field.contact_set() == set; };
-    const auto [p, v] = runge_kutta(tool.pose.position, tool.velocity, acting, mass, done / dt, h, dt, field, look);
+    const auto check_contacts = [&] { same = same && field.contact_set() == set; };
+    const auto [p, v] =
+        runge_kutta(tool.pose.position, tool.velocity, acting, mass, done / dt, h, dt, field, check_contacts);
     const double end = last ? 1.0 : (done + h) / dt;
     const Vec3 force_then = field.force_at(end, p, v);
-    look();
-    if (!same && h > tolerance && piece < kMostPieces) {
+    check_contacts();
+    // Halve the interval if it contains an event.
+    if (!same && h > tolerance && interval < kMaxIntervals) {
       h *= 0.5;
       continue;
     }
+    // Accept the interval.
     tool.pose.position = p;
     tool.velocity = v;
     acting = force_then;
     set = field.contact_set();
     done = last ? dt : done + h;
-    if (!same) h = dt;  // behind the event
+    if (!same) h = dt;  // after the event, try the rest of the step
   }
 }
 
-/// The end of the stability region |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the real axis.
-constexpr double kRk4Damper = 2.785293563405282;
+/// B dt / M at which the method becomes unstable: the end of the stability region |1 + z + z^2/2 + z^3/6 +
+/// z^4/24| <= 1 on the negative real axis.
+constexpr double kRk4DamperLimit = 2.785293563405282;
 
-// The implicit integrators solve for the velocity at the end of the step with a linearised force,
-// f(p + dp, v + dv) = f - K dp - D dv, K and D from the algorithm's Jacobian (K S; B S and friction). A step costs one
-// 3x3 solve and the row's force. They do not foresee contacts that are absent at the row, changes of S, turns of the
-// tool or force limits. Directions in which D drives the tool (friction on a law whose S exceeds 1) are integrated as
-// by leapfrog.
+// The implicit integrators solve for the velocity at the end of the step with a linearised force, f(p + dp, v +
+// dv) = f - K dp - D dv. K and D are stiffness and damping of the algorithm's Jacobian. A step costs one 3x3
+// solve and the force at its start. The linearisation ignores contacts that begin within the step, changes of
+// the stiffness tensor S, rotation of the tool, and force limits. In directions in which D adds energy
+// (friction with a law whose S has eigenvalues above 1) the step is that of leapfrog.
 
-/// Solves (M I + resistance) dv = impulse for a symmetric `resistance` [kg], the impulse in N s; finite for finite
-/// arguments whose quotients by M are finite.
+/// Returns the velocity change dv [m/s] from (M I + resistance) dv = impulse, with a symmetric `resistance`
+/// [kg] and the impulse in N s. The result is finite if the arguments and their quotients by M are finite.
 Vec3 velocity_change(const Mat3& resistance, const Vec3& impulse, double mass) noexcept {
   const Mat3 A = Mat3::Identity() + resistance / mass;
   const Vec3 explicit_change = impulse / mass;
   if (!A.allFinite()) return explicit_change;
-  // Forces that hold the tool make every eigenvalue at least 1 up to rounding, which is nearly always the case.
+  // Usually all eigenvalues are at least 1 up to rounding, because the forces resist motion.
   if (Eigen::LLT<Mat3>(A - 0.5 * Mat3::Identity()).info() == Eigen::Success) return A.llt().solve(explicit_change);
+  // Otherwise replace eigenvalues below 1 by 1, which treats these directions explicitly.
   const Eigen::SelfAdjointEigenSolver<Mat3> modes(A);
   const Mat3& axes = modes.eigenvectors();
   return axes * (axes.transpose() * explicit_change).cwiseQuotient(modes.eigenvalues().cwiseMax(1.0));
 }
 
-/// On springs and dampers it is the backward Euler method: stable for every K, B and dt; an undamped spring loses the
-/// fraction k / (1 + k), k = K dt^2 / M, of its energy in every step, so that stiff springs come to rest at once.
+/// Linearly implicit Euler. On springs and dampers it is the backward Euler method, which is stable for every
+/// K, B and dt. An undamped spring loses the fraction k / (1 + k) of its energy in every step, k = K dt^2 / M,
+/// so stiff springs come to rest at once.
 void implicit_euler(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
   const auto [K, D] = field.jacobian();
   tool.velocity += velocity_change(dt * D + dt * dt * K, dt * (force - dt * (K * tool.velocity)), mass);
   tool.pose.position += dt * tool.velocity;
 }
 
-/// On springs and dampers it is the implicit midpoint rule (also the trapezoidal one): stable for every K, B and dt;
-/// undamped springs keep their energy up to rounding. Modes much stiffer than M / dt^2 are not damped but change sign
-/// from step to step.
+/// Linearly implicit midpoint rule, identical to the trapezoidal rule on springs and dampers. It is stable for
+/// every K, B and dt. Undamped springs keep their energy up to rounding. Modes much stiffer than M / dt^2 are
+/// not damped; they change sign in every step.
 void implicit_midpoint(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
   const auto [K, D] = field.jacobian();
   const double half = 0.5 * dt;
@@ -141,7 +155,7 @@ void implicit_midpoint(ToolState& tool, const Vec3& force, double mass, double d
   tool.velocity += change;
 }
 
-/// The force of the spring-damper plus a force held over the step.
+/// The force of a spring-damper plus a force that is held over the step.
 class LinearForce final : public ForceField {
  public:
   LinearForce(const SpringDamper& s, const Vec3& held)
@@ -157,7 +171,7 @@ class LinearForce final : public ForceField {
   Vec3 held_;
 };
 
-/// The result of one step from (x, v) with a held force [N].
+/// Returns (x, v) after one step from (x, v), under a held force [N].
 Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) {
   LinearForce field(s, held * Vec3::UnitX());
   ToolState tool;
@@ -180,7 +194,7 @@ const IntegratorEntry kLeapfrog = {
     .step = leapfrog,
     .holds_force = true,
     .step_matrix = step_matrix,
-    .stability_margin = margin,
+    .stability_margin = leapfrog_margin,
     .damper_limit = 2.0,
 };
 
@@ -205,7 +219,7 @@ const IntegratorEntry kRk4 = {
     .step = rk4,
     .order = 4,
     .damped_order = 4,
-    .damper_limit = kRk4Damper,
+    .damper_limit = kRk4DamperLimit,
 };
 
 const IntegratorEntry kEvent = {
@@ -218,7 +232,7 @@ const IntegratorEntry kEvent = {
     .step = event,
     .order = 4,
     .damped_order = 4,
-    .damper_limit = kRk4Damper,
+    .damper_limit = kRk4DamperLimit,
 };
 
 const IntegratorEntry kImplicitEuler = {

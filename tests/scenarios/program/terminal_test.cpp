@@ -97,7 +97,7 @@ TEST(Terminal, ListsNoOptionOfACommandAsOneOfTheProgram) {
   }
   EXPECT_GE(options, 2u);
   EXPECT_EQ(hapbench({"--json"}).status, 2);
-  const std::string shared = "Options that mean the same in every command that has them, behind its name:";
+  const std::string shared = "Options that commands share, written after the command's name:";
   EXPECT_GE(lines_below(help, shared).size(), 9u);
 }
 

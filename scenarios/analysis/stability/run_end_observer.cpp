@@ -1,4 +1,4 @@
-#include "scenarios/analysis/stability/last_rows.hpp"
+#include "scenarios/analysis/stability/run_end_observer.hpp"
 
 #include "results/observe/metrics.hpp"
 #include "scenarios/run/scene_checks.hpp"
@@ -7,7 +7,7 @@
 
 namespace hapbench {
 
-LastRows::LastRows(const Scenario& scenario, bool alone)
+RunEndObserver::RunEndObserver(const Scenario& scenario, bool alone)
     : steps_(static_cast<std::uint64_t>(scenario.time.steps)),
       judged_(steps_, script_period(scenario) / scenario.time.step),
       vibration_(scenario.time.step),
@@ -15,7 +15,7 @@ LastRows::LastRows(const Scenario& scenario, bool alone)
   if (alone) judged_.touch(0);
 }
 
-void LastRows::on_step(const StepRecord& record) noexcept {
+void RunEndObserver::on_step(const StepRecord& record) noexcept {
   touches_ = record.colliding > 0;
   if (touches_) judged_.touch(record.step);
   vibration_.add(record.step, record.handle.velocity, judged_.contain(record.step));
@@ -24,29 +24,29 @@ void LastRows::on_step(const StepRecord& record) noexcept {
   for (const double coordinate : record.handle.position) motion_.real(coordinate);
   if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
     quarter_ = quarter;
-    rows_in_contact_ = contacts_ = 0;
+    steps_in_contact_ = contacts_ = 0;
     S_sum_.setZero();
   }
   if (record.rendered->size() == 0) return;
-  ++rows_in_contact_;
+  ++steps_in_contact_;
   contacts_ += record.rendered->size();
   S_sum_ += record.force.S;
 }
 
-bool LastRows::has_left(const PointShell& shell, double reach) const {
+bool RunEndObserver::has_left(const PointShell& shell, double reach) const {
   const Box bounds = shell.bounds();
   const Vec3 beyond = (bounds.min - tip_).cwiseMax(tip_ - bounds.max);
   return !touches_ && beyond.maxCoeff() > reach;
 }
 
-SettledState LastRows::state(bool rests) const {
+SettledState RunEndObserver::state(bool rests) const {
   SettledState state;
-  // A tool at rest is not simulated to the end: nothing moves in the rows that are left out.
+  // The run was stopped when the tool came to rest. The steps that were not simulated count with velocity 0.
   state.vibration = vibration_.rms(if_any(rests && judged_.begin(), judged_.end() - judged_.begin().value_or(0)));
-  if (rows_in_contact_ == 0) return state;
-  const auto rows = static_cast<double>(rows_in_contact_);
-  state.contacts = static_cast<double>(contacts_) / rows;
-  state.lambda_max = lambda_max(S_sum_ / rows);
+  if (steps_in_contact_ == 0) return state;
+  const auto steps = static_cast<double>(steps_in_contact_);
+  state.contacts = static_cast<double>(contacts_) / steps;
+  state.lambda_max = lambda_max(S_sum_ / steps);
   return state;
 }
 

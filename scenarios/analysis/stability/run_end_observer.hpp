@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "results/observe/contact_forces.hpp"
+#include "scenarios/analysis/stability/slow_bounces.hpp"
+#include "scenarios/scene/scenario.hpp"
+#include "sim/core/hash.hpp"
+#include "sim/geometry/point_shell.hpp"
+#include "sim/loop/simulation.hpp"
+
+/// Observes the state at the end of a run, from which the run is judged.
+namespace hapbench {
+
+/// The settled state of a run: `contacts` and `lambda_max` are over the steps of its last quarter.
+struct SettledState {
+  /// Vibration of the handle above 30 Hz over the judged steps (JudgedRows) [m/s rms]; empty at sampling rates of 60 Hz
+  /// or less.
+  std::optional<double> vibration;
+  double contacts = 0.0;    ///< mean number of rendered contacts, over the steps in contact
+  double lambda_max = 0.0;  ///< largest eigenvalue of the mean stiffness tensor S in contact, in units of K
+};
+
+/// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the judged
+/// steps. Accumulates contacts and stiffness tensors over the current quarter of the run. At the end this is the last
+/// quarter, or the quarter in which the tool came to rest.
+class RunEndObserver final : public Observer {
+ public:
+  /// `alone`: true if there is no environment; then all steps after the first quarter are judged.
+  explicit RunEndObserver(const Scenario& scenario, bool alone = false);
+
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// Returns true if the tool was in contact in any step.
+  bool touched() const { return judged_.begin().has_value(); }
+  /// Returns a hash of all positions of the handle (RunStability::motion_hash).
+  std::uint64_t motion_hash() const { return motion_.value(); }
+  /// Returns true if slow bounces persist (SlowBounces::persist).
+  bool keeps_bouncing() const { return bounces_.persist(); }
+  /// Returns true if the tool ends without contact and more than `reach` [m] outside of the shell's bounding box.
+  bool has_left(const PointShell& shell, double reach) const;
+  /// Returns the settled state. `rests`: true if the run was stopped early because the tool came to rest.
+  SettledState state(bool rests) const;
+
+ private:
+  bool touches_ = false;     ///< in contact in the last step
+  Vec3 tip_ = Vec3::Zero();  ///< centre of the tip [m]
+  Hash64 motion_;
+  std::uint64_t steps_;  ///< number of steps of the run
+  JudgedRows judged_;
+  Vibration vibration_;
+  SlowBounces bounces_;
+  std::uint64_t quarter_ = 0;  ///< current quarter of the run, from 0; the members below are over this quarter
+  std::uint64_t steps_in_contact_ = 0, contacts_ = 0;
+  Mat3 S_sum_ = Mat3::Zero();
+};
+
+}  // namespace hapbench
