@@ -11,17 +11,17 @@
 
 namespace hapbench {
 
-void Command::add(const std::string& name, Variable variable, const std::string& help, const Takes& takes) {
+void Command::add(const std::string& name, Variable variable, const std::string& help, const ValueRules& rules) {
   const std::size_t blank = std::min(name.find(' '), name.size());
   const std::string bare = name.substr(0, blank);
   CLI::Option* option = std::visit([&](auto value) { return app_->add_option(bare, value.get(), help); }, variable);
   if (blank < name.size()) option->type_name(name.substr(blank + 1));
-  option->required(takes.required);
-  if (takes.several) option->allow_extra_args(false)->take_all();
-  if (takes.comma_separated)
+  option->required(rules.required);
+  if (rules.several) option->allow_extra_args(false)->take_all();
+  if (rules.comma_separated)
     option->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
   // The checks of CLI11 word their errors differently and add text to the help.
-  const auto problem = [range = takes.range, words = takes.one_of](const std::string& word) -> std::string {
+  const auto problem = [range = rules.range, words = rules.one_of](const std::string& word) -> std::string {
     std::int64_t number = 0;
     if (range && !(CLI::detail::lexical_cast(word, number) && number >= range->first && number <= range->second))
       return fmt::format("got {}; allowed: {} ... {}", word, range->first, range->second);

@@ -16,7 +16,7 @@ class App;
 namespace hapbench {
 
 /// Rules for the values of an option or argument. The type of the bound variable sets the type of the value.
-struct Takes {
+struct ValueRules {
   bool required = false;
   bool several = false;          ///< may be given several times, each time with one value
   bool comma_separated = false;  ///< has several values between commas; spaces around them are removed
@@ -36,7 +36,7 @@ class Command {
 
   /// A name that begins with "--" is an option, another one a positional argument. The name may be followed by a blank
   /// and the placeholder of its value in the help, such as "--out <dir>" or "scenarios <scenario>...".
-  void add(const std::string& name, Variable variable, const std::string& help, const Takes& takes = {});
+  void add(const std::string& name, Variable variable, const std::string& help, const ValueRules& rules = {});
   void flag(const std::string& name, bool& value, const std::string& help);
   /// Makes parsing fail if `option` is given without `other`. An option can require one other option at most.
   /// Precondition: both options were added.
