@@ -53,9 +53,9 @@ class CommandLine {
   Command add(const std::string& name, const std::string& summary, OutputOptions& output, std::function<int()> action,
               const std::string& when_stopped);
   void add_module_option(CLI::App& app);
-  /// Returns the indices in `words` of the positional arguments of the command words[0], which are neither
-  /// options nor values of options. Skips an argument that follows an unknown option, because it may be its
-  /// value. Returns no indices without a command.
+  /// Returns the indices of the positional arguments in `words`, which begins with the command's name. They are
+  /// neither options nor values of options. An argument that follows an unknown option may be its value and is
+  /// left out. Returns no indices without a command.
   std::vector<std::size_t> argument_places(const ProgramWords& words) const;
   int parse_and_run(ProgramWords words);
 
