@@ -7,60 +7,68 @@
 #include <string_view>
 #include <vector>
 
-/// The values that a field takes over a batch of runs: an axis of a grid or of a sample.
+/// Axes of a grid or of a sample: a scenario field and the values that it takes over a batch of runs.
 namespace hapbench {
 
-/// Most cases, and values of an axis.
+/// Maximum number of cases of a batch, and of values of an axis.
 inline constexpr std::size_t kMostRuns = 1'000'000;
 
-/// An interval to sample, or to divide into equal steps or ratios.
+/// An interval of values. A sample draws from it; a grid divides it into equal steps or equal ratios.
 struct Range {
   double from = 0.0, to = 0.0;
   bool logarithmic = false;
 
-  /// The value at the fraction part / whole in [0, 1] of the interval, or of its logarithm. Returns both ends exactly
-  /// and never a value outside.
+  /// Returns the value at the fraction part / whole in [0, 1] of the interval, or of its logarithm. Returns
+  /// both ends exactly, and never a value outside the interval.
   double value_at(double part, double whole = 1.0) const;
 };
 
-/// A field and its values: as in --set, numbers as shortest decimals, objects and lists as compact JSON.
+/// A scenario field and its values. Values are written as in --set: numbers as their shortest decimals, objects
+/// and lists as compact JSON.
 struct Axis {
-  std::string path;                      ///< dotted, as in --set
-  std::vector<std::string> values = {};  ///< listed values, unless there is a range
-  std::optional<Range> range = {};       ///< replaces listed values
-  std::size_t steps = 0;                 ///< number of values of a range on a grid
-  bool whole = false;                    ///< numbers of the range are rounded to integers
-  bool named = false;                    ///< values are names, for whoever asks, and no overrides
+  std::string path;                      ///< dotted path of the field, as in --set
+  std::vector<std::string> values = {};  ///< listed values; not used if there is a range
+  std::optional<Range> range = {};       ///< interval of values; replaces the listed values
+  std::size_t steps = 0;                 ///< number of values of the range on a grid; 0 for a sample
+  bool whole = false;                    ///< true: numbers of the range are rounded to integers
+  bool named = false;                    ///< true: values are labels for the caller and do not override a field
 
-  /// Changes that go with a value of the axis: further overrides, and the TimeFields::stride of its runs.
+  /// Further changes that are made together with one value of the axis. `stride` multiplies TimeFields::stride
+  /// of the runs with this value.
   struct Along {
     std::vector<std::string> overrides;
     std::int64_t stride = 1;
   };
-  std::vector<Along> along = {};  ///< of each listed value; empty: nothing
+  std::vector<Along> along = {};  ///< one entry for each listed value; empty: no further changes
 
-  /// Number of values; 0 for the range of a sample.
+  /// Returns the number of values; 0 for a range of a sample.
   std::size_t size() const { return range ? steps : values.size(); }
-  /// Precondition: i < size().
+  /// Returns value i of a list or a grid. Precondition: i < size().
   std::string value(std::size_t i) const;
-  /// Index of the listed value at a coordinate in [0, 1): each has an equal share of the interval. Precondition: the
-  /// axis has listed values.
-  std::size_t place_at(double coordinate) const;
-  /// The value at a coordinate in [0, 1): of a range the value at that fraction, of a list the value at place_at().
+  /// Returns the index of the listed value at a coordinate in [0, 1). Each value has an equal share of this
+  /// interval. Precondition: the axis has listed values.
+  std::size_t index_at(double coordinate) const;
+  /// Returns the value at a coordinate in [0, 1): of a range, the value at this fraction; of a list, the value
+  /// at index_at().
   std::string value_at(double coordinate) const;
 };
 
-/// Reads "path=a:b:n" (n numbers from a to b, both exactly, in equal steps), "path=a:b:n:log" (in equal ratios) or
-/// "path=v,w,…" (numbers, names, JSON objects and lists); with `sampled`, "path=a:b" or "path=a:b:log" in place of the
-/// first two. "path=all" stands for all names that the field takes. The range of a field of integers, entries of lists
-/// aside, has integers. Throws InputError. Whether a scenario has such a field and accepts the values is not checked.
+/// Parses the argument of --vary:
+/// - "path=a:b:n": n numbers from a to b in equal steps, including both ends;
+/// - "path=a:b:n:log": n numbers in equal ratios;
+/// - "path=v,w,…": listed numbers, names, JSON objects or lists;
+/// - "path=all": all names that the field accepts.
+/// With `sampled`, "path=a:b" and "path=a:b:log" replace the first two forms. A range of an integer field gives
+/// integers, except for entries of lists. Throws InputError. Does not check whether the scenario has the field
+/// or accepts the values.
 Axis parse_axis(const std::string& text, bool sampled = false);
 
-/// The path of the axis whose values name scenes.
+/// Path of the special axis whose values are names of scenes.
 inline constexpr const char* kSceneAxis = "scenario";
 
-/// Returns a value in the spelling that axes have: a number as its shortest decimal, an object or a list as compact
-/// JSON, other text as it is. Throws InputError for text that begins as JSON and is none, and for an empty text.
+/// Returns a value as axes store it: a number as its shortest decimal, an object or a list as compact JSON,
+/// other text unchanged. Throws InputError for an empty text, and for text that begins like JSON but is not
+/// valid JSON.
 std::string axis_value(std::string_view text);
 
 }  // namespace hapbench

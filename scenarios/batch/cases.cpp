@@ -23,13 +23,14 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, st
   for (const Axis& axis : axes_)
     if (!paths.insert(axis.path).second)
       fail_in_option("--vary", fmt::format("got \"{}\" twice; allowed: each field once", axis.path));
+  // Draw the sample, or count the combinations of the grid.
   strides_.resize(axes_.size());
   if (sampling_) {
     size_ = sampling_->count;
     for (std::size_t a = 0; a < axes_.size(); ++a) unit_.push_back(unit_sample(*sampling_, a));
     sampling_->of_file.clear();
   } else {
-    double size = 1.0;  // a double, because the product may overflow integers
+    double size = 1.0;  // double, because the product may overflow an integer
     for (const Axis& axis : axes_) size *= static_cast<double>(axis.size());
     if (size > static_cast<double>(kMostRuns))
       fail_in_option("--vary", fmt::format("got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
@@ -38,9 +39,10 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, st
   sort_runs();
 }
 
-/// Each point of a sampled range has a value of its own, which no other case shares.
+/// Sorts the cases so that cases with the same environment follow each other and can share a point shell.
+/// Sampled ranges are ignored: each case of a sample has a different value.
 void Cases::sort_runs() {
-  std::vector<std::size_t> slow;  // what a shell depends on, the scene first
+  std::vector<std::size_t> slow;  // axes that the point shell depends on, the scene first
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     const std::string& path = axes_[a].path;
     if (axes_[a].size() == 0) continue;
@@ -48,6 +50,7 @@ void Cases::sort_runs() {
     if (path == "environment" || path.starts_with("environment.")) slow.push_back(a);
   }
   if (slow.empty()) return;
+  // Sort by the values of these axes, and keep the order of cases with equal values.
   sorted_.resize(size_);
   std::iota(sorted_.begin(), sorted_.end(), std::size_t{0});
   std::ranges::stable_sort(sorted_, [&](std::size_t i, std::size_t j) {

@@ -9,20 +9,20 @@
 #include "scenarios/batch/sampling.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
-/// Cases: scenes with overrides, of which fields vary.
+/// Cases of a batch: scenes with overrides, in which some fields vary.
 namespace hapbench {
 
-/// Appends the texts, such as warnings of cases, that are not in the list yet.
+/// Appends each text of `more`, such as a warning, that `texts` does not contain yet.
 void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more);
 
-/// Scenes with overrides, of which fields vary: all combinations of the values of the axes, the last one fastest, or a
-/// sample of them. Numbered from 0. Memory: 8 bytes a case and axis of a sample, and 8 bytes a case where scenes or
-/// fields of the environment vary.
+/// The cases of a batch, numbered from 0: scenes with overrides, in which some fields vary. The cases are
+/// either a grid (all combinations of the axes' values; the last axis varies fastest) or a sample. Memory: 8
+/// bytes for each case and axis of a sample, and 8 bytes for each case if scenes or environment fields vary.
 class Cases {
  public:
-  /// `scenes` has one, or one for each value of the axis kSceneAxis. `sets` are overrides of all cases, as in --set.
-  /// Throws InputError for two axes of one path and for more than kMostRuns combinations. Precondition: without a
-  /// sampling every axis has values.
+  /// `scenes` contains one scene, or one for each value of the axis kSceneAxis. `sets` are overrides for all
+  /// cases, as in --set. Precondition: without a sampling, every axis has values. Throws InputError if two axes
+  /// have the same path, or for more than kMostRuns combinations.
   Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
         std::optional<Sampling> sampling = {});
 
@@ -30,27 +30,31 @@ class Cases {
   const std::vector<ScenarioText>& scenes() const { return scenes_; }
   const std::vector<std::string>& sets() const { return sets_; }
   const std::vector<Axis>& axes() const { return axes_; }
-  /// None for a grid.
+  /// Returns the sampling; empty for a grid.
   const std::optional<Sampling>& sampling() const { return sampling_; }
 
-  // Precondition, here and below: i < size().
+  // Precondition of all following functions: i < size().
 
-  /// Index of the value of an axis. Precondition: Axis::size() > 0.
+  /// Returns the index of the axis value that case i has. Precondition: the axis has listed values or is part
+  /// of a grid.
   std::size_t place(std::size_t i, std::size_t axis) const {
-    return sampling_ ? axes_[axis].place_at(unit_[axis][i]) : i / strides_[axis] % axes_[axis].size();
+    return sampling_ ? axes_[axis].index_at(unit_[axis][i]) : i / strides_[axis] % axes_[axis].size();
   }
-  /// One value for each axis, computed anew at each call.
+  /// Returns the value of each axis in case i. Computed anew at each call.
   std::vector<std::string> values(std::size_t i) const;
-  /// The values as "path=value", then what goes along with them.
+  /// Returns the values of case i as "path=value", followed by the overrides of Axis::along.
   std::vector<std::string> changes(std::size_t i) const;
+  /// Returns the scene of case i.
   const ScenarioText& scene(std::size_t i) const;
-  /// The overrides of the scene: the sets, and the changes but for names.
+  /// Returns all overrides of case i: `sets` and the changes, without values that are only labels
+  /// (Axis::named).
   std::vector<std::string> overrides(std::size_t i) const;
-  /// The scenario. Thread-safe. Throws InputError.
+  /// Loads the scenario of case i. Thread-safe. Throws InputError.
   LoadedScenario load(std::size_t i) const;
-  /// The case that runs at a place of the order of runs, in which scenes, then fields of the environment vary slowest,
-  /// so that neighbours share a shell; apart from that cases are in order.
-  std::size_t at(std::size_t place) const { return sorted_.empty() ? place : sorted_[place]; }
+  /// Returns the case at a position of the execution order. In this order, scenes vary slowest, then fields of
+  /// the environment, so that consecutive runs can share a point shell. Otherwise cases are in the order of
+  /// their numbers.
+  std::size_t at(std::size_t position) const { return sorted_.empty() ? position : sorted_[position]; }
 
  private:
   void sort_runs();
@@ -62,9 +66,10 @@ class Cases {
   std::vector<std::string> sets_;
   std::vector<Axis> axes_;
   std::optional<Sampling> sampling_;
-  std::vector<std::vector<double>> unit_;  ///< by axis: the coordinates of a sample
-  std::vector<std::size_t> strides_;       ///< of a grid: distance of cases with neighbouring values of an axis
-  std::vector<std::size_t> sorted_;        ///< in the order of runs; empty: as they are numbered
+  std::vector<std::vector<double>> unit_;  ///< sample: coordinates in [0, 1) by axis, then by case
+  /// Grid: difference of the numbers of two cases with neighbouring values of an axis.
+  std::vector<std::size_t> strides_;
+  std::vector<std::size_t> sorted_;  ///< cases in execution order; empty: in the order of their numbers
   std::size_t size_ = 1;
 };
 

@@ -19,14 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kMostSeed = std::int64_t{1} << 53;
+// Largest seed: larger integers are not exact in a double.
+constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53;
 
+/// Throws InputError if the seeds exceed the limit or the starting position cannot be displaced.
 void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
-  const std::int64_t most = kMostSeed - static_cast<std::int64_t>(question.seeds - 1);
-  if (scenario.seed > most) {
+  const std::int64_t max_seed = kMaxSeed - static_cast<std::int64_t>(question.seeds - 1);
+  if (scenario.seed > max_seed) {
     throw InputError(fmt::format("{}: /seed: got {}; allowed: at most {} with {} seeds", loaded.file.string(),
-                                 scenario.seed, most, question.seeds));
+                                 scenario.seed, max_seed, question.seeds));
   }
   if (question.jitter != 0.0 && !position_is_free(scenario.motion)) {
     fail_in(
@@ -37,22 +39,24 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
   }
 }
 
-/// The cases of a scene; adds its warnings, of those about its fields what all algorithms have: what only one of them
-/// reads has an effect here.
+/// Returns the cases of a scene and appends its warnings. Of the warnings about unused fields, it appends only
+/// warnings that all algorithms have: a field that at least one algorithm reads has an effect in the
+/// comparison.
 Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::vector<std::string>& warnings) {
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
   const Cases alone({text}, question.overrides, axes);
-  // The files are those of the scenario, whatever the algorithm.
+  // The named files do not depend on the algorithm.
   const CheckedScenario checked_first = checked(alone.load(0));
   const LoadedScenario& first = checked_first.loaded();
   check_seeds_and_jitter(question, first);
   if (question.seeds > 1 || question.jitter != 0.0)
     axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
+  // Keep the warnings that occur with every algorithm.
   std::vector<Warning> common = first.warnings;
   for (std::size_t a = 1; a < alone.size(); ++a) {
-    const std::vector<Warning> of_this = alone.load(a).warnings;
-    std::erase_if(common, [&](const Warning& w) { return std::ranges::find(of_this, w) == of_this.end(); });
+    const std::vector<Warning> others = alone.load(a).warnings;
+    std::erase_if(common, [&](const Warning& w) { return std::ranges::find(others, w) == others.end(); });
   }
   append_new(warnings, with_files(first, checked_first.file_warnings()));
   append_new(warnings, with_files(first, common));
@@ -83,17 +87,17 @@ void remove_earlier_comparison(const fs::path& folder, const Comparison& compari
   std::error_code ignored;
   fs::remove(folder / "league.csv", ignored);
   for (std::size_t scene = 0; scene < comparison.scenes.size(); ++scene) {
-    const fs::path place = folder / comparison.scene_folder(scene);
-    fs::remove(place / "comparison.csv", ignored);
+    const fs::path scene_folder = folder / comparison.scene_folder(scene);
+    fs::remove(scene_folder / "comparison.csv", ignored);
     for (const std::string& law : algorithm_names()) {
       std::vector<fs::path> runs;
-      for (const auto& entry : fs::directory_iterator(place / law, ignored))
+      for (const auto& entry : fs::directory_iterator(scene_folder / law, ignored))
         if (entry.path().filename().string().starts_with("seed_")) runs.push_back(entry.path());
-      runs.push_back(place / law);
+      runs.push_back(scene_folder / law);
       for (const fs::path& run : runs) {
         if (!fs::is_directory(run, ignored)) continue;
         remove_run(run);
-        fs::remove(run, ignored);  // if it is empty now
+        fs::remove(run, ignored);  // fails if the folder is not empty
       }
     }
   }

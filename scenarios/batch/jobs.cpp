@@ -18,16 +18,16 @@
 namespace hapbench {
 namespace {
 
-/// The state that the threads of for_each_job share.
+/// State that the threads of for_each_job() share.
 class JobQueue {
  public:
   JobQueue(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job)
       : count_(count), job_(job), bar_(options.label, count, options.listener) {}
 
-  /// Keeps all threads waiting while the returned lock is held.
+  /// Returns a lock. While it is held, no thread starts a job.
   std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
 
-  /// Does jobs until there are none left, one fails or a signal arrives.
+  /// Runs jobs until no job is left, a job fails, or a signal arrives.
   void work() {
     std::unique_lock lock(mutex_);
     while (begun_ < count_ && errors_.empty() && StopSignal::received() == 0) {
@@ -42,10 +42,11 @@ class JobQueue {
     }
   }
 
-  /// Notes an error that kept a thread from starting. Precondition: the lock of hold() is held.
+  /// Records an error that kept a thread from starting. Precondition: the lock of hold() is held.
   void fail_to_start(const std::string& text) { errors_.emplace(0, std::make_exception_ptr(std::runtime_error(text))); }
 
-  /// Throws the error of the lowest job that failed, or Stopped. Precondition: no thread works any more.
+  /// Rethrows the exception of the failed job with the lowest number, or throws Stopped. Precondition: no
+  /// thread is working any more.
   void rethrow() const {
     if (!errors_.empty()) std::rethrow_exception(errors_.begin()->second);
     if (done_ < count_) throw_if_stopped();
@@ -64,9 +65,9 @@ class JobQueue {
   const std::size_t count_;
   const std::function<void(std::size_t)>& job_;
   ProgressBar bar_;
-  std::mutex mutex_;  // of all below; unlocked only while a job runs
+  std::mutex mutex_;  // protects the members below; unlocked only while a job runs
   std::size_t begun_ = 0, done_ = 0;
-  std::map<std::size_t, std::exception_ptr> errors_;  // by job
+  std::map<std::size_t, std::exception_ptr> errors_;  // key: number of the job
 };
 
 }  // namespace
@@ -78,11 +79,11 @@ std::size_t available_threads() {
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job) {
   JobQueue queue(count, options, job);
   const std::size_t threads = std::max(1u, options.threads);
-  // A job may itself use TBB: it gets no more threads than there are jobs at once.
+  // A job may itself use TBB. TBB then uses no more threads than jobs run at the same time.
   const tbb::global_control within(tbb::global_control::max_allowed_parallelism,
                                    std::min(threads, available_threads()));
   std::vector<std::jthread> others;
-  std::unique_lock starting = queue.hold();  // no job begins before all threads exist
+  std::unique_lock starting = queue.hold();  // no job starts before all threads exist
   try {
     while (others.size() + 1 < std::min(threads, count)) others.emplace_back([&queue] { queue.work(); });
   } catch (const std::exception& reason) {

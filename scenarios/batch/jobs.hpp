@@ -9,21 +9,23 @@
 /// A pool of threads that runs a list of jobs in order, with a progress bar.
 namespace hapbench {
 
-/// Number of threads that this process may use at once.
+/// Returns the number of threads that this process may use at the same time.
 std::size_t available_threads();
 
-/// How for_each_job processes a list of jobs.
+/// Options of for_each_job().
 struct JobOptions {
-  unsigned threads = 1;                        ///< jobs at once; at least 1
-  std::string label;                           ///< text before the progress bar; empty for no bar
-  const ProgressListener* listener = nullptr;  ///< hears of the bar in place of the terminal; null: it is drawn
+  unsigned threads = 1;  ///< number of jobs that run at the same time; at least 1
+  std::string label;     ///< text before the progress bar; empty for no bar
+  /// Called with the progress in place of drawing a bar; null: the bar is drawn.
+  const ProgressListener* listener = nullptr;
 };
 
-/// Calls job(0) … job(count - 1), each once, on several threads. Jobs begin in this order, and at most `threads` of
-/// them run at once. Each job writes to its own place, so that results do not depend on the number of threads. After an
-/// exception no further job starts, and the exception of the lowest job is thrown again. A signal (stop_signal.hpp)
-/// ends the loop in the same way. Throws std::runtime_error before any job begins if the threads cannot be started.
-/// Overhead: some microseconds for each job, some tens for each thread.
+/// Calls job(0) … job(count - 1), each once, on several threads. Jobs start in this order, and at most
+/// `threads` of them run at the same time. Each job must write its result to a separate location, so that
+/// results do not depend on the number of threads. After an exception, no further job starts, and the exception
+/// of the job with the lowest number is rethrown. After a signal (stop_signal.hpp), no further job starts, and
+/// Stopped is thrown. Throws std::runtime_error before any job starts if the threads cannot be started.
+/// Overhead: a few microseconds for each job, some ten microseconds for each thread.
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job);
 
 }  // namespace hapbench

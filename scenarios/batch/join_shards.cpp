@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The number of shards that the tables of a folder are of; 0 without any. Throws InputError when they are not of one.
+/// Returns the number n of shards in a folder's tables ("sweep.I_of_n.csv"); 0 if there are none. Throws
+/// InputError if tables have different n.
 std::size_t shards_in(const fs::path& folder) {
   std::size_t count = 0;
   std::error_code ignored;
@@ -40,10 +41,11 @@ std::size_t shards_in(const fs::path& folder) {
 }  // namespace
 
 bool join_shards(const fs::path& folder) {
-  constexpr std::size_t kMostShown = 10;
+  constexpr std::size_t kMaxShown = 10;
   const std::size_t count = shards_in(folder);
   const fs::path whole = folder / table_name(std::nullopt);
   std::error_code ignored;
+  // Find the tables of all shards.
   std::vector<fs::path> shards;
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < count; ++i) {
@@ -51,26 +53,28 @@ bool join_shards(const fs::path& folder) {
     if (!fs::exists(shards.back(), ignored)) missing.push_back(shard_text({i, count}));
   }
   if (count == 0 || (!missing.empty() && fs::exists(whole, ignored))) return false;
-  if (const std::size_t lack = missing.size(); lack > 0) {
-    missing.resize(std::min(lack, kMostShown));
-    throw InputError(fmt::format("{}: {} of {} shards missing: {}{}", folder.string(), lack, count,
-                                 fmt::join(missing, ", "), lack > kMostShown ? ", ..." : ""));
+  if (const std::size_t missing_count = missing.size(); missing_count > 0) {
+    missing.resize(std::min(missing_count, kMaxShown));
+    throw InputError(fmt::format("{}: {} of {} shards missing: {}{}", folder.string(), missing_count, count,
+                                 fmt::join(missing, ", "), missing_count > kMaxShown ? ", ..." : ""));
   }
-  TableTitle title{whole, "", read_json(beside(shards[0]))};
+  // Check that all shards belong to the same sweep.
+  TableTitle title{whole, "", read_json(description_file(shards[0]))};
   const std::string definition = title.about.value("definition", "");
   for (const fs::path& shard : shards) {
-    if (const std::string other = definition_in(beside(shard)); other != definition) {
+    if (const std::string other = definition_in(description_file(shard)); other != definition) {
       fail_in_file(shard,
                    fmt::format("is of another sweep than {}: definition {}, there {}; allowed: shards of one sweep",
                                shards[0].string(), other, definition));
     }
   }
+  // Join the rows, sorted by case.
   title.cases = std::min(title.about.value("runs", std::size_t{0}), kMostRuns);
   title.about["shard"] = shard_text({});
   TableLines first(shards[0], 0);
   first.next();
   title.header = first.line();
-  if (const std::size_t found = put_in_order(title, shards, title.cases); found != title.cases) {
+  if (const std::size_t found = write_sorted_table(title, shards, title.cases); found != title.cases) {
     throw InputError(fmt::format("{}: the shards have {} of {} rows; allowed: complete tables", folder.string(), found,
                                  title.cases));
   }

@@ -6,8 +6,8 @@
 namespace hapbench {
 
 bool is_less(const NumberWithError& a, const NumberWithError& b) {
-  const double apart = *b.value - *a.value;
-  return apart > *a.error + *b.error && apart > kSameRank * std::max(std::abs(*a.value), std::abs(*b.value));
+  const double difference = *b.value - *a.value;
+  return difference > *a.error + *b.error && difference > kSameRank * std::max(std::abs(*a.value), std::abs(*b.value));
 }
 
 }  // namespace hapbench

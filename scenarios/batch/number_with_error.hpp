@@ -2,19 +2,19 @@
 
 #include <optional>
 
-/// Numbers that are compared up to their errors.
+/// Compares numbers that have errors.
 namespace hapbench {
 
-/// Numbers whose relative difference is below this count as equal: the resolution of a table of ratios with three
-/// digits, far above rounding errors, by which equivalent algorithms differ.
+/// Relative difference below which two numbers count as equal. It is the resolution of a table of ratios with
+/// three digits, and far above the rounding errors by which mathematically equivalent algorithms differ.
 inline constexpr double kSameRank = 1e-3;
 
-/// A number of a table and what is known of its error.
+/// A number of a table and its error, in the same unit. Each is empty if it is not known.
 struct NumberWithError {
   std::optional<double> value = {}, error = {};
 };
-/// True when the first number is less by more than both errors and by more than kSameRank of the larger one.
-/// Precondition: both have a value and an error.
+/// Returns true if `a` is smaller than `b` by more than the sum of both errors, and by more than kSameRank
+/// times the larger magnitude. Precondition: both have a value and an error.
 bool is_less(const NumberWithError& a, const NumberWithError& b);
 
 }  // namespace hapbench

@@ -12,50 +12,54 @@
 namespace hapbench {
 namespace {
 
-/// The seeds in which none of the algorithms fails that have at most so many failures.
-std::vector<std::size_t> seeds_without_failure(const League& league, std::size_t scenario, std::size_t most_failures) {
+/// Returns the seeds for which no algorithm fails. Algorithms with more than `max_failures` failures are
+/// ignored.
+std::vector<std::size_t> seeds_without_failure(const League& ranking, std::size_t scenario, std::size_t max_failures) {
   std::vector<std::size_t> seeds;
-  for (std::size_t k = 0; k < league.seeds; ++k) {
+  for (std::size_t k = 0; k < ranking.seeds; ++k) {
     bool failed = false;
-    for (std::size_t a = 0; a < league.algorithms.size(); ++a)
-      failed |= league.failed[league.first_run(scenario, a) + k] && league.failures(scenario, a) <= most_failures;
+    for (std::size_t a = 0; a < ranking.algorithms.size(); ++a)
+      failed |= ranking.failed[ranking.first_run(scenario, a) + k] && ranking.failures(scenario, a) <= max_failures;
     if (!failed) seeds.push_back(k);
   }
   return seeds;
 }
 
-/// "completes", or with counts "completes 3; diverges 2", in the order of their first appearance.
+/// Returns how runs ended: "completes", or with counts "completes 3; diverges 2". Outcomes are in the order of
+/// their first appearance.
 std::string outcomes_text(std::span<const Result> runs) {
   std::vector<std::string_view> outcomes;
   for (const Result& run : runs) outcomes.push_back(outcome_name(run.end.outcome));
-  std::vector<std::string> ways, texts;
-  append_new(ways, {outcomes.begin(), outcomes.end()});
-  if (ways.size() == 1) return ways.front();
-  for (const std::string& way : ways) texts.push_back(fmt::format("{} {}", way, std::ranges::count(outcomes, way)));
+  std::vector<std::string> distinct, texts;
+  append_new(distinct, {outcomes.begin(), outcomes.end()});
+  if (distinct.size() == 1) return distinct.front();
+  for (const std::string& outcome : distinct)
+    texts.push_back(fmt::format("{} {}", outcome, std::ranges::count(outcomes, outcome)));
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 
-/// Without a rank.
-Standing standing_of(const League& league, std::size_t s, std::size_t a, std::size_t m) {
-  const std::size_t first = league.first_run(s, a);
-  Standing standing{league.scenarios[s],   league.algorithms[a],
-                    league.metrics[m],     league.seeds,
-                    league.failures(s, a), outcomes_text(league.runs.subspan(first, league.seeds))};
-  standing.common_seeds = league.common[s].size();
-  standing.better = league.better[m];
-  std::vector<double> numbers, tolerances;  // of the runs in the common seeds that did not fail
-  for (const std::size_t k : league.common[s]) {
-    const Metric* metric = find_metric(league.runs[first + k].metrics, standing.metric);
-    if (metric == nullptr || league.failed[first + k]) continue;
+/// Returns the result of algorithm a in scenario s for metric m, without its rank.
+Standing ranking_entry(const League& ranking, std::size_t s, std::size_t a, std::size_t m) {
+  const std::size_t first = ranking.first_run(s, a);
+  Standing entry{ranking.scenarios[s],   ranking.algorithms[a],
+                 ranking.metrics[m],     ranking.seeds,
+                 ranking.failures(s, a), outcomes_text(ranking.runs.subspan(first, ranking.seeds))};
+  entry.common_seeds = ranking.common[s].size();
+  entry.better = ranking.better[m];
+  std::vector<double> numbers, tolerances;  // values of successful runs with common seeds
+  for (const std::size_t k : ranking.common[s]) {
+    const Metric* metric = find_metric(ranking.runs[first + k].metrics, entry.metric);
+    if (metric == nullptr || ranking.failed[first + k]) continue;
     if (const auto value = number_of(metric->value)) numbers.push_back(*value);
     if (const auto tolerance = metric->tolerance()) tolerances.push_back(*tolerance);
   }
-  if (!numbers.empty()) standing.mean = mean_of(numbers);
-  if (!tolerances.empty()) standing.tolerance = mean_of(tolerances);
-  if (numbers.size() >= 2 && league.seeds_matter[s]) standing.spread = standard_deviation(numbers);
-  return standing;
+  if (!numbers.empty()) entry.mean = mean_of(numbers);
+  if (!tolerances.empty()) entry.tolerance = mean_of(tolerances);
+  if (numbers.size() >= 2 && ranking.seeds_matter[s]) entry.spread = standard_deviation(numbers);
+  return entry;
 }
 
+/// Returns true if `a` ranks before `b` (Standing::rank).
 bool is_better(const Standing& a, const Standing& b) {
   if (a.failed != b.failed) return a.failed < b.failed;
   if (a.failed > 0 || !a.mean) return false;
@@ -63,24 +67,26 @@ bool is_better(const Standing& a, const Standing& b) {
   return a.better == Better::more ? is_less(b.number(), a.number()) : is_less(a.number(), b.number());
 }
 
-/// Standing::rank, from the standings of all algorithms.
-std::optional<std::uint64_t> rank_of(const League& league, std::size_t s, std::size_t a, std::size_t m) {
+/// Returns Standing::rank of algorithm a in scenario s for metric m. Precondition: the entries of all
+/// algorithms exist.
+std::optional<std::uint64_t> rank_of(const League& ranking, std::size_t s, std::size_t a, std::size_t m) {
   std::uint64_t rank = 1;
   bool has_mean = false;
-  for (std::size_t other = 0; other < league.algorithms.size(); ++other) {
-    if (is_better(league.at(s, other, m), league.at(s, a, m))) ++rank;
-    has_mean |= league.at(s, other, m).mean.has_value();
+  for (std::size_t other = 0; other < ranking.algorithms.size(); ++other) {
+    if (is_better(ranking.at(s, other, m), ranking.at(s, a, m))) ++rank;
+    has_mean |= ranking.at(s, other, m).mean.has_value();
   }
-  return has_mean && league.better[m] != Better::none ? std::optional(rank) : std::nullopt;
+  return has_mean && ranking.better[m] != Better::none ? std::optional(rank) : std::nullopt;
 }
 
-LawStanding law_standing(const League& league, std::size_t a) {
-  LawStanding law{league.algorithms[a], {}, {}};
+/// Returns the result of algorithm a over all scenarios and metrics.
+LawStanding law_ranking_entry(const League& ranking, std::size_t a) {
+  LawStanding law{ranking.algorithms[a], {}, {}};
   std::vector<double> ranks;
-  for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
-    for (std::size_t m = 0; m < league.metrics.size(); ++m)
-      if (const auto rank = league.at(s, a, m).rank) ranks.push_back(static_cast<double>(*rank));
-    if (league.failures(s, a) > 0) law.fails.push_back(league.scenarios[s]);
+  for (std::size_t s = 0; s < ranking.scenarios.size(); ++s) {
+    for (std::size_t m = 0; m < ranking.metrics.size(); ++m)
+      if (const auto rank = ranking.at(s, a, m).rank) ranks.push_back(static_cast<double>(*rank));
+    if (ranking.failures(s, a) > 0) law.fails.push_back(ranking.scenarios[s]);
   }
   if (!ranks.empty()) law.mean_rank = mean_of(ranks);
   return law;
@@ -95,21 +101,25 @@ std::size_t League::failures(std::size_t scenario, std::size_t algorithm) const 
 
 void League::rank() {
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
+    // Does the seed change any run?
     bool matter = false;
     for (std::size_t a = 0; a < algorithms.size(); ++a)
       for (const Result& run : runs.subspan(first_run(s, a), seeds))
         matter |= run.state_hash != runs[first_run(s, a)].state_hash;
     seeds_matter.push_back(matter);
+    // Choose the seeds over which means are computed.
     common.push_back(seeds_without_failure(*this, s, seeds - 1));
     if (common.back().empty()) common.back() = seeds_without_failure(*this, s, 0);
+    // Compute the mean of each algorithm and metric, then rank the means.
     const std::size_t first = standings.size();
     for (std::size_t a = 0; a < algorithms.size(); ++a)
-      for (std::size_t m = 0; m < metrics.size(); ++m) standings.push_back(standing_of(*this, s, a, m));
+      for (std::size_t m = 0; m < metrics.size(); ++m) standings.push_back(ranking_entry(*this, s, a, m));
     for (std::size_t a = 0; a < algorithms.size(); ++a)
       for (std::size_t m = 0; m < metrics.size(); ++m)
         standings[first + a * metrics.size() + m].rank = rank_of(*this, s, a, m);
   }
-  for (std::size_t a = 0; a < algorithms.size(); ++a) laws.push_back(law_standing(*this, a));
+  // Rank the algorithms over all scenarios.
+  for (std::size_t a = 0; a < algorithms.size(); ++a) laws.push_back(law_ranking_entry(*this, a));
   std::ranges::stable_sort(laws, [](const LawStanding& a, const LawStanding& b) {
     return a.mean_rank && (!b.mean_rank || *a.mean_rank < *b.mean_rank);
   });
@@ -126,24 +136,27 @@ bool have_reference(std::span<const Result> runs) {
 
 League league_of(const Comparison& comparison, std::span<const Result> reports,
                  const std::vector<std::string>& metrics) {
-  const std::span<const std::string_view> usual =
+  const std::span<const std::string_view> defaults =
       have_reference(reports) ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
-  League league{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, reports, {}};
-  if (metrics.empty()) league.metrics.assign(usual.begin(), usual.end());
-  for (const std::string& name : league.metrics) {
+  League ranking{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, reports, {}};
+  if (metrics.empty()) ranking.metrics.assign(defaults.begin(), defaults.end());
+  // For which metrics are smaller or larger values better?
+  for (const std::string& name : ranking.metrics) {
     const Metric* metric = find_metric(all_metrics(), name);
-    league.better.push_back(metric == nullptr ? Better::none : metric->better);
+    ranking.better.push_back(metric == nullptr ? Better::none : metric->better);
   }
+  // Which runs failed?
   for (const Result& summary : reports) {
     const Outcome outcome = summary.end.outcome;
-    const Scenario scenario = comparison.load(league.failed.size()).scenario;
-    // No law keeps a tool out that a script leads in: its force along the way is comparable all the same.
+    const Scenario scenario = comparison.load(ranking.failed.size()).scenario;
+    // A script that leads the tool through the surface is not a failure: no force law can prevent it, and the
+    // forces on the path are still comparable.
     const bool is_led = outcome == Outcome::went_through && !position_is_free(scenario.motion);
     const bool failed = is_failure(outcome_name(outcome)) || !outcome_is_expected(scenario.expect, outcome);
-    league.failed.push_back(failed && !is_led);
+    ranking.failed.push_back(failed && !is_led);
   }
-  league.rank();
-  return league;
+  ranking.rank();
+  return ranking;
 }
 
 }  // namespace hapbench

@@ -17,15 +17,15 @@ std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
     const Cases& cases;
     std::size_t i, number;
   };
-  std::vector<Run> runs;  // in their order
+  std::vector<Run> runs;  // in execution order
   for (const Cases& cases : all) {
     const std::size_t first = runs.size();
-    for (std::size_t place = 0; place < cases.size(); ++place)
-      runs.push_back({cases, cases.at(place), first + cases.at(place)});
+    for (std::size_t position = 0; position < cases.size(); ++position)
+      runs.push_back({cases, cases.at(position), first + cases.at(position)});
   }
   std::vector<Result> results(runs.size());
-  for_each_job(runs.size(), jobs, [&](std::size_t place) {
-    const auto& [cases, i, number] = runs[place];
+  for_each_job(runs.size(), jobs, [&](std::size_t position) {
+    const auto& [cases, i, number] = runs[position];
     results[number] =
         run_scenario(checked(cases.load(i)), folder ? std::optional(folder(number)) : std::nullopt, false);
     results[number].targets.clear();

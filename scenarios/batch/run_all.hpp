@@ -10,12 +10,13 @@
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
-/// Runs lists of cases in one pool.
+/// Runs lists of cases in a single pool of threads.
 namespace hapbench {
 
-/// Runs all cases of a list, numbered one after the other, and writes the files of each into the folder that `folder`
-/// names, or none without it. Runs in one environment share its shell. Neither reports nor files depend on the number
-/// of jobs. Reports have no targets, of which there may be very many; files have them. Throws IoError and Stopped.
+/// Runs all cases of all lists and returns their results, numbered list by list. `folder` returns the folder
+/// for the files of a run; without it, no files are written. Runs with the same environment share its point
+/// shell. Neither results nor files depend on the number of jobs. The returned results contain no list of
+/// targets, which may be very long; the files contain it. Throws IoError and Stopped.
 std::vector<Result> run_all(std::span<const Cases> cases, const JobOptions& jobs,
                             const std::function<std::filesystem::path(std::size_t run)>& folder = {});
 

@@ -26,10 +26,10 @@ fs::path run_folder(const SweepOptions& options, std::size_t run) {
   return options.directory / "runs" / fmt::format("{:06}", run);
 }
 
-/// Returns true if a row of an earlier sweep, with `columns` cells, may stay. Throws InputError for a row of another
-/// table.
-bool stays(const SweepPlan& plan, const SweepOptions& options, std::size_t columns, std::size_t run,
-           std::string_view row) {
+/// Returns true if a row of an earlier sweep can be kept. `columns`: number of cells in a row. Throws
+/// InputError for a row of another table.
+bool keeps_row(const SweepPlan& plan, const SweepOptions& options, std::size_t columns, std::size_t run,
+               std::string_view row) {
   const std::vector<std::string> cells = csv_cells(row);
   if (cells.size() != columns)
     throw InputError(fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
@@ -37,28 +37,29 @@ bool stays(const SweepPlan& plan, const SweepOptions& options, std::size_t colum
   return !has_failed && (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
 }
 
-/// The runs of a shard that have no row yet, in the order of runs.
-std::vector<std::size_t> runs_left(const SweepPlan& plan, const Shard& shard, const TableFile& table) {
-  std::vector<std::size_t> left;
-  for (std::size_t place = shard.index; place < plan.cases.size(); place += shard.count) {
-    const std::size_t run = plan.cases.at(place);
-    if (!table.rows()[run]) left.push_back(run);
+/// Returns the runs of a shard that have no row yet, in execution order.
+std::vector<std::size_t> remaining_runs(const SweepPlan& plan, const Shard& shard, const TableFile& table) {
+  std::vector<std::size_t> remaining;
+  for (std::size_t position = shard.index; position < plan.cases.size(); position += shard.count) {
+    const std::size_t run = plan.cases.at(position);
+    if (!table.rows()[run]) remaining.push_back(run);
   }
-  return left;
+  return remaining;
 }
 
-/// The row of a run, or the problem of a run that an exception ended.
+/// The row of a run; if the run ended with an exception, the exception's message and an empty row.
 struct RunRow {
   std::string row, problem;
 };
 
+/// Does a run and returns its row.
 RunRow row_of_run(const SweepPlan& plan, const SweepOptions& options, std::size_t run) {
   RunRow result;
   try {
     const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
     result.row = finished_row(plan, run, run_scenario(checked(plan.cases.load(run)), output, false));
   } catch (const IoError&) {
-    throw;  // further runs could not be kept either; --resume goes on
+    throw;  // results of further runs could not be written either; --resume continues the sweep
   } catch (const std::exception& error) {
     result.problem = error.what();
   }
@@ -68,21 +69,23 @@ RunRow row_of_run(const SweepPlan& plan, const SweepOptions& options, std::size_
 }  // namespace
 
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
+  // Open the table, and keep the rows of an earlier sweep with --resume.
   const Shard part = options.shard.value_or(Shard{});
   Json about = {{"definition", plan.definition}, {"runs", plan.cases.size()}, {"shard", shard_text(part)}};
   about.update(plan.content);
   const std::vector<std::string> columns = sweep_columns(plan);
   const TableFile::Keep keep = [&](std::size_t run, std::string_view row) {
-    return stays(plan, options, columns.size(), run, row);
+    return keeps_row(plan, options, columns.size(), run, row);
   };
   TableFile table({options.table(), fmt::format("{}", fmt::join(columns, ",")), about, plan.cases.size()},
                   options.resume ? keep : nullptr);
   SweepReport report;
   report.resumed = table.count();
-  const std::vector<std::size_t> left = runs_left(plan, part, table);
-  std::mutex mutex;  // of table and report
-  for_each_job(left.size(), options.jobs, [&](std::size_t k) {
-    const std::size_t run = left[k];
+  // Do the remaining runs.
+  const std::vector<std::size_t> remaining = remaining_runs(plan, part, table);
+  std::mutex mutex;  // protects `table` and `report`
+  for_each_job(remaining.size(), options.jobs, [&](std::size_t k) {
+    const std::size_t run = remaining[k];
     const RunRow result = row_of_run(plan, options, run);
     const bool failed = result.row.empty();
     const std::lock_guard lock(mutex);

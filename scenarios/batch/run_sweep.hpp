@@ -14,27 +14,28 @@
 namespace hapbench {
 
 struct SweepOptions {
-  std::filesystem::path directory = {};  ///< for all files; must exist
+  std::filesystem::path directory = {};  ///< folder of all files; must exist
   JobOptions jobs = {};
-  std::optional<Shard> shard = {};  ///< which runs; none: all
-  bool resume = false;     ///< keep the rows that an earlier sweep of this plan has, but for those of failed runs
-  bool keep_runs = false;  ///< write the files of each run into runs/NUMBER
-  std::function<void()> added = {};  ///< is called after each row of a finished run that the table gets
+  std::optional<Shard> shard = {};  ///< part of the runs to do; empty: all runs
+  bool resume = false;     ///< true: keep the rows of an earlier sweep of this plan, except rows of failed runs
+  bool keep_runs = false;  ///< true: write the files of each run into runs/NUMBER
+  std::function<void()> added = {};  ///< called after the row of each finished run was written to the table
 
-  /// sweep.csv, or that of a shard.
+  /// Returns the file of the table: sweep.csv, or the table of the shard.
   std::filesystem::path table() const { return directory / table_name(shard); }
 };
 
 struct SweepReport {
-  std::size_t resumed = 0;            ///< number of rows that were there before
-  std::optional<std::size_t> failed;  ///< the lowest number of a run that an exception ended
-  std::string problem;                ///< of that run
+  std::size_t resumed = 0;            ///< number of rows that were kept from an earlier sweep
+  std::optional<std::size_t> failed;  ///< lowest number of a run that ended with an exception
+  std::string problem;                ///< message of this exception
 };
 
-/// Runs the shard's part of a plan and writes its table and the JSON next to it, which depend neither on the jobs nor
-/// on interruptions. Runs in one environment share its shell. A killed sweep loses the runs under way; SIGINT and
-/// SIGTERM end it after those. Throws InputError where the table of another sweep would be resumed or that of this one
-/// lost, IoError and Stopped.
+/// Runs the cases of a plan, or of its shard, and writes the table and the JSON file next to it. The files
+/// depend neither on the number of jobs nor on interruptions. Runs with the same environment share its point
+/// shell. A sweep that is killed loses only unfinished runs; after SIGINT and SIGTERM, started runs are
+/// finished. Throws InputError if it would continue the table of another sweep or overwrite finished rows of
+/// this sweep. Throws IoError and Stopped.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options);
 
 }  // namespace hapbench

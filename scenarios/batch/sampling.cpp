@@ -33,13 +33,15 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
 
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis) {
   if (sampling.method == kPointsOfFile) return sampling.of_file[axis];
-  constexpr double kLast = 1.0 - 0x1.0p-53;  // rounding could move a point in the last stratum to 1
+  // Largest double below 1: rounding could otherwise move a point of the last interval to 1.
+  constexpr double kLast = 1.0 - 0x1.0p-53;
   Random random(Random::derive(sampling.seed, axis));
   std::vector<double> points(sampling.count);
   if (sampling.method == kRandomPoints) {
     for (double& point : points) point = random.uniform();
     return points;
   }
+  // Latin hypercube: shuffle the intervals, and draw a point in each.
   std::vector<std::size_t> strata(sampling.count);
   std::iota(strata.begin(), strata.end(), std::size_t{0});
   random.shuffle(strata);
@@ -54,7 +56,8 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
   LineReader lines(text);
   for (const std::string& path : csv_cells(lines.next().value_or(""))) axes.push_back({path});
   Sampling sampling{kPointsOfFile, 0, 0, std::vector<std::vector<double>>(axes.size())};
-  std::vector<std::map<std::string, std::size_t>> known(axes.size());
+  std::vector<std::map<std::string, std::size_t>> value_indices(axes.size());
+  // Collect the different values of each field. A coordinate is first the index of the value.
   while (const auto line = lines.next()) {
     const std::vector<std::string> cells = csv_cells(*line);
     if (cells.size() != axes.size() || sampling.count == kMostRuns) {
@@ -66,7 +69,7 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
     try {
       for (std::size_t a = 0; a < cells.size(); ++a) {
         const std::string value = axis_value(cells[a]);
-        const auto [at, is_new] = known[a].emplace(value, known[a].size());
+        const auto [at, is_new] = value_indices[a].emplace(value, value_indices[a].size());
         if (is_new) axes[a].values.push_back(value);
         sampling.of_file[a].push_back(static_cast<double>(at->second));
       }
@@ -75,8 +78,10 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
     }
   }
   if (sampling.count == 0) fail_in_file(file, "has no rows; allowed: a header of fields, and rows of their values");
+  // Convert indices to coordinates in the middle of the value's share of [0, 1) (Axis::index_at).
   for (std::size_t a = 0; a < axes.size(); ++a)
-    for (double& place : sampling.of_file[a]) place = (place + 0.5) / static_cast<double>(axes[a].size());
+    for (double& coordinate : sampling.of_file[a])
+      coordinate = (coordinate + 0.5) / static_cast<double>(axes[a].size());
   return sampling;
 }
 

@@ -9,32 +9,35 @@
 
 #include "scenarios/batch/axis.hpp"
 
-/// Points of a sample (--sample, --points) in the unit cube, one coordinate for each axis.
+/// Points of a sample (--sample, --points) in the unit cube, with one coordinate for each axis.
 namespace hapbench {
 
-// How points are distributed over the unit cube, as in --sample.
-/// Along each axis one point in each of `count` equal strata (McKay, Beckman, Conover 1979).
+// Distributions of the points over the unit cube, as in --sample.
+/// Latin hypercube: along each axis, one point in each of `count` equal intervals (McKay, Beckman, Conover
+/// 1979).
 inline constexpr std::string_view kLatinHypercube = "lhs";
-inline constexpr std::string_view kRandomPoints = "random";  ///< independent and uniform
+inline constexpr std::string_view kRandomPoints = "random";  ///< independent, uniformly distributed points
+/// Points that are read from a file (--points).
 inline constexpr std::string_view kPointsOfFile = "points";
 
-/// A sample of the unit cube. Equal samples have the same points to the last bit on every machine.
+/// A sample of the unit cube. Equal samples have bit-identical points on every machine.
 struct Sampling {
-  std::string_view method = kLatinHypercube;      ///< one of these names
-  std::size_t count = 1;                          ///< points
-  std::uint64_t seed = 1;                         ///< of the shuffles, or the points themselves
-  std::vector<std::vector<double>> of_file = {};  ///< by axis: the coordinates of the points of a file
+  std::string_view method = kLatinHypercube;      ///< one of the names above
+  std::size_t count = 1;                          ///< number of points
+  std::uint64_t seed = 1;                         ///< seed of the random points
+  std::vector<std::vector<double>> of_file = {};  ///< coordinates of points from a file, by axis, then by point
 };
 
-/// Reads "lhs:N" or "random:N" with 1 <= N <= kMostRuns. Throws InputError.
+/// Parses "lhs:N" or "random:N" with 1 <= N <= kMostRuns. Throws InputError.
 Sampling parse_sampling(const std::string& text, std::uint64_t seed);
 
-/// The coordinates in [0, 1) of each point along an axis, from a stream of random numbers of its own: one more axis
-/// does not change the others.
+/// Returns the coordinates in [0, 1) of all points along an axis. Each axis has its own stream of random
+/// numbers, so that an additional axis does not change the others.
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis);
 
-/// Reads the table of --points: a header of fields' paths, which become axes that list each value once, and a row of
-/// values for each point. Throws InputError with the line.
+/// Reads the table of --points. Its header contains paths of fields, and each further row the values of one
+/// point. Appends an axis for each field, which lists each value once. Throws InputError with the number of the
+/// line.
 Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes);
 
 }  // namespace hapbench

@@ -9,10 +9,10 @@
 namespace hapbench {
 namespace {
 
-/// Random stream of the start's shift, which keeps it independent of everything else that the scenario's seed
-/// determines.
+/// Random stream of the displacement. It is independent of everything else that the scenario's seed determines.
 constexpr std::uint64_t kJitterStream = 0x6a697474;
 
+/// Returns true if the scene is planar: all forces lie in the plane z = 0.
 bool lies_in_the_plane(const Environment& environment) {
   if (std::holds_alternative<Hole2d>(environment)) return true;
   const auto* springs = std::get_if<SpringsEnvironment>(&environment);
@@ -20,6 +20,7 @@ bool lies_in_the_plane(const Environment& environment) {
   return std::ranges::all_of(springs->groups, [](const SpringGroup& group) { return group.direction.z() == 0.0; });
 }
 
+/// Returns a random displacement of the given length [m].
 Vec3 start_shift(const Scenario& scenario, double length) {
   Random random(Random::derive(kJitterStream, static_cast<std::uint64_t>(scenario.seed)));
   return length * (lies_in_the_plane(scenario.environment) ? random.direction_in_plane() : random.direction());
@@ -29,11 +30,11 @@ Vec3 start_shift(const Scenario& scenario, double length) {
 
 Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter) {
   Axis axis{"seed"};
-  Scenario own = scenario;
-  for (std::size_t k = 0; k < seeds; ++k, ++own.seed) {
-    axis.values.push_back(std::to_string(own.seed));
+  Scenario repetition = scenario;
+  for (std::size_t k = 0; k < seeds; ++k, ++repetition.seed) {
+    axis.values.push_back(std::to_string(repetition.seed));
     if (jitter == 0.0) continue;
-    const Vec3 start = own.initial.position + start_shift(own, jitter);
+    const Vec3 start = repetition.initial.position + start_shift(repetition, jitter);
     axis.along.push_back({{fmt::format("initial.position_m=[{},{},{}]", start.x(), start.y(), start.z())}});
   }
   return axis;

@@ -5,12 +5,13 @@
 #include "scenarios/batch/axis.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
-/// Repetitions of a scenario with other seeds and other starts.
+/// Repetitions of a scenario with other seeds and other starting positions.
 namespace hapbench {
 
-/// The scenario's seed and those after it. Unless `jitter` [m] is 0, a shift of the start by that length goes along
-/// with each, whose direction depends only on the seed, so that all algorithms start from the same places: uniform on
-/// the sphere, in planar scenes on the circle z = 0.
+/// Returns an axis with the scenario's seed and the next `seeds` - 1 integers. If `jitter` [m] is not 0, the
+/// starting position is also displaced by this length for each seed. The direction of the displacement depends
+/// only on the seed, so that all algorithms start from the same positions. It is uniform on the sphere; in
+/// planar scenes, it is uniform on the circle in the plane z = 0.
 Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter);
 
 }  // namespace hapbench

@@ -13,7 +13,7 @@
 namespace hapbench {
 namespace {
 
-/// The line of a run, without its end: its number and varied fields, and these cells behind them.
+/// Returns the row of a run without newline: its number, its varied fields, and `cells`.
 std::string line_of(const SweepPlan& plan, std::size_t run, const std::vector<std::string>& cells) {
   std::string line = std::to_string(run);
   for (const std::string& value : plan.cases.values(run)) line += "," + csv_cell(value);

@@ -8,7 +8,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/batch/sweep_plan.hpp"
 
-/// The columns of sweep.csv: their names, and what a row has in them. A new column is one line in each function.
+/// Columns of sweep.csv: their names and the cells of a row. A new column needs one line in each function.
 namespace hapbench {
 
 /// Prefix of the heading of a metric's tolerance, as in summary.json.
@@ -17,7 +17,8 @@ inline constexpr std::string_view kToleranceOf = "tolerances.";
 /// Returns the names of the columns: index, varied fields, outcome, expected, steps, metrics, tolerances, state_hash.
 std::vector<std::string> sweep_columns(const SweepPlan& plan);
 
-/// Returns the row of a run that an exception ended, without a newline. Its cells behind "expected" are empty.
+/// Returns the row of a run that ended with an exception, without a newline. The cells after "expected" are
+/// empty.
 std::string error_row(const SweepPlan& plan, std::size_t run);
 
 /// Returns the row of a run, without a newline. Throws InputError if the run has a metric for which there is no column.

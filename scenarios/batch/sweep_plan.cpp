@@ -22,28 +22,28 @@
 namespace hapbench {
 namespace {
 
-/// The facts about one run's scenario that the sweep needs.
-struct Point {
+/// Properties of a run's scenario that the plan needs.
+struct CheckedRun {
   std::vector<std::string> warnings;
   MetricList metrics;
-  std::string files;  ///< the folder and the objects that name files
+  std::string files;  ///< identifies the named files: folder of the scenario, and the JSON objects that name files
   AlgorithmOrigin origin;
 };
 
-Point examine(const SweepPlan& plan, std::size_t run) {
+CheckedRun check_run(const SweepPlan& plan, std::size_t run) {
   const LoadedScenario loaded = plan.cases.load(run);
   const Scenario& scenario = loaded.scenario;
-  Point point{with_files(loaded, loaded.warnings),
-              metrics_without_values(scenario, scenario.reference_force.has_value()), "",
-              find_algorithm(scenario.rendering.algorithm)->origin};
-  if (loaded.files.all().empty()) return point;
+  CheckedRun checked_run{with_files(loaded, loaded.warnings),
+                         metrics_without_values(scenario, scenario.reference_force.has_value()), "",
+                         find_algorithm(scenario.rendering.algorithm)->origin};
+  if (loaded.files.all().empty()) return checked_run;
   const Json json = written_object(scenario);
-  point.files = loaded.file.parent_path().string() + "\n";
+  checked_run.files = loaded.file.parent_path().string() + "\n";
   for (const auto& file : loaded.files.all()) {
     const Json::json_pointer field(file->pointer());
-    point.files += file->pointer() + " " + json.at(field.parent_pointer()).dump() + "\n";
+    checked_run.files += file->pointer() + " " + json.at(field.parent_pointer()).dump() + "\n";
   }
-  return point;
+  return checked_run;
 }
 
 using Names = std::set<std::string>;
@@ -52,8 +52,8 @@ void add_names(Names& names, const MetricList& metrics) {
   for (const Metric& metric : metrics) names.insert(metric.name);
 }
 
-/// Reads the files that the scenarios of these runs name, adds their warnings to the plan and the metrics of what they
-/// measured, and returns their hashes.
+/// Reads the files that the scenarios of `runs` name, and returns their hashes. Adds their warnings to the
+/// plan, and the metrics of a measured force to `metrics`.
 Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& metrics) {
   Json hashes = Json::array();
   for (const std::size_t run : runs) {
@@ -65,18 +65,19 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& m
       add_names(metrics, metrics_without_values(loaded.scenario, has_force));
     }
     Scenario unnamed = loaded.scenario;
-    unnamed.name.clear();  // may be that of the scenario's file
+    unnamed.name.clear();  // the name may come from the scenario's file name
     hashes.push_back(with_file(loaded, [&] { return scenario_hash(effective_scenario(unnamed, {}), loaded.files); }));
   }
   return hashes;
 }
 
-/// The values of an axis; only the ends of a range that has very many.
-Json axis_content(const Axis& axis, bool of_a_file) {
-  constexpr std::size_t kMostListed = 10'000;
+/// Returns the values of an axis for the plan's content. Of a long range or a sampled range, returns only the
+/// ends.
+Json axis_content(const Axis& axis, bool from_file) {
+  constexpr std::size_t kMaxListed = 10'000;
   Json content = {{"path", axis.path}};
-  if (of_a_file) return content;
-  if (axis.range && (axis.steps == 0 || axis.steps > kMostListed)) {
+  if (from_file) return content;
+  if (axis.range && (axis.steps == 0 || axis.steps > kMaxListed)) {
     content["range"] = {axis.range->from, axis.range->to};
     content["scale"] = axis.range->logarithmic ? "log" : "linear";
     if (axis.steps > 0) content["count"] = axis.steps;
@@ -89,6 +90,7 @@ Json axis_content(const Axis& axis, bool of_a_file) {
   return content;
 }
 
+/// Returns a hash of the overrides of all cases.
 std::string hash_of_points(const Cases& cases) {
   std::string text;
   for (std::size_t i = 0; i < cases.size(); ++i)
@@ -96,22 +98,23 @@ std::string hash_of_points(const Cases& cases) {
   return hash_text(hash_of(text));
 }
 
-/// The CPU does not count: shards of one sweep may come from several machines.
+/// Returns everything that determines the rows. Does not include the CPU, because shards of a sweep may come
+/// from several machines.
 Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
   const Provenance program = provenance();
   const std::vector<ScenarioText>& scenes = plan.cases.scenes();
   const auto& sampling = plan.cases.sampling();
-  const bool of_a_file = sampling && sampling->method == kPointsOfFile;
+  const bool from_file = sampling && sampling->method == kPointsOfFile;
   Json content;
   if (scenes.size() == 1) content["scenario"] = scenes[0].json;
   if (scenes.size() > 1)
     for (const ScenarioText& scene : scenes) content["scenarios"].push_back(scene.json);
   content["set"] = plan.cases.sets();
   content["vary"] = Json::array();
-  for (const Axis& axis : plan.cases.axes()) content["vary"].push_back(axis_content(axis, of_a_file));
+  for (const Axis& axis : plan.cases.axes()) content["vary"].push_back(axis_content(axis, from_file));
   if (sampling) content["sample"] = {{"method", sampling->method}, {"runs", sampling->count}};
-  if (of_a_file) content["sample"]["hash"] = hash_of_points(plan.cases);
-  if (sampling && !of_a_file) content["sample"]["seed"] = sampling->seed;
+  if (from_file) content["sample"]["hash"] = hash_of_points(plan.cases);
+  if (sampling && !from_file) content["sample"]["seed"] = sampling->seed;
   content["files"] = files;
   if (!plugins.empty()) content["plugins"] = plugins;
   content["program"] = {{"hapbench_version", program.version},
@@ -125,11 +128,13 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 }  // namespace
 
 std::vector<std::size_t> runs_to_check(const Cases& cases) {
+  // All runs of a small batch, or the first runs of a sample.
   if (cases.size() <= kMostChecked || cases.sampling()) {
     std::vector<std::size_t> runs(std::min(cases.size(), kMostChecked));
     std::iota(runs.begin(), runs.end(), std::size_t{0});
     return runs;
   }
+  // Of a large grid, the lines through the first and the last run.
   std::set<std::size_t> runs;
   std::size_t stride = 1;
   for (std::size_t a = cases.axes().size(); a-- > 0;) {
@@ -146,21 +151,25 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
 
 SweepPlan plan_sweep(Cases cases, const JobOptions& jobs) {
   SweepPlan plan{std::move(cases)};
+  // Load the scenarios of the runs to check.
   const std::vector<std::size_t> runs = runs_to_check(plan.cases);
-  std::vector<Point> points(runs.size());
-  for_each_job(runs.size(), jobs, [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
+  std::vector<CheckedRun> checked_runs(runs.size());
+  for_each_job(runs.size(), jobs, [&](std::size_t i) { checked_runs[i] = check_run(plan, runs[i]); });
+  // Collect their metrics, warnings and combinations of files.
   Names metrics;
   std::map<std::string, std::string> plugins;
-  Names files;                               // combinations of them
-  std::vector<std::size_t> runs_with_files;  // the first one of each
+  Names files;                               // combinations of named files
+  std::vector<std::size_t> runs_with_files;  // first run with each combination
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Point& point = points[i];
-    add_names(metrics, point.metrics);
-    append_new(plan.warnings, point.warnings);
-    if (!point.origin.file.empty()) plugins.emplace(point.origin.file, point.origin.hash);
-    if (!point.files.empty() && files.insert(point.files).second) runs_with_files.push_back(runs[i]);
+    const CheckedRun& run = checked_runs[i];
+    add_names(metrics, run.metrics);
+    append_new(plan.warnings, run.warnings);
+    if (!run.origin.file.empty()) plugins.emplace(run.origin.file, run.origin.hash);
+    if (!run.files.empty() && files.insert(run.files).second) runs_with_files.push_back(runs[i]);
   }
+  // Read each combination of files once.
   const Json hashes = check_files(plan, runs_with_files, metrics);
+  // List the metrics in the order of all metrics.
   for (const Metric& metric : metrics_without_values(TrackingHandFields::kMostPlaces)) {
     if (!metrics.contains(metric.name)) continue;
     plan.metrics.push_back(metric.name);

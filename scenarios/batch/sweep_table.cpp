@@ -19,10 +19,12 @@ namespace fs = std::filesystem;
 
 using Condition = std::function<bool(const SweepRow& row)>;
 
+/// Parses a condition of --where. Throws InputError.
 Condition condition_of(const std::string& text, const SweepTable& table) {
   static const std::map<std::string, std::function<bool(double, double)>> kSigns = {
       {"<", std::less<>()},           {">", std::greater<>()},  {"<=", std::less_equal<>()},
       {">=", std::greater_equal<>()}, {"=", std::equal_to<>()}, {"!=", std::not_equal_to<>()}};
+  // Split the text into column, operator and value.
   const std::size_t begin = std::min(text.find_first_of("<>=!"), text.size());
   const std::size_t end = std::min(text.find_first_not_of("<>=!", begin), text.size());
   const std::string name = text.substr(0, begin), sign = text.substr(begin, end - begin), value = text.substr(end);
@@ -68,18 +70,24 @@ std::optional<double> SweepTable::number(const SweepRow& row, std::string_view c
 }
 
 SweepTable read_sweep(const fs::path& file, const std::vector<std::string>& conditions) {
-  SweepTable table{
-      .file = file, .about = description_of(beside(file)), .columns = {}, .rows = {}, .counts = {}, .kept = {}};
+  SweepTable table{.file = file,
+                   .about = description_of(description_file(file)),
+                   .columns = {},
+                   .rows = {},
+                   .counts = {},
+                   .kept = {}};
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
   table.columns = csv_cells(line);
+  // Check the columns.
   const std::size_t outcome = table.place("outcome");
   if (table.columns[0] != "index" || table.columns.back() != "state_hash" || table.place("expected") != outcome + 1 ||
       table.place("steps") != outcome + 2)
     fail_in_file(file, "is not the table of the sweep that sweep.json describes");
   std::vector<Condition> all;
   for (const std::string& text : conditions) all.push_back(condition_of(text, table));
+  // Count all rows, and keep the rows that satisfy the conditions.
   while (std::getline(in, line)) {
     SweepRow row = csv_cells(line);
     const auto run = whole_number(row[0]);

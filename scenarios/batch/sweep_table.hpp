@@ -11,60 +11,63 @@
 
 #include "scenarios/batch/sweep_columns.hpp"
 
-/// Reads the table that a sweep leaves, sweep.csv.
+/// Reads the table of a sweep, sweep.csv.
 namespace hapbench {
 
-/// Outcome of a run that an exception ended; the cells behind `expected` are empty.
+/// Outcome of a run that ended with an exception. Its cells after `expected` are empty.
 inline constexpr std::string_view kErrorOutcome = "error";
 
-/// The cells of a line.
+/// The cells of a row.
 using SweepRow = std::vector<std::string>;
 
-/// How runs ended.
+/// Counts how runs ended.
 struct SweepCounts {
   struct Count {
     std::size_t runs = 0, expected = 0;
   };
   std::map<std::string, Count> outcomes;
   std::size_t runs = 0;
-  std::size_t failed = 0;      ///< runs that an exception ended
-  std::size_t unexpected = 0;  ///< runs that ended otherwise than their scenario expects, failed ones not included
+  std::size_t failed = 0;      ///< runs that ended with an exception
+  std::size_t unexpected = 0;  ///< runs whose outcome their scenario does not expect; failed runs are not included
+  /// Number of the first unexpected run; empty if there is none.
   std::optional<std::size_t> first_unexpected;
 
   void add(std::size_t run, const std::string& outcome, bool is_expected);
 };
 
-/// Columns: the run's number, the varied fields, outcome, expected, steps, every metric, the tolerances of the bounded
-/// ones, state_hash.
+/// The table of a sweep. Columns: number of the run, varied fields, outcome, expected, steps, all metrics,
+/// tolerances of metrics with an error bound, state_hash.
 struct SweepTable {
-  static constexpr std::size_t kMostRows = 10'000;  ///< that are kept
+  static constexpr std::size_t kMostRows = 10'000;  ///< maximum number of rows that are kept in memory
 
   std::filesystem::path file;
-  Json about;  ///< sweep.json
+  Json about;  ///< content of sweep.json
   std::vector<std::string> columns;
-  std::vector<SweepRow> rows;  ///< those that keep the conditions; none when they are more than kMostRows
-  SweepCounts counts;          ///< of all rows
-  SweepCounts kept;            ///< of those that keep the conditions
+  std::vector<SweepRow> rows;  ///< rows that satisfy the conditions; empty if there are more than kMostRows
+  SweepCounts counts;          ///< counts of all rows
+  SweepCounts kept;            ///< counts of the rows that satisfy the conditions
 
-  /// The place of a column; the number of columns where it is none.
+  /// Returns the index of a column; the number of columns if it does not exist.
   std::size_t place(std::string_view column) const {
     return static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin());
   }
-  /// Number of the fields that vary.
+  /// Returns the number of fields that vary.
   std::size_t fields() const { return place("outcome") - 1; }
   const std::string& outcome(const SweepRow& row) const { return row[1 + fields()]; }
+  /// Returns the names of the metric columns.
   std::vector<std::string> metrics() const;
-  /// Empty for a column that does not exist, and where a cell is not a number.
+  /// Returns the number in a column of a row. Empty if the column does not exist or the cell is not a number.
   std::optional<double> number(const SweepRow& row, std::string_view column) const;
-  /// Error of a metric; empty if it is not known.
+  /// Returns the error of a metric in a row; empty if it is not known.
   std::optional<double> tolerance(const SweepRow& row, std::string_view metric) const {
     return number(row, std::string(kToleranceOf) + std::string(metric));
   }
 };
 
-/// Reads the table of a sweep or of one of its shards, and the JSON file next to it. `conditions` are texts such as
-/// "inside_max_m<3e-4": a column, one of < <= > >= = !=, and a number, or with = and != a text; a row without a number
-/// in a column keeps no condition on numbers. Throws InputError.
+/// Reads the table of a sweep or of one of its shards, and the JSON file next to it. Keeps the rows that
+/// satisfy all `conditions`. A condition such as "inside_max_m<3e-4" consists of a column, an operator (< <= >
+/// >= = !=) and a number; with = and !=, also a text. A row whose cell is not a number satisfies no condition
+/// with a number. Throws InputError.
 SweepTable read_sweep(const std::filesystem::path& file, const std::vector<std::string>& conditions = {});
 
 }  // namespace hapbench

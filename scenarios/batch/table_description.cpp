@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 }  // namespace
 
-fs::path beside(fs::path table) {
+fs::path description_file(fs::path table) {
   return table.replace_extension(".json");
 }
 

@@ -6,11 +6,11 @@
 
 #include "scenarios/input/json_file.hpp"
 
-/// The JSON file next to a table, which describes the sweep: its "definition" is equal for equal tables.
+/// The JSON file next to a table, which describes the sweep. Tables of the same sweep have the same "definition" in it.
 namespace hapbench {
 
 /// Returns the path of the JSON file next to a table: sweep.json of sweep.csv.
-std::filesystem::path beside(std::filesystem::path table);
+std::filesystem::path description_file(std::filesystem::path table);
 
 /// Reads the description in a JSON file. Throws InputError if the file cannot be read or has no definition.
 Json description_of(const std::filesystem::path& file);

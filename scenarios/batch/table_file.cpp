@@ -29,42 +29,45 @@ fs::path part_of(fs::path file) {
 TableFile::TableFile(TableTitle title, const Keep& keep)
     : title_(std::move(title)),
       part_(part_of(title_.file)),
-      about_part_(part_of(beside(title_.file))),
+      about_part_(part_of(description_file(title_.file))),
       out_(nullptr, std::fclose),
       has_(title_.cases) {
   std::error_code error;
+  // Continue the unfinished table, or refuse to overwrite it.
   const std::size_t rows = rows_under_way(title_.file);
   if (keep) {
     resume(keep);
-  } else if (rows > 0 && is_of_this_definition()) {
+  } else if (rows > 0 && has_same_definition()) {
     fail_in_file(part_, fmt::format("holds {} finished runs of this sweep, which was interrupted; allowed: --resume to "
                                     "go on from there, another --out, or to begin anew without this file",
                                     rows));
   }
+  // Start a new .part file, or append to it.
   const bool is_new = !keep || !fs::exists(part_, error) || fs::file_size(part_, error) == 0;
   if (is_new) {
-    fs::remove(part_, error);  // first: a kill must not leave its rows beside another description
+    // First: if the process is killed here, old rows must not remain next to another description.
+    fs::remove(part_, error);
     write_file_atomically(about_part_, json_text(title_.about));
   }
   out_.reset(std::fopen(part_.c_str(), is_new ? "wbe" : "abe"));
   if (!out_) throw IoError("write", part_, {errno, std::generic_category()});
-  std::setvbuf(out_.get(), nullptr, _IONBF, 0);  // so that a line is written at once
+  std::setvbuf(out_.get(), nullptr, _IONBF, 0);  // unbuffered, so that a row is written immediately
   if (is_new) append(title_.header + "\n");
 }
 
-/// True if the table under way, or else the finished one, has this definition.
-bool TableFile::is_of_this_definition() const {
+/// Returns true if the unfinished table, or otherwise the finished table, has this definition.
+bool TableFile::has_same_definition() const {
   std::error_code ignored;
-  const std::string found = definition_in(fs::exists(part_, ignored) ? about_part_ : beside(title_.file));
+  const std::string found = definition_in(fs::exists(part_, ignored) ? about_part_ : description_file(title_.file));
   return title_.about.at("definition") == found;
 }
 
-/// Finds the rows that are there, and leaves the part without its last line if that is torn.
+/// Finds the rows that can be kept, and removes an incomplete last line from the .part file.
 void TableFile::resume(const Keep& keep) {
   std::error_code error;
   const bool is_part = fs::exists(part_, error);
   if (!is_part && !fs::exists(title_.file, error)) return;
-  if (!is_of_this_definition()) {
+  if (!has_same_definition()) {
     fail_in_file(
         is_part ? part_ : title_.file,
         "is not the table of this sweep; --resume needs the same scenario, --set, --vary, --shard, named files, "
@@ -75,6 +78,7 @@ void TableFile::resume(const Keep& keep) {
     fs::copy_file(title_.file, part_, error);
     if (error) throw IoError("write", part_, error);
   }
+  // Ask `keep` about each complete row.
   TableLines lines(part_, title_.cases);
   if (lines.next() && lines.line() != title_.header) lines.refuse();
   while (lines.next()) {
@@ -107,41 +111,44 @@ void TableFile::add(std::size_t i, std::string_view row) {
 
 void TableFile::finish() {
   out_.reset();
-  if (put_in_order(title_, {part_}, count()) != count())  // another process has begun it anew
+  if (write_sorted_table(title_, {part_}, count()) != count())  // another process has restarted the table
     throw IoError("read", part_, std::make_error_code(std::errc::io_error));
   std::error_code ignored;
   for (const fs::path& part : {part_, about_part_}) fs::remove(part, ignored);
 }
 
-std::size_t put_in_order(const TableTitle& title, const std::vector<fs::path>& parts, std::size_t rows) {
-  // Places as if one file followed the other; 0, where a header stands: no row.
-  std::vector<std::uintmax_t> places(title.cases), begins = {0};
+std::size_t write_sorted_table(const TableTitle& title, const std::vector<fs::path>& parts, std::size_t rows) {
+  // Offset of each row, counted as if the files followed each other; 0 means no row, because a header is at 0.
+  std::vector<std::uintmax_t> offsets(title.cases), file_starts = {0};
   for (const fs::path& part : parts) {
     TableLines lines(part, title.cases);
     if (lines.next() && lines.line() != title.header) lines.refuse();
-    while (lines.next()) places[lines.row()] = begins.back() + lines.begin();
-    begins.push_back(begins.back() + lines.end());
+    while (lines.next()) offsets[lines.row()] = file_starts.back() + lines.begin();
+    file_starts.push_back(file_starts.back() + lines.end());
   }
-  const std::size_t found = places.size() - static_cast<std::size_t>(std::ranges::count(places, 0u));
+  const std::size_t found = offsets.size() - static_cast<std::size_t>(std::ranges::count(offsets, 0u));
   if (found != rows) return found;
+  // Copy the rows in the order of their cases.
   AtomicFile table(title.file);
   table.append(title.header + "\n");
   std::ifstream in;
   std::size_t opened = parts.size();
   std::string line;
-  for (const std::uintmax_t place : places) {
-    if (place == 0) continue;
-    const auto file = static_cast<std::size_t>(std::ranges::upper_bound(begins, place) - begins.begin()) - 1;
-    const auto offset = static_cast<std::streamoff>(place - begins[file]);
+  for (const std::uintmax_t row_offset : offsets) {
+    if (row_offset == 0) continue;
+    const auto file =
+        static_cast<std::size_t>(std::ranges::upper_bound(file_starts, row_offset) - file_starts.begin()) - 1;
+    const auto offset = static_cast<std::streamoff>(row_offset - file_starts[file]);
     if (std::exchange(opened, file) != file) in = std::ifstream(parts[file], std::ios::binary);
     if (in.tellg() != offset) in.seekg(offset);
     if (!std::getline(in, line)) throw IoError("read", parts[file], std::make_error_code(std::errc::io_error));
     table.append(line + "\n");
   }
-  FileSet together;
-  together.write(beside(title.file), json_text(title.about));
-  together.take(std::move(table));
-  together.commit();
+  // Both files appear at the same time.
+  FileSet files;
+  files.write(description_file(title.file), json_text(title.about));
+  files.take(std::move(table));
+  files.commit();
   return found;
 }
 

@@ -13,43 +13,50 @@
 
 #include "scenarios/input/json_file.hpp"
 
-/// A table with a row for each case, which grows row by row and can be resumed.
+/// A table with a row for each case that is written row by row and can be resumed.
 namespace hapbench {
 
-/// The file of a table, its columns, and the JSON next to it, whose "definition" is equal for equal tables.
+/// File, columns and description of a table. Tables of the same sweep have the same "definition" in the description.
 struct TableTitle {
   std::filesystem::path file;
-  std::string header;     ///< line without its end; the first column is the number of the case
-  Json about;             ///< written beside the table as NAME.json
-  std::size_t cases = 0;  ///< rows have numbers below
+  std::string header;     ///< header line without newline; the first column is the number of the case
+  Json about;             ///< description, written next to the table as NAME.json
+  std::size_t cases = 0;  ///< number of cases; the numbers of rows are smaller
 };
 
-/// A table with a row for each case. It grows as FILE.part, with its JSON next to it, a row at a time and in any order,
-/// so that a killed process loses only the cases that were under way. When it is whole its rows are put in order and
-/// both files get their names. Memory: 8 bytes a case while they are put in order, before that a bit.
+/// A table with a row for each case. Rows are appended to FILE.part, one at a time and in any order, with the
+/// JSON file next to it. A killed process therefore loses only unfinished cases. When the table is complete,
+/// finish() sorts its rows and gives both files their final names. Memory: one bit for each case; 8 bytes for
+/// each case while the rows are sorted.
 class TableFile {
  public:
-  /// Whether a row that was written before stays; one that does not is written again. May throw.
+  /// Returns true if a row that was written earlier can be kept. A row that is not kept must be written again.
+  /// May throw.
   using Keep = std::function<bool(std::size_t i, std::string_view row)>;
 
-  /// Begins a table, over another one that was under way. With `keep`, goes on with it, or with a finished one: a torn
-  /// last line is dropped. Throws InputError where a table that is under way would lose its rows without `keep`, or is
-  /// another one or damaged with it, and IoError.
+  /// Starts a table.
+  /// - Without `keep`, replaces an unfinished table. Throws InputError if that table belongs to the same sweep
+  ///   and has rows.
+  /// - With `keep`, continues an unfinished or finished table, and drops an incomplete last line. Throws
+  ///   InputError if the table is damaged or belongs to another sweep.
+  /// Throws IoError.
   explicit TableFile(TableTitle title, const Keep& keep = {});
 
-  /// Rows of a table that is under way.
+  /// Returns the number of rows of an unfinished table.
   static std::size_t rows_under_way(const std::filesystem::path& file);
 
-  /// Which cases have a row.
+  /// For each case: true if it has a row.
   const std::vector<bool>& rows() const { return has_; }
   std::size_t count() const { return static_cast<std::size_t>(std::count(has_.begin(), has_.end(), true)); }
-  /// Other processes see the row when this returns. Throws IoError. Precondition: it is one line.
+  /// Appends the row of case i. Other processes can read the row when this function returns. Throws IoError.
+  /// Precondition: `row` is a single line.
   void add(std::size_t i, std::string_view row);
-  /// Puts the rows in order, by number; of two of one case the later stays. Throws IoError.
+  /// Sorts the rows by case number and completes the table. If a case has two rows, the later row is kept.
+  /// Throws IoError.
   void finish();
 
  private:
-  bool is_of_this_definition() const;
+  bool has_same_definition() const;
   void resume(const Keep& keep);
   void append(const std::string& text);
 
@@ -59,8 +66,10 @@ class TableFile {
   std::vector<bool> has_;
 };
 
-/// Gives the table its rows, those of these files in the order of their numbers, of two of one case the later, and its
-/// JSON. Returns their number; when it is not `rows`, writes nothing. Throws InputError for other tables, and IoError.
-std::size_t put_in_order(const TableTitle& title, const std::vector<std::filesystem::path>& parts, std::size_t rows);
+/// Writes the rows of several files into a single table, sorted by case number, and its JSON file. If a case
+/// has two rows, the later row is kept. Returns the number of cases with a row; if it is not `rows`, nothing is
+/// written. Throws InputError for files of other tables, and IoError.
+std::size_t write_sorted_table(const TableTitle& title, const std::vector<std::filesystem::path>& parts,
+                               std::size_t rows);
 
 }  // namespace hapbench

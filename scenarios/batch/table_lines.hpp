@@ -6,28 +6,28 @@
 #include <fstream>
 #include <string>
 
-/// Reads a table of cases line by line, whether the table is complete or was cut off.
+/// Reads a table of cases line by line, whether the table is complete or truncated.
 namespace hapbench {
 
-/// Reads the complete lines of a table: the header, then the rows, each of which begins with the number of its case.
+/// Reads the complete lines of a table: the header, then the rows. Each row begins with the number of its case.
 class TableLines {
  public:
-  /// `cases`: rows have numbers below this. A file that does not exist has no lines.
+  /// `cases`: row numbers must be smaller than this. A file that does not exist has no lines.
   TableLines(const std::filesystem::path& file, std::size_t cases);
 
-  /// Reads the next line. Returns false at the end of the file, also where the last line lacks its newline.
+  /// Reads the next line. Returns false at the end of the file, and if the last line has no newline.
   bool next();
-  /// The line that next() read, without its newline.
+  /// Returns the line that next() read, without its newline.
   const std::string& line() const { return line_; }
-  /// Offset of the beginning of this line [bytes].
+  /// Returns the offset of the start of this line in the file [bytes].
   std::uintmax_t begin() const { return begin_; }
-  /// Offset of the end of the last complete line [bytes].
+  /// Returns the offset of the end of the last complete line in the file [bytes].
   std::uintmax_t end() const { return end_; }
   /// Returns the number of the case in this row. Throws InputError.
   std::size_t row() const;
-  /// Throws InputError with the file and the number of this line.
+  /// Throws InputError with `problem`, the file and the number of this line.
   [[noreturn]] void refuse(const std::string& problem) const;
-  /// Throws InputError: this line is no row of the table.
+  /// Throws InputError, which says that this line is not a row of the table.
   [[noreturn]] void refuse() const;
 
  private:
@@ -36,7 +36,7 @@ class TableLines {
   std::ifstream in_;
   std::string line_;
   std::uintmax_t begin_ = 0, end_ = 0;
-  std::size_t number_ = 0;  ///< of this line, from 1 on
+  std::size_t number_ = 0;  ///< number of this line, counted from 1
 };
 
 }  // namespace hapbench

@@ -9,44 +9,50 @@
 namespace hapbench {
 
 Approach::Approach(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
-    : shell_(std::move(shell)), environment_(shell_->bounds()), every_(steps / kLooks + 1) {
-  looks_.reserve(kLooks);
+    : shell_(std::move(shell)), environment_(shell_->bounds()), interval_(steps / kMaxCandidates + 1) {
+  candidates_.reserve(kMaxCandidates);
 }
 
-void Approach::add(const StepRecord& record, bool looks) noexcept {
-  const Vec3& place = record.tool.pose.position;
-  const double way = (place - place_).norm();
-  if (distance_ <= way && std::isfinite(way)) longest_step_ = std::max(longest_step_, way);
-  place_ = place;
+void Approach::add(const StepRecord& record, bool before_contact) noexcept {
+  const Vec3& position = record.tool.pose.position;
+  const double step_length = (position - position_).norm();
+  // A step that began no further from the bounding box than its own length may have reached the surface.
+  if (distance_ <= step_length && std::isfinite(step_length)) longest_step_ = std::max(longest_step_, step_length);
+  position_ = position;
   time_ = record.time;
-  distance_ = distance_to(environment_, place);
-  if (!looks) return;
-  const Look look{record.time, distance_, record.tool.pose};
-  if (record.step % every_ == 0) {
-    looks_.push_back(look);
-  } else if (look.from_box <= looks_.back().from_box) {
-    looks_.back() = look;
+  distance_ = distance_to(environment_, position);
+  // Before the first contact, keep the step closest to the bounding box in each interval of the run.
+  if (!before_contact) return;
+  const Candidate candidate{record.time, distance_, record.tool.pose};
+  if (record.step % interval_ == 0) {
+    candidates_.push_back(candidate);
+  } else if (candidate.from_box <= candidates_.back().from_box) {
+    candidates_.back() = candidate;
   }
 }
 
 Approach::Closest Approach::closest_to_surface(const ToolShape& tool) const {
-  constexpr double kWithin = 0.99;
+  constexpr double kRelativeAccuracy = 0.99;
   Closest closest{std::numeric_limits<double>::infinity(), 0.0};
-  std::vector<double> least(looks_.size(), 0.0);
+  std::vector<double> lower_bounds(candidates_.size(), 0.0);
+  // Search the candidate with the smallest lower bound, until no lower bound is below the smallest distance
+  // found.
   for (;;) {
-    const auto next = std::ranges::min_element(least);
-    if (next == least.end() || *next >= kWithin * closest.distance) break;
-    const Look& look = looks_[static_cast<std::size_t>(next - least.begin())];
-    const double gap = gap_between(tool, look.pose, *shell_).distance;
-    if (gap < closest.distance) closest = {gap, look.time};
-    for (std::size_t i = 0; i < looks_.size(); ++i)
-      least[i] = std::max(least[i], gap - tool.moved_at_most(look.pose, looks_[i].pose));
+    const auto next = std::ranges::min_element(lower_bounds);
+    if (next == lower_bounds.end() || *next >= kRelativeAccuracy * closest.distance) break;
+    const Candidate& candidate = candidates_[static_cast<std::size_t>(next - lower_bounds.begin())];
+    const double gap = gap_between(tool, candidate.pose, *shell_).distance;
+    if (gap < closest.distance) closest = {gap, candidate.time};
+    for (std::size_t i = 0; i < candidates_.size(); ++i)
+      lower_bounds[i] = std::max(lower_bounds[i], gap - tool.moved_at_most(candidate.pose, candidates_[i].pose));
+    // This candidate is finished.
     *next = std::numeric_limits<double>::infinity();
   }
-  if (closest.time != time_ || looks_.size() < 2) return closest;
-  const Look& before = *(looks_.end() - 2);
-  const double nearer = gap_between(tool, before.pose, *shell_).distance - closest.distance;
-  if (nearer > 0.0) closest.rest = closest.distance / nearer * (time_ - before.time);
+  // If the tool was closest in the last step, extrapolate its approach to the surface.
+  if (closest.time != time_ || candidates_.size() < 2) return closest;
+  const Candidate& before = *(candidates_.end() - 2);
+  const double approached = gap_between(tool, before.pose, *shell_).distance - closest.distance;
+  if (approached > 0.0) closest.time_to_contact = closest.distance / approached * (time_ - before.time);
   return closest;
 }
 

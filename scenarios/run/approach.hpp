@@ -13,43 +13,49 @@
 
 namespace hapbench {
 
-/// The way of the tip centre near the environment, and how close a tool came that touches nothing. A row costs some
-/// nanoseconds; the distances from the surface itself are looked up after the run.
+/// Observes how close the tool comes to the environment before the first contact. Each step costs a few
+/// nanoseconds, because it only measures the distance of the tip centre from the environment's bounding box.
+/// Distances from the surface itself are computed after the run.
 class Approach {
  public:
-  /// The shell has points; the run has at most so many steps.
+  /// Precondition: `shell` has at least one point. `steps`: largest number of steps of the run.
   Approach(std::shared_ptr<const PointShell> shell, std::uint64_t steps);
 
-  /// `looks`: the tool has touched nothing yet.
-  void add(const StepRecord& record, bool looks) noexcept;
+  /// Adds a step. `before_contact`: true if the tool has not touched the environment in this step or any
+  /// earlier step.
+  void add(const StepRecord& record, bool before_contact) noexcept;
 
-  double longest_step() const { return longest_step_; }  ///< OutcomeObserver::longest_step [m]
-  double distance() const { return distance_; }          ///< in the last row from the box; 0 within it [m]
+  double longest_step() const { return longest_step_; }  ///< as defined at OutcomeObserver::longest_step() [m]
+  /// Distance of the tip centre from the environment's bounding box in the last step [m]; 0 inside the box.
+  double distance() const { return distance_; }
   const Box& environment() const { return environment_; }
 
   struct Closest {
-    double distance, time;  ///< of the tool from the nearest point [m], and when [s]
-    /// Time to reach the surface at the speed of the last rows [s]; empty unless the last row was the closest.
-    std::optional<double> rest = {};
+    double distance, time;  ///< distance of the tool from the nearest surface point [m]; time of this step [s]
+    /// Time to reach the surface at the speed of the last steps [s]. Empty unless the tool was closest in the
+    /// last step.
+    std::optional<double> time_to_contact = {};
   };
-  /// In up to 256 rows before the first contact, of as many parts of the run those closest to the environment's box;
-  /// within 1 %. Each search among all points tells how close the other rows can be at the least, since no point of the
-  /// tool comes closer than it moves: a straight approach takes two.
+  /// Returns the smallest distance of the tool from the surface points before the first contact, within 1 %.
+  /// Compares up to 256 steps: the run is divided into at most 256 intervals, and from each interval the step
+  /// closest to the environment's bounding box is a candidate. Each search over all points also gives a lower
+  /// bound for the other candidates, because no point of the tool approaches the surface by more than it moves.
+  /// A straight approach needs two searches.
   Closest closest_to_surface(const ToolShape& tool) const;
 
  private:
-  static constexpr std::size_t kLooks = 256;
-  struct Look {
+  static constexpr std::size_t kMaxCandidates = 256;
+  struct Candidate {
     double time, from_box;
     ToolPose pose;
   };
   std::shared_ptr<const PointShell> shell_;
   Box environment_;
-  Vec3 place_ = Vec3::Zero();  ///< in the last row
-  double time_ = 0.0;          ///< of the last row
+  Vec3 position_ = Vec3::Zero();  ///< of the tip centre in the last step [m]
+  double time_ = 0.0;             ///< of the last step [s]
   double distance_ = std::numeric_limits<double>::infinity(), longest_step_ = 0.0;
-  std::uint64_t every_;
-  std::vector<Look> looks_;
+  std::uint64_t interval_;
+  std::vector<Candidate> candidates_;
 };
 
 }  // namespace hapbench

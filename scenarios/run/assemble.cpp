@@ -19,10 +19,11 @@
 namespace hapbench {
 namespace {
 
-/// Room for the contacts of a module, which need not come from triangles.
-constexpr std::size_t kMostModuleContacts = 10'000;
+/// Capacity for the contacts of a module in one step. A module may compute its contacts without triangles, so
+/// that the size of the mesh gives no bound.
+constexpr std::size_t kMaxModuleContacts = 10'000;
 
-/// The numbers of all elements, one after the other; null without elements.
+/// Returns the coordinates or indices of all elements as one contiguous array; null if there are no elements.
 template <class Element>
 const auto* numbers_in(const std::vector<Element>& elements) {
   return elements.empty() ? nullptr : elements.front().data();
@@ -34,7 +35,7 @@ std::unique_ptr<ContactSource> make_module_contacts(const Scenario& scenario, co
   const TriangleSoup surface = environment_surface(scenario, files);
   const HapbenchRun run = {.data = nullptr,
                            .stiffness = scenario.rendering.stiffness,
-                           .capacity = kMostModuleContacts,
+                           .capacity = kMaxModuleContacts,
                            .vertices = numbers_in(surface.vertices),
                            .vertex_count = surface.vertices.size(),
                            .triangles = numbers_in(surface.triangles),
@@ -44,7 +45,8 @@ std::unique_ptr<ContactSource> make_module_contacts(const Scenario& scenario, co
   return module_contacts(scenario.directory / scenario.rendering.contact_file, scenario.rendering.contact_config, run);
 }
 
-/// The rules in an order that no scenario changes: the first that holds gives the run its outcome.
+/// Returns the conditions that end the run early. Their order does not depend on the scenario: the first
+/// condition that holds determines the outcome.
 std::vector<StopRule> stop_rules(const Scenario& scenario) {
   const auto wants = [&](StopCondition rule) { return std::ranges::count(scenario.time.stop_when, rule) > 0; };
   const Vec3 up = scenario.motion.orientation ? scenario.motion.orientation->up.normalized() : Vec3(0.0, 0.0, 1.0);
@@ -92,6 +94,7 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
   parts.tool = make_tool(scenario, files);
   parts.shell = std::move(shell);
   const RenderingConfig& rendering = scenario.rendering;
+  // Create the contact source: springs, a recorded trace, a module, or our search over the point shell.
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) {
     parts.springs = std::make_shared<const SpringSet>(make_springs(scenario));
     parts.source = std::make_unique<SpringSource>(parts.springs);
@@ -104,11 +107,13 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
     parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search),
                                                  make_depth_model(rendering), rendering.skips);
   }
+  // Multi-rate contacts wrap the source and evaluate it only at some steps.
   if (rendering.late && rendering.late->any()) {
     parts.source = std::make_unique<LateContacts>(std::move(parts.source), *rendering.late,
                                                   parts.springs && parts.springs->bilateral,
                                                   derived_seed(scenario, trial, RandomUse::lost_queries));
   }
+  // Add the force law, hand, motion and device.
   parts.algorithm = make_algorithm(rendering);
   add_hand_and_motion(scenario, files, trial, parts);
   parts.device = make_device(scenario, trial);

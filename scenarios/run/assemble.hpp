@@ -10,19 +10,22 @@
 
 namespace hapbench {
 
-/// The numbers of the run: steps, start, integrator, bounds.
+/// Returns the numeric settings of the run: step, number of steps, initial state, integrator, and the bounds at
+/// which a run counts as diverged.
 SimulationConfig simulation_config(const Scenario& scenario);
 
-/// All parts of the run. Precondition: `shell` is make_shell of this scenario. Throws InputError when a named
-/// file cannot be used. With skips off (RenderingConfig), every step compares every point with the tool.
+/// Builds the tool, contact source, force law, hand, motion and device of one trial. Preconditions: the
+/// scenario is checked, and `shell` is make_shell() of this scenario. Throws InputError if a named file cannot
+/// be used. With Skips::off (RenderingConfig), every step compares every point with the tool.
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
                          Trial trial);
-/// The only or first run, with a shell of its own. For a scenario that is built in code: it needs no CheckedScenario,
-/// because its files are read here.
+/// Builds the parts of the first trial and its point shell. For scenarios that are built in code: this overload
+/// reads the scenario's files itself, and so needs no CheckedScenario.
 SimulationParts assemble(const Scenario& scenario);
 
-/// The scenario's environment as triangles: those whose vertices our shell has, or those of its mesh file; without
-/// triangles, the points of other environments. Throws InputError when the file cannot be used.
+/// Returns the surface of the environment: the triangles that our shell's points come from, or the triangles of
+/// the mesh file. For an environment without triangles, returns only the points, as vertices. Throws InputError
+/// if the file cannot be used.
 TriangleSoup environment_surface(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

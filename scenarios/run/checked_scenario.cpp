@@ -13,7 +13,7 @@
 namespace hapbench {
 namespace {
 
-/// Throws InputError if the run records a force reference that the stroke does not have.
+/// Throws InputError if the scenario records a force reference but the stroke file has no measured force.
 void check_force_reference(const LoadedScenario& loaded, NamedFile& file) {
   const Scenario& scenario = loaded.scenario;
   if (!scenario.record.force_reference || scenario.reference_force || file.stroke()->force) return;
@@ -22,6 +22,7 @@ void check_force_reference(const LoadedScenario& loaded, NamedFile& file) {
           fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file.path().string()));
 }
 
+/// Returns a warning if the stroke's times and the run's times do not overlap.
 std::optional<Warning> clock_warning(const Stroke& stroke, const TimeFields& time) {
   const double start = stroke.motion.samples().front().time, stop = stroke.motion.samples().back().time;
   const double end = time.step * static_cast<double>(time.steps - 1);
@@ -38,17 +39,20 @@ std::optional<Warning> clock_warning(const Stroke& stroke, const TimeFields& tim
 CheckedScenario checked(LoadedScenario loaded) {
   const Scenario& scenario = loaded.scenario;
   std::vector<Warning> warnings;
+  // Load the library of contacts.
   if (scenario.rendering.contact_source == kContactPlugin)
     with_file(loaded, [&] { require_contacts_in(scenario.directory / scenario.rendering.contact_file); });
+  // Read and parse each file, and collect its warnings.
   for (const auto& file : loaded.files.all()) {
     try {
       file->check();
-      if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // it must also be closed
+      if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // the tool's mesh must also be closed
     } catch (const InputError& error) {
       fail_in({.file = file_of(loaded, file->pointer()), .pointer = file->pointer()}, error.what());
     }
     for (Warning& warning : file->warnings()) warnings.push_back(std::move(warning));
   }
+  // Compare the stroke with the run.
   if (NamedFile* const file = loaded.files.find(kMotionFile)) {
     check_force_reference(loaded, *file);
     if (auto warning = clock_warning(*file->stroke(), scenario.time)) warnings.push_back(std::move(*warning));

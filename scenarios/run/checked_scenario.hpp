@@ -8,17 +8,20 @@
 
 namespace hapbench {
 
-/// A scenario whose named files are known to be usable. Only checked() makes one, so that a function that runs a
-/// CheckedScenario cannot be called before the check, and no scenario is checked twice.
+/// A scenario whose named files are known to be usable. Only checked() creates an instance. A function that
+/// takes a CheckedScenario therefore cannot be called with an unchecked scenario, and no scenario is checked
+/// twice.
 ///
-/// A scenario that is built in code without files is checked in the same way, for which checked() then has nothing to
-/// do. An experiment that needs parts of its own, such as another observer, calls assemble() and steps a Simulation.
+/// A scenario that is built in code without files also passes through checked(), which then has nothing to
+/// check. An experiment that needs other parts, such as another observer, calls assemble() and steps a
+/// Simulation itself.
 class CheckedScenario {
  public:
   const LoadedScenario& loaded() const { return loaded_; }
   const Scenario& scenario() const { return loaded_.scenario; }
   const NamedFiles& files() const { return loaded_.files; }
-  /// Warnings about the files: a mesh that is open or was mended, and a stroke at other times than the run.
+  /// Warnings about the files: a mesh that is open or was repaired, or a stroke whose times do not overlap the
+  /// run.
   const std::vector<Warning>& file_warnings() const { return file_warnings_; }
 
  private:
@@ -30,9 +33,9 @@ class CheckedScenario {
   std::vector<Warning> file_warnings_;
 };
 
-/// Reads and parses the files that the scenario names, and loads its library of contacts, so that faults in them are
-/// found before anything is written. Cost: that of reading; some microseconds for each file that this process has read
-/// before and that has not changed. Throws InputError.
+/// Reads and parses the files that the scenario names, and loads its library of contacts, so that errors are
+/// found before any result is written. Cost: reading the files; a few microseconds for each file that this
+/// process has already read and that has not changed since. Throws InputError.
 CheckedScenario checked(LoadedScenario loaded);
 
 }  // namespace hapbench

@@ -17,10 +17,12 @@
 namespace hapbench {
 namespace {
 
-constexpr std::uint64_t kLeastRows = 10;  ///< of a quarter that tells of motion
+/// Smallest number of steps in a quarter from which motion and frequency are computed.
+constexpr std::uint64_t kMinQuarterSteps = 10;
 
 using Number = std::optional<double>;
 
+/// Returns a / b; empty if a number is missing or b is not positive.
 Number quotient(const Number& a, const Number& b) {
   return a && b && *b > 0.0 ? Number(*a / *b) : std::nullopt;
 }
@@ -29,34 +31,36 @@ Number share(std::uint64_t rows, std::uint64_t of) {
   return quotient(static_cast<double>(rows), static_cast<double>(of));
 }
 
+/// A finished run, with the quantities that the rules evaluate.
 struct DiagnosedRun {
   const LoadedScenario& loaded;
   const Result& result;
-  const SeenRows& rows;
-  const ToolShape* tool;  ///< null for rules of metrics alone
+  const RunObservations& observations;
+  const ToolShape* tool;  ///< null if only rules that use metrics are evaluated
 
   const Scenario& scenario() const { return loaded.scenario; }
   template <class... Outcomes>
   bool ended(Outcomes... outcomes) const {
     return ((result.end.outcome == outcomes) || ...);
   }
-  /// Empty where the run has no such metric, or the metric has no value.
+  /// Returns a metric's value; empty if the run does not have the metric or it has no value.
   Number metric(std::string_view name) const { return number_of(result.metrics, name); }
-  /// A metric over the mean force in settled contact, which short contacts do not have.
+  /// Returns a metric divided by the mean force in settled contact; empty if there was no settled contact.
   Number of_mean_force(const char* name) const { return quotient(metric(name), metric("force_mean_in_contact_N")); }
   Number half_width() const { return has_springs() ? std::nullopt : Number(tool->half_width()); }
   bool vibrates() const { return metric("vibration_last_quarter_m_per_s").value_or(0.0) > kMostVibration; }
   bool is_free() const { return position_is_free(scenario().motion); }
   bool has_springs() const { return std::holds_alternative<SpringsEnvironment>(scenario().environment); }
-  /// Empty for runs whose numbers mean something else. Springs that come to rest have no force that a step of it could
-  /// be compared with.
+  /// Returns `number` if it is meaningful for this run, else an empty value. Numbers are not meaningful if the
+  /// run diverged, went through the surface or never touched. In a run with springs that come to rest, the mean
+  /// force is no reference for force steps.
   Number if_completed(const Number& number) const {
     if (has_springs() && !vibrates()) return std::nullopt;
     return ended(Outcome::diverges, Outcome::went_through, Outcome::no_contact) ? std::nullopt : number;
   }
 };
 
-// ---- Numbers
+// ---- Numbers that the rules compare with their thresholds
 
 template <Outcome... kOutcomes>
 Number ended(const DiagnosedRun& run) {
@@ -64,10 +68,10 @@ Number ended(const DiagnosedRun& run) {
 }
 
 Number longest_step(const DiagnosedRun& run) {
-  return quotient(run.rows.longest_step, run.half_width());
+  return quotient(run.observations.longest_step, run.half_width());
 }
 
-bool steps_too_far(const DiagnosedRun& run) {
+bool step_exceeds_half_width(const DiagnosedRun& run) {
   return longest_step(run).value_or(0.0) > 1.0;
 }
 
@@ -75,50 +79,57 @@ Number buzz(const DiagnosedRun& run) {
   return run.if_completed(run.of_mean_force("force_rms_above_30Hz_N"));
 }
 
-/// Half the sign changes of the strongest component of the force above 30 Hz in the last quarter, over its time.
+/// Returns the frequency of the vibration as text: half the sign changes of the strongest component of the
+/// force above 30 Hz in the last quarter, divided by the duration of this quarter. Empty if there is no
+/// vibration.
 std::string buzz_frequency(const DiagnosedRun& run) {
-  const SeenRows::Quarter& last = run.rows.last_quarter;
+  const RunObservations::Quarter& last = run.observations.last_quarter;
   Eigen::Index axis = 0;
-  if (last.rows < kLeastRows || !(last.high_squares.maxCoeff(&axis) > 0.0)) return "";
-  const double turns = static_cast<double>(last.high_turns[static_cast<std::size_t>(axis)]);
+  if (last.rows < kMinQuarterSteps || !(last.high_squares.maxCoeff(&axis) > 0.0)) return "";
+  const double turns = static_cast<double>(last.high_sign_changes[static_cast<std::size_t>(axis)]);
   return fmt::format(", at about {:.0f} Hz", 0.5 * turns / (run.scenario().time.step * static_cast<double>(last.rows)));
 }
 
-/// K over the edge of the linear loop in contact, along the stiffest contact seen; none without contact or loop. To six
-/// digits, so that it does not depend on how a build rounds.
-Number share_of_edge(const DiagnosedRun& run) {
+/// Returns K divided by the largest stable K of the linear loop in contact. The loop uses the stiffest contact
+/// of the run (largest stiffness ratio lambda). Empty without contact or without a loop. Rounded to six digits,
+/// so that the result does not depend on how a build rounds.
+Number ratio_to_stability_limit(const DiagnosedRun& run) {
   const Number lambda = run.metric("ratio_max");
   const double K = run.scenario().rendering.stiffness;
   if (!lambda || !(*lambda > 0.0) || !(K > 0.0) || !run.is_free()) return std::nullopt;
   if (contact_step(run.scenario(), *lambda).size() == 0) return std::nullopt;
-  constexpr double kLeast = 1e-9, kMost = 2.0;  // of K: beyond, nothing is wrong
+  constexpr double kMin = 1e-9, kMax = 2.0;  // search range, in units of K; above it, K is far below the limit
   Scenario at = run.scenario();
-  const double edge = first_edge(kLeast * K, kMost * K, [&](double stiffness) {
+  const double limit = first_edge(kMin * K, kMax * K, [&](double stiffness) {
     at.rendering.stiffness = stiffness;
     return contact_step(at, *lambda);
   });
-  return rounded_to_digits(K / std::max(kLeast * K, edge), 6);
+  return rounded_to_digits(K / std::max(kMin * K, limit), 6);
 }
 
-/// Where the run vibrates as at an edge, left its bounds or was thrown off.
-Number edge(const DiagnosedRun& run) {
-  const bool shakes = run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates();
-  return shakes || buzz(run).value_or(0.0) > 0.1 ? share_of_edge(run) : std::nullopt;
+/// Returns ratio_to_stability_limit() if the run diverged, lost contact or vibrates, else an empty value.
+Number stability_limit_ratio(const DiagnosedRun& run) {
+  const bool vibrates = run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates();
+  return vibrates || buzz(run).value_or(0.0) > 0.1 ? ratio_to_stability_limit(run) : std::nullopt;
 }
 
+/// Returns the point spacing divided by the spacing at which four points would be in contact. The number of
+/// contacts is proportional to 1 / spacing^2. Empty if the tip moved less than ten spacings in contact.
 Number coarseness(const DiagnosedRun& run) {
-  constexpr double kEnough = 4.0, kLeastWay = 10.0;  // contacts; distances of points
+  constexpr double kSufficientContacts = 4.0,
+                   kMinSpacings = 10.0;  // contacts in a step; multiples of the point spacing
   const auto distance = point_distance(run.loaded);
   const Number contacts = quotient(run.metric("colliding_mean"), run.metric("contact_share"));
-  if (!distance || !contacts || run.rows.way_in_contact < kLeastWay * distance->metres) return std::nullopt;
-  return run.if_completed(std::sqrt(kEnough / *contacts));
+  if (!distance || !contacts || run.observations.path_in_contact < kMinSpacings * distance->metres) return std::nullopt;
+  return run.if_completed(std::sqrt(kSufficientContacts / *contacts));
 }
 
-/// The largest force that a step of the encoder makes through B.
+/// Returns the largest damping force that one encoder increment causes, divided by the mean force.
 Number encoder_force(const DiagnosedRun& run) {
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&run.scenario().device);
   if (device == nullptr) return std::nullopt;
-  constexpr int kSamples = 100;  // in which a filter of any order has its peak, or passes next to nothing
+  // Steps in which a velocity filter of any order reaches its peak or passes almost nothing.
+  constexpr int kSamples = 100;
   VelocityFilter filter(device->velocity_filter, run.scenario().time.step);
   filter.reset(Vec3::Zero());
   double fastest = 0.0;
@@ -126,7 +137,8 @@ Number encoder_force(const DiagnosedRun& run) {
   return quotient(normal_damping(run.scenario().rendering) * fastest, run.metric("force_mean_in_contact_N"));
 }
 
-/// B dt / m of what moves, along the stiffest contact, over the most that the integrator bears; a handle bears 2.
+/// Returns B dt / m along the stiffest contact, divided by the largest value that the integrator can handle. m
+/// is the mass of the handle, or of the tool without a device. The limit for a handle is 2.
 Number damping(const DiagnosedRun& run) {
   const Scenario& s = run.scenario();
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&s.device);
@@ -138,17 +150,21 @@ Number damping(const DiagnosedRun& run) {
   return B * s.time.step / mass / (device != nullptr ? 2.0 : s.integrator.type->damper_limit);
 }
 
+/// Returns the displacement of the tip perpendicular to the force in the last quarter, divided by the tool's
+/// half width. Only for a free tool that stays in contact and that no script moves.
 Number drift(const DiagnosedRun& run) {
-  const SeenRows& rows = run.rows;
-  const SeenRows::Quarter& last = rows.last_quarter;
-  if (last.rows < kLeastRows || !last.touches || is_moved(run.scenario()) || !run.is_free()) return std::nullopt;
-  const Vec3 push = rows.last_force.normalized(), way = rows.tip - last.start;
-  return run.if_completed(quotient((way - way.dot(push) * push).norm(), run.half_width()));
+  const RunObservations& rows = run.observations;
+  const RunObservations::Quarter& last = rows.last_quarter;
+  if (last.rows < kMinQuarterSteps || !last.always_in_contact || is_moved(run.scenario()) || !run.is_free())
+    return std::nullopt;
+  // Remove the component along the force.
+  const Vec3 push = rows.last_force.normalized(), motion = rows.tip - last.start;
+  return run.if_completed(quotient((motion - motion.dot(push) * push).norm(), run.half_width()));
 }
 
-// ---- What is said of some runs only
+// ---- Sentences that depend on the run
 
-/// Those of the laws that the run does not use, with "or" between.
+/// Returns the names in `laws` without the run's own law, joined by "or".
 std::string other_laws(const DiagnosedRun& run, std::initializer_list<const char*> laws) {
   std::string text;
   for (const char* law : laws)
@@ -159,25 +175,25 @@ std::string other_laws(const DiagnosedRun& run, std::initializer_list<const char
 constexpr const char* kShorterStep = "a shorter time.step_s: in one step the tool moves further than its half width";
 
 std::string against_sinking(const DiagnosedRun& run) {
-  if (steps_too_far(run)) return kShorterStep;
+  if (step_exceeds_half_width(run)) return kShorterStep;
   if (!run.is_free()) return "another motion.position, which leads the tool there";
   return "more K or a gentler hand; another law where it is also soft";
 }
 
 std::string against_loss(const DiagnosedRun& run) {
-  if (steps_too_far(run)) return kShorterStep;
+  if (step_exceeds_half_width(run)) return kShorterStep;
   if (run.ended(Outcome::no_contact))
     return "environment.scale, initial.position_m and the hand's direction: \"hapbench validate\" shows them; more "
            "time.steps where the tool came nearer to the end";
   return "less K where it is beyond the edge, or a hand whose way ends on the surface";
 }
 
-std::string softer_never(const DiagnosedRun& run) {
+std::string laws_that_never_soften(const DiagnosedRun& run) {
   return "a law that does not get softer with contacts, such as " +
          other_laws(run, {"shaped_stiffness", "exact_shaping", "proxy"});
 }
 
-std::string harder_never(const DiagnosedRun& run) {
+std::string laws_that_never_add_up(const DiagnosedRun& run) {
   return "K divided by that, or a law whose contacts do not add up, such as " +
          other_laws(run, {"shaped_stiffness", "mean"});
 }
@@ -188,26 +204,27 @@ std::string point_spacing(const DiagnosedRun& run) {
 
 // ---- Rules
 
-/// A sentence, the same for every run or by the run.
+/// A sentence that is either constant or computed from the run.
 struct Sentence {
-  constexpr Sentence(const char* words) : always(words) {}                              // NOLINT: rows of a table
-  constexpr Sentence(std::string (*words)(const DiagnosedRun& run)) : of_run(words) {}  // NOLINT
-  std::string text(const DiagnosedRun& run) const { return of_run != nullptr ? of_run(run) : always; }
+  constexpr Sentence(const char* sentence) : constant(sentence) {}  // NOLINT: for the table below
+  constexpr Sentence(std::string (*function)(const DiagnosedRun& run)) : of_run(function) {}  // NOLINT
+  std::string text(const DiagnosedRun& run) const { return of_run != nullptr ? of_run(run) : constant; }
 
-  const char* always = "";
+  const char* constant = "";
   std::string (*of_run)(const DiagnosedRun& run) = nullptr;
 };
 
-/// A rule of the diagnosis. Its advice names no law that the run uses, and no cause that was not measured.
+/// A rule of the diagnosis. Its advice never names the run's own law, and never names a cause that was not
+/// measured.
 struct Rule {
-  const char *name, *number, *unit;  ///< number: what it is
-  double threshold;                  ///< something is wrong where the number is larger
-  const char* says;                  ///< what is wrong, {} for the number
+  const char *name, *number, *unit;  ///< name of the rule; description of its number; unit of the number
+  double threshold;                  ///< the rule reports a problem if the number is larger
+  const char* says;                  ///< the problem; {} stands for the number
   Number (*value)(const DiagnosedRun& run);
   Sentence attempt;
-  Sentence more = "";  ///< further facts, behind what is wrong
-  bool quiet = false;  ///< one of diagnosis_rules(true)
-  bool warns = false;  ///< told as a warning of a run without a diagnosis; by metrics alone
+  Sentence more = "";          ///< further facts, appended to the problem
+  bool low_vibration = false;  ///< included in diagnosis_rules(true)
+  bool warns = false;          ///< reported as a warning for runs without a diagnosis; such a rule uses metrics only
 };
 
 constexpr Rule kRules[] = {
@@ -224,7 +241,7 @@ constexpr Rule kRules[] = {
      "near the surface a step takes the tool {} of its half widths further", longest_step,
      "a shorter time.step_s, a slower hand"},
     {"edge", "K over the edge of the loop of device, tool and stiffest contact, without dry friction, where it shakes",
-     "1", 0.8, "K is {} times the edge of the stable loop", edge,
+     "1", 0.8, "K is {} times the edge of the stable loop", stability_limit_ratio,
      "less K, a shorter time.step_s, less delay or filter where there is one; \"hapbench tune\""},
     {"buzz", "force above 30 Hz over the mean force in settled contact", "1", 0.1,
      "it buzzes: the force above 30 Hz is {} of the mean force", buzz,
@@ -250,9 +267,9 @@ constexpr Rule kRules[] = {
      "more K; \"hapbench tune --bound inside_max_m=3e-4\" tells whether the loop allows it"},
     {"soft", "K over the stiffness along the softest contact", "1", 3.0,
      "along some contact it is {} times as soft as K says",
-     [](const DiagnosedRun& r) { return quotient(1.0, r.metric("ratio_min")); }, softer_never},
+     [](const DiagnosedRun& r) { return quotient(1.0, r.metric("ratio_min")); }, laws_that_never_soften},
     {"hard", "stiffness along the stiffest contact over K", "1", 3.0, "contacts add up to {} K",
-     [](const DiagnosedRun& r) { return r.metric("ratio_max"); }, harder_never},
+     [](const DiagnosedRun& r) { return r.metric("ratio_max"); }, laws_that_never_add_up},
     {"damping", "B dt / m of the mass that moves, along the stiffest contact, over the most that a step bears", "1",
      0.5, "the damping is {} of the most that a step bears", damping,
      "less zeta, a shorter time.step_s, a smaller rendering.limits.max_damping_N_s_per_m"},
@@ -265,11 +282,11 @@ constexpr Rule kRules[] = {
      "less zeta, a finer encoder, a low pass as device.velocity_filter or a lower cutoff_Hz of it"},
     {"saturated", "share of the rows in contact at the largest force", "1", 0.01,
      "the force is saturated in {} of the contact",
-     [](const DiagnosedRun& r) { return share(r.rows.at_force_limit, r.rows.touching); },
+     [](const DiagnosedRun& r) { return share(r.observations.at_force_limit, r.observations.in_contact); },
      "less K or a gentler hand; a stronger device, a larger rendering.limits.max_force_N where that is given"},
     {"limiter", "share of the rows in contact with more hand force than the device's limiter lets in", "1", 0.2,
      "the limiter of the hand's force cuts in {} of the contact",
-     [](const DiagnosedRun& r) { return share(r.rows.at_limiter, r.rows.touching); },
+     [](const DiagnosedRun& r) { return share(r.observations.at_input_limit, r.observations.in_contact); },
      "a gentler hand; device.force_limit_N is f_th of 2.7"},
     {"bounces", "landings a second of a tool that no script leads", "1/s", 8.0, "it bounces: {} landings a second",
      [](const DiagnosedRun& r) {
@@ -288,7 +305,8 @@ constexpr Rule kRules[] = {
      "rendering.friction {\"type\": \"dry\"} with enough mu; viscous friction never holds"},
 };
 
-/// What the rules find that have this mark, all with null; with `beyond_threshold` only where something is wrong.
+/// Evaluates the rules for which the member `mark` is true, or all rules if `mark` is null. With
+/// `beyond_threshold`, returns only the rules whose threshold is exceeded.
 std::vector<Diagnosed> diagnosed(const DiagnosedRun& run, bool Rule::*mark, bool beyond_threshold) {
   std::vector<Diagnosed> found;
   for (const Rule& rule : kRules) {
@@ -304,20 +322,21 @@ std::vector<Diagnosed> diagnosed(const DiagnosedRun& run, bool Rule::*mark, bool
 
 }  // namespace
 
-std::vector<Diagnosed> diagnosis_rules(bool quiet) {
+std::vector<Diagnosed> diagnosis_rules(bool low_vibration) {
   std::vector<Diagnosed> rules;
   for (const Rule& rule : kRules)
-    if (rule.quiet || !quiet) rules.push_back({rule.name, rule.number, rule.unit, 0.0, rule.threshold, "", ""});
+    if (rule.low_vibration || !low_vibration)
+      rules.push_back({rule.name, rule.number, rule.unit, 0.0, rule.threshold, "", ""});
   return rules;
 }
 
-std::vector<Diagnosed> diagnosis_findings(const LoadedScenario& loaded, const Result& result, const SeenRows& rows,
-                                          const ToolShape& tool) {
-  return diagnosed({loaded, result, rows, &tool}, nullptr, /*beyond_threshold=*/true);
+std::vector<Diagnosed> diagnosis_findings(const LoadedScenario& loaded, const Result& result,
+                                          const RunObservations& observations, const ToolShape& tool) {
+  return diagnosed({loaded, result, observations, &tool}, nullptr, /*beyond_threshold=*/true);
 }
 
 std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result) {
-  return diagnosed({loaded, result, {}, nullptr}, &Rule::quiet, /*beyond_threshold=*/false);
+  return diagnosed({loaded, result, {}, nullptr}, &Rule::low_vibration, /*beyond_threshold=*/false);
 }
 
 std::vector<Warning> rule_warnings(const LoadedScenario& loaded, const Result& result) {

@@ -7,22 +7,28 @@
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/tool/tool_shape.hpp"
 
-/// What is wrong with a run and what to try, by rules: a metric, or a number of an observer, above a threshold.
+/// Rules that report what is wrong with a run and what to try. Each rule compares a number (a metric, or a
+/// quantity that DiagnosisObserver measures) with a threshold.
 namespace hapbench {
 
-/// The rules without a value and texts, in the order in which they are told: how the run ended, then why. With `quiet`
-/// those that a quiet run keeps: what is felt besides the force, told by metrics alone.
-std::vector<Diagnosed> diagnosis_rules(bool quiet = false);
+/// Returns all rules with their thresholds but without values and texts, in the order of the report: first how
+/// the run ended, then possible causes. With `low_vibration`, returns only the rules for disturbances that a
+/// hand feels in addition to the force (vibration, force steps, force reversals, created energy). These rules
+/// use metrics only.
+std::vector<Diagnosed> diagnosis_rules(bool low_vibration = false);
 
-/// What the rules of a quiet run find in this result, also below their thresholds; empty where they have no number.
+/// Returns the values of the diagnosis_rules(true) for this result, also values below their thresholds. A rule
+/// whose number has no value is left out.
 std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result);
 
-/// What is wrong with the run that gave this result and these rows, in the order of the rules. Some ms where a loop is
-/// solved.
-std::vector<Diagnosed> diagnosis_findings(const LoadedScenario& loaded, const Result& result, const SeenRows& rows,
-                                          const ToolShape& tool);
+/// Returns the rules whose threshold this run exceeds, in the order of diagnosis_rules(). `observations` and
+/// `tool` belong to the run that gave `result`. Cost: a few ms if the eigenvalues of a linear loop are
+/// computed.
+std::vector<Diagnosed> diagnosis_findings(const LoadedScenario& loaded, const Result& result,
+                                          const RunObservations& observations, const ToolShape& tool);
 
-/// What is told of a run that nobody diagnoses, as one of many: that it is not the law which made its numbers.
+/// Returns warnings for a run without a diagnosis, such as one of many runs of a sweep. They report effects of
+/// the simulation that can be mistaken for effects of the force law, such as unstable explicit friction.
 std::vector<Warning> rule_warnings(const LoadedScenario& loaded, const Result& result);
 
 }  // namespace hapbench

@@ -10,14 +10,14 @@
 namespace hapbench {
 namespace {
 
-constexpr double kAtLimit = 0.999;  ///< of a limit, from which on a force is at it
+constexpr double kAtLimit = 0.999;  ///< fraction of a limit from which a force counts as being at the limit
 
-/// The largest force that the device or the rendering lets through [N]; none without limits.
+/// Returns the largest force that the device and the rendering allow [N]; empty without limits.
 std::optional<double> force_limit(const Scenario& scenario) {
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
-  std::optional<double> most = device != nullptr ? device->force_max : std::nullopt;
-  if (const auto& limit = scenario.rendering.max_force) most = std::min(most.value_or(*limit), *limit);
-  return most;
+  std::optional<double> limit = device != nullptr ? device->force_max : std::nullopt;
+  if (const auto& rendered = scenario.rendering.max_force) limit = std::min(limit.value_or(*rendered), *rendered);
+  return limit;
 }
 
 }  // namespace
@@ -29,37 +29,40 @@ DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
       high_pass_(vibration_filter(scenario.time.step)) {}
 
 void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
+  // A new trial begins: the high-pass filter starts at the first force.
   if (record.step == 0) {
-    touched_ = false;
+    was_in_contact_ = false;
     high_.setZero();
     if (high_pass_) high_pass_->settle_at(record.force.rendered);
   }
   if (record.colliding > 0) add_contact(record);
   add_to_quarter(record);
-  touched_ = record.colliding > 0;
-  seen_.tip = record.tool.pose.position;
-  seen_.last_force = record.force.rendered;
+  was_in_contact_ = record.colliding > 0;
+  observations_.tip = record.tool.pose.position;
+  observations_.last_force = record.force.rendered;
 }
 
 void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
   const Vec3& f = record.force.rendered;
-  ++seen_.touching;
-  if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++seen_.at_force_limit;
-  if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++seen_.at_limiter;
-  if (touched_) seen_.way_in_contact += (record.tool.pose.position - seen_.tip).norm();
+  ++observations_.in_contact;
+  if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++observations_.at_force_limit;
+  if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++observations_.at_input_limit;
+  if (was_in_contact_) observations_.path_in_contact += (record.tool.pose.position - observations_.tip).norm();
 }
 
 void DiagnosisObserver::add_to_quarter(const StepRecord& record) noexcept {
-  SeenRows::Quarter& last = seen_.last_quarter;
+  RunObservations::Quarter& last = observations_.last_quarter;
   const std::uint64_t quarter = record.step * 4 / static_cast<std::uint64_t>(scenario_.time.steps);
+  // Start the statistics again when a new quarter begins.
   if (record.step == 0 || quarter != quarter_) last = {.start = record.tool.pose.position};
   quarter_ = quarter;
   ++last.rows;
-  last.touches = last.touches && record.colliding > 0;
+  last.always_in_contact = last.always_in_contact && record.colliding > 0;
   if (!high_pass_) return;
+  // Accumulate power and sign changes of the force above 30 Hz.
   const Vec3 high = high_pass_->filter(record.force.rendered);
   last.high_squares += high.cwiseAbs2();
-  for (int i = 0; i < 3; ++i) last.high_turns[static_cast<std::size_t>(i)] += high[i] * high_[i] < 0.0;
+  for (int i = 0; i < 3; ++i) last.high_sign_changes[static_cast<std::size_t>(i)] += high[i] * high_[i] < 0.0;
   high_ = high;
 }
 

@@ -12,25 +12,27 @@
 
 namespace hapbench {
 
-/// What rules need of the rows of a run, of all its trials; the last quarter is the one in which the last trial ended.
-struct SeenRows {
-  std::uint64_t touching = 0;        ///< rows in contact; of these
-  std::uint64_t at_force_limit = 0;  ///< with the largest force of device or rendering
-  std::uint64_t at_limiter = 0;      ///< with as much hand force as the device's limiter lets in
-  double way_in_contact = 0.0;       ///< of the tip [m]
-  double longest_step = 0.0;         ///< OutcomeObserver::longest_step [m]
-  Vec3 last_force = Vec3::Zero();    ///< rendered [N]
+/// Quantities that the diagnosis rules need, accumulated over the steps of all trials of a run. `last_quarter` is the
+/// exception: it covers only the quarter of the planned duration in which the last trial ended.
+struct RunObservations {
+  std::uint64_t in_contact = 0;  ///< number of steps in contact
+  /// Steps in contact whose rendered force reaches the force limit of device or rendering
+  std::uint64_t at_force_limit = 0;
+  std::uint64_t at_input_limit = 0;  ///< steps in contact whose hand force reaches the input limit of the device
+  double path_in_contact = 0.0;      ///< path length of the tip in contact [m]
+  double longest_step = 0.0;         ///< as defined at OutcomeObserver::longest_step() [m]
+  Vec3 last_force = Vec3::Zero();    ///< rendered force in the last step [N]
   struct Quarter {
     std::uint64_t rows = 0;
-    bool touches = true;                        ///< in all of them
-    Vec3 start = Vec3::Zero();                  ///< of the tip [m]
-    Vec3 high_squares = Vec3::Zero();           ///< sum of the squares of the force above 30 Hz [N^2]
-    std::array<std::uint64_t, 3> high_turns{};  ///< its changes of sign
+    bool always_in_contact = true;                     ///< true if every step of the quarter is in contact
+    Vec3 start = Vec3::Zero();                         ///< tip position in the first step of the quarter [m]
+    Vec3 high_squares = Vec3::Zero();                  ///< sum of the squared force above 30 Hz, per axis [N^2]
+    std::array<std::uint64_t, 3> high_sign_changes{};  ///< number of sign changes of the force above 30 Hz, per axis
   } last_quarter;
-  Vec3 tip = Vec3::Zero();  ///< in the last row [m]
+  Vec3 tip = Vec3::Zero();  ///< tip position in the last step [m]
 };
 
-/// Watches a run for the rules; some 20 ns a row, in constant memory.
+/// Accumulates the quantities for the diagnosis rules. Cost: about 20 ns a step; constant memory.
 class DiagnosisObserver final : public Observer {
  public:
   /// The scenario must outlive the observer.
@@ -38,22 +40,25 @@ class DiagnosisObserver final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// After a trial: its OutcomeObserver::longest_step [m].
-  void add_longest_step(double way) noexcept { seen_.longest_step = std::max(seen_.longest_step, way); }
+  /// Called after each trial with its OutcomeObserver::longest_step() [m].
+  void add_longest_step(double length) noexcept {
+    observations_.longest_step = std::max(observations_.longest_step, length);
+  }
 
-  const SeenRows& rows() const noexcept { return seen_; }
+  const RunObservations& rows() const noexcept { return observations_; }
 
  private:
   void add_contact(const StepRecord& record) noexcept;
   void add_to_quarter(const StepRecord& record) noexcept;
 
   const Scenario& scenario_;
-  std::optional<double> force_limit_, input_limit_;  ///< [N]
+  /// Limits of the rendered force and of the hand's input force [N]; empty without a limit.
+  std::optional<double> force_limit_, input_limit_;
   std::optional<HighPass> high_pass_;
   std::uint64_t quarter_ = 0;
-  bool touched_ = false;      ///< in the row before
-  Vec3 high_ = Vec3::Zero();  ///< force above 30 Hz in the row before [N]
-  SeenRows seen_;
+  bool was_in_contact_ = false;  ///< in contact in the previous step
+  Vec3 high_ = Vec3::Zero();     ///< force above 30 Hz in the previous step [N]
+  RunObservations observations_;
 };
 
 }  // namespace hapbench

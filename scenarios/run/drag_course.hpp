@@ -9,36 +9,42 @@
 
 namespace hapbench {
 
-/// Follows a dragged tool on the path along which it is led.
-class DragCourse {
+/// Compares the progress of a dragged tool along its path with the progress of the hand's target point, to
+/// detect a tool that is stuck or left behind.
+class DragProgress {
  public:
-  /// The hand must outlive it. `width`: the tool's [m]; `duration`: of the run [s].
-  DragCourse(const DragHand& hand, double width, double duration);
+  /// `hand` must outlive this object. `width`: width of the tool [m]; `duration`: duration of the run [s].
+  DragProgress(const DragHand& hand, double width, double duration);
 
-  /// Adds a row at `time` [s].
+  /// Adds a step at `time` [s].
   void add(double time) noexcept;
 
-  /// Since when the tool came less than a tenth as far as the point that leads it, over each width that this went on.
+  /// Returns the interval in which the tool stood still until the end of the run; empty if it did not. The tool
+  /// stands still while it advances less than a tenth of the target's advance, measured over target advances of
+  /// one tool width.
   std::optional<Stuck> stuck() const;
-  double way() const { return now_.way; }      ///< furthest that the tool came on the path [m]
-  double asked() const { return now_.asked; }  ///< how far its hand led it [m]
-  /// How far the tool ended behind where its hand led it [m], if that is further than a tenth of the way and than the
-  /// tool's half width, and than twice as far as at half way: a tool that friction holds back comes along.
+  double progress() const { return now_.tool; }           ///< largest progress of the tool along the path [m]
+  double target_progress() const { return now_.target; }  ///< progress of the target point along the path [m]
+  /// Returns the lag of the tool behind the target point at the end [m]. Empty unless the lag exceeds a tenth
+  /// of the target's progress, half the tool width, and twice the lag at half of the path. The last condition
+  /// excludes a tool that friction holds back at a constant lag.
   std::optional<double> left_behind() const;
 
  private:
-  /// The point's and the tool's way at a time.
-  struct Stand {
-    double time = 0.0, asked = 0.0, way = 0.0;
+  /// Progress of target point and tool along the path at one time.
+  struct Sample {
+    double time = 0.0, target = 0.0, tool = 0.0;
   };
-  static constexpr std::size_t kStands = 4;
+  static constexpr std::size_t kSamples = 4;
   const DragHand& hand_;
-  double width_, half_way_;                         ///< [m]
-  double behind_ = 0.0, behind_at_half_way_ = 0.0;  ///< the point that leads it [m]
-  Stand now_;
-  std::array<Stand, kStands> stands_{};  ///< a quarter of the tool's width of the point's way apart
-  std::size_t stand_ = 0;                ///< how many there were
-  std::optional<Stand> stuck_;           ///< where it came to stand for good
+  double width_, half_path_;  ///< width of the tool; half the length of the target's path [m]
+  /// lag of the tool behind the target point: now; at half of the path [m]
+  double lag_ = 0.0, lag_at_half_path_ = 0.0;
+  Sample now_;
+  /// Ring buffer of samples, taken whenever the target point has advanced by a quarter of the tool's width.
+  std::array<Sample, kSamples> samples_{};
+  std::size_t sample_count_ = 0;  ///< number of samples taken so far
+  std::optional<Sample> stuck_;   ///< sample at which the current standstill began; empty while the tool moves
 };
 
 }  // namespace hapbench

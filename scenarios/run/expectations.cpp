@@ -9,6 +9,7 @@
 namespace hapbench {
 namespace {
 
+/// Returns which quantity diverged and when, for a message; empty if the run did not diverge.
 std::string divergence_text(const RunEnd& result) {
   if (result.outcome != Outcome::diverges) return "";
   const Divergence& d = result.divergence;
@@ -20,10 +21,12 @@ std::string divergence_text(const RunEnd& result) {
 
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {
   std::vector<std::string> unmet;
+  // Check the outcome.
   if (!outcome_is_expected(expect, run.end.outcome)) {
     unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.end.outcome),
                                 divergence_text(run.end), quoted_list(names_of(expect.outcomes, outcome_name))));
   }
+  // Check the bounds of each metric.
   for (const auto& [name, bound] : expect.metrics) {
     const auto number = number_of(run.metrics, name);
     if (!number) {

@@ -9,10 +9,10 @@
 
 namespace hapbench {
 
-/// The expectations of the scenario that the run does not meet, one sentence each.
+/// Returns one sentence for each expectation of the scenario that the run does not meet.
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);
 
-/// True when `outcome` is among those the scenario expects.
+/// Returns true if the scenario expects `outcome`.
 inline bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
   return std::ranges::find(expect.outcomes, outcome) != expect.outcomes.end();
 }

@@ -21,27 +21,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLargestModule = std::size_t{1} << 28;
+// Largest accepted size of a library [bytes].
+constexpr std::size_t kMaxModuleBytes = std::size_t{1} << 28;
 
-/// The library's own symbols take precedence over ours, but for sanitizers, which replace functions of all libraries.
+/// Flags for dlopen(). RTLD_DEEPBIND gives the library's own symbols precedence over ours. Sanitizers do not
+/// allow it, because they replace functions in all libraries.
 #ifdef HAPBENCH_SANITIZED
-constexpr int kApart = RTLD_NOW | RTLD_LOCAL;
+constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL;
 #else
-constexpr int kApart = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
+constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #endif
 
-std::vector<LoadedLaw> laws;  ///< of this process, as the header explains
+std::vector<LoadedLaw> laws;  ///< laws of this process; load_module.hpp explains why they are not per context
 
-/// Also refuses a directory or a pipe before it would be opened as a library.
+/// Returns the hash of a file. Throws InputError for a directory or a pipe, before it is opened as a library.
 std::string hash_of_file(const fs::path& file) {
-  return with_file(file, [&] { return hash_text(hash_of(read_text_file(file, kLargestModule))); });
+  return with_file(file, [&] { return hash_text(hash_of(read_text_file(file, kMaxModuleBytes))); });
 }
 
 const char* kind_name(std::uint32_t kind) {
   return kind == HAPBENCH_LAW ? "law" : "source of contacts";
 }
 
-/// The function by which the library hands over its table.
+/// Returns the function with which a module returns its table. Throws InputError if the library has no such
+/// function.
 decltype(&hapbench_module) entry_point(const fs::path& file, void* library) {
   if (void* symbol = dlsym(library, "hapbench_module")) return reinterpret_cast<decltype(&hapbench_module)>(symbol);
   for (const char* old : {"hapbench_plugin", "hapbench_contacts"}) {
@@ -53,20 +56,24 @@ decltype(&hapbench_module) entry_point(const fs::path& file, void* library) {
   fail_in_file(file, "is not a module: it has no function \"hapbench_module\" (hapbench_module.h)");
 }
 
-/// The table of a library, which stays open because its functions may be called at any time. Throws InputError.
+/// Opens a library and returns its table. The library stays open, because its functions may be called until the
+/// program ends. Throws InputError if the library is not a module of this kind and interface version.
 const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
-  // Loading a library that was linked with -ffast-math switches off subnormal numbers for the whole program, which
-  // would change the results of every algorithm: the floating-point environment comes back in the end.
+  // Loading a library that was linked with -ffast-math switches off subnormal numbers for the whole program,
+  // which would change the results of every algorithm. The floating-point environment is therefore restored on
+  // return.
   std::fenv_t environment{};
   std::fegetenv(&environment);
   const std::unique_ptr<std::fenv_t, int (*)(const std::fenv_t*)> restored(&environment, std::fesetenv);
-  void* library = dlopen(file.c_str(), kApart);
+  // Open the library.
+  void* library = dlopen(file.c_str(), kDlopenFlags);
   if (library == nullptr) {
     std::string problem = dlerror();
     const std::string again = file.string() + ": ";
     if (problem.starts_with(again)) problem.erase(0, again.size());
     fail_in_file(file, "is not a module: " + problem);
   }
+  // Ask the module for its table.
   const auto entry = entry_point(file, library);
   const HapbenchModule* table = nullptr;
   try {
@@ -78,6 +85,7 @@ const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
     fail_in_file(file, fmt::format("does not support version {} of the interface; allowed: built with the "
                                    "hapbench_module.h of this program",
                                    HAPBENCH_MODULE_VERSION));
+  // Check version and kind.
   if (table->version != HAPBENCH_MODULE_VERSION)
     fail_in_file(file, fmt::format("is built for version {} of the interface; allowed: {}", table->version,
                                    HAPBENCH_MODULE_VERSION));
@@ -90,7 +98,7 @@ const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
   return *table;
 }
 
-/// The same file, whatever links lead to it.
+/// Returns the canonical path of a file, so that different links to a file give the same path.
 fs::path found_file(const fs::path& given, std::uint32_t kind) {
   std::error_code error;
   fs::path file = fs::canonical(given, error);
@@ -98,11 +106,12 @@ fs::path found_file(const fs::path& given, std::uint32_t kind) {
   return file;
 }
 
-/// A table that its library keeps.
+/// Returns a module whose table is owned by its library.
 Module module_of(const HapbenchModule& table, const fs::path& file) {
   return {{std::shared_ptr<void>(), &table}, file.filename().string()};
 }
 
+/// Returns the table of a library of contacts, and loads the library at the first call. Thread-safe.
 const HapbenchModule& contacts_table(const fs::path& file) {
   static std::mutex mutex;
   static std::map<fs::path, const HapbenchModule*> loaded;
@@ -122,10 +131,12 @@ const HapbenchModule& contacts_table(const fs::path& file) {
 void load_law(const fs::path& given, const LoadingGuard& guard) {
   const fs::path file = found_file(given, HAPBENCH_LAW);
   if (std::ranges::find(laws, file, &LoadedLaw::file) != laws.end()) return;
+  // Load the library while no other thread reads the table of algorithms.
   const std::shared_ptr<void> guarded = guard ? guard() : nullptr;
   std::string hash = hash_of_file(file);
   const HapbenchModule& table = opened(file, HAPBENCH_LAW);
   try {
+    // Register the law under its name, which must be new.
     AlgorithmEntry entry = law_entry(module_of(table, file), std::move(hash));
     const std::string name = entry.info->name;
     if (const auto other = std::ranges::find(laws, name, &LoadedLaw::algorithm); other != laws.end())

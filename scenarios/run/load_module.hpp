@@ -9,38 +9,44 @@
 #include "algorithms/module/hapbench_module.h"
 #include "sim/contact/contact_source.hpp"
 
-/// Shared libraries with a module (algorithms/module/hapbench_module.h). A library is loaded once and stays; loading
-/// leaves the floating-point modes of the program as they are.
+/// Loads shared libraries with a module (algorithms/module/hapbench_module.h). A library is loaded once and
+/// stays loaded. Loading preserves the floating-point modes of the program.
 ///
-/// The lists of loaded libraries belong to the process and not to a ProgramContext. dlopen() gives a process one copy
-/// of a library, whose code and static data all hosts then share, and a law that was loaded is in the one table of
-/// algorithms (algorithms/registry.hpp). A list for each context would forget both and load a law again.
+/// The lists of loaded libraries belong to the process and not to a ProgramContext. dlopen() gives a process
+/// one copy of a library, whose code and static data all contexts share. A loaded law is also entered in the
+/// single table of algorithms (algorithms/registry.hpp). A separate list for each context would not know this
+/// and would load the same law again.
 namespace hapbench {
 
-/// A loaded shared library with a law.
+/// A force law that was loaded from a shared library.
 struct LoadedLaw {
-  std::filesystem::path file;  ///< absolute
+  std::filesystem::path file;  ///< absolute path
   std::string algorithm;
 };
 
-/// Called before a new law is loaded; its result lives until that is done. If several threads may load laws, it throws
-/// InputError while others read the table of algorithms, and its result keeps them from it. Empty: one thread loads.
+/// Function called before a new law is loaded. Its result is kept alive until loading has finished. If several
+/// threads may load laws, the function must throw InputError while another thread reads the table of
+/// algorithms, and its result must keep other threads from reading the table. Empty: only one thread loads
+/// laws.
 using LoadingGuard = std::function<std::shared_ptr<void>()>;
 
-/// Loads a law and adds it to the algorithms for as long as the program runs, unless it is loaded already. Must not be
-/// called while another thread reads the table of algorithms. Throws InputError.
+/// Loads a law from `file` and registers it as an algorithm until the program ends. Does nothing if the file is
+/// already loaded. Must not be called while another thread reads the table of algorithms. Throws InputError if
+/// the file is not a usable law.
 void load_law(const std::filesystem::path& file, const LoadingGuard& guard = {});
 
-/// Loads every *.so in folders separated by colons, by name; `what` names the list in messages. Throws InputError.
+/// Loads every *.so file in the given folders, in the order of file names. `folders` are separated by colons.
+/// `what` names the list in error messages. Throws InputError.
 void load_laws_in(const std::string& what, const std::string& folders, const LoadingGuard& guard = {});
 
-/// The loaded laws of this process, in the order of loading.
+/// Returns the laws that this process has loaded, in the order of loading.
 const std::vector<LoadedLaw>& loaded_laws();
 
-/// Loads a library of contacts. Thread safe. Throws InputError.
+/// Loads a library with a source of contacts. Thread-safe. Throws InputError if it cannot be used.
 void require_contacts_in(const std::filesystem::path& file);
 
-/// The contacts of a library for a run, with the scenario's `config` as JSON text. Thread safe. Throws InputError.
+/// Creates the contact source of a library for one run. `config`: the scenario's configuration for the library,
+/// as JSON text. Thread-safe. Throws InputError.
 std::unique_ptr<ContactSource> module_contacts(const std::filesystem::path& file, const std::string& config,
                                                const HapbenchRun& run);
 

@@ -6,7 +6,8 @@
 
 namespace hapbench {
 
-/// Creates directories for results, and in the end removes those that are still empty, as failed work leaves them.
+/// Creates directories for results. The destructor removes the created directories that are still empty, so
+/// that failed work leaves no empty directories.
 class NewDirectories {
  public:
   NewDirectories() = default;
@@ -14,11 +15,12 @@ class NewDirectories {
   NewDirectories(const NewDirectories&) = delete;
   NewDirectories& operator=(const NewDirectories&) = delete;
 
-  /// Creates a directory and its missing parents; as std::filesystem::create_directories.
+  /// Creates a directory and its missing parents, like std::filesystem::create_directories(), and returns its
+  /// error code.
   std::error_code create(const std::filesystem::path& directory);
 
  private:
-  std::vector<std::filesystem::path> made_;  ///< parents first
+  std::vector<std::filesystem::path> created_;  ///< created directories, parents first
 };
 
 }  // namespace hapbench

@@ -22,27 +22,29 @@
 namespace hapbench {
 namespace {
 
-std::string millimetres(const Vec3& place) {
-  const Vec3 p = 1e3 * place;
+std::string millimetres(const Vec3& position) {
+  const Vec3 p = 1e3 * position;
   return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", p.x(), p.y(), p.z());
 }
 
-class OutcomeWatch final : public OutcomeObserver {
+class OutcomeObserverImpl final : public OutcomeObserver {
  public:
-  OutcomeWatch(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
-               const MetricsObserver* metrics)
+  OutcomeObserverImpl(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
+                      const MetricsObserver* metrics)
       : scenario_(scenario),
         metrics_(metrics),
         tool_(parts.tool),
         drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
     const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
+    // Observe the depth inside the solid, if the environment has one.
     if (auto solid = make_solid(scenario, files)) {
       const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
       inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
     }
     if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
+    // Observe whether the hand's target moves on while the tool stands still.
     const double width = 2.0 * tool_->half_width();
-    if (drag_ != nullptr) course_.emplace(*drag_, width, scenario.time.step * static_cast<double>(steps));
+    if (drag_ != nullptr) progress_.emplace(*drag_, width, scenario.time.step * static_cast<double>(steps));
     if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
         hand != nullptr && position_is_free(scenario.motion))
       standstill_.emplace([&to = hand->target](double t) { return Vec3(to[0](t), to[1](t), to[2](t)); }, width);
@@ -52,12 +54,12 @@ class OutcomeWatch final : public OutcomeObserver {
 
   void on_step(const StepRecord& record) noexcept override {
     time_ = record.time;
-    place_ = record.tool.pose.position;
+    position_ = record.tool.pose.position;
     force_ = record.force.rendered;
     if (record.colliding > 0) last_contact_ = record.time;
     if (inside_) inside_->on_step(record);
     if (approach_) approach_->add(record, !last_contact_);
-    if (course_) course_->add(record.time);
+    if (progress_) progress_->add(record.time);
     if (standstill_) standstill_->add(record);
   }
 
@@ -90,34 +92,36 @@ class OutcomeWatch final : public OutcomeObserver {
   }
 
  private:
-  /// What makes another outcome of one that completes, and a warning of what happened and why, which may be empty.
+  /// A condition under which a completed run gets another outcome. `text` returns a warning that says what
+  /// happened and why; it may be empty.
   struct Condition {
     Outcome outcome;
-    bool (OutcomeWatch::*holds)();
-    std::string (OutcomeWatch::*text)();
+    bool (OutcomeObserverImpl::*holds)();
+    std::string (OutcomeObserverImpl::*text)();
   };
-  static const Condition kConditions[5];  ///< the first that holds counts
+  static const Condition kConditions[5];  ///< the first condition that holds determines the outcome
 
-  /// How deep any part of the tool was in any row; 0 without a solid [m].
+  /// Returns the largest depth of any part of the tool inside the solid over the run [m]; 0 without a solid.
   double inside_max() {
     const InsideDepths* inside = depths();
     return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
   }
 
-  /// True when a dragged tool had no contact in the end for so long that the next touch would be a landing.
+  /// Returns true if a dragged tool ended without contact, and its last contact is longer ago than
+  /// SettlingRule::time, so that another touch would count as a new landing.
   bool drag_lost() const {
     return drag_ != nullptr && drag_->drag().force(time_) > 0.0 && last_contact_ &&
            time_ - *last_contact_ >= SettlingRule().time;
   }
   std::optional<Stuck> stuck() const {
-    if (course_) return course_->stuck();
+    if (progress_) return progress_->stuck();
     return standstill_ ? standstill_->stuck() : std::nullopt;
   }
 
-  /// The likely cause, as a question where it is no more than likely, or where to look when none suggests itself.
-  /// `rest`: the time to reach the surface that Approach::Closest has [s].
-  std::string likely_cause(const std::optional<double>& rest = {}) const {
-    constexpr double kMostRest = 100.0;  // times as long as the run
+  /// Returns the most likely cause of a run that lost or never reached the surface. It is phrased as a question
+  /// if it is uncertain. `time_to_contact`: time in which the tool would reach the surface [s] (Approach::Closest).
+  std::string likely_cause(const std::optional<double>& time_to_contact = {}) const {
+    constexpr double kMaxTimeToContact = 100.0;  // longest plausible time to contact, in durations of the run
     const double longest = approach_->longest_step();
     if (std::string question = scale_question(scenario_, *tool_, approach_->environment()); !question.empty())
       return question;
@@ -132,8 +136,10 @@ class OutcomeWatch final : public OutcomeObserver {
       if (is_constant) return "a hand of constant force goes on pushing where there is no surface";
       return fmt::format("the largest force was {:.3g} N", std::sqrt(metrics_->trial().force_max_squared));
     }
-    if (rest && *rest < kMostRest * scenario_.time.step * static_cast<double>(scenario_.time.steps))
-      return fmt::format("it came nearer to the end and would touch in {:.2g} s: is time.steps too small?", *rest);
+    if (time_to_contact &&
+        *time_to_contact < kMaxTimeToContact * scenario_.time.step * static_cast<double>(scenario_.time.steps))
+      return fmt::format("it came nearer to the end and would touch in {:.2g} s: is time.steps too small?",
+                         *time_to_contact);
     if (!position_is_free(scenario_.motion)) return "is motion.position right?";
     if (spring_of(scenario_.hand) != nullptr) return "does hand.target lead to the surface?";
     return std::holds_alternative<NoHandFields>(scenario_.hand) ? "nothing pushes the tool: is hand missing?"
@@ -167,6 +173,7 @@ class OutcomeWatch final : public OutcomeObserver {
           "its tip centre was more than its half width, {}, below it at {:.4g} s at {}, {} at most, and {}",
           length_text(half_width), p.deep->time, millimetres(p.deep->place), length_text(p.deepest), end);
     }
+    // The tip centre never was deeper than the half width.
     if (p.left) return fmt::format("it entered at {} and {}", millimetres(p.entered), end);
     if (p.ends_inside) return fmt::format("its core ended inside, its tip centre {}", end);
     if (const auto& core = inside_->core_passage().event(); core && inside_max() <= half_width) {
@@ -184,10 +191,11 @@ class OutcomeWatch final : public OutcomeObserver {
     return fmt::format(
         "never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the environment "
         "({}); {}",
-        length_text(closest.distance), closest.time, environment_text(), likely_cause(closest.rest));
+        length_text(closest.distance), closest.time, environment_text(), likely_cause(closest.time_to_contact));
   }
 
-  /// As a tool that was thrown out or pushed past, or a dragged one past an edge.
+  /// Returns true for a tool that was thrown out or pushed past the environment, and for a dragged tool that
+  /// left the surface.
   bool lost_contact() {
     const bool is_far = approach_->distance() > diagonal(approach_->environment()) + tool_->reach();
     return (is_far && position_is_free(scenario_.motion)) || drag_lost();
@@ -195,7 +203,7 @@ class OutcomeWatch final : public OutcomeObserver {
   std::string lost_contact_text() {
     if (drag_lost()) {
       const SurfacePoint foot = drag_->path().at(drag_->nearest());
-      const double height = foot.normal.dot(place_ - foot.position);
+      const double height = foot.normal.dot(position_ - foot.position);
       return fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *last_contact_,
                          length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it");
     }
@@ -207,26 +215,30 @@ class OutcomeWatch final : public OutcomeObserver {
         likely_cause());
   }
 
-  /// Its calm numbers tell nothing of a drag. The spring that leads a tool which follows lags by less.
+  /// Returns true if a dragged tool advanced by less than its width, although it should have advanced by more
+  /// than two widths. The metrics of such a run look good but do not describe a drag. The spring of a hand
+  /// whose tool follows stretches by less than a width.
   bool not_dragged() {
     const double width = 2.0 * tool_->half_width();
-    return course_ && course_->way() < width &&
-           way_to_cover(std::get<DragHandFields>(scenario_.hand), time_) > 2.0 * width;
+    return progress_ && progress_->progress() < width &&
+           intended_drag_length(std::get<DragHandFields>(scenario_.hand), time_) > 2.0 * width;
   }
-  std::string stands_text() {
+  std::string standstill_text() {
     const auto s = stuck();
     if (!s) return "";
     return fmt::format(
         "the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it was "
         "at {} under a force of {:.3g} N in the end",
-        s->since, length_text(s->way), length_text(s->target_way), millimetres(place_), force_.norm());
+        s->since, length_text(s->tool_distance), length_text(s->target_distance), millimetres(position_),
+        force_.norm());
   }
 
-  bool is_stuck() { return stuck() || (course_ && course_->left_behind()); }
+  bool is_stuck() { return stuck() || (progress_ && progress_->left_behind()); }
   std::string stuck_text() {
-    if (stuck()) return stands_text();
+    if (stuck()) return standstill_text();
     return fmt::format("the dragged tool ended {} behind where its hand led it, {} along the path, at {}",
-                       length_text(*course_->left_behind()), length_text(course_->asked()), millimetres(place_));
+                       length_text(*progress_->left_behind()), length_text(progress_->target_progress()),
+                       millimetres(position_));
   }
 
   std::string environment_text() const {
@@ -241,26 +253,26 @@ class OutcomeWatch final : public OutcomeObserver {
   std::optional<InsideDepths> depths_;
   std::optional<Approach> approach_;
   std::optional<Standstill> standstill_;
-  const DragHand* drag_;              ///< null unless one drags the tool
-  std::optional<DragCourse> course_;  ///< of that
-  // In the last row.
+  const DragHand* drag_;                  ///< null unless the hand drags the tool
+  std::optional<DragProgress> progress_;  ///< progress of the drag; empty without a drag
+  // In the last step.
   double time_ = 0.0;
-  Vec3 place_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< of the tip [m]; rendered [N]
-  std::optional<double> last_contact_;                ///< time of the last row with a colliding point
+  Vec3 position_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< tip position [m]; rendered force [N]
+  std::optional<double> last_contact_;  ///< time of the last step in contact [s]; empty before the first contact
 };
 
-constinit const OutcomeWatch::Condition OutcomeWatch::kConditions[] = {
-    {Outcome::went_through, &OutcomeWatch::went_through, &OutcomeWatch::went_through_text},
-    {Outcome::no_contact, &OutcomeWatch::never_touched, &OutcomeWatch::never_touched_text},
-    {Outcome::lost_contact, &OutcomeWatch::lost_contact, &OutcomeWatch::lost_contact_text},
-    {Outcome::not_dragged, &OutcomeWatch::not_dragged, &OutcomeWatch::stands_text},
-    {Outcome::stuck, &OutcomeWatch::is_stuck, &OutcomeWatch::stuck_text}};
+constinit const OutcomeObserverImpl::Condition OutcomeObserverImpl::kConditions[] = {
+    {Outcome::went_through, &OutcomeObserverImpl::went_through, &OutcomeObserverImpl::went_through_text},
+    {Outcome::no_contact, &OutcomeObserverImpl::never_touched, &OutcomeObserverImpl::never_touched_text},
+    {Outcome::lost_contact, &OutcomeObserverImpl::lost_contact, &OutcomeObserverImpl::lost_contact_text},
+    {Outcome::not_dragged, &OutcomeObserverImpl::not_dragged, &OutcomeObserverImpl::standstill_text},
+    {Outcome::stuck, &OutcomeObserverImpl::is_stuck, &OutcomeObserverImpl::stuck_text}};
 
 }  // namespace
 
 std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
                                                   const SimulationParts& parts, const MetricsObserver* metrics) {
-  return std::make_unique<OutcomeWatch>(scenario, files, parts, metrics);
+  return std::make_unique<OutcomeObserverImpl>(scenario, files, parts, metrics);
 }
 
 }  // namespace hapbench

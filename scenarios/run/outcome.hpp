@@ -10,27 +10,32 @@
 #include "scenarios/scene/scenario.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Outcomes of runs, and warnings about them.
+/// Classifies how a run ended (its outcome), and explains the outcome in warnings.
 namespace hapbench {
 
-/// Watches a trial for all that decides its outcome; some 40 ns a row, no allocation.
+/// Observes all quantities of a trial that determine its outcome. Cost: about 40 ns a step, no allocation.
 class OutcomeObserver : public Observer {
  public:
-  /// The outcome of a run whose stepping ended with `ending`. A run with a point shell that has completed gets the
-  /// first outcome whose condition holds (kConditions in outcome.cpp; outcome_infos() has the same in words).
+  /// Returns the outcome of a run whose simulation ended with `ending`. For a completed run with a point shell,
+  /// this is the first outcome whose condition holds (kConditions in outcome.cpp; outcome_infos() describes the
+  /// conditions).
   virtual Outcome outcome(Ending ending) = 0;
-  /// After the run: warnings about its outcome and the path of a drag. Precondition: there are metrics.
+  /// Returns warnings that explain the outcome, and a warning if the path of a drag was too short. Called after
+  /// the run. Precondition: the observer was created with `metrics`.
   virtual std::vector<Warning> warnings(Outcome outcome) = 0;
-  /// The longest way of the tip in one step that began no further from the environment's box than it was long, so that
-  /// it may have met the surface, or passed it; 0 without points [m].
+  /// Returns the longest displacement of the tip in a single step near the surface [m]. Only steps count that
+  /// began no further from the environment's bounding box than the step is long: such a step may have reached
+  /// the surface or jumped over it. 0 without a point shell.
   virtual double longest_step() const = 0;
-  /// Null without a solid.
+  /// Observer of the tool's depth inside the environment's solid; null if the environment has no solid.
   virtual const InsideObserver* inside() const = 0;
-  /// After the run: how deep the tool was, which is looked for at the first call. Null without a solid.
+  /// Returns the depths of the tool inside the solid. Called after the run; the first call computes them. Null
+  /// if the environment has no solid.
   virtual const InsideDepths* depths() = 0;
 };
 
-/// Scenario and parts must outlive it; `metrics` observes before, and may be null where nobody asks for warnings.
+/// Creates the observer of a trial. `scenario` and `parts` must outlive it. `metrics` must be notified before
+/// this observer in each step; null if warnings() is never called.
 std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
                                                   const SimulationParts& parts,
                                                   const MetricsObserver* metrics = nullptr);

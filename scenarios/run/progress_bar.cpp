@@ -13,10 +13,11 @@
 namespace hapbench {
 namespace {
 
+// Time before the first line; time between two redraws on a terminal.
 constexpr auto kSilence = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(200);
 
-/// Columns of the terminal behind standard error; 80 when it does not say.
+/// Returns the number of columns of the terminal; 80 if it is unknown.
 std::size_t columns() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
@@ -26,7 +27,8 @@ bool is_terminal() {
   return isatty(STDERR_FILENO) == 1;
 }
 
-/// Shows a line; on a terminal in place of the one before, cut to its width, as a broken line could not be taken back.
+/// Prints a line. On a terminal, it replaces the previous line and is cut to the terminal's width, because a
+/// wrapped line could not be overwritten.
 void show_status(std::string_view line) {
   if (!is_terminal()) {
     std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
@@ -37,11 +39,13 @@ void show_status(std::string_view line) {
   std::fflush(stderr);
 }
 
-/// Takes the line back, where that is possible.
+/// Removes the line from a terminal.
 void hide_status() {
   if (is_terminal()) std::fprintf(stderr, "\r\033[K");
 }
 
+/// Prints the elapsed seconds until a stop is requested: every second on a terminal, else after 2 s, 4 s, 8 s
+/// and so on.
 void show_seconds(const std::function<std::string()>& what, const std::stop_token& ends) {
   std::mutex mutex;
   std::condition_variable_any ended;
@@ -74,11 +78,13 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
   if (now < next_ || (done == total_ && !is_terminal())) return;
   next_ = is_terminal() ? now + kRedraw : now + (now - start_);
   drawn_ = true;
-  // A buffer on the stack for as long a line as any: it is shown between steps, which allocate nothing.
+  // Formats into a buffer on the stack: show() is called between simulation steps, where nothing may be
+  // allocated.
   fmt::memory_buffer line;
   const auto to = fmt::appender(line);
   fmt::format_to(to, "{}: {:3.0f} %", label_, 100.0 * static_cast<double>(done) / static_cast<double>(total_));
   if (counts) fmt::format_to(to, ", {}/{}", done, total_);
+  // Estimate the remaining time from the mean time an item.
   if (counts && done > 0) {
     const double each = std::chrono::duration<double>(now - start_).count() / static_cast<double>(done);
     const double seconds = each * static_cast<double>(total_ - done);
@@ -92,7 +98,7 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
 
 WaitNotice::WaitNotice(std::function<std::string()> what, bool enabled) {
   if (!enabled) return;
-  // Signals stay with the threads that wait for them.
+  // Block all signals in the new thread, so that only threads that expect signals receive them.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);

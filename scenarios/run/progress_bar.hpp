@@ -9,37 +9,40 @@
 
 namespace hapbench {
 
-/// Hears of progress in place of the terminal, from any thread. Throws nothing.
+/// Function that is called with the progress of work, in place of a bar on the terminal. May be called from any
+/// thread. Must not throw.
 using ProgressListener = std::function<void(std::string_view label, std::uint64_t done, std::uint64_t total)>;
 
-/// Whether the progress of work is shown, and to whom.
+/// Selects whether progress is shown: as a bar on the terminal, or through a listener.
 struct Progress {
-  /// A bar on the terminal, or none. Not explicit, because most work is shown to nobody.
+  /// Not explicit, so that `false` can be passed for work without progress.
   Progress(bool shown = false, const ProgressListener* other = nullptr) : is_shown(shown), listener(other) {}
 
   bool is_shown;
-  const ProgressListener* listener;  ///< hears of bars in place of the terminal; null: they are drawn
+  const ProgressListener* listener;  ///< called in place of drawing a bar; null: bars are drawn on the terminal
 };
 
-/// How much is done, as a line on standard error for work that takes longer than two seconds; silent otherwise. Where
-/// standard error is not a terminal, a line after 2 s, 4 s, 8 s and so on. A listener is told of every `show`.
+/// A progress line on standard error for work that takes longer than two seconds. On a terminal, the line is
+/// redrawn in place. Otherwise a new line is printed after 2 s, 4 s, 8 s and so on. With a listener, nothing is
+/// printed and the listener is called at every show().
 class ProgressBar {
  public:
-  /// `label` begins the line; an empty one silences it (--quiet). `listener`: null to draw; must outlive this.
+  /// `label`: start of the line; an empty label disables the bar (--quiet). `total`: number of work items.
+  /// `listener` is called in place of drawing; null: the bar is drawn. It must outlive this object.
   ProgressBar(std::string label, std::uint64_t total, const ProgressListener* listener);
-  /// Removes the line.
+  /// Removes the line from the terminal.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Shows how much is done, now and then. With `counts` also the numbers and the time that is left, if the rest takes
-  /// as long for each as what was done since the bar was made.
+  /// Reports `done` of the total number of items. Redraws at most five times a second. With `counts`, also
+  /// shows both numbers and the estimated remaining time, which assumes the mean time an item so far.
   void show(std::uint64_t done, bool counts = false) noexcept;
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  const ProgressListener* listener_;  ///< may be null
+  const ProgressListener* listener_;  ///< null: the bar is drawn
   std::string label_;
   std::uint64_t total_;
   bool drawn_ = false;
@@ -47,16 +50,17 @@ class ProgressBar {
   Clock::time_point next_;
 };
 
-/// As ProgressBar for work of unknown length: a line on standard error with what takes so long, and the seconds.
+/// A status line on standard error for work of unknown length that takes longer than two seconds: what is
+/// running, and for how many seconds.
 class WaitNotice {
  public:
-  /// `enabled` false silences it (--quiet).
+  /// `enabled`: false disables the line (--quiet).
   WaitNotice(const std::string& what, bool enabled) : WaitNotice([what] { return what; }, enabled) {}
-  /// `what` is asked for each line, from another thread.
+  /// `what` is called for each line, from another thread.
   WaitNotice(std::function<std::string()> what, bool enabled);
 
  private:
-  std::jthread thread_;  ///< shows the line, and removes it when this object goes
+  std::jthread thread_;  ///< shows the line, and removes it when this object is destroyed
 };
 
 }  // namespace hapbench

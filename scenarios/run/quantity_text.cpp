@@ -13,6 +13,7 @@ struct Unit {
   const char* name;
 };
 
+/// Returns the unit in which a length has few digits before the decimal point.
 Unit unit_for(double metres) {
   const double size = std::abs(metres);
   if (size >= 1.0 || size == 0.0) return {1.0, "m"};

@@ -4,15 +4,16 @@
 
 #include "sim/core/types.hpp"
 
-/// Quantities as people read them.
+/// Formats lengths and boxes for messages.
 namespace hapbench {
 
-/// A length as people read it, with three significant digits and the unit that fits, as in "13.5 mm" or "17.5 m".
+/// Returns a length with three significant digits and a fitting unit, such as "13.5 mm" or "17.5 m".
 std::string length_text(double metres);
 
-/// The edges of a box in one unit, as in "13.5 x 16.7 x 6.6 mm".
+/// Returns the edge lengths of a box in one unit, such as "13.5 x 16.7 x 6.6 mm".
 std::string size_text(const Box& box);
-/// The place of a box in one unit, as in "x -6.74 ... 6.76, y -7.3 ... 9.4, z -3.3 ... 3.3 mm".
+/// Returns the coordinate ranges of a box in one unit, such as "x -6.74 ... 6.76, y -7.3 ... 9.4, z -3.3 ...
+/// 3.3 mm".
 std::string place_text(const Box& box);
 
 }  // namespace hapbench

@@ -16,21 +16,23 @@
 namespace hapbench {
 namespace {
 
+/// Returns the source of ratios.csv: the ratio after each requested number of shaping iterations.
 RowSource ratios(const RecordedTrial& t) {
-  const auto& asked = t.fields.ratio_iterations;
+  const auto& iterations = t.fields.ratio_iterations;
   constexpr auto start = [](ContactBuffer& contacts) noexcept { return shape_weights(contacts, 0); };
-  return ratio_rows({asked.begin(), asked.end()}, {start, update_shaped_weights}, t.contact_capacity);
+  return ratio_rows({iterations.begin(), iterations.end()}, {start, update_shaped_weights}, t.contact_capacity);
 }
 
+/// A table, the condition under which a scenario records it, and the source of its rows.
 struct RecorderEntry {
   const ResultTable& table;
   std::function<bool(const RecordFields&)> is_wanted;
   RowSource (*rows)(const RecordedTrial& trial);
-  bool has_every_row = false;  ///< which rows there are, says the source
+  bool has_every_row = false;  ///< true: the source itself selects the rows (record.every does not apply)
 };
 
-// The observers that a table is made from are there: the same fields ask for them, and checked() has refused a
-// reference that is not measured.
+// The observers that find() looks up exist, because the same record fields create them. checked() has rejected
+// a force reference that is not measured.
 const RecorderEntry kRecorders[] = {
     {kTrajectoryTable, &RecordFields::trajectory,
      [](const RecordedTrial& t) { return trajectory_rows(t.fields, t.inside); }},
@@ -45,12 +47,13 @@ const RecorderEntry kRecorders[] = {
     {kForceReferenceTable, &RecordFields::force_reference,
      [](const RecordedTrial& t) { return force_reference_rows(*t.sections.find<ForceFidelityObserver>()); }}};
 
-constexpr double kBytesOfANumber = 12.0;  // between a zero and seventeen digits
-constexpr double kContactsOfARow = 30.0;
+constexpr double kBytesPerNumber = 12.0;  // estimate: numbers have between one and seventeen digits
+constexpr double kContactsPerRow = 30.0;
 
-double lines_a_row(const ResultTable& table, const RecordFields& record) {
+/// Returns the estimated number of lines that a table gets for each recorded step.
+double lines_per_row(const ResultTable& table, const RecordFields& record) {
   const std::string_view file = table.file;
-  if (file == "contacts.csv" || file == "contact_trace.csv") return kContactsOfARow;
+  if (file == "contacts.csv" || file == "contact_trace.csv") return kContactsPerRow;
   return file == "ratios.csv" ? static_cast<double>(record.ratio_iterations.size()) : 1.0;
 }
 
@@ -71,12 +74,13 @@ Recorders make_recorders(const RecordedTrial& trial, const RecordTarget& target)
   for (const RecorderEntry& entry : kRecorders) {
     if (!entry.is_wanted(trial.fields)) continue;
     RowSource rows = entry.rows(trial);
-    const auto place = [&]() -> TableTarget {
+    // Record into a file or into a table in memory.
+    const auto destination = [&]() -> TableTarget {
       if (const auto* directory = std::get_if<std::filesystem::path>(&target)) return *directory / entry.table.file;
       return &std::get<RecordedTables*>(target)->try_emplace(entry.table.file, rows.columns).first->second;
     }();
     const auto every = static_cast<std::uint64_t>(entry.has_every_row ? 1 : trial.fields.every);
-    recorders.push_back(std::make_unique<Recorder>(place, std::move(rows), every));
+    recorders.push_back(std::make_unique<Recorder>(destination, std::move(rows), every));
   }
   return recorders;
 }
@@ -91,7 +95,7 @@ double expected_output_bytes(const Scenario& scenario) {
   const RecordFields& record = scenario.record;
   double row = 0.0;
   for (const ResultTable& table : tables_with(record))
-    row += lines_a_row(table, record) * kBytesOfANumber * static_cast<double>(table.columns.size());
+    row += lines_per_row(table, record) * kBytesPerNumber * static_cast<double>(table.columns.size());
   const double rows = std::ceil(static_cast<double>(scenario.time.steps) / static_cast<double>(record.every));
   return trial_count(scenario.hand) * rows * row;
 }

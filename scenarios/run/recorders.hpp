@@ -13,36 +13,38 @@
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/scenario.hpp"
 
-/// What a run records, row by row.
+/// Recorders that write the tables of a run while it is simulated.
 namespace hapbench {
 
-/// From which the recorders of a trial are made.
+/// Inputs of make_recorders() for one trial.
 struct RecordedTrial {
   const RecordFields& fields;
-  std::size_t contact_capacity;  ///< the most contacts a row can have
+  std::size_t contact_capacity;  ///< largest number of contacts in a step
   const SectionObservers& sections;
-  const InsideObserver* inside;  ///< null without a solid
+  const InsideObserver* inside;  ///< null if the environment has no solid
 };
 
-/// The tables of a trial in memory, by the names that their files would have.
+/// The tables of a trial in memory. Keys are the names of the corresponding files.
 using RecordedTables = std::map<std::string, MemoryTable>;
 
-/// Where a trial is recorded: files in a directory, or tables in memory (never null; they outlive the recorders).
+/// Destination of a trial's tables: files in a directory, or tables in memory. The pointer is never null, and
+/// the tables must outlive the recorders.
 using RecordTarget = std::variant<std::filesystem::path, RecordedTables*>;
 
 using Recorders = std::vector<std::unique_ptr<Recorder>>;
 
-/// Recorders for what the scenario asks for. Throws IoError.
+/// Creates the recorders that the scenario's record fields request. Throws IoError if a file cannot be created.
 Recorders make_recorders(const RecordedTrial& trial, const RecordTarget& target);
 
-/// The tables that a run with these fields writes.
+/// Returns descriptions of the tables that a run with these record fields writes.
 std::vector<ResultTable> tables_with(const RecordFields& fields);
 
-/// The tables of all recorders there are.
+/// Returns descriptions of the tables of all recorders.
 std::vector<ResultTable> record_tables();
 
-/// About how many bytes a run of the scenario will write, all trials together: 12 for each number, if every step is
-/// done and has 30 contacts. Within a factor of two, but for those. O(1).
+/// Returns an estimate of the bytes that a run of the scenario writes, all trials together. Assumes that every
+/// step is done, 12 bytes for each number and 30 contacts a step. If the number of contacts is right, the
+/// estimate is within a factor of two. O(1).
 double expected_output_bytes(const Scenario& scenario);
 
 }  // namespace hapbench

@@ -27,10 +27,12 @@ namespace fs = std::filesystem;
 
 constexpr const char *kTrialDirectory = "subject_", *kEffectiveFile = "scenario.effective.json";
 
+/// Creates a directory. Throws IoError.
 void create(NewDirectories& directories, const fs::path& directory) {
   if (const auto error = directories.create(directory)) throw IoError("create", directory, error);
 }
 
+/// Returns the subdirectories of trials in a directory of results.
 std::vector<fs::path> trial_directories(const fs::path& directory) {
   std::error_code ignored;
   std::vector<fs::path> found;
@@ -40,7 +42,8 @@ std::vector<fs::path> trial_directories(const fs::path& directory) {
   return found;
 }
 
-/// Removes optional files that an earlier run with other settings may have left: they would not belong to this run.
+/// Removes the files of an earlier run. Some are optional: with other settings, this run would not overwrite
+/// them.
 void remove_earlier_run(const fs::path& directory, FileSet& files) {
   for (const char* name : {"summary.json", "columns.json", kTargetTable.file, "timing.json"})
     files.remove(directory / name);
@@ -48,7 +51,7 @@ void remove_earlier_run(const fs::path& directory, FileSet& files) {
   for (const fs::path& trial : trial_directories(directory)) remove_earlier_run(trial, files);
 }
 
-/// Those that this run has not written to, unless somebody keeps other files there.
+/// Removes trial directories that this run does not use. Directories with other files stay.
 void remove_empty_trials(const fs::path& directory) {
   std::error_code ignored;
   for (const fs::path& trial : trial_directories(directory)) fs::remove(trial, ignored);
@@ -58,6 +61,7 @@ void remove_empty_trials(const fs::path& directory) {
 
 ResultFolder::ResultFolder(const fs::path& directory) : directory_(directory) {
   create(directories_, directory);
+  // Lock the directory; a file system without locks is accepted.
   const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
   lock_ = {nullptr, [descriptor](void*) { ::close(descriptor); }};
@@ -66,7 +70,7 @@ ResultFolder::ResultFolder(const fs::path& directory) : directory_(directory) {
                 std::make_error_code(std::errc::device_or_resource_busy));
 }
 
-fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
+fs::path ResultFolder::trial_directory(Trial trial, std::size_t trials) {
   if (trials == 1) return directory_;
   fs::path directory = directory_ / fmt::format("{}{}_trial_{}", kTrialDirectory, trial.subject, trial.number);
   create(directories_, directory);
@@ -75,6 +79,7 @@ fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
 
 bool ResultFolder::write(const RecordFields& record, const Json& effective, const Result& result,
                          const Recorders& recorders) {
+  // Replace the tables.
   std::vector<ResultTable> tables = tables_with(record);
   FileSet files;
   remove_earlier_run(directory_, files);
@@ -83,6 +88,7 @@ bool ResultFolder::write(const RecordFields& record, const Json& effective, cons
     tables.push_back(kTargetTable);
     write_target_table(directory_ / kTargetTable.file, result.targets, &files);
   }
+  // Write the descriptions of the run.
   const auto add = [&](const char* name, const std::string& text) { files.write(directory_ / name, text); };
   const std::string text = json_text(effective);
   add(kEffectiveFile, text);
@@ -90,7 +96,7 @@ bool ResultFolder::write(const RecordFields& record, const Json& effective, cons
   const std::string before{std::istreambuf_iterator<char>(earlier), {}};
   add("columns.json", json_text(columns_json(tables, result.metrics)));
   if (record.timing) add("timing.json", timing_text(result));
-  // The summary, which says that a run is there, is the first to go and the last to come.
+  // The summary marks the directory as a complete run: it is removed first and written last.
   add("summary.json", json_text(summary_json(result)));
   files.commit();
   remove_empty_trials(directory_);

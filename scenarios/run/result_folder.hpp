@@ -14,27 +14,32 @@
 
 namespace hapbench {
 
-/// The directory of a run's results. While one object holds it, another cannot be made, in any process, so that two
-/// runs do not write into one folder. File systems without locks are not guarded.
+/// The directory of a run's results, protected by a lock: no other process or thread can create a ResultFolder
+/// for the same directory while this object exists. This keeps two runs from writing into one folder. File
+/// systems without locks are not protected.
 class ResultFolder {
  public:
-  /// Creates the directory; it and those of trials leave if empty in the end. Throws IoError, also when a run holds it.
+  /// Creates the directory and locks it. The destructor removes created directories that are still empty.
+  /// Throws IoError if the directory cannot be created or another run holds the lock.
   explicit ResultFolder(const std::filesystem::path& directory);
 
-  /// Creates the directory into which one of `trials` records: this one for a single trial. Throws IoError.
-  std::filesystem::path of_trial(Trial trial, std::size_t trials);
+  /// Creates and returns the directory into which a trial records. `trials`: number of trials of the run; for a
+  /// single trial, this is the run's directory. Throws IoError.
+  std::filesystem::path trial_directory(Trial trial, std::size_t trials);
 
-  /// Writes the results in place of those of an earlier run: each file appears complete or not at all, the summary
-  /// last. Returns true when that was another scenario. `effective`: with paths from the directory. Throws IoError.
+  /// Writes the results and replaces the results of an earlier run. Each file appears complete or not at all;
+  /// the summary appears last. Returns true if the earlier results were of another scenario. `effective`:
+  /// scenario.effective.json, with paths relative to the directory. Throws IoError.
   bool write(const RecordFields& record, const Json& effective, const Result& result, const Recorders& recorders);
 
  private:
   std::filesystem::path directory_;
   NewDirectories directories_;
-  std::shared_ptr<void> lock_;  ///< closes the descriptor that holds the lock
+  std::shared_ptr<void> lock_;  ///< closes the file descriptor that holds the lock
 };
 
-/// Removes from a directory, if there is one, only what a run wrote. Throws IoError when it cannot be listed.
+/// Removes the files that a run wrote from a directory, and keeps all other files. Does nothing if the
+/// directory does not exist. Throws IoError if it cannot be listed.
 void remove_run(const std::filesystem::path& directory);
 
 }  // namespace hapbench

@@ -35,14 +35,16 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
                           .steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride),
                           .most_reduced = if_any(rendering.reduction.has_value(), parts.source->capacity()),
                           .stride = static_cast<std::uint64_t>(scenario.time.stride)};
-  // Where the position is prescribed, or a handle moves the tool, no integrator steps the friction.
+  // If the position is prescribed or a handle moves the tool, no integrator applies the friction, and there is
+  // no limit.
   if (parts.motion->position_is_free() && !handle_moves_tool(scenario.device))
     config.friction_limit = explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step,
                                                     rendering.mu_s, rendering.mu_f);
   return config;
 }
 
-/// The force that the rendered one is compared with: ideal, or measured with a stroke; null without.
+/// Returns the force with which the rendered force is compared: an ideal force, or the force that was measured
+/// with a stroke. Null if there is no reference.
 std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, const NamedFiles& files) {
   if (scenario.reference_force) return std::make_shared<const ReferenceForce>(scenario.reference_force->force);
   if (!std::holds_alternative<RecordedPosition>(scenario.motion.position)) return nullptr;
@@ -69,7 +71,7 @@ RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
   return work;
 }
 
-/// A run between its trials: the observers that go on from trial to trial, and what the trials gave so far.
+/// State of a run: the observers that continue from trial to trial, and the results so far.
 class Run {
  public:
   Run(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose)
@@ -82,41 +84,46 @@ class Run {
     if (diagnose) diagnosis_.emplace(scenario_);
   }
 
-  /// Makes a trial, which records to `target`, if that is given. `label` is that of the progress bar; empty for none.
-  void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label,
-            const ProgressListener* listener) {
+  /// Runs a trial. `target`: where it records; empty: nowhere. `label`: label of the progress bar; empty: no
+  /// bar.
+  void run_trial(Trial trial, const std::optional<RecordTarget>& target, const std::string& label,
+                 const ProgressListener* listener) {
+    // Build the parts, and tell the observers that a trial begins.
     SimulationParts parts = assemble(scenario_, checked_.files(), shell_, trial);
     const SimulationConfig config = simulation_config(scenario_);
-    const TrialParts begun{config, parts, reference_.get(), trial.subject, trial.number};
+    const TrialParts trial_parts{config, parts, reference_.get(), trial.subject, trial.number};
     const TimeFields& time = scenario_.time;
     if (!metrics_) metrics_.emplace(time.step * static_cast<double>(time.stride), metrics_config(scenario_, parts));
     metrics_->begin();
-    sections_.begin(begun);
+    sections_.begin(trial_parts);
     tool_ = parts.tool;
 
+    // Collect the observers, in the order in which they are notified. The sampler is first and last, to measure
+    // the time between.
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
-    const auto seen = outcome_observer(scenario_, checked_.files(), parts, &*metrics_);
+    const auto outcome = outcome_observer(scenario_, checked_.files(), parts, &*metrics_);
     ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), listener);
     std::vector<Observer*> observers = {&sampler, &*metrics_};
     for (const auto& observer : sections_.all()) observers.push_back(observer.get());
-    observers.push_back(seen.get());
+    observers.push_back(outcome.get());
     if (diagnosis_) observers.push_back(&*diagnosis_);
     if (target) {
       for (auto& recorder :
-           make_recorders({scenario_.record, parts.source->capacity(), sections_, seen->inside()}, *target)) {
+           make_recorders({scenario_.record, parts.source->capacity(), sections_, outcome->inside()}, *target)) {
         observers.push_back(recorder.get());
         recorders_.push_back(std::move(recorder));
       }
     }
     observers.push_back(&sampler);
 
+    // Run the trial and evaluate it.
     Simulation simulation(config, std::move(parts), std::move(observers));
     const SimulationResult result = step_to_end(simulation, bar);
     step_nanoseconds_.insert(step_nanoseconds_.end(), sampler.nanoseconds().begin(), sampler.nanoseconds().end());
-    end_trial(*seen, result);
+    end_trial(*outcome, result);
   }
 
-  /// After the trials.
+  /// Returns the result. Called once, after all trials.
   Result result() {
     Result result = std::move(result_);
     result.name = scenario_.name;
@@ -125,6 +132,7 @@ class Run {
     sections_.tell(*metrics_, inside_ ? &*inside_ : nullptr, result);
     result.state_hash = metrics_->state_hash();
     result.warnings = checked_.file_warnings();
+    // With several trials, name the first trial that has warnings.
     if (trials_ > 1) {
       for (Warning& warning : warnings_)
         warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
@@ -133,10 +141,11 @@ class Run {
     for (const auto& more : {warnings_, tool_warnings(scenario_.rendering, *tool_),
                              diagnosis_ ? std::vector<Warning>() : rule_warnings(checked_.loaded(), result)})
       result.warnings.insert(result.warnings.end(), more.begin(), more.end());
-    // The fields of a cylinder say all.
+    // A cylinder is described completely by its fields.
     if (!std::holds_alternative<CylinderFields>(scenario_.tool)) result.tool = tool_json(*tool_);
     if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
     if (diagnosis_) result.diagnosis = diagnosis_findings(checked_.loaded(), result, diagnosis_->rows(), *tool_);
+    // Report the times of single steps if there are enough samples.
     const StepLatency alone = step_latency(step_nanoseconds_, 0);
     result.timing.step_p50 = if_any(alone.steps > 0, 1e-9 * static_cast<double>(alone.p50));
     result.timing.step_p99 = if_any(alone.steps >= 100, 1e-9 * static_cast<double>(alone.p99));
@@ -144,11 +153,12 @@ class Run {
     return result;
   }
 
-  /// Their files are complete but under temporary names until `finish`.
+  /// Returns the recorders of all trials. Their files have temporary names until Recorder::finish().
   const Recorders& recorders() const { return recorders_; }
 
  private:
   SimulationResult step_to_end(Simulation& simulation, ProgressBar& bar) {
+    // Measure allocations, preemptions and time of the step loop.
     const AllocationCount allocations;
     const std::uint64_t preemptions_before = involuntary_context_switches();
     const auto start = Clock::now();
@@ -166,25 +176,27 @@ class Run {
     return result;
   }
 
-  void end_trial(OutcomeObserver& seen, const SimulationResult& result) {
-    const Outcome outcome = seen.outcome(result.ending);
-    std::vector<Warning> warnings = seen.warnings(outcome);
+  void end_trial(OutcomeObserver& observer, const SimulationResult& result) {
+    const Outcome outcome = observer.outcome(result.ending);
+    // Keep the warnings of the first trial that has any.
+    std::vector<Warning> warnings = observer.warnings(outcome);
     ++trials_;
     if (!warnings.empty() && with_warnings_++ == 0) {
       first_with_warnings_ = trials_;
       warnings_ = std::move(warnings);
     }
-    if (const InsideDepths* depths = seen.depths()) {
+    if (const InsideDepths* depths = observer.depths()) {
       if (inside_)
         inside_->add(*depths);
       else
         inside_ = *depths;
     }
-    if (diagnosis_) diagnosis_->add_longest_step(seen.longest_step());
-    // A subject who loses the drill fails the rest of the targets.
+    if (diagnosis_) diagnosis_->add_longest_step(observer.longest_step());
+    // A subject whose trial diverges fails the remaining targets.
     if (outcome == Outcome::diverges) {
       if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
     }
+    // The run gets the worst outcome of its trials (the order of Outcome) and the total number of rows.
     const std::uint64_t rows = result.rows + result_.end.rows;
     if (trials_ == 1 || outcome > result_.end.outcome) result_.end = {outcome, rows, result.divergence};
     result_.end.rows = rows;
@@ -195,19 +207,19 @@ class Run {
   const std::shared_ptr<const PointShell>& shell_;
   std::shared_ptr<const ReferenceForce> reference_;
   std::shared_ptr<const ToolShape> tool_;
-  std::optional<MetricsObserver> metrics_;  ///< made from the parts of the first trial
+  std::optional<MetricsObserver> metrics_;  ///< created with the parts of the first trial
   SectionObservers sections_;
-  std::optional<DiagnosisObserver> diagnosis_;  ///< if it is wanted
+  std::optional<DiagnosisObserver> diagnosis_;  ///< empty unless requested
   std::optional<InsideDepths> inside_;
-  std::optional<StepTimes> times_;               ///< of every step, if they are wanted
-  std::vector<std::uint64_t> step_nanoseconds_;  ///< samples of the time of single steps (StepSampler)
-  std::vector<Warning> warnings_;                ///< of the first trial that has some
+  std::optional<StepTimes> times_;               ///< times of all steps; empty unless requested
+  std::vector<std::uint64_t> step_nanoseconds_;  ///< sampled durations of single steps [ns] (StepSampler)
+  std::vector<Warning> warnings_;                ///< warnings of the first trial that has any
   std::size_t trials_ = 0, with_warnings_ = 0, first_with_warnings_ = 0;
-  Result result_;  ///< so far: end, work, and the times of the step loop
+  Result result_;  ///< result so far: end, work, and times of the step loop
   Recorders recorders_;
 };
 
-/// The trials of a scenario, subject by subject; most scenarios have one.
+/// Returns the trials of a scenario, subject by subject. Only a tracking hand has more than one trial.
 std::vector<Trial> trials_of(const Scenario& scenario) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   if (hand == nullptr) return {Trial{}};
@@ -224,30 +236,35 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<fs::path
                     RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell) {
   const Scenario& scenario = checked.scenario();
   const auto start = Clock::now();
+  // Build the point shell, unless the caller has one.
   if (!shell) {
     const WaitNotice notice(scenario.name + ": building the shell", progress.is_shown);
     shell = make_shell(scenario, checked.files());
   }
   const std::chrono::duration<double> shell_time = Clock::now() - start;
+  // Run the trials.
   const std::vector<Trial> trials = trials_of(scenario);
   std::optional<ResultFolder> folder;
   if (output) folder.emplace(*output);
   if (output) tables = nullptr;
-  if (tables != nullptr) tables->trials.reserve(trials.size());  // the recorders point into it
+  // No reallocation later: the recorders keep pointers to elements.
+  if (tables != nullptr) tables->trials.reserve(trials.size());
   Run run(checked, shell, trials.size(), diagnose);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     std::optional<RecordTarget> target;
-    if (folder && records_rows(scenario.record)) target = folder->of_trial(trials[i], trials.size());
+    if (folder && records_rows(scenario.record)) target = folder->trial_directory(trials[i], trials.size());
     if (tables != nullptr) target = &tables->trials.emplace_back();
     std::string label = progress.is_shown ? scenario.name : "";
     if (progress.is_shown && trials.size() > 1) label += fmt::format(" {}/{}", i + 1, trials.size());
-    run.make(trials[i], target, label, progress.listener);
+    run.run_trial(trials[i], target, label, progress.listener);
   }
+  // Evaluate the run and compare it with the scenario's expectations.
   Result result = run.result();
   result.timing.shell = shell_time.count();
   result.unmet = unmet_expectations(scenario.expect, result);
   result.expected = result.unmet.empty();
   if (!folder && tables == nullptr) return result;
+  // Describe where the results come from, and write them.
   const AlgorithmOrigin& origin = find_algorithm(result.algorithm)->origin;
   result.provenance = provenance();
   result.provenance.plugin = origin.file;

@@ -19,19 +19,24 @@
 
 namespace hapbench {
 
-/// Runs a scenario, all its trials one after the other. With `output`, writes summary.json, scenario.effective.json and
-/// what the scenario records into that directory (ResultFolder), records of several trials into a subdirectory each.
-/// With `tables`, and without a directory, what the scenario records goes there. Without either, the summary has no
-/// provenance and no scenario hash. `progress` allows a bar. `diagnose`: the result says what is wrong with
-/// the run (diagnosis.hpp), for some 20 ns a row. Throws InputError for points and tools that cannot be made of the
-/// files (before anything is written), IoError when writing fails, Stopped when a signal ends the run: then nothing of
-/// it is left. `shell`, if it is there already: make_shell of the scenario, which several runs, also at once, may
-/// share.
+/// Runs all trials of a scenario, one after the other, and returns the result.
+/// - `output`: directory for summary.json, scenario.effective.json and the recorded tables (ResultFolder).
+///   Several trials record into one subdirectory each.
+/// - `progress`: whether and where to show a progress bar.
+/// - `tables`: receives the recorded tables in memory; ignored with `output`. Without `output` and `tables`,
+///   the summary has neither provenance nor scenario hash.
+/// - `diagnose`: the result includes a diagnosis of what is wrong with the run (diagnosis.hpp); costs about 20
+///   ns a step.
+/// - `shell`: make_shell() of the scenario, if it already exists. Several runs may share it, also at the same
+///   time.
+/// Throws InputError before anything is written if the point shell or tool cannot be built from the files.
+/// Throws IoError if writing fails, and Stopped if a signal ends the run. No partial results remain after an
+/// error.
 Result run_scenario(const CheckedScenario& checked, const std::optional<std::filesystem::path>& output,
                     Progress progress, RunTables* tables = nullptr, bool diagnose = false,
                     std::shared_ptr<const PointShell> shell = {});
 
-/// The same for its result alone.
+/// Runs a scenario with an existing point shell and returns its result. Writes no files and shows no progress.
 inline Result run_with_shell(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell) {
   return run_scenario(checked, {}, false, nullptr, false, shell);
 }

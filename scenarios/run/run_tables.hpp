@@ -9,13 +9,14 @@
 
 namespace hapbench {
 
-/// What a run would have written, in memory.
+/// The recorded tables of a run, kept in memory.
 struct RunTables {
   std::vector<RecordedTables> trials;
-  std::optional<MemoryTable> targets;  ///< targets.csv, of a tracking hand
-  Json effective;                      ///< scenario.effective.json, with paths from the working directory
+  std::optional<MemoryTable> targets;  ///< content of targets.csv; empty unless the hand is a tracking hand
+  Json effective;  ///< content of scenario.effective.json, with paths relative to the working directory
 
-  /// Ends the recorders, and adds what is not of one trial. Throws std::bad_alloc when rows were lost.
+  /// Finishes the recorders, and sets `effective` and `targets`. Throws std::bad_alloc if memory ran out and
+  /// recorded rows were lost.
   void write(const Json& of_scenario, const Result& result, const Recorders& recorders);
 };
 

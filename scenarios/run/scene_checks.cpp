@@ -20,18 +20,20 @@
 namespace hapbench {
 namespace {
 
+/// Returns the pose of the tool at the start.
 ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
-  parts.hand->reset();  // it may steer the orientation
+  parts.hand->reset();  // the hand may steer the orientation
   const bool is_free = parts.motion->position_is_free();
   return {is_free ? scenario.initial.position : parts.motion->position_at(0.0), parts.motion->axis_at(0.0),
           parts.motion->roll_at(0.0)};
 }
 
-constexpr double kUsualStep = 0.001;  ///< of haptic loops [s]
-/// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
-constexpr double kUnitsApart = 100.0;
+constexpr double kTypicalStep = 0.001;  ///< typical time step of haptic loops [s]
+/// Ratio from which two lengths or times probably have different units: the factor is 1000 for mm instead of m,
+/// and 100 for cm instead of m.
+constexpr double kUnitFactor = 100.0;
 
-/// An environment that no hand works on, whatever the size of the tool.
+/// Returns a warning if the environment is much smaller or larger than objects that a hand works on.
 std::optional<Warning> size_warning(const Environment& environment, const Box& box) {
   const double longest = box.size().maxCoeff();
   const bool may_be_a_patch = std::holds_alternative<PointShellEnvironment>(environment);
@@ -41,49 +43,55 @@ std::optional<Warning> size_warning(const Environment& environment, const Box& b
                              length_text(kShortestObject), length_text(kLongestObject), size_question(environment))};
 }
 
-/// Points of a mesh so far apart that the tool feels each. Surfaces of formulas have the spacing they were given.
+/// Returns a warning if the points of a mesh are so far apart that the tool feels each point. Surfaces that a
+/// formula defines are not checked: their spacing was chosen in the scenario.
 std::optional<Warning> spacing_warning(const LoadedScenario& loaded, const ToolShape& tool) {
-  constexpr double kSmooth = 0.1, kRough = 1.0 / 6.0;  // of the tool's width; "hapbench new" takes the former
+  // Fractions of the tool's width; "hapbench new" chooses kSmoothSpacing.
+  constexpr double kSmoothSpacing = 0.1, kRoughSpacing = 1.0 / 6.0;
   if (!std::holds_alternative<MeshEnvironment>(loaded.scenario.environment)) return std::nullopt;
   const PointDistance distance = *point_distance(loaded);
   const double width = 2.0 * tool.half_width();
-  if (distance.metres <= kRough * width) return std::nullopt;
+  if (distance.metres <= kRoughSpacing * width) return std::nullopt;
   return Warning{"spacing", distance.is_given ? "/environment/spacing_m" : "/environment",
                  fmt::format("{} are {} apart; a tool of {} feels them as a rough surface; --set {}={:.1g}",
                              distance.is_given ? "the points" : "the mesh's vertices", length_text(distance.metres),
-                             length_text(width), distance.path, kSmooth * width)};
+                             length_text(width), distance.path, kSmoothSpacing * width)};
 }
 
+/// Returns a warning if the tool starts much further from the environment than tool or environment are large.
 std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
-  const double least = std::min(diagonal(surface.box), tool.reach());
+  const double smaller = std::min(diagonal(surface.box), tool.reach());
   const double gap = surface.start.distance;
-  if (!(gap > kUnitsApart * least)) return std::nullopt;
+  if (!(gap > kUnitFactor * smaller)) return std::nullopt;
   return Warning{
       "start", "",
       fmt::format("the tool starts {} from the environment, {:.0f} times the size of {}: is its place in metres?",
-                  length_text(gap), gap / least, least == tool.reach() ? "the tool" : "the environment")};
+                  length_text(gap), gap / smaller, smaller == tool.reach() ? "the tool" : "the environment")};
 }
 
+/// Returns warnings about lengths and times of a stroke that probably have wrong units.
 std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& time, const ToolShape& tool,
                                      const Box& environment) {
+  // Compare the extent of the stroke with the environment and the tool.
   const auto samples = stroke.motion.samples();
   Box box = Box::nothing();
   for (const RecordedMotion::Sample& sample : samples) box.add(sample.position);
-  const double size = diagonal(environment), way = diagonal(box);
+  const double size = diagonal(environment), extent = diagonal(box);
   const std::string of = fmt::format("the stroke's places are within {}", size_text(box));
   std::vector<Warning> warnings;
   const auto warn = [&warnings](std::string text) {
     warnings.push_back({"stroke", std::string(kMotionFile), std::move(text)});
   };
-  if (way > kUnitsApart * size) {
-    warn(fmt::format("{}, {:.0f} times the environment's size: are they in metres?", of, way / size));
-  } else if (way > 0.0 && kUnitsApart * way < tool.half_width()) {
+  if (extent > kUnitFactor * size) {
+    warn(fmt::format("{}, {:.0f} times the environment's size: are they in metres?", of, extent / size));
+  } else if (extent > 0.0 && kUnitFactor * extent < tool.half_width()) {
     warn(fmt::format("{}, a hundredth of the tool's half width, {}: are they in metres?", of,
                      length_text(tool.half_width())));
   }
+  // Compare the sampling interval with the time step.
   if (samples.size() < 2) return warnings;
   const double interval = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
-  if (interval > kUnitsApart * time.step || interval * kUnitsApart < time.step) {
+  if (interval > kUnitFactor * time.step || interval * kUnitFactor < time.step) {
     warn(fmt::format(
         "the stroke has a sample each {:.3g} ms, the run a step each {:.3g} ms: are times in seconds, and is "
         "time.step_s right?",
@@ -92,9 +100,11 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
   return warnings;
 }
 
-/// Says that the foremost place of the tool's core is behind a surface, on the side away from its normals.
+/// Returns a warning if the support point of the tool's core lies behind the nearest surface point, on the side
+/// opposite to its normal.
 std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const ToolPose& pose) {
   const Vec3 core = pose.position - way_to_core(tool) * pose.axis;
+  // Find the nearest point of the surface.
   std::size_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < shell.size(); ++i) {
@@ -103,7 +113,8 @@ std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolSha
     nearest = i;
     distance = to_point;
   }
-  constexpr double kBehind = 0.7;  // cosine of 45 degrees: not beside an edge
+  // Cosine of 45 degrees: the core lies behind the point, not beside an edge of the surface.
+  constexpr double kBehind = 0.7;
   const SurfacePoint point = shell.point(nearest);
   const double behind = point.normal.dot(point.position - core);
   if (behind <= 0.0 || behind < kBehind * distance) return std::nullopt;
@@ -114,6 +125,7 @@ std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolSha
                   length_text(behind))};
 }
 
+/// Returns a warning if the sizes of tool and environment are out of proportion.
 std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
   const std::string question = scale_question(scenario, tool, environment);
   if (question.empty()) return std::nullopt;
@@ -124,12 +136,13 @@ std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& 
                              is_mesh ? "" : "are the tool's lengths in metres, or ", question)};
 }
 
+/// Returns a warning if the time step probably has a wrong unit.
 std::optional<Warning> step_warning(double step) {
-  if (step <= kUnitsApart * kUsualStep && kUnitsApart * step >= kUsualStep) return std::nullopt;
+  if (step <= kUnitFactor * kTypicalStep && kUnitFactor * step >= kTypicalStep) return std::nullopt;
   return Warning{"step", "/time/step_s", fmt::format("{:.3g} s; haptic loops step each 1 ms: is it in seconds?", step)};
 }
 
-/// Warnings of a scene, of which each may be missing.
+/// Collects the warnings of a scene. Each check may return nothing.
 class WarningList {
  public:
   void add(std::optional<Warning> warning) {
@@ -138,13 +151,13 @@ class WarningList {
   void add(std::vector<Warning> warnings) {
     for (Warning& warning : warnings) warnings_.push_back(std::move(warning));
   }
-  std::vector<Warning> taken() { return std::move(warnings_); }
+  std::vector<Warning> take() { return std::move(warnings_); }
 
  private:
   std::vector<Warning> warnings_;
 };
 
-/// Warnings about sizes, in an environment whose points have a size.
+/// Adds warnings about sizes. Precondition: the environment's points do not coincide.
 void add_size_warnings(WarningList& warnings, const LoadedScenario& loaded, const ToolShape& tool,
                        const SceneFacts::Surface& surface) {
   const Scenario& scenario = loaded.scenario;
@@ -175,9 +188,9 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
 
   // The environment; springs have no points.
   const auto shell = make_shell(scenario, loaded.files);
-  throw_if_stopped();  // that may have taken seconds
+  throw_if_stopped();  // building the shell may have taken seconds
   if (!shell || shell->size() == 0) {
-    facts.warnings = warnings.taken();
+    facts.warnings = warnings.take();
     return facts;
   }
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
@@ -196,7 +209,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   const bool has_size = facts.surface->box.min != facts.surface->box.max;  // unlike a single point
   if (has_size) add_size_warnings(warnings, loaded, tool, *facts.surface);
   warnings.add(wrong_side_warning(*shell, tool, pose));
-  facts.warnings = warnings.taken();
+  facts.warnings = warnings.take();
   return facts;
 }
 

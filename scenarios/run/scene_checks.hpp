@@ -11,21 +11,22 @@
 
 namespace hapbench {
 
-/// Facts about a scenario that are known before it runs.
+/// Properties of a scenario's scene that are known before it runs.
 struct SceneFacts {
-  /// The points of the environment; springs have none.
+  /// The environment's point shell. An environment of springs has no points.
   struct Surface {
     Box box;
     std::size_t points = 0;
-    Gap start;  ///< where the tool starts
+    Gap start;  ///< between tool and surface at the start
   };
   std::optional<Surface> surface;
   std::shared_ptr<const ToolShape> tool;
-  std::optional<bool> is_closed;  ///< of a mesh
-  std::vector<Warning> warnings;  ///< about the tool, and the way of its drag, in this scene
+  std::optional<bool> is_closed;  ///< whether a mesh has no open edges; empty for other environments
+  std::vector<Warning> warnings;  ///< about sizes, time step, tool, starting position and path of a drag
 };
 
-/// Builds the environment and places the tool. Throws InputError when a named file cannot be used.
+/// Builds the environment, places the tool in its starting pose and checks the scene. Throws InputError if a
+/// named file cannot be used.
 SceneFacts scene_facts(const LoadedScenario& loaded);
 
 }  // namespace hapbench

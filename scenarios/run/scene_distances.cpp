@@ -12,7 +12,7 @@
 namespace hapbench {
 namespace {
 
-/// The mean distance of a mesh's vertices [m].
+/// Returns the mean distance of a mesh's vertices: the square root of the area a vertex [m].
 double vertex_distance(const TriangleSoup& soup) {
   double area = 0.0;
   for (const auto& [a, b, c] : soup.triangles) {
@@ -29,6 +29,7 @@ Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& s
   ContactBuffer points(std::min(kAtOnce, shell.size()));
   Gap gap{std::numeric_limits<double>::infinity()};
   for (std::size_t first = 0; first < shell.size(); first += kAtOnce) {
+    // Copy a block of points, and compute their depths in the tool.
     points.clear();
     for (std::size_t i = first; i < std::min(first + kAtOnce, shell.size()); ++i) {
       const SurfacePoint point = shell.point(i);

@@ -7,30 +7,32 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
 
-/// Distances in a scene: of the tool from the surface, and of the surface's points from each other.
+/// Distances in a scene: between the tool and the surface, and between the points of the surface.
 namespace hapbench {
 
-/// The place of a tool against the points of a surface.
+/// Distance between a tool and the points of a surface.
 struct Gap {
-  /// Distance of the tool from the nearest point [m]; when negative, how deep the deepest point lies in it.
+  /// Distance of the tool from the nearest point [m]. Negative if points lie inside the tool: then minus the
+  /// depth of the deepest point.
   double distance = 0.0;
-  std::size_t touching = 0;  ///< points in the tool
+  std::size_t touching = 0;  ///< number of points inside or on the tool
 };
 
-/// Looks at all points of the shell, which has some.
+/// Returns the distance between the tool and all points of the shell. Precondition: the shell has points.
+/// O(points).
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell);
 
-/// The field that sets the distance of the shell's points, and this distance.
+/// Spacing of the shell's points, and the scenario field that sets it.
 struct PointDistance {
-  const char* path;  ///< of the field, as in --set
+  const char* path;  ///< path of the field, as in --set
   double metres;
-  bool is_given = true;  ///< false: the mean distance of the vertices of a mesh that is taken as it is
+  bool is_given = true;  ///< false: mean spacing of the vertices of a mesh without a given spacing
 };
 
-/// Empty where no field sets it.
+/// Returns the point spacing of the environment; empty if no field sets it.
 std::optional<PointDistance> point_distance(const LoadedScenario& loaded);
 
-/// The length of a box from corner to corner [m].
+/// Returns the length of a box's diagonal [m].
 inline double diagonal(const Box& box) {
   return box.size().norm();
 }

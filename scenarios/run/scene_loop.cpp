@@ -13,18 +13,20 @@
 namespace hapbench {
 namespace {
 
+/// Keeps the stiffness tensor S of the last step.
 class LastTensor final : public Observer {
  public:
   void on_step(const StepRecord& record) noexcept override { S = record.force.S; }
   Mat3 S = Mat3::Zero();
 };
 
-/// A hand whose force does not depend on the handle.
-bool is_blind(const HandFields& hand) {
+/// Returns true for a hand whose force does not depend on the handle's motion.
+bool force_ignores_handle(const HandFields& hand) {
   return std::holds_alternative<NoHandFields>(hand) || std::holds_alternative<ForceHandFields>(hand) ||
          std::holds_alternative<PushHandFields>(hand);
 }
 
+/// Returns the loop of an impedance device at a wall of stiffness lambda K and damping lambda B.
 DeviceLoop impedance_loop(const Scenario& scenario, const ImpedanceDeviceConfig& device, double lambda) {
   DeviceLoop result;
   SampledLoop& loop = result.loop.emplace<SampledLoop>();
@@ -34,12 +36,13 @@ DeviceLoop impedance_loop(const Scenario& scenario, const ImpedanceDeviceConfig&
   loop.wall_damping = lambda * normal_damping(scenario.rendering);
   if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&scenario.hand))
     loop.hand = {hand->mass, hand->spring.stiffness, hand->spring.damping};
-  else if (!is_blind(scenario.hand))
+  else if (!force_ignores_handle(scenario.hand))
     result.no_theory = "the hand's force is sampled";
   if (const char* nonlinearity = loop.nonlinearity()) result.no_theory = nonlinearity;
   return result;
 }
 
+/// Returns the loop of an admittance device at a wall of stiffness lambda K and damping lambda B.
 DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfig& device, double lambda) {
   DeviceLoop result;
   AdmittanceLoop& loop = result.loop.emplace<AdmittanceLoop>();
@@ -49,14 +52,15 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
   if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
     loop.hand_stiffness = hand->stiffness;
     loop.hand_damping = hand->damping;
-  } else if (!is_blind(scenario.hand)) {
+  } else if (!force_ignores_handle(scenario.hand)) {
     result.no_theory = "the hand is not a spring and damper";
   }
   return result;
 }
 
-/// The scenario along a surface on which dry friction holds its tool: with the bristle in place of the springs. The
-/// bristle adds up the device's velocity, and so sees the position through the velocity's filter.
+/// Returns the scenario with the stiffness and damping of the friction bristle in place of the contact springs:
+/// the linear loop along a surface on which dry friction holds the tool. The bristle integrates the device's
+/// velocity. It therefore sees the position through the velocity filter.
 Scenario stuck_scene(Scenario scenario) {
   RenderingConfig& r = scenario.rendering;
   const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
@@ -69,8 +73,9 @@ Scenario stuck_scene(Scenario scenario) {
   return scenario;
 }
 
-/// JSON pointers, within a device, of the fields that its loop has, that SampledLoop::nonlinearity names, or that do
-/// nothing while nothing saturates. Any other field that is not at its default leaves no theory.
+/// Fields of a device that the linear model covers, as JSON pointers within the device. The loop includes them,
+/// SampledLoop::nonlinearity() reports them, or they have no effect as long as nothing saturates. With any
+/// other field that is not at its default, there is no linear model.
 constexpr std::string_view kKnownToTheory[] = {"/handle_mass_kg",
                                                "/viscous_N_s_per_m",
                                                "/coulomb_N",
@@ -114,6 +119,7 @@ bool springs_stay(const Scenario& scenario) {
 }
 
 Vec3 stiffness_eigenvalues(Scenario scenario) {
+  // Run one step with all springs deflected, and read the tensor.
   scenario.time.steps = 1;
   scenario.bounds = {};
   scenario.initial.position = Vec3(1e-3, 1e-3, 1e-3);
@@ -134,7 +140,7 @@ double delay_of(const Scenario& scenario) {
 }
 
 std::string unknown_to_theory(const Scenario& scenario) {
-  // With the parts of the device, so that only fields of theirs can differ.
+  // Compare with a device that has default values but the same optional parts (filters, transmission).
   DeviceFields plain = AdmittanceDeviceConfig{};
   if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
     auto& parts = plain.emplace<ImpedanceDeviceConfig>();
@@ -176,8 +182,10 @@ std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenari
                                                                    bool over_hands) {
   std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step(scenario, lambda)}};
   if (all[0].second.size() == 0) return {};
+  // Add the tool that friction holds.
   if (scenario.rendering.dry_friction)
     all.emplace_back("the tool held by friction", contact_step(stuck_scene(scenario), 1.0));
+  // Add the loops with other hands.
   const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
   if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
   SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);

@@ -9,47 +9,59 @@
 #include "scenarios/scene/scenario.hpp"
 #include "sim/loop/integrators/table.hpp"
 
-/// The linear loop of a scenario: tool, device, hand and the springs of its wall, while nothing saturates and contact
-/// lasts. Along a direction in which the springs' tensor S has the eigenvalue lambda they act as one spring lambda K
-/// with one damper lambda B, and a step is stable while no eigenvalue of its map leaves the unit circle.
+/// The linear control loop of a scenario: tool, device, hand and the springs of its wall, as long as nothing
+/// saturates and contact is not lost. Let K be the stiffness, B the damping, and lambda an eigenvalue of the
+/// springs' stiffness tensor S (in units of K). Along the direction of lambda, the springs act like one spring
+/// lambda K with one damper lambda B. The loop is stable if no eigenvalue of the state matrix of one step
+/// leaves the unit circle.
 namespace hapbench {
 
-/// True for bilateral springs without viscous friction, limits and stages, on a tool that is free to move: their loop
-/// does not depend on the run. Elsewhere contacts come and go.
+/// Returns true if the springs never lose contact and respond linearly, so that their loop is the same at every
+/// step. This holds for bilateral springs without friction, Hunt-Crossley damping, limits, force stages and multi-rate
+/// contacts, on a tool that is free to move.
 bool springs_stay(const Scenario& scenario);
 
-/// True for a device that is part of the loop, and not ideal.
+/// Returns true if the scenario has a device other than the ideal device. Only such a device is part of the
+/// loop.
 inline bool has_device(const Scenario& scenario) {
   return !std::holds_alternative<IdealDeviceFields>(scenario.device);
 }
 
-/// The eigenvalues of such a scenario's stiffness tensor S under its algorithm, in units of K, the largest last.
+/// Returns the eigenvalues of the stiffness tensor S under the scenario's algorithm, in units of K, in
+/// ascending order. Precondition: springs_stay(scenario).
 Vec3 stiffness_eigenvalues(Scenario scenario);
 
-/// The tool along a direction in which the stiffness of the scenario's springs is lambda K, without a device.
+/// Returns the tool on a spring of stiffness lambda K and damping lambda B, without a device.
 SpringDamper tool_on_spring(const Scenario& scenario, double lambda);
 
-/// The loop along a direction of the eigenvalue lambda, at a wall of lambda K, lambda B. Precondition: has_device.
+/// Returns the loop of device, hand and a wall with stiffness lambda K and damping lambda B. Precondition:
+/// has_device(scenario).
 DeviceLoop device_loop(const Scenario& scenario, double lambda);
 
-/// The fields of the device that are not at their defaults and that no theory knows, as "device.viscous_N_s_per_m";
-/// empty when there are none. Precondition: has_device.
+/// Returns the paths of the device fields that differ from their defaults and that the linear model does not
+/// include, such as "device.viscous_N_s_per_m", separated by commas. Empty if there are none. Precondition:
+/// has_device(scenario).
 std::string unknown_to_theory(const Scenario& scenario);
 
-/// The delay of the device's force, or of its servo [samples], and the field that sets it.
+/// Returns the delay of the device's force, or of the servo of an admittance device [samples]. 0 for an ideal device.
 double delay_of(const Scenario& scenario);
+/// Returns the path of the field that sets this delay.
 inline const char* delay_path(const Scenario& scenario) {
   const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
   return has_servo ? "device.servo.delay_samples" : "device.delay_samples";
 }
 
-/// The map of a step of the tool at a wall of lambda K and lambda B: by the device's loop, of an ideal device by the
-/// integrator alone. Empty for a loop that is too large to solve, and for fields that are unknown_to_theory.
+/// Returns the state matrix of one step of the tool in contact with a wall of stiffness lambda K and damping
+/// lambda B. With an ideal device, this is the step matrix of the integrator; with another device, of
+/// device_loop(). Empty if the delay makes the loop too large to solve, or if unknown_to_theory() is not empty.
 Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda);
 
-/// The maps of a step of device, hand and a wall of lambda K (contact_step), by the name of the hand, empty for the
-/// scene's own: with `over_hands`, on an impedance device that a hand holds, also of hand_family(), and with dry
-/// friction of the tool which it holds. Empty where there is no contact_step.
+/// Returns the state matrices (contact_step()) of several variants of the scenario's loop at a wall of
+/// stiffness lambda K, each with its name:
+/// - the scenario's own loop, with an empty name;
+/// - with dry friction, a tool that friction holds;
+/// - with `over_hands`, if a hand holds an impedance device, the hands of hand_family().
+/// Returns an empty list if contact_step() is empty.
 std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
                                                                    bool over_hands);
 

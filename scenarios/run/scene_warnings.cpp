@@ -20,8 +20,9 @@ const char* size_question(const Environment& environment) {
 
 std::optional<Warning> short_path_warning(const DragHandFields& fields, const DragHand& hand, double duration,
                                           const ToolShape& tool) {
-  const double path = hand.path().length(), to_cover = way_to_cover(fields, duration);
-  // By less than the tool is wide it is the edge that ends the way.
+  const double path = hand.path().length(), to_cover = intended_drag_length(fields, duration);
+  // If the path is short by less than the tool's width, the drag ends at an edge of the surface, which is
+  // normal.
   if (to_cover <= path + 2.0 * tool.half_width()) return std::nullopt;
   const std::string ends =
       fmt::format("the path of the drag ends after {} of {}: ", length_text(path), length_text(to_cover));
@@ -32,8 +33,8 @@ std::optional<Warning> short_path_warning(const DragHandFields& fields, const Dr
 }
 
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
-  // Scenes are made of tools and places to work on. An environment this much smaller than the tool is thick, or larger
-  // than it is long, is suspect, and millimetres taken for metres change either a thousandfold.
+  // Suspect: an environment much smaller than the tool's thickness or much larger than its length. Millimetres
+  // taken for metres change either ratio by a factor of 1000.
   constexpr double kTooSmall = 0.1, kTooLarge = 100.0;
   const double size = diagonal(environment);
   if (size >= kTooSmall * 2.0 * tool.half_width() && size <= kTooLarge * tool.reach()) return "";
@@ -42,13 +43,13 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
 }
 
 std::string odd_frame(const Box& tool) {
-  constexpr double kOdd = 2.0;  // as far this way as the other, or further, is not an accident
+  constexpr double kSuspectRatio = 2.0;  // ratio of lengths from which the frame is probably wrong
   const Vec3 size = tool.size();
   const double gap = distance_to(tool, Vec3::Zero());
   if (gap > 0.0) return fmt::format("lies {} away from its tip centre", length_text(gap));
   const auto [short_side, long_side] = std::minmax(size.x(), size.y());
-  if (long_side > kOdd * std::max(short_side, size.z())) return "lies across its axis";
-  if (-tool.min.z() > kOdd * tool.max.z()) return "lies before its tip centre, not behind";
+  if (long_side > kSuspectRatio * std::max(short_side, size.z())) return "lies across its axis";
+  if (-tool.min.z() > kSuspectRatio * tool.max.z()) return "lies before its tip centre, not behind";
   return "";
 }
 

@@ -9,34 +9,40 @@
 #include "scenarios/scene/scenario.hpp"
 #include "sim/tool/tool_shape.hpp"
 
-/// What is odd about a scene before it runs: warnings, and questions about the field that is likely wrong.
+/// Checks a scene for likely mistakes before it runs. Returns warnings, and questions that name the field that
+/// is probably wrong.
 namespace hapbench {
 
-/// Longest edges of what a hand works on, at least and at most [m]: those of others are likely of another unit.
+/// Limits of the longest edge of an object that a hand works on [m]. A length outside of these limits probably
+/// has a wrong unit.
 inline constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
 
-/// The length of the way on which a scenario has the tool dragged in `duration` [s]: along a direction as far as the
-/// time allows, along points at most to the last one [m].
-inline double way_to_cover(const DragHandFields& hand, double duration) {
+/// Returns the path length along which the hand would drag the tool in `duration` [s] if the surface did not
+/// end [m]. Along a direction, it is speed times duration; along given points, at most the distance to the last
+/// point.
+inline double intended_drag_length(const DragHandFields& hand, double duration) {
   return std::min(hand.drag.speed * duration, drag_length(hand, duration));
 }
 
-/// A warning for the path of a drag over the surface that falls short of the way to cover in `duration` [s] by more
-/// than the tool is wide: how long it is and what to change. It is known before the run.
+/// Returns a warning if the path of a drag over the surface is shorter than intended_drag_length() in
+/// `duration` [s] by more than the tool's width. It gives the path length and suggests what to change. The path
+/// is computed before the run.
 std::optional<Warning> short_path_warning(const DragHandFields& fields, const DragHand& hand, double duration,
                                           const ToolShape& tool);
 
-/// The question about the field that makes an environment as large as it is.
+/// Returns a question about the field that determines the size of the environment, such as its scale.
 const char* size_question(const Environment& environment);
 
-/// A question about the likeliest field where the sizes of tool and environment are out of proportion; else empty.
+/// Returns a question about the field that is most likely wrong if the sizes of tool and environment are out of
+/// proportion; otherwise an empty text.
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
-/// The odd thing about the place of a tool that fills the box in its own frame, as "lies across its axis"; empty when
-/// nothing is odd. Tools have their tip centre at the origin, and their tip points along -z.
+/// Returns what is unusual about a tool whose bounding box in its own frame is `tool`, such as "lies across its
+/// axis"; empty if nothing is. In this frame, the tip centre is the origin and the tip points along -z.
 std::string odd_frame(const Box& tool);
 
-/// Warnings about a tool: a proxy keeps points out of convex tools only, and a mesh may lie oddly in its frame.
+/// Returns warnings about a tool. The proxy algorithm keeps points out of convex tools only, and a mesh may
+/// have a wrong position or orientation in its frame.
 std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool);
 
 }  // namespace hapbench

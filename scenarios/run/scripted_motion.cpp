@@ -11,19 +11,20 @@ namespace {
 
 constexpr double kAlways = std::numeric_limits<double>::infinity();
 
-/// The time until which a script moves [s]: 0 if it never does.
+/// Returns the time until which a profile changes [s]; 0 if it is constant, infinite if it never stops.
 double moves_until(const Profile& profile) {
   if (profile.is_constant()) return 0.0;
-  const auto* way = std::get_if<Profile::Waypoints>(&profile.shape());
-  return way != nullptr ? way->points.back().first : kAlways;
+  const auto* waypoints = std::get_if<Profile::Waypoints>(&profile.shape());
+  return waypoints != nullptr ? waypoints->points.back().first : kAlways;
 }
 
+/// Returns the period of a profile [s]; 0 if it is not periodic.
 double period_of(const Profile& profile) {
   const auto* sine = std::get_if<Profile::Sine>(&profile.shape());
   return sine != nullptr && !profile.is_constant() ? sine->period_s : 0.0;
 }
 
-/// The scripts of the hand; none of one that is moved otherwise, and of none.
+/// Returns the scripts that drive the hand; empty without a hand, and for a hand that no script drives.
 std::span<const Profile> scripts_of(const HandFields& hand) {
   if (const auto* force = std::get_if<ForceHandFields>(&hand)) return force->force;
   if (const auto* push = std::get_if<PushHandFields>(&hand)) return {&push->force, 1};
@@ -31,11 +32,12 @@ std::span<const Profile> scripts_of(const HandFields& hand) {
   return {};
 }
 
+/// Returns the largest value of `of` over the scripts of hand and orientation.
 double largest(const Scenario& scenario, double (*of)(const Profile&)) {
-  double most = 0.0;
-  for (const Profile& script : scripts_of(scenario.hand)) most = std::max(most, of(script));
+  double result = 0.0;
+  for (const Profile& script : scripts_of(scenario.hand)) result = std::max(result, of(script));
   const auto& orientation = scenario.motion.orientation;
-  return orientation ? std::max({most, of(orientation->tilt), of(orientation->azimuth)}) : most;
+  return orientation ? std::max({result, of(orientation->tilt), of(orientation->azimuth)}) : result;
 }
 
 }  // namespace

@@ -2,15 +2,17 @@
 
 #include "scenarios/scene/scenario.hpp"
 
-/// Who moves the tool of a scenario.
+/// Finds out whether, and until when, scripts move the hand or turn the tool.
 namespace hapbench {
 
-/// The time until which a script moves the hand or turns the tool [s]: 0 if it never does, infinite if it never stops.
+/// Returns the time until which a script moves the hand or turns the tool [s]; 0 if it never does. Infinite if
+/// it never stops, or if something other than a script leads the tool (a drag, a subject, a recorded stroke).
 double script_moves_until(const Scenario& scenario);
-/// The longest period of what repeats in the scripts of hand and tool [s]; 0 where nothing does.
+/// Returns the longest period of the periodic scripts of hand and tool [s]; 0 if no script is periodic.
 double script_period(const Scenario& scenario);
-/// True when a script moves the hand or turns the tool: then the tool never comes to rest, and only what is above 30 Hz
-/// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s. A hand that trembles also moves it.
+/// Returns true if a script or the hand's tremor moves the tool, which therefore may never come to rest. Then
+/// only velocity above 30 Hz that exceeds 1 mm/s counts as motion. After the end of the script, any velocity
+/// above 1 mm/s counts.
 bool is_moved(const Scenario& scenario);
 
 }  // namespace hapbench

@@ -7,30 +7,36 @@
 namespace hapbench {
 
 void Standstill::add(const StepRecord& record) noexcept {
-  constexpr double kRows = 1 / 32.0;  // of a mean over some rows, which chatter does not turn
-  const Vec3& place = record.tool.pose.position;
+  // Weight of a step in the running mean of the contact force; averages over chatter.
+  constexpr double kMeanWeight = 1 / 32.0;
+  const Vec3& position = record.tool.pose.position;
   const Vec3 target = target_(record.time);
-  // Before the first touch nothing tells the direction of the push: how far away the target was then does not count.
-  if (push_.isZero(0.0)) across_ = 0.0;
-  push_ += kRows * (record.force.spring - push_);
-  ways_.add(place);
-  target_ways_.add(target);
-  stuck_.way = diagonal(ways_);
-  stuck_.target_way = diagonal(target_ways_);
-  if (!began_ || stuck_.way > kMovingShare * std::max(width_, stuck_.target_way)) {
+  // Before the first contact, the direction of the contact force is unknown. Target distances from that time do
+  // not count.
+  if (mean_force_.isZero(0.0)) across_ = 0.0;
+  mean_force_ += kMeanWeight * (record.force.spring - mean_force_);
+  // Extend the boxes of tool and target.
+  tool_box_.add(position);
+  target_box_.add(target);
+  stuck_.tool_distance = diagonal(tool_box_);
+  stuck_.target_distance = diagonal(target_box_);
+  // If the tool moved, a possible standstill begins with this step.
+  if (!began_ || stuck_.tool_distance > kMinMovingFraction * std::max(width_, stuck_.target_distance)) {
     began_ = true;
-    ways_ = {place, place};
-    target_ways_ = {target, target};
-    across_ = stuck_.way = stuck_.target_way = 0.0;
+    tool_box_ = {position, position};
+    target_box_ = {target, target};
+    across_ = stuck_.tool_distance = stuck_.target_distance = 0.0;
     stuck_.since = record.time;
   }
-  Vec3 across = target - place;
-  if (const double push2 = push_.squaredNorm(); push2 > 0.0) across -= across.dot(push_) / push2 * push_;
+  // Measure the distance to the target perpendicular to the contact force.
+  Vec3 across = target - position;
+  if (const double force2 = mean_force_.squaredNorm(); force2 > 0.0)
+    across -= across.dot(mean_force_) / force2 * mean_force_;
   across_ = std::max(across_, across.norm());
 }
 
 std::optional<Stuck> Standstill::stuck() const {
-  return stuck_.target_way > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
+  return stuck_.target_distance > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
 }
 
 }  // namespace hapbench

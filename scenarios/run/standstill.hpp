@@ -9,25 +9,28 @@
 
 namespace hapbench {
 
-/// Finds a tool that the spring of a hand, or of a subject that aims at an intended position, cannot move. A spring
-/// whose target goes into the surface only presses the tool on it: the target must come away from the tool by more than
-/// its width across the push of the contacts' springs.
+/// Detects a tool that does not move although the target of its hand's spring does. The spring belongs to a
+/// hand or to a subject that aims at an intended position. A target that moves into the surface only presses
+/// the tool against it, and does not count. The target must therefore move away from the tool by more than the
+/// tool's width perpendicular to the contact force.
 class Standstill {
  public:
-  /// `target`: of the spring, at the time of the row that was the last [s]. `width`: the tool's [m].
+  /// `target(t)` returns the position of the spring's target at time t [s]; it is only called with the time of the
+  /// last step. `width`: width of the tool [m].
   Standstill(std::function<Vec3(double)> target, double width) : target_(std::move(target)), width_(width) {}
 
   void add(const StepRecord& record) noexcept;
 
-  /// Empty where the tool moves in the end, or its target does not.
+  /// Returns the interval of the standstill; empty if the tool moved in the end or its target did not.
   std::optional<Stuck> stuck() const;
 
  private:
   std::function<Vec3(double)> target_;
   double width_;
-  Vec3 push_ = Vec3::Zero();  ///< spring force, its mean over the last rows [N]
-  Box ways_, target_ways_;    ///< around the places of tool and target since it stands
-  double across_ = 0.0;       ///< furthest that the target was from the tool across the push since then [m]
+  Vec3 mean_force_ = Vec3::Zero();  ///< spring force of the contacts, averaged over the last 32 steps or so [N]
+  Box tool_box_, target_box_;  ///< bounding boxes of the positions of tool and target since the standstill began [m]
+  /// largest distance between target and tool perpendicular to the contact force since then [m]
+  double across_ = 0.0;
   bool began_ = false;
   Stuck stuck_;
 };

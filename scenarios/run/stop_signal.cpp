@@ -18,10 +18,12 @@ std::atomic<Clock::time_point> received_at;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Clock::time_point>::is_always_lock_free,
               "a signal handler may not lock");
 
-/// Time after which a signal that nobody has asked for ends the process: a module may loop, a pipe may never deliver.
-constexpr unsigned kPatience = 2;  // [s]
+/// Time after which an unhandled signal terminates the process: a module may never return, or a read from a
+/// pipe may block.
+constexpr unsigned kStopTimeout = 2;  // [s]
 
-/// Within this time a signal is taken for the first one: timeout(1) sends each twice, to its child and to the group.
+/// Signals within this time count as a single signal: timeout(1) sends each signal twice, to its child and to
+/// the process group.
 constexpr auto kSameSignal = std::chrono::milliseconds(200);
 
 void end_process(int signal) {
@@ -29,12 +31,15 @@ void end_process(int signal) {
   ::raise(signal);
 }
 
+/// Handler of SIGALRM: prints a message and terminates the process.
 void end_without_notice(int) {
   constexpr std::string_view kText = "hapbench: ended amid work that did not notice the signal for two seconds\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText.data(), kText.size());
   end_process(received_signal);
 }
 
+/// Handler of SIGINT and SIGTERM: records the first signal and starts the alarm. A later signal terminates the
+/// process.
 void note(int signal) {
   const Clock::time_point now = Clock::now();
   if (received_signal != 0) {
@@ -44,7 +49,7 @@ void note(int signal) {
   received_at = now;
   received_signal = signal;
   ::signal(SIGALRM, end_without_notice);
-  ::alarm(kPatience);
+  ::alarm(kStopTimeout);
 }
 
 }  // namespace

@@ -2,13 +2,13 @@
 
 namespace hapbench {
 
-/// A tool stands while it comes less than this share of the way that its target goes.
-inline constexpr double kMovingShare = 0.1;
+/// A tool counts as standing still while it moves less than this fraction of its target's motion.
+inline constexpr double kMinMovingFraction = 0.1;
 
-/// A tool that stood still to the end while the target of its hand went on.
+/// A standstill that lasted to the end of the run, while the target of the tool's hand moved on.
 struct Stuck {
-  double since = 0.0;                  ///< [s]
-  double way = 0.0, target_way = 0.0;  ///< of tool and target from then on [m]
+  double since = 0.0;                                 ///< start of the standstill [s]
+  double tool_distance = 0.0, target_distance = 0.0;  ///< distances that tool and target have moved since then [m]
 };
 
 }  // namespace hapbench

@@ -6,10 +6,10 @@
 #include "sim/core/types.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Bit-for-bit comparison: where a claim says "the same", no tolerance hides a difference.
+/// Bit-for-bit comparison, for claims that two results are identical: a tolerance would hide differences.
 namespace hapbench::test {
 
-/// A hash of the bits of what it is fed. Distinguishes -0 from 0 and one NaN from another.
+/// Hash of the bits of numbers. Distinguishes -0 from 0, and different NaNs from each other.
 class Hash {
  public:
   void add(std::uint64_t word) { hash_.word(word); }
@@ -59,7 +59,7 @@ class Hash {
   Hash64 hash_;
 };
 
-/// The hash of all arguments in turn.
+/// Returns the hash of all arguments, in their order.
 template <class... T>
 std::uint64_t hash_of(const T&... values) {
   Hash hash;
@@ -67,7 +67,7 @@ std::uint64_t hash_of(const T&... values) {
   return hash.value();
 }
 
-/// Hashes every row of a run and asks for the ratio, so that the ratio is part of it.
+/// Hashes every step of a run. Requests the stiffness ratio, so that the hash includes it.
 class HashingObserver final : public Observer {
  public:
   bool wants_ratio() const noexcept override { return true; }

@@ -42,7 +42,7 @@ namespace {
 
 using Gradients = std::vector<Vec3>;
 
-/// n gradients, each drawn on its own.
+/// Returns n gradients that are drawn independently.
 template <class Draw>
 Gradients fill(std::size_t n, Draw draw) {
   Gradients gradients(n);
@@ -50,7 +50,7 @@ Gradients fill(std::size_t n, Draw draw) {
   return gradients;
 }
 
-/// 10^-k with k uniform in 0 … 12: the scales at which near-degeneracy may hurt.
+/// Returns 10^-k with k uniform in 0 … 12: the angles at which nearly degenerate sets may cause errors.
 double small_angle(Random& random) {
   return std::pow(10.0, random.uniform(-12.0, 0.0));
 }
@@ -59,7 +59,7 @@ Vec3 sign_of(Random& random, const Vec3& u) {
   return random.uniform() < 0.5 ? u : Vec3(-u);
 }
 
-/// u turned by about `angle` in a random way.
+/// Returns u, rotated by about `angle` [rad] about a random axis.
 Vec3 tilted(Random& random, const Vec3& u, double angle) {
   return (u + angle * random.direction()).normalized();
 }
@@ -100,7 +100,7 @@ Gradients nearly_opposite(Random& random, std::size_t n) {
   return fill(n, [&] { return sign_of(random, tilted(random, u, small_angle(random))); });
 }
 
-/// All scales of nearness in one set.
+/// Angles of all magnitudes in a single set.
 Gradients graded(Random& random, std::size_t n) {
   const Vec3 u = random.direction();
   return fill(n, [&] { return tilted(random, u, small_angle(random)); });
@@ -120,7 +120,7 @@ Gradients duplicated(Random& random, std::size_t n) {
   return fill(n, [&] { return few[random.below(few.size())]; });
 }
 
-/// Many copies of one gradient beside a few others.
+/// Many copies of one gradient together with a few other gradients.
 Gradients lopsided(Random& random, std::size_t n) {
   const Vec3 u = random.direction();
   return fill(n, [&] { return random.uniform() < 0.99 ? u : random.direction(); });
@@ -143,13 +143,14 @@ Gradients clusters(Random& random, std::size_t n) {
   return fill(n, [&] { return tilted(random, centres[random.below(centres.size())], spread); });
 }
 
-/// Clusters with contacts at every distance from their centres.
+/// Clusters that contain angles of all magnitudes.
 Gradients graded_clusters(Random& random, std::size_t n) {
   const Gradients centres = uniform(random, 2 + random.below(8));
   return fill(n, [&] { return tilted(random, centres[random.below(centres.size())], small_angle(random)); });
 }
 
-/// A ring around an axis: the wall of a hole, with infinitely many optimal weights but for epsilon.
+/// A ring around an axis, like the wall of a hole. Without the regularisation epsilon, infinitely many weights
+/// would be optimal.
 Gradients cone(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
   const double z = random.uniform(-1.0, 1.0);
@@ -157,8 +158,8 @@ Gradients cone(Random& random, std::size_t n) {
               [&] { return Vec3(frame * (std::sqrt(1.0 - z * z) * random.direction_in_plane() + z * Vec3::UnitZ())); });
 }
 
-/// An orthonormal frame among others: every ratio is 1 at the optimum for epsilon = 0, so every contact sits on the
-/// boundary between active and inactive.
+/// An orthonormal frame and other gradients. At the optimum for epsilon = 0, every ratio is 1, and so every
+/// contact is on the boundary between active and inactive.
 Gradients orthonormal_and_more(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
   std::size_t k = 0;
@@ -168,7 +169,7 @@ Gradients orthonormal_and_more(Random& random, std::size_t n) {
   });
 }
 
-/// Nearly orthogonal pairs: couplings of 1e-24 … 1 between otherwise independent springs.
+/// Nearly orthogonal pairs: couplings of 1e-24 … 1 between springs that are otherwise independent.
 Gradients nearly_orthogonal(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
   const double angle = small_angle(random);
@@ -186,7 +187,7 @@ Gradients wedge(Random& random, std::size_t n) {
   });
 }
 
-/// A set of one of the families above beside a set of another.
+/// A set from one of the distributions above, combined with a set from another.
 Gradients mixture(Random& random, std::size_t n) {
   constexpr Gradients (*draws[])(Random&, std::size_t) = {
       uniform,          planar,          parallel, opposite,   axis_aligned,
@@ -200,7 +201,7 @@ Gradients mixture(Random& random, std::size_t n) {
   return gradients;
 }
 
-constexpr GradientFamily kFamilies[] = {
+constexpr GradientFamily kDistributions[] = {
     {"uniform", false, uniform},
     {"planar", true, planar},
     {"parallel", false, parallel},
@@ -227,7 +228,7 @@ constexpr GradientFamily kFamilies[] = {
 }  // namespace
 
 std::span<const GradientFamily> gradient_families() {
-  return kFamilies;
+  return kDistributions;
 }
 
 }  // namespace hapbench::test

@@ -6,34 +6,37 @@
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/core/random.hpp"
 
-/// Contacts without a scene: gradients and depths as the force laws see them.
+/// Contacts without a scene: gradients and depths, as force laws receive them.
 namespace hapbench::test {
 
-/// The contacts as a padded buffer, in the given order; point i lies at the origin with the normal -u_i. Depths beyond
-/// the given ones are 1 mm.
+/// Returns the contacts as a padded buffer, in the given order. Point i lies at the origin and has the normal
+/// -u_i, where u_i is gradient i. Contacts without a given depth have the depth 1 mm.
 ContactBuffer contacts_of(const std::vector<Vec3>& gradients, const std::vector<double>& depths = {});
 
-/// n depths, uniform in (0, 1 mm].
+/// Returns n depths [m], uniform in (0, 1 mm].
 std::vector<double> random_depths(Random& random, std::size_t n);
 
-/// Log-uniform in 1 … largest: small sets have the fewest ways out, large ones the most rounding.
+/// Returns a size that is log-uniform in 1 … largest. Small sets have few alternative solutions; large sets
+/// have large rounding errors.
 std::size_t random_size(Random& random, std::size_t largest);
 
-/// A uniformly distributed rotation.
+/// Returns a uniformly distributed rotation.
 Mat3 random_rotation(Random& random);
 
-/// A way to draw n unit gradients that stresses a law in one particular way.
+/// A random distribution of n unit gradients that is difficult for force laws in a particular respect.
 struct GradientFamily {
   const char* name;
-  bool planar;  ///< every gradient lies in the plane z = 0
+  bool planar;  ///< true if every gradient lies in the plane z = 0
   std::vector<Vec3> (*draw)(Random& random, std::size_t n);
 };
 
-/// Random, parallel, opposite, nearly parallel (angles down to 1e-12), duplicated, planar, coplanar, axis-aligned and
-/// clustered gradients, and sets at the boundary of exact_shaping's cone.
+/// Returns the distributions: random, parallel, opposite, nearly parallel (angles down to 1e-12), duplicated,
+/// planar, coplanar, axis-aligned and clustered gradients, and gradients at the boundary of the cone of
+/// exact_shaping.
 std::span<const GradientFamily> gradient_families();
 
-/// Calls f(contacts, family name) on random sets of all families, at most 300 contacts each, the same on every call.
+/// Calls f(contacts, name of the distribution) for random sets of all gradient_families(), with at most 300
+/// contacts each. Every call uses the same sets.
 template <class F>
 void for_random_contacts(F f) {
   Random random(1);

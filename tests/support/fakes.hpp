@@ -9,10 +9,11 @@
 #include "sim/loop/simulation.hpp"
 #include "tests/support/setting.hpp"
 
-/// Stand-ins for the parts of a simulation, so that a test of the loop depends on the loop alone.
+/// Fake parts of a simulation, so that a test of the simulation loop depends on no other code.
 namespace hapbench::test {
 
-/// An environment that is never touched, or always by the given number of contacts at the tool's position.
+/// An environment with a constant number of contacts at the tool's position; 0 for an environment that is never
+/// touched.
 class FakeSource final : public ContactSource {
  public:
   explicit FakeSource(std::size_t contacts = 0) : contacts_(contacts) {}
@@ -35,14 +36,14 @@ class FakeSource final : public ContactSource {
   SearchWork work_;
 };
 
-/// Numbers of calls of a FakeAlgorithm.
+/// Counts the calls of each function of a FakeAlgorithm.
 struct Calls {
   int prepare = 0;
   int reset = 0;
   int compute = 0;
 };
 
-/// Renders a given function of the tool's state, with the stiffness tensor 2 I.
+/// Renders a force that is a given function of the tool's state, with the stiffness tensor 2 I.
 class FakeAlgorithm final : public ForceAlgorithm {
  public:
   using Law = std::function<Vec3(const ToolState&)>;
@@ -68,7 +69,8 @@ class FakeAlgorithm final : public ForceAlgorithm {
   Calls* calls_;
 };
 
-/// Keeps every row; `rendered` of a kept row is null, because the buffer does not outlive the step.
+/// Keeps the record of every step. In the kept records, `rendered` is null, because the contact buffer does not
+/// outlive the step.
 class Recorder final : public Observer {
  public:
   explicit Recorder(bool wants_ratio = false) : wants_ratio_(wants_ratio) {}
@@ -87,7 +89,7 @@ class Recorder final : public Observer {
   bool wants_ratio_;
 };
 
-/// A free tool with the axis -z that feels `law` and nothing else.
+/// Returns the parts for a free tool with the axis -z. The only force on the tool is `law`.
 inline SimulationParts fake_parts(FakeAlgorithm::Law law, Calls* calls = nullptr) {
   SimulationParts parts;
   parts.source = std::make_unique<FakeSource>();
@@ -98,7 +100,7 @@ inline SimulationParts fake_parts(FakeAlgorithm::Law law, Calls* calls = nullptr
   return parts;
 }
 
-/// A run of so many rows whose tool is thrown past the origin.
+/// Returns the configuration of a run of `steps` steps in which the tool flies past the origin.
 inline SimulationConfig thrown(std::uint64_t steps) {
   SimulationConfig config;
   config.steps = steps;
@@ -107,12 +109,12 @@ inline SimulationConfig thrown(std::uint64_t steps) {
   return config;
 }
 
-/// No force at all.
+/// A force law without force.
 inline Vec3 weightless(const ToolState&) {
   return Vec3::Zero();
 }
 
-/// One step of leapfrog, which needs no force but the row's.
+/// Does one step of the leapfrog integrator. Leapfrog evaluates no further forces within the step.
 inline void leapfrog(ToolState& tool, const Vec3& force, double mass, double dt) {
   class NoField final : public ForceField {
    public:

@@ -21,12 +21,13 @@ double volume(const TriangleSoup& soup) {
 }
 
 double distance_to_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
-  const Vec3 way = b - a;
-  const double t = way.squaredNorm() > 0.0 ? (p - a).dot(way) / way.squaredNorm() : 0.0;
-  return (p - a - std::min(1.0, std::max(0.0, t)) * way).norm();
+  const Vec3 segment = b - a;
+  const double t = segment.squaredNorm() > 0.0 ? (p - a).dot(segment) / segment.squaredNorm() : 0.0;
+  return (p - a - std::min(1.0, std::max(0.0, t)) * segment).norm();
 }
 
-/// By barycentric coordinates of the foot of the perpendicular.
+/// Returns the distance of p from a triangle. The foot of the perpendicular is tested by its barycentric
+/// coordinates.
 double distance_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   double nearest = std::min({distance_to_segment(a, b, p), distance_to_segment(b, c, p), distance_to_segment(c, a, p)});
   Eigen::Matrix<double, 3, 2> sides;
@@ -59,7 +60,7 @@ TriangleSoup sphere(double radius, int levels) {
   for (const double sign : {1.0, -1.0}) {
     for (int axis = 0; axis < 3; ++axis) soup.vertices.push_back(sign * Vec3::Unit(axis));
   }
-  // One triangle an octant; an odd number of negative axes turns it over.
+  // One triangle in each octant; an odd number of negative axes reverses its orientation.
   for (std::uint32_t octant = 0; octant < 8; ++octant) {
     const std::uint32_t x = 3 * (octant & 1), y = 1 + 3 * (octant >> 1 & 1), z = 2 + 3 * (octant >> 2 & 1);
     const bool odd = ((octant ^ octant >> 1 ^ octant >> 2) & 1) != 0;
@@ -104,7 +105,7 @@ TriangleSoup torus(int n, int m) {
 
 TriangleSoup moebius_band(int n) {
   return sheet(n, 2, [n](int i, int j) {
-    // After one turn the two edges have changed places: the same point again, bit for bit.
+    // After one turn, the two borders are exchanged. They must join bit for bit.
     const int across = i == n ? 1 - j : j - 1;
     const double a = kTurn * (i % n) / n;
     const double r = 2 + across * std::cos(a / 2);
@@ -188,7 +189,7 @@ TriangleSoup swept(const std::vector<std::pair<double, double>>& polygon, int si
     const double a = 2.0 * std::numbers::pi * (j % sides) / sides;
     return Vec3(rho == 0.0 ? 0.0 : rho * std::cos(a), rho == 0.0 ? 0.0 : rho * std::sin(a), z);
   });
-  // Edges on the axis sweep no surface.
+  // Edges on the axis generate no surface.
   std::erase_if(soup.triangles, [&v = soup.vertices](const auto& t) {
     return v[t[0]] == v[t[1]] || v[t[1]] == v[t[2]] || v[t[2]] == v[t[0]];
   });

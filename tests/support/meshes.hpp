@@ -10,53 +10,58 @@
 #include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
-/// Surfaces to test with, as loose triangles. Closed ones are wound counter-clockwise from outside.
+/// Surfaces for tests, as lists of triangles without neighbour information. Closed surfaces have
+/// counter-clockwise triangles, seen from outside.
 namespace hapbench::test {
 
-/// The cube with corners at +-half around `centre`: 8 vertices, 12 triangles.
+/// Returns the cube with corners at +-half around `centre`: 8 vertices, 12 triangles.
 TriangleSoup cube(double half = 1.0, const Vec3& centre = Vec3::Zero());
-/// An octahedron whose triangles are quartered `levels` times and pushed out to the sphere around the origin.
+/// Returns an octahedron whose triangles are divided into four `levels` times, with all vertices projected onto
+/// the sphere around the origin.
 TriangleSoup sphere(double radius, int levels);
-/// A grid of `n` x `m` quads, bent by `position(i, j)`, i = 0 ... n, j = 0 ... m, each cut into two triangles. Equal
-/// positions are for the code under test to weld.
+/// Returns a grid of `n` x `m` quads with vertices position(i, j), i = 0 … n, j = 0 … m. Each quad is divided
+/// into two triangles. Vertices with equal positions are not merged; the code under test must weld them.
 TriangleSoup sheet(int n, int m, const std::function<Vec3(int, int)>& position);
 TriangleSoup torus(int n, int m);
-/// One-sided: a band with half a twist, and a tube that meets its own end inside out (it passes through itself).
+/// One-sided surfaces: a band with half a twist, and a tube that joins its other end inside out and passes
+/// through itself.
 TriangleSoup moebius_band(int n);
 TriangleSoup klein_bottle(int n, int m);
 
-/// Both in one soup.
+/// Returns the triangles of both surfaces.
 TriangleSoup together(TriangleSoup a, const TriangleSoup& b);
-/// Every triangle the other way round.
+/// Returns the surface with the orientation of every triangle reversed.
 TriangleSoup reversed(TriangleSoup soup);
 
-/// A field with a value of its own at every node of a grid of 6 x 6 x 6 cells, at most 1e-9 in size and outside at the
-/// border: no structure, all 256 cases of marching cubes, no cell skipped; surfaces with many parts, handles and
-/// touching corners.
+/// Returns a random density field on a grid of 6 x 6 x 6 cells. Values at the nodes are independent and at most
+/// 1e-9 in magnitude; nodes at the border are outside. The field has no structure, so that marching cubes meets
+/// all 256 cases and skips no cell. Its surfaces have many components, handles and touching corners.
 DensityField noise(std::uint64_t seed);
 
-/// The surface with its neighbours, which OpenMesh only builds of manifolds: fails the test if a triangle does not fit.
-/// Precondition: the surface has its triangles.
+/// Returns the surface with neighbour information. OpenMesh only accepts manifolds: the test fails if a
+/// triangle cannot be added. Precondition: the surface contains its triangles.
 HalfEdgeMesh half_edge_mesh(const IsoSurface& surface);
 
-/// By the divergence theorem; positive for closed surfaces with outward winding.
+/// Returns the enclosed volume by the divergence theorem. Positive for closed surfaces whose triangles are
+/// counter-clockwise from outside.
 double enclosed_volume(const HalfEdgeMesh& mesh);
 double surface_area(const HalfEdgeMesh& mesh);
-/// Vertices - edges + faces: 2 for a sphere, 0 for a torus.
+/// Returns vertices - edges + faces: 2 for a sphere, 0 for a torus.
 long euler_characteristic(const HalfEdgeMesh& mesh);
 
-/// The solid that a closed polygon of (rho, z) sweeps about z in `sides` steps. Vertices on the axis coincide.
+/// Returns the surface that a closed polygon of (rho, z) sweeps about the z axis, in `sides` steps. Vertices on
+/// the axis coincide.
 TriangleSoup swept(const std::vector<std::pair<double, double>>& polygon, int sides);
-/// Flat, from its tip at the origin to z = length.
+/// Returns a cylinder with flat ends along z, from the tip at the origin to z = length.
 TriangleSoup cylinder_mesh(double radius, double length, int sides);
-/// Concave: a cup of height 2 and radius 1, open upwards, with walls 0.3 thick.
+/// Returns a concave solid: a cup of height 2 and radius 1, open at the top, with walls of thickness 0.3.
 TriangleSoup cup(int sides);
 TriangleSoup scaled(TriangleSoup soup, double factor, const Vec3& shift = Vec3::Zero());
 
 std::shared_ptr<const SignedDistanceGrid> grid_of(const TriangleSoup& soup, double spacing);
 
-/// The signed distance to the triangles, one by one, inside by the solid angle that they fill (van Oosterom and
-/// Strackee 1983).
+/// Returns the signed distance to the triangles, by brute force. The sign is determined by the solid angle of
+/// the triangles (van Oosterom and Strackee 1983).
 double exact_distance(const TriangleSoup& soup, const Vec3& point);
 
 }  // namespace hapbench::test

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdlib>
 
-// 1 under AddressSanitizer, as g++ and clang++ tell it.
+// 1 under AddressSanitizer; g++ and clang++ report it in different ways.
 #if defined(__SANITIZE_ADDRESS__)
 #define HAPBENCH_TEST_SANITIZED 1
 #elif defined(__has_feature)
@@ -17,20 +17,22 @@
 
 namespace hapbench::test {
 
-/// Whether tests take as many cases as they can, as under scripts/test --all.
+/// Returns true if tests run all of their random cases, as under scripts/test --all.
 inline bool soaks() {
   static const bool soak = std::getenv("HAPBENCH_SOAK") != nullptr;
   return soak;
 }
 
-/// How often a loop over random cases runs: all of n in a soak, and a tenth otherwise. Sanitized code is about thirty
-/// times slower and looks for errors of memory and arithmetic, which a thirtieth shows as well.
+/// Returns the number of repetitions of a loop over random cases: n if soaks(), else a tenth of n. With
+/// AddressSanitizer, which is about thirty times slower, it is a thirtieth of n, because fewer cases suffice to
+/// find errors of memory and arithmetic.
 inline std::size_t cases(std::size_t n) {
   const std::size_t part = HAPBENCH_TEST_SANITIZED != 0 ? 30 : soaks() ? 1 : 10;
   return (n + part - 1) / part;
 }
 
-/// 1; under AddressSanitizer n, for tests that take every nth case or an nth of the steps there.
+/// Returns n under AddressSanitizer, else 1. For tests that then run only every n-th case, or an n-th of the
+/// steps.
 inline std::size_t sanitized(std::size_t n) {
   return HAPBENCH_TEST_SANITIZED != 0 ? n : 1;
 }

@@ -10,19 +10,21 @@
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/scale.hpp"
 
-/// Shells, walks of the tool and brute force for tests of contact searches.
+/// Random shells, random walks of the tool and brute-force search, for tests of contact searches.
 namespace hapbench::test {
 
-/// Whether both buffers hold the same contacts in the same order, bit for bit.
+/// Returns true if both buffers contain the same contacts in the same order, bit for bit.
 bool same_contacts(const ContactBuffer& a, const ContactBuffer& b);
 
-/// Points on a rough sheet, in a ball, on a lattice (cell borders) or along a line, `size` metres wide.
+/// Returns points on a rough sheet, in a ball, on a lattice (at the borders of cells) or along a line, `size`
+/// metres wide.
 std::vector<SurfacePoint> random_shell(Random& random, double size);
 
-/// The next pose of a walk: mostly small steps, sometimes none, a jump, a turn on the spot, or far away.
+/// Returns the next pose of a random walk. Most steps are small; some are zero, a jump, a rotation on the spot,
+/// or a move far away.
 ToolPose next_pose(const ToolPose& pose, Random& random, double size, double step);
 
-/// The search of runs and brute force side by side over one shell.
+/// The search that runs use and a brute-force search, over the same shell.
 class SearchPair {
  public:
   SearchPair(const std::vector<SurfacePoint>& points, double cell_size, const Cylinder& tool)
@@ -52,13 +54,13 @@ class SearchPair {
   std::uint64_t contacts_ = 0;
 };
 
-/// Totals over the poses of a walk.
+/// Sums over the poses of all walks.
 struct WalkTotals {
   std::uint64_t poses = 0, contacts = 0, lists_rebuilt = 0;
 };
 
-/// Walks tools, make_tool(random, size of the shell), over random shells, cases(1'000'000) poses in all, and expects
-/// the search of runs to find at each what brute force finds.
+/// Moves random tools, make_tool(random, size of the shell), over random shells, with cases(1'000'000) poses in
+/// total. At each pose, expects the search that runs use to find the same contacts as brute force.
 template <class MakeTool>
 void expect_agreement_with_brute_force(Random random, const MakeTool& make_tool, WalkTotals& totals) {
   const std::size_t shells = cases(2000);

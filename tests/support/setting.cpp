@@ -100,7 +100,7 @@ SimulationConfig free_run_config(const Setting& setting, const RenderingConfig& 
 }
 
 std::unique_ptr<Motion> constant_axis(const Vec3& axis) {
-  // At tilt 0 the axis is -up, whatever the direction of lean.
+  // At tilt 0, the axis is -up for any azimuth.
   return std::make_unique<ScriptedMotion>(Orientation{-axis, axis.unitOrthogonal(), {}, {}}, std::nullopt);
 }
 
@@ -126,23 +126,23 @@ Setting single_spring() {
 Setting parallel_springs() {
   return springs(std::vector<Vec3>(5, kOblique), kDeep * kOblique, false);
 }
-// Three orthogonal springs, equally compressed: S_sum = I, sum u = (1, 1, 1).
+// Three orthogonal springs with equal compression: S_sum = I, sum u = (1, 1, 1).
 Setting corner_springs() {
   return springs({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, Vec3::Constant(kDeep), false);
 }
-// One spring pushes, the other pulls: depths d and -d on gradients x and -x.
+// One spring pushes and the other pulls: depths d and -d along the gradients x and -x.
 Setting opposite_springs() {
   return springs({Vec3::UnitX(), -Vec3::UnitX()}, kDeep * Vec3::UnitX(), true);
 }
-// Two faces 120 degrees apart, the tool pressed straight in: depths d/2, <u_1, u_2> = -1/2, and along the way out each
-// spring counts with half of its depth.
+// Two faces at an angle of 120 degrees, with the tool pressed symmetrically between them: both depths are d/2
+// and <u_1, u_2> = -1/2. Each spring contributes half of its depth along the exit direction.
 Setting wedge_springs() {
   const double s = std::sqrt(0.75);
   return springs({{0.5, s, 0.0}, {0.5, -s, 0.0}}, kDeep * Vec3::UnitX(), false);
 }
 
-/// Spring force over K of each law in the five scenes above, in units of the compression. K_vc = K by default, so a
-/// stack of springs of stiffness k K renders k K in series with K: k / (k + 1).
+/// Spring force divided by K of each law in the five scenes above, in units of the compression. By default K_vc
+/// = K. A set of springs with the total stiffness k K then acts in series with K, and renders k / (k + 1).
 struct SpringRow {
   std::string_view law;
   double single, parallel, corner, opposite, wedge;
@@ -197,11 +197,12 @@ Answer no_force() {
   return {};
 }
 
-/// Cells and points of a grid that the tool's radius is no multiple of: no point lies on the side, and none has two
-/// nearest surfaces, so that depths and gradients change smoothly when a scene is turned.
+/// Spacing of cells and points. The tool's radius is not a multiple of it, so that no point lies on the tool's
+/// side and no point has two nearest surfaces. Depths and gradients then change smoothly when a scene is
+/// rotated.
 constexpr double kSpacing = 0.00013;
 
-// The flat tool pressed into the plane, in the middle of the grid: by symmetry the force is normal to it.
+// A flat tool pressed into the plane, in the middle of the grid. By symmetry, the force is normal to the plane.
 Setting pressed_plane() {
   Setting setting;
   setting.points = surface_points(Plane{20 * kSpacing, kSpacing});
@@ -217,15 +218,15 @@ Setting slot(double x) {
   Setting setting;
   setting.points = surface_points(Slot{0.0008, 0.004, 0.002, kSpacing});
   setting.cell_size = kSpacing;
-  // The tool goes all the way through: its tip is below the faces, its bottom above.
+  // The tool passes through the whole slot: its tip is below the faces and its other end above them.
   setting.pose.position = {x, 0.0, -0.0047};
   return setting;
 }
-// A tool wider than the slot, in its middle: the faces push equally.
+// A tool that is wider than the slot, in the middle of the slot: both faces push equally.
 Setting centred_slot() {
   return slot(0.0);
 }
-// The tool touches the right face only.
+// The tool touches only the right face.
 Setting one_sided_slot() {
   return slot(0.000217);
 }
@@ -233,7 +234,7 @@ Answer one_sided_slot_answer() {
   return {-Vec3::UnitX()};
 }
 
-/// The 2-D peg of thesis A.1, tip centre 4 mm deep.
+/// The 2-D peg of thesis A.1. `y` is the height of the tip centre [m].
 Setting peg(double tilt, double diameter, double y) {
   Setting setting;
   setting.tool = {diameter / 2, 0.005, Tip::round};
@@ -242,7 +243,7 @@ Setting peg(double tilt, double diameter, double y) {
   setting.pose = {{0.0, y, 0.0}, {-std::sin(tilt), -std::cos(tilt), 0.0}};
   return setting;
 }
-// The wall points at the height of the tip centre touch the half ball.
+// Wall points at the height of the tip centre touch the hemispherical tip.
 Setting peg_start() {
   return peg(0.1, 0.001, -0.004);
 }
@@ -254,11 +255,11 @@ Answer in_plane() {
   answer.only_in_plane = true;
   return answer;
 }
-// Upright, the peg fits exactly: it touches both walls with depth zero.
+// Upright peg that fits exactly: it touches both walls with depth zero.
 Setting upright_peg() {
   return peg(0.0, 0.001, -0.004);
 }
-// A thinner peg pressed on the bottom: by symmetry the force is straight up.
+// A thinner peg pressed against the bottom. By symmetry, the force points straight up.
 Setting pressed_peg() {
   return peg(0.0, 0.00083, -0.0047);
 }
@@ -300,7 +301,7 @@ RenderingConfig config_for(std::string_view algorithm, const AnalyticScene& scen
 }
 
 double total_depth(const Setting& setting, const RenderingConfig& config) {
-  // `summation` leaves every contact in the buffer as its depth model has it.
+  // `summation` does not modify contacts, so that the buffer contains the depths of the depth model.
   RenderingConfig plain;
   plain.algorithm = "summation";
   plain.depth_model = with_fixed_stages(config).depth_model;

@@ -14,10 +14,10 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 
-/// From an environment and a tool to forces and runs, the way the scenario runner assembles them.
+/// Assembles forces and runs from an environment and a tool, in the same way as the scenario runner.
 namespace hapbench::test {
 
-/// A tool in an environment: springs, or else a shell of points.
+/// A tool in an environment, which is either a set of springs or a shell of points.
 struct Setting {
   Cylinder tool;
   ToolPose pose;
@@ -26,16 +26,17 @@ struct Setting {
   double cell_size = 0.0;
 };
 
-/// The setting turned by R about the origin, then moved by t. Springs stay attached to the origin, so t must be zero.
+/// Returns the setting rotated by R about the origin, then translated by t. Springs stay attached to the
+/// origin: with springs, t must be zero.
 Setting moved(Setting setting, const Mat3& R, const Vec3& t);
 
-/// Every length of the setting times s.
+/// Returns the setting with every length multiplied by s.
 Setting scaled(Setting setting, double s);
 
-/// The same points or springs in a random order.
+/// Returns the setting with its points or springs in a random order.
 Setting permuted(Setting setting, Random& random);
 
-/// One algorithm in one setting, asked for single forces.
+/// Computes single forces of an algorithm in a setting.
 class Probe {
  public:
   Probe(const Probe&) = delete;
@@ -43,7 +44,7 @@ class Probe {
 
   RenderedForce force_at(const ToolPose& pose, const Vec3& velocity = Vec3::Zero(),
                          const Vec3& angular_velocity = Vec3::Zero());
-  /// The contacts of the last force, as the algorithm left them.
+  /// Returns the contacts of the last computed force, with the weights of the algorithm.
   const ContactBuffer& contacts() const { return contacts_; }
   ForceAlgorithm& algorithm() { return *algorithm_; }
 
@@ -56,49 +57,53 @@ class Probe {
   ContactBuffer contacts_;
 };
 
-/// A run that starts at rest in the setting's pose: nobody holds the tool, its orientation stays, its position is free.
+/// Returns the parts of a run that starts at rest in the setting's pose. No hand holds the tool; its
+/// orientation is constant and its position is free.
 SimulationParts free_run(const Setting& setting, const RenderingConfig& config);
 
-/// Configuration of such a run.
+/// Returns the configuration of a free_run().
 SimulationConfig free_run_config(const Setting& setting, const RenderingConfig& config, std::uint64_t steps);
 
-/// A motion that keeps the axis and leaves the position free.
+/// Returns a motion with a constant tool axis and a free position.
 std::unique_ptr<Motion> constant_axis(const Vec3& axis);
 
-// Small scenes whose rendered force is known without running an algorithm.
+// Small scenes whose rendered force is known analytically.
 
-/// The force that every algorithm must render in a scene, whatever its law.
+/// What is known about the force in a scene: constraints that every algorithm must satisfy.
 struct Answer {
-  /// The force is along this unit vector, or zero when it is zero; no claim when `only_in_plane`.
+  /// Unit vector of the force; zero if the force is zero. Not checked if `only_in_plane`.
   Vec3 direction = Vec3::Zero();
-  /// Some laws may cancel the force to zero (opposite springs under original_averaging).
+  /// True if some laws may render no force (opposite springs under original_averaging).
   bool may_vanish = false;
-  /// The scene is planar: all that is known is that nothing leaves the plane z = 0.
+  /// True for a planar scene in which it is only known that the force lies in the plane z = 0.
   bool only_in_plane = false;
-  /// Exact spring force over K in metres along `direction`, for the laws named; other laws are only bounded.
+  /// Exact spring force divided by K along `direction` [m], by name of the law. The force of other laws is only
+  /// bounded.
   std::map<std::string_view, double> spring_over_K = {};
 };
 
 struct AnalyticScene {
   std::string_view name;
-  /// For scenes of points; the algorithm's own depth model takes its place where it has one.
+  /// Depth model for scenes with points. Not used by algorithms that have their own depth model.
   std::string_view depth_model;
   Setting (*setting)();
   Answer (*answer)();
-  /// Position of the tool at which all force vanishes.
+  /// Position of the tool at which the force is zero.
   Vec3 position_without_force;
-  /// A point lies on the tool's surface to the last bit: once the scene is moved, rounding decides whether it collides.
+  /// True if a point lies exactly on the tool's surface. When the scene is moved, rounding then decides whether
+  /// the point is in contact.
   bool touches = false;
 };
 
 std::span<const AnalyticScene> analytic_scenes();
 
-/// The configuration of `algorithm` in a scene: the thesis's K = 20000 N/m, shaping with the default m = 3, no
-/// friction.
+/// Returns the configuration of `algorithm` for a scene: the thesis's K = 20000 N/m, m = 3 shaping iterations
+/// (the default), no friction.
 RenderingConfig config_for(std::string_view algorithm, const AnalyticScene& scene);
 
-/// Sum of |d_i| over the scene's contacts under the algorithm's depth model [m]: no law renders more than K times this
-/// where gradients agree, and it is what rounding errors are measured by.
+/// Returns the sum of |d_i| over the scene's contacts, where d_i are the depths under the algorithm's depth
+/// model [m]. If the gradients agree, no law renders more than K times this sum. It is also the scale of
+/// rounding errors.
 double total_depth(const Setting& setting, const RenderingConfig& config);
 
 }  // namespace hapbench::test

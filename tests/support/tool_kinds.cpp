@@ -12,10 +12,11 @@ namespace {
 
 using Real = long double;
 
-/// The closed polygon of a profile and its axis: inside by the rule of even and odd, distance to its edges.
+/// The closed polygon of a profile and the axis, with coordinates s along the axis and rho from the axis.
+/// Inside is determined by the even-odd rule.
 struct Section {
   std::vector<ProfilePoint> corners;  ///< from the axis at the shank's end to the axis at the tip
-  Real ball;                          ///< radius of a round tip, or 0
+  Real ball;                          ///< radius of a round tip; 0 for a flat tip
 
   Section(std::vector<ProfilePoint> profile, Tip tip) : corners(std::move(profile)) {
     const ProfilePoint first = corners.front(), last = corners.back();
@@ -24,8 +25,8 @@ struct Section {
     corners.push_back({last.s, 0.0});
   }
 
-  /// Along +rho from the place, an odd number of edges is crossed.
-  bool holds(Real s, Real rho) const {
+  /// Returns true if the point is inside: a ray along +rho crosses an odd number of edges.
+  bool contains(Real s, Real rho) const {
     if (ball > 0.0L && s > 0.0L) return std::hypot(s, rho) <= ball;
     bool in = false;
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
@@ -38,12 +39,12 @@ struct Section {
 
   Real distance(Real s, Real rho) const {
     Real nearest = ball > 0.0L && s > 0.0L ? std::abs(std::hypot(s, rho) - ball) : 1e9L;
-    // A round tip has no disc.
+    // A round tip has no disc: skip the last edge.
     for (std::size_t i = 0; i + (ball > 0.0L ? 2 : 1) < corners.size(); ++i) {
       const Real ds = Real(corners[i + 1].s) - corners[i].s, dr = Real(corners[i + 1].rho) - corners[i].rho;
       const Real from_s = s - corners[i].s, from_rho = rho - corners[i].rho, length2 = ds * ds + dr * dr;
-      const Real part = length2 > 0.0L ? std::clamp((from_s * ds + from_rho * dr) / length2, 0.0L, 1.0L) : 0.0L;
-      nearest = std::min(nearest, std::hypot(from_s - part * ds, from_rho - part * dr));
+      const Real fraction = length2 > 0.0L ? std::clamp((from_s * ds + from_rho * dr) / length2, 0.0L, 1.0L) : 0.0L;
+      nearest = std::min(nearest, std::hypot(from_s - fraction * ds, from_rho - fraction * dr));
     }
     return nearest;
   }
@@ -54,7 +55,8 @@ Vec3 across(const ToolPose& pose, Random& random) {
   return circle.x() * e1 + circle.y() * pose.axis.cross(e1);
 }
 
-/// Points on half an ellipse about (0, 0), at falling angles: a convex profile.
+/// Returns random points on the upper half of an ellipse with centre (0, 0) and semi-axes a and b, with
+/// decreasing angles in [to, from]: a convex profile.
 std::vector<ProfilePoint> on_ellipse(Random& random, double a, double b, double from, double to) {
   std::vector<double> angles(2 + random.below(8));
   for (double& angle : angles) angle = random.uniform(to, from);
@@ -74,11 +76,11 @@ DefinedTool convex(Random& random, double unit) {
   const double tip = points.back().s;
   for (ProfilePoint& p : points) p.s -= tip;
   if (random.below(2) == 0) points.insert(points.begin(), {points.front().s - 0.1 * length, 0.0});
-  if (random.below(2) == 0) {  // a point at the tip
+  if (random.below(2) == 0) {  // pointed tip
     for (ProfilePoint& p : points) p.s -= 0.1 * length;
     points.push_back({0.0, 0.0});
   }
-  // Not all of those with a point at an end are convex.
+  // A solid with a pointed end is not always convex.
   return defined(std::move(points), Tip::flat);
 }
 
@@ -108,8 +110,8 @@ DefinedTool undercut(Random& random, double unit) {
                                       {-length, shank},
                                       {-length * random.uniform(1.1, 1.6), head},
                                       {0.0, shank + random.uniform(0.3, 1.0) * (head - shank)}};
-  if (random.below(2) == 0) points.push_back({-0.5 * length, 0.5 * shank});  // hollow, to a disc
-  if (random.below(2) == 0 && points.size() == 5) points.back().rho = 0.0;   // or to a point
+  if (random.below(2) == 0) points.push_back({-0.5 * length, 0.5 * shank});  // hollow end with a disc
+  if (random.below(2) == 0 && points.size() == 5) points.back().rho = 0.0;   // hollow end with a point
   return defined(std::move(points), Tip::flat);
 }
 
@@ -127,7 +129,7 @@ DefinedTool bur(Random& random, double unit) {
 }
 
 Cylinder cylinder(Random& random, double unit, Tip tip) {
-  // No shorter than its radius: see Revolved about those that are.
+  // Not shorter than its radius; Revolved explains shorter tools.
   const double radius = thickness(random, unit);
   return {radius, radius + unit * random.uniform(0.2, 10.0), tip};
 }
@@ -168,7 +170,7 @@ DefinedTool defined(std::vector<ProfilePoint> profile, Tip tip) {
             const Vec3L x = point - pose.position.cast<Real>(), axis = pose.axis.cast<Real>();
             const Real s = x.dot(axis), rho = (x - s * axis).norm();
             const Real distance = section->distance(s, rho);
-            return section->holds(s, rho) ? distance : -distance;
+            return section->contains(s, rho) ? distance : -distance;
           },
           [shape, front, rear](const ToolPose& pose, Random& random) {
             const double r = 1.2 * shape->half_width() * std::sqrt(random.uniform());
@@ -178,9 +180,9 @@ DefinedTool defined(std::vector<ProfilePoint> profile, Tip tip) {
           [section](const ToolPose& pose, Random& random) {
             const std::vector<ProfilePoint>& c = section->corners;
             const std::size_t i = random.below(c.size() - 1);
-            const double part = random.uniform(), ball = static_cast<double>(section->ball);
-            double s = c[i].s + part * (c[i + 1].s - c[i].s), rho = c[i].rho + part * (c[i + 1].rho - c[i].rho);
-            if (ball > 0.0 && i + 2 == c.size()) s = ball * part, rho = ball * std::sqrt(1.0 - part * part);
+            const double fraction = random.uniform(), ball = static_cast<double>(section->ball);
+            double s = c[i].s + fraction * (c[i + 1].s - c[i].s), rho = c[i].rho + fraction * (c[i + 1].rho - c[i].rho);
+            if (ball > 0.0 && i + 2 == c.size()) s = ball * fraction, rho = ball * std::sqrt(1.0 - fraction * fraction);
             return Vec3(pose.position + s * pose.axis + rho * across(pose, random));
           }};
 }

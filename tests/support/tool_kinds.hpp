@@ -10,38 +10,42 @@
 #include "sim/tool/revolved.hpp"
 #include "sim/tool/tool_shape.hpp"
 
-/// The body of each kind of tool straight from its definition, in long double: what searches and depth models are
-/// checked against.
+/// The body of each kind of tool, computed directly from its definition in long double. A reference for contact
+/// searches and depth models.
 namespace hapbench::test {
 
 using Vec3L = Eigen::Matrix<long double, 3, 1>;
 
-/// A pose anywhere within 1 m of the origin.
+/// Returns a random pose within 1 m of the origin.
 ToolPose random_pose(Random& random);
 
+/// A tool and its definition.
 struct DefinedTool {
   std::shared_ptr<const ToolShape> shape;
-  /// In long double: in the closed body the distance to the surface, negative outside.
+  /// Distance of a point from the body's surface [m], computed in long double; negative outside the body.
   std::function<long double(const ToolPose&, const Vec3L&)> slack;
-  /// A point around the body: inside, outside and anywhere near.
+  /// Returns a random point inside or near the body.
   std::function<Vec3(const ToolPose&, Random&)> near_point;
-  /// A point on the surface, to rounding.
+  /// Returns a random point on the surface, up to rounding.
   std::function<Vec3(const ToolPose&, Random&)> surface_point;
 };
 
+/// A kind of tool that random tools are drawn from.
 struct ToolKind {
   const char* name;
-  bool some_convex;  ///< are some of the kind convex?
-  /// A random tool of the kind, 0.1 to 1 `unit` thick. All of its lengths are proportional to the unit.
+  bool some_convex;  ///< true if some tools of the kind are convex
+  /// Returns a random tool of the kind, with a thickness of 0.1 to 1 `unit`. All lengths are proportional to
+  /// `unit`.
   DefinedTool (*make)(Random& random, double unit);
 
   friend void PrintTo(const ToolKind& kind, std::ostream* out) { *out << kind.name; }
 };
 
-/// Cylinders of both tips; and solids of revolution: convex ones of both tips, ones with grooves, undercut and hollow
-/// ones, half balls on thinner shanks, burs.
+/// Returns the kinds: cylinders with flat and round tips, and solids of revolution (convex with flat and round
+/// tips, grooved, undercut and hollow solids, hemispheres on thinner shanks, burs).
 std::span<const ToolKind> tool_kinds();
 
+/// Returns the tool with its definition.
 DefinedTool defined(const Cylinder& tool);
 DefinedTool defined(std::vector<ProfilePoint> profile, Tip tip);
 

@@ -10,12 +10,12 @@
 
 namespace hapbench::test {
 
-/// A scenario that comes with the program.
+/// Returns a scenario that is part of the program, with overrides as in --set.
 inline Scenario bundled(const std::string& name, const std::vector<std::string>& overrides = {}) {
   return load_scenario(find_scenario(name), overrides).scenario;
 }
 
-/// The rows of a run, whose contacts are gone.
+/// Runs a scenario and returns the record of every step. Their contact buffers no longer exist.
 inline std::vector<StepRecord> rows_of(const Scenario& scenario) {
   class Rows final : public Observer {
    public:

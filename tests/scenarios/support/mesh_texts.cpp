@@ -10,7 +10,7 @@
 namespace hapbench::test {
 namespace {
 
-/// The bytes of a number in the given order.
+/// Returns the bytes of a number in the given byte order.
 template <class T>
 std::string bytes(T value, bool little_endian = true) {
   std::string text(sizeof value, '\0');

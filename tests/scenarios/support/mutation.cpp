@@ -29,7 +29,7 @@ std::vector<std::string> keys_of(const Json& object) {
 }
 
 std::string misspelt(std::string word, Random& random) {
-  // Half a character would be no text any more, and no parser lets that through.
+  // Changing one byte of a multi-byte character would make the text invalid UTF-8, which every parser rejects.
   if (std::any_of(word.begin(), word.end(), [](char c) { return static_cast<unsigned char>(c) > 0x7f; }))
     return word + "x";
   const std::size_t i = word.empty() ? 0 : random.below(word.size());
@@ -41,7 +41,8 @@ std::string misspelt(std::string word, Random& random) {
       word.insert(i, 1, static_cast<char>('a' + random.below(26)));
       break;
     case 2:
-      // The other case of a letter. Of other characters that may be control characters, which no message shows as such.
+      // Switch the case of a letter. For other characters, this could produce a control character, which
+      // messages do not show literally.
       word[i] = std::isalpha(static_cast<unsigned char>(word[i])) != 0 ? static_cast<char>(word[i] ^ 0x20) : '_';
       break;
     default:
@@ -50,8 +51,8 @@ std::string misspelt(std::string word, Random& random) {
   return word;
 }
 
-/// Values that are wrong nearly everywhere, and some that are right in a few places. Not among them is 2^53 + 1, which
-/// valijson compares as the double 2^53.
+/// Values that are invalid for most fields, and some that are valid for a few fields. 2^53 + 1 is not included,
+/// because valijson compares it as the double 2^53.
 const std::vector<Json>& odd_values() {
   static const std::vector<Json> values = [] {
     std::vector<Json> some = Json::parse(R"([
@@ -69,7 +70,7 @@ const std::vector<Json>& odd_values() {
   return values;
 }
 
-/// The member of the object that held `key` comes to be called `name`, at the same place.
+/// Returns the object with the key `key` renamed to `name`, at the same position.
 Json with_key_renamed(const Json& object, const std::string& key, const std::string& name) {
   Json renamed = Json::object();
   for (const auto& entry : object.items()) {
@@ -83,7 +84,7 @@ std::string change_object(Json& object, const Json& document, Random& random) {
   const std::vector<std::string> keys = keys_of(object);
   const std::string key = keys.empty() ? "" : any_of(keys, random);
   switch (keys.empty() ? 0 : random.below(4)) {
-    case 0: {  // a name from somewhere else in the document, or one that is valid nowhere
+    case 0: {  // a name from another part of the document, or a name that is never valid
       const std::string path = any_of(pointers_in(document), random);
       const std::string name = path.empty() || random.below(4) == 0
                                    ? any_of<std::string>({"", "type", "x", "a/b~c"}, random)
@@ -181,7 +182,7 @@ Mutation mutated(const Json& document, Random& random) {
 }
 
 std::string mutated_text(std::string text, Random& random) {
-  // Bytes that mean something to the parsers make deeper mutants than random ones.
+  // Bytes that have a meaning for the parsers find more errors than random bytes.
   static const std::string kTelling = "{}[]\",:.-+eE0123456789 \n\r\t\\/\0\x80\xff\xc3\xed";
   const std::uint64_t changes = 1 + random.below(4);
   for (std::uint64_t c = 0; c < changes; ++c) {

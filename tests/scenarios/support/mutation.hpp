@@ -9,20 +9,21 @@
 
 namespace hapbench::test {
 
-/// A document in which one thing was changed at random, and what that was.
+/// A document with one random change, and a description of the change.
 struct Mutation {
   Json document;
   std::string change;
 };
 
-/// Deletes, adds, misspells or moves a key, replaces a value by one of another type or size, cuts or lengthens a list,
-/// wraps a value, or puts another part of the document in its place.
+/// Returns the document with one random change: a key is deleted, added, misspelt or moved; a value is replaced
+/// by a value of another type or size; a list is shortened or lengthened; a value is wrapped in a list or
+/// object; or a value is replaced by another part of the document.
 Mutation mutated(const Json& document, Random& random);
 
-/// JSON pointers of all values in a document, the document itself included.
+/// Returns the JSON pointers of all values in a document, including the document itself.
 std::vector<std::string> pointers_in(const Json& document);
 
-/// A text in which a few bytes were changed, removed, inserted or repeated at random.
+/// Returns the text with a few bytes changed, removed, inserted or repeated at random.
 std::string mutated_text(std::string text, Random& random);
 
 }  // namespace hapbench::test

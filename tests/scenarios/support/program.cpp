@@ -24,7 +24,7 @@ namespace {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// A nameless file: unlike a pipe it never blocks its writer.
+/// Returns a temporary file without a name. Unlike a pipe, it never blocks the process that writes.
 File nameless_file() {
   File file(std::tmpfile(), std::fclose);
   if (!file) throw std::runtime_error("no temporary file");
@@ -43,26 +43,27 @@ std::string contents(std::FILE* file) {
   return text;
 }
 
-/// Standard error without the lines of progress, which come or not by the speed of the machine.
+/// Returns standard error without progress lines, which depend on the speed of the machine.
 std::string without_progress(const std::string& err) {
   static const std::regex kProgress("[^\\n]*( \\.\\.\\. \\d+ s|: +\\d+ %[^\\n]*)\\n");
   return std::regex_replace(err, kProgress, "");
 }
 
-/// Between fork and exec only calls that are safe there; the strings are made before.
+/// Starts a process. Between fork() and exec(), only async-signal-safe functions are called; all strings are
+/// created before.
 pid_t start(const std::filesystem::path& program, const std::vector<std::string>& arguments,
             const ProgramOptions& options, int out, int err) {
-  std::vector<std::string> words = {program.string()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> strings = {program.string()};
+  strings.insert(strings.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
+  for (std::string& string : strings) argv.push_back(string.data());
   argv.push_back(nullptr);
   const std::string directory = options.directory.string();
 
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("cannot fork");
   if (child > 0) return child;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // with a test that takes too long
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // the process ends together with a test that is killed after a time-out
   const int null = ::open("/dev/null", O_RDONLY);
   ::dup2(null, STDIN_FILENO);
   ::dup2(out, STDOUT_FILENO);
@@ -78,7 +79,7 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   if (!options.as_root_may && ::geteuid() == 0 && ::prctl(PR_SET_SECUREBITS, SECBIT_NOROOT) != 0) ::_exit(126);
-  // Shells start what runs in the background with it ignored.
+  // Shells start background processes with SIGINT ignored.
   ::signal(SIGINT, SIG_DFL);
   if (!directory.empty() && ::chdir(directory.c_str()) != 0) ::_exit(127);
   ::execv(argv[0], argv.data());
@@ -139,7 +140,7 @@ ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
 RunningProgram::RunningProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments)
     : err_(nameless_file()) {
   const int err = ::fileno(err_.get());
-  ::fcntl(err, F_SETFL, O_APPEND);  // the process shares the offset of the file, which err() moves
+  ::fcntl(err, F_SETFL, O_APPEND);  // append, because err() moves the file offset, which the process shares
   const int null = ::open("/dev/null", O_WRONLY);
   process_ = start(program, arguments, {}, null, err);
   ::close(null);

@@ -10,42 +10,48 @@
 
 #include "scenarios/input/json_file.hpp"
 
-/// Runs the built programs as a user's shell would, but without a shell: arguments arrive as they are given.
+/// Runs the built programs like a user's shell, but passes arguments unchanged.
 namespace hapbench::test {
 
 /// The exit status and the outputs of a finished process.
 struct ProgramRun {
-  /// Standard output as JSON; fails the test when it is no JSON.
+  /// Returns standard output as JSON. Fails the test if it is not JSON.
   Json json() const;
 
-  int status = -1;           ///< exit status; -1 when a signal ended it
-  int signal = 0;            ///< the signal that ended it, or 0
-  std::string out;           ///< standard output
-  std::string err;           ///< standard error
-  double cpu_seconds = 0.0;  ///< user and system time: unlike the wall's, the same on a busy machine
+  int status = -1;  ///< exit status; -1 if a signal terminated the process
+  int signal = 0;   ///< signal that terminated the process, or 0
+  std::string out;  ///< standard output
+  std::string err;  ///< standard error
+  /// User and system time [s]; unlike wall time, it hardly depends on the load of the machine.
+  double cpu_seconds = 0.0;
 };
 
 struct ProgramOptions {
-  std::filesystem::path directory = {};  ///< where it runs; empty: here
-  bool as_root_may = true;       ///< false: root has no privileges either; status 126 when they cannot be dropped
-  std::size_t file_limit = 0;    ///< of each file it writes [bytes]; 0: none
-  std::size_t columns = 0;       ///< of the terminal it is told to have; 0: none
-  std::size_t memory_limit = 0;  ///< of address space [bytes]; 0: none. Not with sanitizers, which reserve a lot
+  std::filesystem::path directory = {};  ///< working directory; empty: the current directory
+  /// False: if the test runs as root, the process drops root's privileges; exit status 126 if that fails.
+  bool as_root_may = true;
+  std::size_t file_limit = 0;  ///< maximum size of each written file [bytes]; 0: no limit
+  std::size_t columns = 0;     ///< number of columns of the terminal that the process sees; 0: not set
+  /// Maximum address space [bytes]; 0: no limit. Not usable with sanitizers, which reserve a large address
+  /// space.
+  std::size_t memory_limit = 0;
 };
 
+/// Runs a program to its end.
 ProgramRun run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                        const ProgramOptions& options = {});
 
-/// The program people run, and the same from the scalar reference build.
+/// Returns the paths of the normal program and of the reference build without SIMD.
 std::filesystem::path hapbench_program();
 std::filesystem::path hapbench_scalar_program();
-/// `hapbench ARGUMENTS…`
+/// Runs `hapbench ARGUMENTS…`.
 ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
 
-/// The same in this process, for commands that only read and print; a hundredth of the time of a process each.
+/// Runs a command of hapbench in this process. For commands that only read and print; about 100 times faster
+/// than a new process.
 ProgramRun hapbench_here(const std::vector<std::string>& arguments);
 
-/// A process that goes on while the test does something else; killed, if need be, by the destructor.
+/// A process that runs while the test continues. The destructor kills it if it is still running.
 class RunningProgram {
  public:
   RunningProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments);
@@ -53,17 +59,21 @@ class RunningProgram {
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
+  /// Returns true if the process has not ended.
   bool is_running();
-  /// Waits, however long it takes, until the condition holds. Returns false when the process ends before.
+  /// Waits until the condition holds, without a time limit. Returns false if the process ends first.
   bool runs_until(const std::function<bool()>& condition);
-  /// SIGKILL, and waits for the end. Returns true when that ended it, false when it had ended before.
+  /// Sends SIGKILL and waits for the end. Returns true if the signal terminated the process, false if it had
+  /// already ended.
   bool kill();
+  /// Sends a signal.
   void send(int signal);
-  /// Waits for the end. Returns the exit status, or the negative number of the signal that ended the process.
+  /// Waits for the end. Returns the exit status, or the negative number of the signal that terminated the
+  /// process.
   int wait();
-  /// Sends a signal that the process may handle; waits and returns as wait() does.
+  /// Sends a signal that the process may handle. Waits and returns like wait().
   int end_by(int signal);
-  /// Returns the text on standard error so far.
+  /// Returns what the process has written to standard error so far.
   std::string err();
 
  private:

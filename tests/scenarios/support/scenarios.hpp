@@ -11,7 +11,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 
-/// Scenarios to test with, and what is said of wrong ones.
+/// Scenarios for tests, and helpers for errors of invalid scenarios.
 namespace hapbench::test {
 
 struct NamedScenario {
@@ -19,22 +19,24 @@ struct NamedScenario {
   Json json;
 };
 
-/// Only what must be there: time, and the environment of each type.
+/// Returns a scenario for each environment type, with only the required fields.
 std::vector<NamedScenario> minimal_scenarios();
-/// The minimal scenario of one environment type.
+/// Returns the minimal scenario of an environment type.
 Json minimal_scenario(const std::string& environment_type);
 
-/// Scenarios that between them give every field of the schema a value, in valid ways that the bundled ones do not use.
-/// They name the files cube.obj, shell.csv, stroke.csv and trace.csv, which tests/data holds.
+/// Returns scenarios that together give every field of the schema a value, in valid combinations that the
+/// bundled scenarios do not use. They name the files cube.obj, shell.csv, stroke.csv and trace.csv in
+/// tests/data.
 std::vector<NamedScenario> rich_scenarios();
 
-/// Every scenario that comes with the program, with what it extends filled in.
+/// Returns every bundled scenario, with inherited fields ("extends") filled in.
 std::vector<NamedScenario> bundled_scenario_files();
 
-/// tests/data
+/// Returns the directory tests/data.
 std::filesystem::path data_directory();
 
-/// The InputError that `work` throws; none, and a failed test, when it throws nothing. Other exceptions go through.
+/// Calls `work` and returns the InputError that it throws. Fails the test and returns nothing if `work` does
+/// not throw. Other exceptions are not caught.
 template <class Work>
 std::optional<InputError> input_error_of(Work work) {
   try {

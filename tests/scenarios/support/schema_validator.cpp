@@ -14,7 +14,7 @@ namespace {
 
 using valijson::adapters::NlohmannJsonAdapter;
 
-/// The document for valijson: its type of JSON, and whole numbers as integers.
+/// Converts the document to valijson's JSON type, with whole numbers as integers.
 nlohmann::json plain(const Json& json) {
   if (json.is_object()) {
     nlohmann::json object = nlohmann::json::object();
