@@ -14,8 +14,8 @@ namespace hapbench {
 std::optional<Range> range_of(const char* option, const std::string& text);
 /// Adds the bound of a --bound value, "metric=max" or "metric=min:max", to `bounds`. Throws InputError.
 void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds);
-/// Returns the number in the text. Throws InputError with the option's name unless the number lies in [least,
-/// most].
+/// Returns the number in the text. Throws InputError with the option's name unless the number is at least
+/// `least` and at most `most`.
 double number_between(const char* option, const std::string& text, double least, double most);
 
 }  // namespace hapbench
