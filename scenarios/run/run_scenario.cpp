@@ -126,7 +126,7 @@ class Run {
     result.warnings = loaded_.file_warnings;
     if (trials_ > 1) {
       for (Warning& warning : warnings_)
-        warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
+        warning.text = fmt::format("in {} of {} trials, first in trial {}: {}", with_warnings_, trials_,
                                    first_with_warnings_, warning.text);
     }
     for (const auto& more : {warnings_, tool_warnings(scenario_.rendering, *tool_),
@@ -224,7 +224,7 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
   const Scenario& scenario = loaded.scenario;
   const auto start = Clock::now();
   if (!shell) {
-    const WaitNotice notice(scenario.name + ": building the shell", progress);
+    const WaitNotice notice(scenario.name + ": computing the point shell", progress);
     shell = make_shell(scenario, loaded.files);
   }
   const std::chrono::duration<double> shell_time = Clock::now() - start;
