@@ -52,12 +52,12 @@ std::string held_text(std::span<const NumberWithError> numbers, std::span<const 
   std::vector<std::size_t> unknown;
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i].value && !numbers[i].error) unknown.push_back(i);
-  const char* says = groups.size() == 1                            ? "no order holds: "
-                     : groups.size() == placed && unplaced.empty() ? "the order holds: "
-                                                                   : "the order holds in part: ";
-  std::string text = placed < 2 ? "there is nothing to compare" : fmt::format("{}{}", says, fmt::join(parts, " < "));
-  if (!unplaced.empty()) text += "; too uncertain for a place: " + joined(unplaced, names, ", ");
-  if (!unknown.empty()) text += "; no error is known of " + joined(unknown, names, ", ");
+  const char* says = groups.size() == 1                            ? "no significant order: "
+                     : groups.size() == placed && unplaced.empty() ? "significant order: "
+                                                                   : "partly significant order: ";
+  std::string text = placed < 2 ? "nothing to compare" : fmt::format("{}{}", says, fmt::join(parts, " < "));
+  if (!unplaced.empty()) text += "; error too large to rank: " + joined(unplaced, names, ", ");
+  if (!unknown.empty()) text += "; no error estimate for: " + joined(unknown, names, ", ");
   return text;
 }
 

@@ -73,7 +73,7 @@ Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
   if (springs_stay(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
   if (is_quiet_)
     for (const Diagnosed& rule : diagnosis_rules(is_quiet_)) limits_[rule.rule].max = rule.threshold;
-  end_.fail("range", "the end of the range that was searched");
+  end_.fail("range", "the end of the search range");
 }
 
 // ---- The question
@@ -144,7 +144,7 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
     const FamilyMember& member = family_[i % family_.size()];
     const LoadedScenario loaded = load(trial.setting, K, member, more(i));
     if (unstable_loop(loaded.scenario, lambda, K, loaded.scenario.rendering.stiffness)) {
-      why[i] = "unstable in contact" + with(member);
+      why[i] = "the contact loop is unstable" + with(member);
       return;
     }
     const RunStability run = stability_of(loaded, shell_, rule_of(loaded.scenario));
@@ -201,7 +201,7 @@ bool Trials::judge_loop(TuneTrial& trial, const FamilyMember& member, double lam
   const double K = trial.stiffness;
   const auto hand = unstable_loop(load(trial.setting, K, member).scenario, lambda, K, question_.margin * K);
   if (!hand) return true;
-  trial.fail("margin", fmt::format("below {:g} K the loop in contact is unstable with {}", question_.margin,
+  trial.fail("margin", fmt::format("between K and {:g} K the contact loop is unstable with {}", question_.margin,
                                    hand->empty() ? own_hand : *hand));
   return false;
 }
@@ -223,7 +223,7 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
     }
     trial.settled = true;
     if (!is_stable(at_GK.verdict))
-      return trial.fail("margin", fmt::format("at {:g} K {}", question_.margin, verdict_with(at_GK, family_[i])));
+      return trial.fail("margin", fmt::format("at {:g} K: {}", question_.margin, verdict_with(at_GK, family_[i])));
     // With springs the loop was judged before the runs (judge).
     if (!springs_lambda_ && !judge_loop(trial, family_[i], at_K.settled.lambda_max, family_[i].name)) return;
   }

@@ -81,9 +81,9 @@ Columns<TunedLaw> tuned_columns() {
         "verification samples",
         may_fail},
        {"runs", "1", "number of simulated runs of the search and the verification", &Row::runs},
-       metric("settled\ninside [mm]", "inside_settled_m", 1e3),
+       metric("settled\ndepth [mm]", "inside_settled_m", 1e3),
        metric("vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0),
-       metric("largest\nstep [N]", "settled_force_step_max_N", 1.0),
+       metric("max force\nstep [N]", "settled_force_step_max_N", 1.0),
        {"binding", "", "of tune: binding constraint, the first constraint that a larger K violates", &Row::binding,
         only_printed()}});
   return columns;
