@@ -58,7 +58,7 @@ Json all_words() {
   for (const auto& [name, kind, meaning] : kWords) add(name, kind, meaning);
   for (const OutcomeInfo& outcome : outcome_infos()) add(outcome.name, "outcome of a run", outcome.meaning);
   for (const RunVerdictText& verdict : run_verdict_texts())
-    add(verdict.name, "class of motion, in limit and stability", verdict.meaning);
+    add(verdict.name, "class of motion, of limit and stability", verdict.meaning);
   for (const auto& [name, meaning, mark] : kVerdicts) add(name, "verdict on a claim", meaning);
   return all;
 }
