@@ -131,7 +131,7 @@ std::string step_time_text(std::span<const Result> reports, const Layout& layout
   const std::string whose = reports.size() == 1 ? "" : fmt::format(" ({})", slowest.*distinct_name(reports));
   const double step = slowest.duration / static_cast<double>(slowest.end.rows);
   std::string text =
-      fmt::format("99 % of the time steps take at most {} us{} to compute", cell(1e6 * p99(slowest), 2), whose);
+      fmt::format("99 % of the time steps are computed within {} us{}", cell(1e6 * p99(slowest), 2), whose);
   if (p99(slowest) > step)
     text +=
         fmt::format(", longer than the time step of {} us; try fewer points, rendering.reduction or a faster algorithm",
