@@ -103,9 +103,8 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
        &Row::order},
       {"order", "1", "observed_order", order, only_printed()},
       {"error_estimate", "by name",
-       "estimated error of this level's result: 1.25 |f - f*| if the metric has an order (f* is the extrapolated "
-       "value), else the largest distance to a finer level or, for the finest levels, the width of the band of the "
-       "last three",
+       "estimated error of this level's result: with an order 1.25 |f - f*| (f* is the extrapolated value), else the "
+       "larger of the width of the band and the largest difference from a finer level",
        &Row::error},
       {"error %", "1", "of converge: error_estimate divided by the result of the finest level", percent,
        only_printed()},
@@ -149,11 +148,9 @@ Columns<ConvergeStudy> order_columns() {
        "the three before",
        &Row::asymptotic},
       {"low", "by name",
-       "smallest result of the band, which are the last three levels with the outcome of the finest level", low,
-       kOnlyCsv},
+       "smallest result of the band (the last three levels that have the outcome of the finest level)", low, kOnlyCsv},
       {"high", "by name",
-       "largest result of the band, which are the last three levels with the outcome of the finest level", high,
-       kOnlyCsv}};
+       "largest result of the band (the last three levels that have the outcome of the finest level)", high, kOnlyCsv}};
 }
 
 Json study_json(const ConvergeStudy& study) {

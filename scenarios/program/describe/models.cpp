@@ -115,9 +115,10 @@ Description describe_stability(const Layout& layout) {
           "limit exists for a tool without device on springs that stay in contact, with the force -K S p. With "
           "leapfrog it satisfies 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S). With "
           "velocity_verlet and rk4 it follows from the eigenvalues of one step; the implicit integrators have no "
-          "limit. With a device, the linear limit is the stiffness at which the first eigenvalue of the loop of hand, "
-          "handle and wall leaves the unit circle; it holds while nothing saturates and the contact lasts. With "
-          "--stable bounded, the simulated limit is the limit to the class \"diverged\".");
+          "limit. With a device, the theoretical limit (bilateral springs) and the linear limit (surfaces that only "
+          "push) are the value at which the first eigenvalue of the loop of hand, handle and wall leaves the unit "
+          "circle; it holds while nothing saturates and the contact lasts. With --stable bounded, the simulated limit "
+          "is the limit to the class \"diverged\".");
   d.text += "\nformulas for the largest stiffness K of a wall on an impedance device\n";
   d.text += layout.wrapped(
       "Symbols: b damping of the handle, c its Coulomb friction, q encoder step, m moving mass, T time step, t_d = d "

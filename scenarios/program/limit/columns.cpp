@@ -89,7 +89,7 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
        linear_edge_text, only_printed()},
       {"limit", "unit of the field",
        "simulated limit: last stable value before the first unstable one, by bisection on simulated runs; empty if no "
-       "run is stable",
+       "interval of values is stable",
        of(limit_end, &IntervalEnd::value), under("simulated\nlimit", 6), tolerance},
       {"beyond", "unit of the field",
        "first unstable value beyond the limit; empty if the values are stable to the end of the range",
@@ -117,8 +117,8 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
       {"class_above", "", "class of the run at the first unstable value above the stable interval",
        of(high_end, class_beyond)},
       {"theory", "unit of the field",
-       "theoretical limit for a tool without device, from the eigenvalues of one step; empty if the theory does not "
-       "apply",
+       "theoretical limit for contact that cannot be lost (bilateral springs), from the eigenvalues of one time step, "
+       "with or without a device; empty if the theory does not apply",
        of(&Row::limit, &FieldLimit::theory)},
       {"closed_form", "unit of the field",
        "closed-form limit: theoretical limit from the integrator's inequality, for leapfrog 4 - 2 lambda B dt / M - "
@@ -127,9 +127,10 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
        of(&Row::limit, &FieldLimit::closed_form),
        when(table == nullptr || std::ranges::any_of(table->rows, has_inequality))},
       {"linear", "unit of the field",
-       "linear limit: largest value at which the contact loop of device, hand and surface is stable by its "
-       "eigenvalues, while contact lasts and without dry friction and encoder steps; runs that are stable beyond it "
-       "rely on bounces, dry friction or the end of the run; empty without a device, or if a theoretical limit exists",
+       "linear limit of a device on a surface that can only push: largest value at which the contact loop of device, "
+       "hand and surface is stable by its eigenvalues, while contact lasts and without dry friction and encoder "
+       "steps; runs that are stable beyond it rely on bounces, dry friction or the end of the run; empty without a "
+       "device, or if a theoretical limit exists",
        of(&Row::limit, &FieldLimit::linear)}};
 }
 
@@ -176,8 +177,7 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
        "largest stable stiffness of a wall on the device, as published; empty if none is published",
        of(&Row::device, &ComparedDevice::published_stiffness), when(devices, under("published"))},
       {"vibration_m_per_s", "m/s",
-       "vibration at the limit: rms of the handle's speed above 30 Hz, from the first quarter of the contact to the "
-       "end",
+       "vibration at the limit: rms of the handle's speed above 30 Hz after the first quarter of the contact time",
        settled(&SettledState::vibration), when(grid)},
       {"contacts", "1", "mean number of rendered contacts in the run at the limit", settled(&SettledState::contacts),
        when(grid)},
