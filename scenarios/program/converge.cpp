@@ -89,10 +89,10 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
   const auto percent = [](const Row& r) { return r.share ? significant(100.0 * *r.share, 2) : "-"; };
   return {
       {"metric", "", "name of the metric", &Row::metric, kOnlyCsv},
-      {"value", "by field", "value of the refined field at this level", value},
+      {"value", "unit of the field", "value of the refined field at this level", value},
       {study.field, "1", "", &Row::value, only_printed()},
       {"outcome", "", "outcome of the run", &Row::outcome, under("outcome")},
-      {"result", "by name",
+      {"result", "unit of the metric",
        "value of the metric, sampled at the times of the coarsest level's steps; empty if the run has no value or "
        "diverges",
        &Row::result},
@@ -102,7 +102,7 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
        "the refinement ratio r; empty without these",
        &Row::order},
       {"order", "1", "observed_order", order, only_printed()},
-      {"error_estimate", "by name",
+      {"error_estimate", "unit of the metric",
        "estimated error of this level's result: with an order 1.25 |f - f*| (f* is the extrapolated value), else the "
        "larger of the width of the band and the largest difference from a finer level",
        &Row::error},
@@ -114,7 +114,7 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
 
 /// Times in a file of their own: the others are the same bytes in every run.
 Columns<LevelRow> time_columns() {
-  return {{"value", "by field", "value of the refined field at this level", &LevelRow::value},
+  return {{"value", "unit of the field", "value of the refined field at this level", &LevelRow::value},
           {"seconds", "s", "processor time of the level's run", &LevelRow::seconds}};
 }
 
@@ -135,7 +135,7 @@ Columns<ConvergeStudy> order_columns() {
       {"order", "1", "observed order of the three finest levels; null if no order is credible (field reason)",
        &Row::order, kOnlyJson},
       {"reason", "", "reason why no order is stated; empty if there is an order", &Row::reason},
-      {"extrapolated", "by name",
+      {"extrapolated", "unit of the metric",
        "extrapolated value (Richardson) f* = f_3 + (f_3 - f_2) / (r^p - 1), f_3 the finest level; empty without an "
        "order",
        &Row::extrapolated},
@@ -147,9 +147,9 @@ Columns<ConvergeStudy> order_columns() {
        "true if the order is asymptotic: GCI_21 / (r^p GCI_32) is within 0.1 of 1 for the last three levels and for "
        "the three before",
        &Row::asymptotic},
-      {"low", "by name",
+      {"low", "unit of the metric",
        "smallest result of the band (the last three levels that have the outcome of the finest level)", low, kOnlyCsv},
-      {"high", "by name",
+      {"high", "unit of the metric",
        "largest result of the band (the last three levels that have the outcome of the finest level)", high, kOnlyCsv}};
 }
 

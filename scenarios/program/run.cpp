@@ -141,7 +141,7 @@ int run(const RunOptions& options, ProgramContext& context) {
     Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
     for (const std::string& unmet : result.unmet) {
-      report.fault(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
+      report.fault(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} accepts this outcome))",
                                scenarios[i].file.string(), unmet, outcome_name(result.end.outcome)),
                    kUnexpectedOutcome);
     }

@@ -25,7 +25,7 @@ Columns<StressCounts> stress_columns() {
        &Row::largest_force, under("largest |f|/(K d)")},
       {"largest_share_of_bound", "1",
        "largest ||f_spring|| divided by the bound that the algorithm guarantees; empty if it guarantees none",
-       &Row::largest_share, under("of its bound", 3)},
+       &Row::largest_share, under("fraction of bound", 3)},
       {"first_bad_set", "1", "index of the first contact set with a force that is not finite or above the bound",
        &Row::first_bad, kOnlyJson}};
 }
@@ -36,7 +36,11 @@ int stress(const StressOptions& options, ProgramContext& context) {
   const std::vector<StressCounts> all = stress_laws(options.count, options.seed, job_options(options, "stress"));
   const Columns<StressCounts> columns = stress_columns();
   report.write("stress.csv", columns, all);
-  report.say(columns.text(all, layout));
+  report.say(columns.text(all, layout) + "\n");
+  report.say(layout.wrapped(
+      "every force must be finite and within the bound that its algorithm guarantees: non-finite and out of bound "
+      "must be 0. points dropped: contacts beyond the largest number of points of the reduction",
+      0));
   report.json() = columns.json_list(all);
   for (const StressCounts& c : all) {
     if (!c.first_bad) continue;

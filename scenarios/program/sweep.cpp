@@ -51,7 +51,7 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
       const auto number = rounds ? finite_number(row[c]) : std::nullopt;
       return number ? significant(*number, 6) : row[c];
     };
-    columns.add({{title, "by name", table.columns[c], value, only_printed()}});
+    columns.add({{title, "unit of the metric", table.columns[c], value, only_printed()}});
   }
   const auto outcome = [&table](const SweepRow& row) { return table.outcome(row); };
   columns.add({{"outcome", "", "outcome", outcome, only_printed()}});

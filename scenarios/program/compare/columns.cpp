@@ -66,9 +66,10 @@ Columns<Standing> league_columns(bool seeds) {
       {"failed", "1", "number of seeds whose run failed (hapbench describe \"failed run\")", &Row::failed},
       {"outcome", "", "outcomes of the runs; if they differ, each outcome with its number of runs", &Row::outcome,
        under("outcome")},
-      {"mean", "by name", "mean of the metric over the common seeds (column common_seeds); empty if no run has a value",
-       &Row::mean, under("mean"), error_of_mean},
-      {"spread", "by name",
+      {"mean", "unit of the metric",
+       "mean of the metric over the common seeds (column common_seeds); empty if no run has a value", &Row::mean,
+       under("mean"), error_of_mean},
+      {"spread", "unit of the metric",
        "standard deviation of the metric over the common seeds; empty with a single seed, or if the seed changes "
        "nothing in the scenario",
        &Row::spread, under(seeds ? "spread" : "", 2)},

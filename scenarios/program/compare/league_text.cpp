@@ -90,7 +90,9 @@ std::string league_text(const League& league, const Layout& layout) {
       league.standings.size() <= kMostPrinted || layout.in_full()
           ? league_columns(league.seeds > 1).text(ranked(league), layout)
           : fmt::format("{} ranks are in ranking.csv; --wide prints them\n", league.standings.size());
-  return fmt::format("{}\n{}\n{}", table, law_columns().text(league.laws, layout), verdict(league, layout));
+  const std::string note =
+      layout.wrapped("rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %", 0);
+  return fmt::format("{}\n{}\n{}{}", table, law_columns().text(league.laws, layout), note, verdict(league, layout));
 }
 
 }  // namespace hapbench

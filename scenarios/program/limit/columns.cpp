@@ -31,7 +31,7 @@ Columns<Row> place_columns(const LimitTable* table) {
       const auto number = finite_number(r.axis_values[i]);
       return number ? Cell(*number) : Cell(r.axis_values[i]);
     };
-    columns.add({{path, "by name", "value of the field given by --over", value, under(path)}});
+    columns.add({{path, "unit of the field", "value of the field given by --over", value, under(path)}});
   }
   columns.add(
       {{"algorithm", "", "force algorithm", [](const LimitRow& r) { return r.algorithm(); }, under("algorithm")}});
@@ -228,8 +228,8 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
 
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table) {
   Columns<LimitRunRow> columns = place_columns<LimitRunRow>(table);
-  columns.add({{table == nullptr ? "{field}" : table->first().asked.path, "by name", "value of the field in the run",
-                [](const LimitRunRow& r) { return r.run.value; }},
+  columns.add({{table == nullptr ? "{field}" : table->first().asked.path, "unit of the field",
+                "value of the field in the run", [](const LimitRunRow& r) { return r.run.value; }},
                {"class", "", "class of the run (hapbench describe stability)",
                 [](const LimitRunRow& r) { return run_verdict_name(r.run.verdict); }}});
   return columns;

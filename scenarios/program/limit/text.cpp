@@ -104,8 +104,10 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
   const auto is_marked = [&names](const char* mark) { return names.find(mark) != std::string::npos; };
   const std::pair<bool, std::string> notes[] = {
       {table.is_grid() && std::ranges::any_of(table.rows, is_beyond_linear),
-       fmt::format("linear limit: by the eigenvalues of the loop of device, hand and surface in contact; {}",
-                   kBeyondLinear)},
+       fmt::format(
+           "linear limit: by the eigenvalues of the loop of device, hand and surface in contact. If the simulated "
+           "limit is larger, use the linear limit: {}",
+           kBeyondLinear)},
       {table.is_grid(),
        "a table makes no verification runs inside the stable interval; run limit with one scene, device and algorithm "
        "for these. non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond "

@@ -67,7 +67,7 @@ Columns<TunedLaw> tuned_columns() {
       const auto value = r.choice ? value_in(r.choice->metrics, name, factor) : std::nullopt;
       return value ? number_text(*value, value_in(r.error, name, factor)) : "-";
     };
-    return Columns<Row>::Entry(heading, "by name", name, text, only_printed());
+    return Columns<Row>::Entry(heading, "unit of the metric", name, text, only_printed());
   };
   columns.add(
       {{"verified", "1",
