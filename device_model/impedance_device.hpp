@@ -239,8 +239,8 @@ const DevicePreset* find_device_preset(std::string_view name) noexcept;
 /// the opposite end (stiff).
 enum class PresetEnd { own, soft, stiff };
 inline constexpr const char* kPresetRanges =
-    "dry friction 0 to twice ours, viscous friction once to ten times, mass less or more by 1.3, encoder finer or "
-    "coarser by 2";
+    "dry friction 0 to twice our value, viscous friction 1 to 10 times, mass smaller or larger by a factor of 1.3, "
+    "encoder finer or coarser by a factor of 2";
 
 /// Returns the device's configuration, with defaults for fields that a preset does not contain.
 ImpedanceDeviceConfig config_of(const DevicePreset& preset, PresetEnd end = PresetEnd::own);

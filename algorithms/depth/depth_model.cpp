@@ -14,10 +14,11 @@ namespace {
 
 constexpr ModelInfo kShortestDistanceInfo = {
     .name = "shortest_distance",
-    .summary = "distance to the nearest surface of the tool, gradient towards it",
-    .formula = "d = |q - x|, u = (q - x) / d, with q the place of the tool's surface nearest to the point x",
+    .summary = "distance to the nearest surface of the tool, with the gradient towards it",
+    .formula = "d = |q - x|, u = (q - x) / d, with q the point of the tool's surface nearest to x",
     .source =
-        "thesis B.1, with depths >= 0 of which the smallest wins (as printed, negative depths would pull the tool in)",
+        "thesis B.1, with depths >= 0 of which the smallest is used (as printed, negative depths would pull the tool "
+        "in)",
     .known_failure = "the gradient flips by 180 degrees when a point crosses the tool's median line (thesis B.3.1)",
 };
 
@@ -53,10 +54,11 @@ class SurfaceNormal final : public DepthModel {
 
 constexpr ModelInfo kNormalProjectionInfo = {
     .name = "normal_projection",
-    .summary = "distance along the inverse surface normal to where it leaves the tool",
+    .summary = "distance from the point to the tool's surface along the inverse surface normal",
     .formula = "u = -n, d = smallest d > 0 at which the ray x + d u leaves the tool (a cylinder: F.7, F.9, F.12)",
     .source = "thesis F.1 (F.6 printed with a minus; F.7 shows that r_p + d r_n is meant)",
-    .known_failure = "a point that appears at a corner can start with a large depth: the force jumps (Fig. F.4)",
+    .known_failure =
+        "a point that appears at a corner can start with a large depth, so that the force jumps (Fig. F.4)",
 };
 
 class NormalProjection final : public DepthModel {
@@ -74,10 +76,11 @@ constexpr ModelInfo kContinuousNormalProjectionInfo = {
     .formula =
         "u = -n, d = d_sd when the point enters, then d <- min(d_np, max(d_sd, d + <dx, u>)); d_sd of "
         "shortest_distance, d_np of normal_projection, dx = dp + turn x (x - p) of the tool at the point",
-    .source = "thesis F.1 names the jump (Fig. F.4) and two remedies with their flaws; this one is ours",
+    .source =
+        "thesis F.1 names the jump (Fig. F.4) and two remedies with their flaws; this remedy is not in the thesis",
     .known_failure =
-        "depends on the way: what was entered sideways is only as deep as the shortest distance; a point that leaves "
-        "sideways still drops its whole depth at once",
+        "depends on the path: a point entered from the side is only as deep as the shortest distance; a point that "
+        "leaves to the side still loses its whole depth at once",
 };
 
 /// Normal projection without the force jump (thesis F.1, Fig. F.4): each point keeps its depth d from step to

@@ -73,7 +73,8 @@ constexpr OwnParameter kAlongSum[] = {
     {"along_sum",
      {0.0, 1.0, "1"},
      0.0,
-     "0: a coupling spring in space; 1: a scalar one along the sum of the depths, whose direction the force keeps"}};
+     "0: coupling spring in space; 1: scalar coupling spring along the sum of the depths, whose direction the force "
+     "keeps"}};
 
 /// M is divided by K_vc, so that K = 0 needs no special case.
 class VirtualCoupling final : public SeriesLaw {
@@ -131,10 +132,11 @@ double least_squares_bound(const RenderingConfig& config, const ToolShape&, std:
   return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
 }
 
-constexpr OwnParameter kSaturation[] = {{"saturation_N",
-                                         {1e-6, 1e12, "N"},
-                                         30.0,
-                                         "F_s: the coupling never pulls with more; default what the trainer gives"}};
+constexpr OwnParameter kSaturation[] = {
+    {"saturation_N",
+     {1e-6, 1e12, "N"},
+     30.0,
+     "F_s: largest force of the coupling spring; default: the force limit of the trainer"}};
 
 /// Limits of Newton's method: number of steps and smallest fraction of a step. If it ends before the balance is
 /// reached, the force is still the coupling's force.
@@ -285,7 +287,8 @@ AlgorithmEntry virtual_coupling_entry() {
           "along the sum g of the depths alone: f = -q K g, S = q S_sum, q = K_vc / (K_vc + K <u, S_sum u>), u = g "
           "/ |g|",
       .source = "thesis Fig. 2d",
-      .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
+      .known_failure =
+          "limits the stiffness, but the force still follows the direction with the largest number of points",
       .parameters = kParameters,
   };
   return {.info = &kInfo,
@@ -297,18 +300,21 @@ AlgorithmEntry virtual_coupling_entry() {
 AlgorithmEntry least_squares_entry() {
   static constexpr ParameterInfo kParameters[] = {
       kStiffnessParameter,
-      {parameter::kRegularisation, "eps: weight of a short translation against resolving the depths"},
+      {parameter::kRegularisation,
+       "eps: regularisation, which favours a short translation over an exact fit of the depths"},
   };
   static constexpr ModelInfo kInfo = {
       .name = "least_squares",
-      .summary = "one spring along the one translation that best resolves all depths",
+      .summary = "one spring along the translation that fits all depths best",
       .formula =
           "x = argmin sum (d_i - <u_i, x>)^2 + eps |x|^2 = (eps I + S_sum)^-1 sum d_i u_i, f = -K x, "
           "S = (eps I + S_sum)^-1 S_sum, S_sum = sum u u^T; always without reduction",
-      .source = "ours (Tikhonov's regularised least squares); virtual_coupling with stiffness K / eps is the same law",
+      .source =
+          "not in the thesis (Tikhonov's regularised least squares); equivalent to virtual_coupling with stiffness K "
+          "/ eps",
       .known_failure =
-          "a small eps makes S jump as the first contact along a direction comes or the last one goes, and contacts "
-          "that nearly oppose push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
+          "with a small eps, S jumps when the first contact along a direction appears or the last one disappears, and "
+          "nearly opposite contacts push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
       .parameters = kParameters,
   };
   return {.info = &kInfo, .make_law = law_of<LeastSquares>, .force_bound = least_squares_bound, .may_reduce = false};
@@ -321,17 +327,19 @@ AlgorithmEntry static_coupling_entry() {
   };
   static constexpr ModelInfo kInfo = {
       .name = "static_coupling",
-      .summary = "a massless copy of the tool in balance between its contacts and a coupling spring that saturates",
+      .summary =
+          "a massless copy of the tool, in equilibrium between its contacts and a coupling spring that saturates",
       .formula =
           "f = g(|s|) s / |s|, g(x) = K_vc x / sqrt(1 + (K_vc x / F_s)^2), where the copy's displacement s from the "
           "tool balances -K sum p_i u_i = f; p_i = d_i + <u_i, s> where it has the sign of d_i, else 0; S = -df/dp "
           "/ K",
       .source =
           "static virtual coupling of Barbic and James, Six-DoF haptic rendering of contact between geometrically "
-          "complex reduced deformable models (IEEE Trans. Haptics 1, 2008); the shape of g and solving it to the "
-          "end are ours",
+          "complex reduced deformable models (IEEE Trans. Haptics 1, 2008); the shape of g and the solution to "
+          "convergence are not from that paper",
       .known_failure =
-          "the copy follows the direction with most points, and what lies beyond the saturation feels soft",
+          "the copy follows the direction with the largest number of points, and forces beyond the saturation feel "
+          "soft",
       .parameters = kParameters,
   };
   return {.info = &kInfo,

@@ -26,7 +26,7 @@ class Mean final : public ForceLaw {
 };
 
 constexpr OwnParameter kPoints[] = {
-    {"points", {1.0, 1e5, "1"}, 10.0, "most springs that add up before they are scaled"}};
+    {"points", {1.0, 1e5, "1"}, 10.0, "largest number of springs that are added without scaling"}};
 
 double points_of(const RenderingConfig& config) {
   return own_value(config, "mcneely", kPoints[0]);
@@ -56,11 +56,11 @@ double mcneely_bound(const RenderingConfig& config, const ToolShape&, std::size_
 AlgorithmEntry summation_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "summation",
-      .summary = "all penalty springs added",
+      .summary = "sum of all penalty springs",
       .formula = "c_i = 1",
       .source = "thesis 1.2, Fig. 2b",
       .known_failure =
-          "stiffness and damping grow with the number of points: unstable once lambda_max(S) K passes the "
+          "stiffness and damping grow with the number of points; unstable when lambda_max(S) K exceeds the "
           "integrator's limit (thesis A.3)",
       .parameters = kStiffnessAlone,
   };
@@ -71,11 +71,12 @@ AlgorithmEntry summation_entry() {
 AlgorithmEntry mean_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "mean",
-      .summary = "penalty springs averaged over the number of points",
+      .summary = "mean of all penalty springs",
       .formula = "c_i = 1/n",
       .source = "thesis Fig. 2c",
       .known_failure =
-          "directions with few points get almost no stiffness: the tool sinks in where most points are parallel",
+          "directions with few points have almost no stiffness: the tool sinks in where the majority of points is "
+          "parallel",
       .parameters = kStiffnessAlone,
   };
   // |sum c d u| <= d sum c with c = 1 / n, so at most one spring.
@@ -85,13 +86,14 @@ AlgorithmEntry mean_entry() {
 AlgorithmEntry mcneely_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "mcneely",
-      .summary = "the 10/N rule: springs added, and of more than ten their sum scaled to that of ten",
+      .summary = "the 10/N rule: the springs are added; the sum of more than ten is scaled to that of ten",
       .formula = "c_i = min(1, p / n), p = 10 points, n colliding points; always without reduction",
       .source =
           "McNeely, Puterbaugh and Troy, Six degree-of-freedom haptic rendering using voxel sampling (SIGGRAPH 1999)",
       .known_failure =
           "the sum is still ten times as stiff as one spring where all points share a direction, and the force "
-          "follows the direction with most points; a point that comes or goes rescales all others",
+          "follows the direction with the largest number of points; a point that appears or disappears rescales all "
+          "others",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo,

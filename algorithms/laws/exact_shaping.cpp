@@ -379,14 +379,17 @@ int solve_exact_shaping(ContactBuffer& contacts) noexcept {
 AlgorithmEntry exact_shaping_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "exact_shaping",
-      .summary = "what the shaping iteration converges to, computed exactly",
+      .summary = "the limit of the shaping iteration, computed exactly",
       .formula =
           "c = argmin ½|S - I|²_F + (epsilon/2)|c|² over c >= 0, epsilon = 1e-6: the projection of the identity onto "
           "the cone of contact tensors u u^T",
-      .source = "ours; the iteration is the multiplicative update of Sha, Lin, Saul, Lee, Neural Computation 2007",
+      .source =
+          "not in the thesis; the iteration is the multiplicative update of Sha, Lin, Saul, Lee, Neural Computation "
+          "2007",
       .known_failure =
-          "as shaped_stiffness: jumps as contacts come and go, larger ones; ratios above 1 where the weight is "
-          "zero; soft along the way out of a wedge, 2 sin^2 w / (1 + cos^2 2w) K for half angle w, about w^2 K",
+          "force jumps when contacts appear or disappear, larger than those of shaped_stiffness; ratios above 1 where "
+          "the weight is zero; soft in the direction out of a wedge, 2 sin^2 w / (1 + cos^2 2w) K for half angle w, "
+          "about w^2 K",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo, .make_law = law_of<ExactShaping>, .force_bound = kBound};
@@ -396,14 +399,15 @@ AlgorithmEntry merged_shaping_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "merged_shaping",
       .summary =
-          "exact shaping of groups of contacts with similar gradients, each with its whole tensor and depth vector",
+          "exact shaping of groups of contacts with similar gradients, each group with its whole tensor and depth "
+          "vector",
       .formula =
           "groups: 1350 fixed cells of directions; S = sum c_k T_k, T_k = sum u u^T, f = -K sum c_k sum d u; C_k = c_k "
           "tr T_k = argmin ½|S - I|²_F + (epsilon/2)|C|² over C >= 0, epsilon = 1e-6",
-      .source = "ours, instead of the reduction of thesis C.3 and 4.1; takes no reduction",
+      .source = "not in the thesis; replaces the reduction of thesis C.3 and 4.1; takes no reduction",
       .known_failure =
-          "contacts of a group share a weight, so single ratios stray from 1 by about the square of a cell's angle; a "
-          "cell's border is a jump for a gradient that turns across it",
+          "contacts of a group share a weight, so that single ratios deviate from 1 by about the square of a cell's "
+          "angle; the force jumps when a gradient turns across the border of a cell",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo, .make_law = law_of<MergedShaping>, .force_bound = kBound, .may_reduce = false};

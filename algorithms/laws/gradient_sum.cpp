@@ -100,12 +100,12 @@ double tandpasta_bound(const RenderingConfig&, const ToolShape&, std::size_t n, 
 AlgorithmEntry original_averaging_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "original_averaging",
-      .summary = "the trainer's original algorithm (DP): depths summed, gradients averaged",
+      .summary = "original algorithm of the trainer (DP): sum of the depths along the mean gradient",
       .formula =
           "u_r = sum u_i / |sum u_i|, d_r = sum d_i / |sum u_i|, f = -K d_r u_r, S = u_r u_r^T; "
           "zero force when |sum u_i| <= 1e-9 n",
       .source = "thesis B.2, Eq. B.1; always with depth model shortest_distance and without reduction",
-      .known_failure = "opposite gradients make d_r explode and u_r flip by 180 degrees (thesis B.3.3): vibration",
+      .known_failure = "opposite gradients make d_r very large and flip u_r by 180 degrees (thesis B.3.3): vibration",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo,
@@ -118,14 +118,14 @@ AlgorithmEntry original_averaging_entry() {
 AlgorithmEntry highest_depth_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "highest_depth",
-      .summary = "one spring, as deep as the deepest contact, along the averaged gradient",
+      .summary = "one spring with the depth of the deepest contact, along the mean gradient",
       .formula =
           "u_r = sum u_i / |sum u_i|, d_r = max d_i, f = -K d_r u_r, S = u_r u_r^T; zero force when "
           "|sum u_i| <= 1e-9 n; always without reduction",
-      .source = "thesis 4.1, which says of it (its reference 3) that it vibrates in a hole",
+      .source = "thesis 4.1, which states (citing its reference 3) that it vibrates in a hole",
       .known_failure =
-          "u_r turns round by 180 degrees as one of nearly opposite contacts comes or goes, and d_r jumps from contact "
-          "to contact: the force jumps by up to 2 K d_r",
+          "u_r flips by 180 degrees when one of nearly opposite contacts appears or disappears, and d_r jumps from "
+          "contact to contact: the force jumps by up to 2 K d_r",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo,
@@ -138,12 +138,12 @@ AlgorithmEntry highest_depth_entry() {
 AlgorithmEntry tandpasta_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "tandpasta",
-      .summary = "elastic energy moved from springs that fight each other to those that do not",
+      .summary = "moves elastic energy from springs that oppose each other to springs that do not",
       .formula =
           "beta_i = |sum_j <u_i,u_j>| / sum_j |<u_i,u_j>|, sigma_E = sum beta_i d_i^2 / sum d_i^2, "
           "c_i = beta_i / sigma_E; zero force when sigma_E <= 1e-12",
       .source = "thesis F.2",
-      .known_failure = "boosts the outward force until the tool jumps out; O(n^2)",
+      .known_failure = "increases the outward force until the tool jumps out; cost O(n^2)",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo, .make_law = law_of<Tandpasta>, .force_bound = tandpasta_bound};

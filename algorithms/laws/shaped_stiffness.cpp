@@ -52,7 +52,7 @@ double shaped_stiffness_bound(const RenderingConfig& config, const ToolShape&, s
 
 constexpr ParameterInfo kShapingParameters[] = {
     kStiffnessParameter,
-    {parameter::kIterations, "m: updates of the weights; 0 is summation"},
+    {parameter::kIterations, "m: number of updates of the weights; 0 is the same as summation"},
 };
 
 /// Returns the entry of an algorithm with this law. `depth_model`: depth model that the algorithm prescribes;
@@ -69,14 +69,15 @@ AlgorithmEntry shaping_entry(const ModelInfo& info, std::string_view depth_model
 AlgorithmEntry shaped_stiffness_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "shaped_stiffness",
-      .summary = "the thesis's stiffness shaping (HS): the combined stiffness along every contact is drawn to K",
+      .summary =
+          "stiffness shaping of the thesis (HS): weights that bring the combined stiffness along every contact to K",
       .formula = "c = 1; m times: rho_i = sum_j c_j <u_i, u_j>^2 = u_i^T S u_i, c_i <- c_i / rho_i",
       .source = "thesis 2.4, C.4.2; rho through the 3x3 tensor, Eq. 3 and 4",
       .known_failure =
-          "the force jumps as contacts come and go, so its bounds hold while they stay; rho_i stays above 1 where "
-          "the weight dies out (it is a projection onto a cone); soft along the way out of a wedge, because only "
-          "ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 2w) K, about w^2 K, for half angle w (10 "
-          "degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) K, about 2 w^2 K",
+          "the force jumps when contacts appear or disappear, so that its bounds hold only between such events; rho_i "
+          "stays above 1 where the weight tends to zero (it is a projection onto a cone); soft in the direction out "
+          "of a wedge, because only ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 2w) K, about w^2 K, "
+          "for half angle w (10 degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) K, about 2 w^2 K",
       .parameters = kShapingParameters,
   };
   return shaping_entry(kInfo);
@@ -85,7 +86,7 @@ AlgorithmEntry shaped_stiffness_entry() {
 AlgorithmEntry normal_projection_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "normal_projection",
-      .summary = "stiffness shaping on the depth model normal_projection",
+      .summary = "stiffness shaping with the depth model normal_projection",
       .formula = "weights of shaped_stiffness; d_i = exit distance along -n_i (see depth model normal_projection)",
       .source = "thesis F.1; always with depth model normal_projection",
       .known_failure = "the force jumps when a point appears at a corner (Fig. F.4)",
@@ -97,13 +98,13 @@ AlgorithmEntry normal_projection_entry() {
 AlgorithmEntry continuous_normal_projection_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "continuous_normal_projection",
-      .summary = "stiffness shaping on the depth model continuous_normal_projection: no jump at corners",
+      .summary = "stiffness shaping with the depth model continuous_normal_projection: no jump at corners",
       .formula =
           "weights of shaped_stiffness; d_i starts as the shortest distance and follows the tool along -n_i up to "
           "its exit (see depth model continuous_normal_projection)",
-      .source = "ours, after thesis F.1; always with depth model continuous_normal_projection",
+      .source = "not in the thesis, based on thesis F.1; always with depth model continuous_normal_projection",
       .known_failure =
-          "depends on the way: under a face that it slid in below sideways, the tool feels the shortest distance only",
+          "depends on the path: under a face that it entered from the side, the tool feels only the shortest distance",
       .parameters = kShapingParameters,
   };
   return shaping_entry(kInfo, "continuous_normal_projection");

@@ -30,7 +30,7 @@ constexpr OwnParameter kDampingTime[] = {
     {"damping_time_s",
      {0.0, 10.0, "s"},
      0.0,
-     "time constant with which damping and friction follow the directions of the contacts"}};
+     "time constant with which the directions used by damping and friction follow the contacts"}};
 
 /// Calls `use(i)` for each contact that holds the proxy back, in order. Tests eight contacts at a time, because
 /// only about three of some hundred contacts near the proxy hold it. Precondition: the contacts are padded.
@@ -384,17 +384,19 @@ double proxy_bound(const RenderingConfig&, const ToolShape& tool, std::size_t, d
 AlgorithmEntry proxy_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "proxy",
-      .summary = "a proxy of the tool that never enters the environment; a spring pulls the tool to it",
+      .summary = "a proxy of the tool never enters the environment, and a spring pulls the tool to the proxy",
       .formula =
           "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed "
           "distance of the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above "
           "the surface's flat patch about each point; f_spring = K (x - p), S = projector onto the span of the "
           "active gradients",
-      .source = "ours; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 rejects",
+      .source =
+          "not in the thesis; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 "
+          "rejects",
       .known_failure =
-          "a start in deep penetration and a hole that the turned tool does not fit into keep points inside the proxy, "
-          "which leaves them at 40 half widths of the tool a second; a flat face of the tool bumps on a surface whose "
-          "normals are off by more than 6 degrees; no depth model or reduction applies",
+          "after a start in deep penetration, or in a hole that the turned tool does not fit into, points remain "
+          "inside the proxy, which leaves them at 40 half widths of the tool per second; a flat face of the tool "
+          "bumps on a surface whose normals are wrong by more than 6 degrees; no depth model or reduction applies",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo,

@@ -9,57 +9,58 @@
 namespace hapbench {
 
 constexpr ParameterInfo kTankParameters[] = {
-    {parameter::kTankCapacity, "C, most energy that is kept for later"},
-    {parameter::kTankInitial, "energy at the start, besides that of the springs"},
+    {parameter::kTankCapacity, "C, largest energy that the tank stores"},
+    {parameter::kTankInitial, "energy in the tank at the start, in addition to the energy of the springs"},
 };
 constexpr ParameterInfo kActuatorParameters[] = {
-    {parameter::kActuatorForce, "F_j, most force of the actuator along each axis; null: no limit"},
-    {parameter::kActuatorDamping, "b, most damping; null: M / dt of the virtual tool, which stops it in one step"},
+    {parameter::kActuatorForce, "F_j, largest force of the actuator along each axis; null: no limit"},
+    {parameter::kActuatorDamping,
+     "b, largest damping; null: M / dt of the virtual tool, which stops it in one time step"},
 };
 constexpr ParameterInfo kPassivityParameters[] = {
-    {parameter::kPassivityController, "switches the controller on, for any algorithm"},
+    {parameter::kPassivityController, "switches the controller on; works with any algorithm"},
 };
 
 const ModelInfo kEnergyTankInfo = {
     .name = "energy_tank",
-    .summary = "a force stage that lets the rendering give away no more energy than its tank holds",
+    .summary = "force stage: the rendering releases no more energy than its tank holds",
     .formula = "T <- min(C, T + absorbed); f - (<f, v> dt - max(T, 0)) / (|v|^2 dt) v where <f, v> dt > max(T, 0)",
     .source = "Franken, Stramigioli, Misra, Secchi and Macchelli 2011; Ferraguti et al. 2015; along the velocity: ours",
     .known_failure =
-        "a capacity below the energy of the springs that are pressed takes their push back; it takes push away and "
-        "never damps, so that a vibration that creates no energy goes on; what an explicit step of a virtual mass "
-        "creates within the step it does not foresee",
+        "with a capacity below the energy of the pressed springs, their push back is reduced; it reduces push and "
+        "never damps, so that a vibration that creates no energy continues; it does not predict energy that an "
+        "explicit step of a virtual mass creates within the step",
     .parameters = kTankParameters,
 };
 
 const ModelInfo kActuatorLimitedPassivityInfo = {
     .name = "actuator_limited_passivity",
-    .summary = "a force stage: time-domain passivity whose damping no actuator is too weak for",
+    .summary = "force stage: time-domain passivity control with damping that every actuator can render",
     .formula =
         "W = <f, v> - E / dt > 0 is dissipated by f1 = f - a1 <v, n> n, n = f / |f|, then f2 = f1 - a2 (v - <v, n> "
         "n); a1 = W / <v, n>^2 and a2 = (W - a1 <v, n>^2) / |v - <v, n> n|^2, each at most b and such that |f_j| <= "
         "F_j; the rest stays owed",
     .source =
         "Hannaford and Ryu 2002; priority of the force's direction and limits of each actuator after the abstract of "
-        "Porcini and Frisoli 2026 (arXiv 2603.26347), formulas ours",
+        "Porcini and Frisoli 2026 (arXiv 2603.26347); the formulas are our derivation",
     .known_failure =
-        "foresees the coming step by the velocity alone: a force that throws the tool within a step is owed first "
-        "and paid afterwards, too late where the explicit step of a virtual mass is unstable; what damping has "
-        "taken is credit, behind which a vibration may hide; a turn of the tool that lifts it counts as energy "
-        "created",
+        "predicts the next step by the velocity alone: energy of a force that throws the tool within a step is "
+        "dissipated only afterwards, too late if the explicit step of a virtual mass is unstable; dissipated energy "
+        "is credit, which may hide a vibration; a rotation of the tool that lifts it counts as created energy",
     .parameters = kActuatorParameters,
 };
 
 const ModelInfo kPassivityControllerInfo = {
     .name = "passivity_controller",
-    .summary = "adaptive damping that lets no algorithm give away more energy than it has taken in",
+    .summary = "adaptive damping with which the algorithm releases no more energy than it received",
     .formula =
         "E = E_spring(0) - sum f_render . (v_k + v_k+1)/2 dt - sum (m_k + m_k+1)/2 . turn_k >= 0; "
         "f_render = s f - alpha (v + f_in dt/2M), alpha = (1 - s) M/dt, largest s in [0, 1]",
-    .source = "Hannaford and Ryu, 2002 (observer and controller); the look-ahead and the rotation are ours",
+    .source =
+        "Hannaford and Ryu, 2002 (observer and controller); the look-ahead and the rotation are not from that paper",
     .known_failure =
-        "what damping took in is credit, behind which a vibration may hide for a while; a law that creates "
-        "energy feels weak and sticky where it has none left",
+        "dissipated energy is credit, which may hide a vibration for a while; an algorithm that creates energy feels "
+        "weak and sticky when the credit is used up",
     .parameters = kPassivityParameters,
 };
 

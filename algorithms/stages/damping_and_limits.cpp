@@ -55,25 +55,25 @@ Mat3 DryFriction::damping_matrix() const noexcept {
 
 constexpr ParameterInfo kDampingParameters[] = {
     {parameter::kDampingRatio, "zeta of one spring-damper of stiffness K"},
-    {parameter::kDamping, "B itself; null: from zeta"},
+    {parameter::kDamping, "B, damping; null: computed from zeta"},
     {parameter::kAngularDamping,
-     "v of the tool's material at each contact, v + omega x r_i, instead of the tip centre's"},
+     "uses the velocity of the tool's material at each contact, v + omega x r_i, in place of the tip centre's"},
     {parameter::kAngularVelocityCutoff,
-     "first-order low-pass of the angular velocity that angular_damping sees; null: none"},
-    {parameter::kMass, "M of the virtual tool; default 0.2 in planar scenes, else 0.1"},
-    {parameter::kMuS, "mu_s; default 0 for springs, else 5"},
-    {parameter::kMuF, "mu_f; default 0 for springs, else 10"},
-    {parameter::kDryMu, "mu of dry friction, in place of mu_s and mu_f"},
-    {parameter::kDryStiffness, "K_t of its bristle; null: K"},
-    {parameter::kDryDampingRatio, "zeta_t of its bristle with the virtual mass"},
+     "cutoff frequency of a first-order low-pass of the angular velocity used by angular_damping; null: none"},
+    {parameter::kMass, "M, mass of the virtual tool; default 0.2 in planar scenes, else 0.1"},
+    {parameter::kMuS, "mu_s, viscous friction; default 0 for springs, else 5"},
+    {parameter::kMuF, "mu_f, viscous friction per newton of spring force; default 0 for springs, else 10"},
+    {parameter::kDryMu, "mu, coefficient of dry friction, in place of mu_s and mu_f"},
+    {parameter::kDryStiffness, "K_t, stiffness of the bristle of dry friction; null: K"},
+    {parameter::kDryDampingRatio, "zeta_t, damping ratio of this bristle with the virtual mass"},
     {parameter::kChi, "chi of Hunt-Crossley damping, in place of B"},
-    {parameter::kMaxDamping, "B_max; null: off"},
-    {parameter::kMaxForce, "F_max; null: off"},
+    {parameter::kMaxDamping, "B_max, largest damping; null: no limit"},
+    {parameter::kMaxForce, "F_max, largest norm of the rendered force; null: no limit"},
 };
 
 const ModelInfo kDampingAndLimitsInfo = {
     .name = "damping_and_limits",
-    .summary = "normal damping, tangential friction and the optional limits that every law shares",
+    .summary = "normal damping, tangential friction and optional limits, the same for every algorithm",
     .formula =
         "f_dn = -B S v, B = 2 zeta sqrt(K M); f_dt = -(mu_s + mu_f |f_spring|)(v - S v); B scaled to "
         "lambda_max(B S) <= B_max; |f_render| <= F_max. With angular_damping S v + sum c_i <omega x r_i, u_i> u_i in "
@@ -82,12 +82,12 @@ const ModelInfo kDampingAndLimitsInfo = {
         "sum N_i, e <- (dt g + B_t e) / (K_t dt + B_t), f_dt = -P g",
     .source =
         "thesis 2.5, 2.6, A.2.1, B.2, C.4.3; mu_s and mu_f, called Coulomb friction there, are viscous; "
-        "angular_damping is ours, after the future work of 4.3 and 4.4; dry friction after Kikuuwe et al. 2006, "
-        "damping that grows with depth after Hunt and Crossley 1975",
+        "angular_damping is not in the thesis and follows the future work of 4.3 and 4.4; dry friction after Kikuuwe "
+        "et al. 2006, damping that grows with depth after Hunt and Crossley 1975",
     .known_failure =
-        "without angular_damping, a tool that only turns has no velocity to damp (thesis 4.4); with it, a turn pushes "
-        "the tip sideways, since no torque is rendered; limits leave stiff scenes under-damped (A.2); "
-        "the bristle of dry friction chatters where the explicit step is unstable with K_t",
+        "without angular_damping, a tool that only rotates has no velocity to damp (thesis 4.4); with it, a rotation "
+        "pushes the tip sideways, because no torque is rendered; limits leave stiff scenes under-damped (A.2); the "
+        "bristle of dry friction chatters if the explicit step is unstable with K_t",
     .parameters = kDampingParameters,
 };
 

@@ -15,14 +15,14 @@ constexpr ParameterInfo kLocalAverageParameters[] = {
     {parameter::kLocalAverage, "switches the stage on"},
 };
 constexpr ParameterInfo kReductionParameters[] = {
-    {parameter::kThreshold, "alpha_TH: gradients with a larger inner product are similar"},
-    {parameter::kMaxPoints, "n_ext: most points kept; further ones are dropped and counted"},
+    {parameter::kThreshold, "alpha_TH: gradients with an inner product above this value count as similar"},
+    {parameter::kMaxPoints, "n_ext: largest number of kept points; further points are dropped and counted"},
     {parameter::kShuffleSeed, "visit the shell points in a fixed random order instead of ascending index"},
 };
 
 const ModelInfo kLocalAverageInfo = {
     .name = "local_average",
-    .summary = "colliding points that share a grid cell of the shell become one",
+    .summary = "merges the colliding points of one grid cell of the shell into one",
     .formula = "D = mean of d_i u_i over the cell's colliding points; d = |D|, u = D/|D|; dropped when D = 0",
     .source = "thesis C.2 (optional step, off by default)",
     .known_failure = "opposite points in one cell cancel",
@@ -31,13 +31,13 @@ const ModelInfo kLocalAverageInfo = {
 
 const ModelInfo kGradientReductionInfo = {
     .name = "reduction",
-    .summary = "of colliding points with similar gradients only the deepest is kept",
+    .summary = "keeps, of colliding points with similar gradients, only the deepest",
     .formula =
         "visit contacts in order; the first kept k with <u_i, u_k> > alpha_TH absorbs i (replaced if d_i > d_k); "
         "none similar: append, or drop when n_ext are kept",
     .source =
-        "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and compares on after a similar one, which "
-        "cannot be meant",
+        "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and continues comparing after a similar "
+        "one, which is probably a misprint",
     .known_failure = "depends on the order of the points; collapses gradually curved surfaces (thesis 4.1)",
     .parameters = kReductionParameters,
 };

@@ -86,8 +86,9 @@ std::vector<LowPassMode> position_modes(const SampledLoop& loop) {
 
 const char* SampledLoop::nonlinearity() const {
   if (device.coulomb > 0.0 || device.encoder_step > 0.0 || device.force_step > 0.0)
-    return "Coulomb friction and steps of encoder and force are not linear";
-  if (std::holds_alternative<AdaptiveWindowFilter>(device.velocity_filter)) return "an adaptive window is not linear";
+    return "dry friction and the steps of encoder and force are not linear";
+  if (std::holds_alternative<AdaptiveWindowFilter>(device.velocity_filter))
+    return "a velocity filter of type adaptive_window is not linear";
   return nullptr;
 }
 
@@ -322,16 +323,16 @@ constexpr StiffnessLimit kLimits[] = {
     {.name = "passive_with_delay",
      .formula = "b > max over theta of K T sin((d + 1/2) theta) / (2 sin(theta/2)) - B Re{F e^(-j (d + 1) theta)}",
      .source =
-         "the general condition of Colgate and Schenkel for this wall, derived; F is the velocity filter, a filter of "
-         "the position also counts",
+         "derived for this wall from the general condition of Colgate and Schenkel; F is the velocity filter, and "
+         "includes a filter of the position",
      .applies = "whole delays; passive for every passive hand",
      .largest = passive_with_delay},
     {.name = "stable_gil_hulin",
      .formula = "K < (b + B) / (T/2 + t_d), b with the hand's",
      .source = "J. J. Gil, E. Sanchez, T. Hulin, C. Preusche, G. Hirzinger, J. Comput. Inf. Sci. Eng. 9(1), 2009",
      .applies =
-         "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15 (ours: at most 14 % above "
-         "the exact edge there); velocity by the difference",
+         "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15 (there at most 14 % above "
+         "the exact limit); velocity by the difference",
      .largest = gil_hulin},
     {.name = "passive_abbott_okamura",
      .formula = "K <= min(2 b / T, 2 c / q)",
@@ -342,7 +343,7 @@ constexpr StiffnessLimit kLimits[] = {
     {.name = "exact_undamped_handle",
      .formula = "K T^2/m < 2 beta (2 - beta) / (2 + beta), beta = B T/m",
      .source = "derived",
-     .applies = "no delay, velocity by the difference, neither handle nor hand damp and no hand's spring",
+     .applies = "no delay, velocity by the difference, no damping of handle and hand, no spring of the hand",
      .largest = undamped_handle},
 };
 

@@ -189,35 +189,50 @@ void ContactForces::tell(Section& s) const {
   const bool landed = landing_rows_ > 0, is_settled = has_settled();
   const auto rows = static_cast<double>(settled_rows_);
   s.metric("landings", "1",
-           "first touches: rows in contact after at least metrics.settling_s without contact, or since the start",
+           "number of first touches: steps in contact that follow at least metrics.settling_s without contact, or the "
+           "start of the run",
            landings_);
-  s.metric("landing_force_max_N", "N",
-           "largest ||f|| within metrics.settling_s after a first touch, or before metrics.from_s",
-           if_any(landed, std::sqrt(landing_max_squared_)), Better::less);
-  s.metric("landing_force_step_max_N", "N", "largest ||f_k - f_(k-1)|| of those rows",
-           if_any(landed, std::sqrt(landing_step_max_squared_)), Better::less);
-  s.metric("settled_s", "s",
-           "time in settled contact: rows in contact that belong to no landing, times the time step; below 1/30 s, a "
-           "period of the high-pass, the metrics of settled contact have no value",
-           settled());
-  s.metric("force_mean_in_contact_N", "N", "mean ||f|| of the rows in settled contact",
-           if_any(is_settled, sum_ / rows));
-  s.metric("settled_force_max_N", "N", "largest ||f|| of the rows in settled contact",
+  s.metric(
+      "landing_force_max_N", "N",
+      "largest norm of the rendered force, max ||f||, during landings (within metrics.settling_s after a first touch, "
+      "or before metrics.from_s); no value without a landing",
+      if_any(landed, std::sqrt(landing_max_squared_)), Better::less);
+  s.metric(
+      "landing_force_step_max_N", "N",
+      "largest force step ||f_k - f_(k-1)|| from one time step to the next during landings; no value without a landing",
+      if_any(landed, std::sqrt(landing_step_max_squared_)), Better::less);
+  s.metric(
+      "settled_s", "s",
+      "duration of settled contact: number of steps in contact that belong to no landing, times the time step; below "
+      "1/30 s, one period of the 30 Hz high-pass, the metrics of settled contact have no value",
+      settled());
+  s.metric(
+      "force_mean_in_contact_N", "N",
+      "mean norm of the rendered force, mean ||f||, over the steps in settled contact; no value if settled_s < 1/30 s",
+      if_any(is_settled, sum_ / rows));
+  s.metric("settled_force_max_N", "N",
+           "largest norm of the rendered force, max ||f||, in settled contact; no value if settled_s < 1/30 s",
            if_any(is_settled, std::sqrt(max_squared_)));
   s.metric("force_step_p99_N", "N",
-           "99 % of the rows in settled contact have at most this force step ||f_k - f_(k-1)||; within 0.8 %",
+           "99th percentile of the force step ||f_k - f_(k-1)|| from one time step to the next in settled contact; "
+           "relative error at most 0.8 %; no value if settled_s < 1/30 s",
            // The middle of a bin can exceed all numbers in it, so limit it to the maximum.
            if_any(is_settled, std::min(steps_.quantile(0.99), std::sqrt(step_max_squared_))), Better::less)
       .within(MagnitudeHistogram::kRelativeError, MagnitudeHistogram::kLeast);
-  s.metric("settled_force_step_max_N", "N", "largest force step ||f_k - f_(k-1)|| of the rows in settled contact",
-           if_any(is_settled, std::sqrt(step_max_squared_)), Better::less);
-  s.metric("force_rms_above_30Hz_N", "N",
-           "vibration of the force, which the hand feels: root mean square of f behind a high-pass (Butterworth, "
-           "fourth order, 30 Hz, started at rest at the end of each landing) over the rows in settled contact; none at "
-           "sampling rates of 60 Hz or less",
-           if_any(is_settled && high_pass_.has_value(), std::sqrt(above_cutoff_squares_ / rows)), Better::less);
+  s.metric(
+      "settled_force_step_max_N", "N",
+      "largest force step ||f_k - f_(k-1)|| from one time step to the next in settled contact; no value if settled_s "
+      "< 1/30 s",
+      if_any(is_settled, std::sqrt(step_max_squared_)), Better::less);
+  s.metric(
+      "force_rms_above_30Hz_N", "N",
+      "vibration of the rendered force: root mean square of f after a 30 Hz high-pass (Butterworth, fourth order, "
+      "started at rest at the end of each landing) over the steps in settled contact; no value at sampling rates of "
+      "60 Hz or less or if settled_s < 1/30 s",
+      if_any(is_settled && high_pass_.has_value(), std::sqrt(above_cutoff_squares_ / rows)), Better::less);
   s.metric("force_reversals_per_s", "1/s",
-           "rows in settled contact whose f has a negative inner product with that of the row before, per settled_s",
+           "number of reversals in settled contact per second: steps whose force has a negative inner product with the "
+           "force of the previous step, f_k . f_(k-1) < 0, divided by settled_s; no value if settled_s < 1/30 s",
            if_any(is_settled, per(reversals_, settled())), Better::less);
 }
 

@@ -35,12 +35,25 @@ class ContactAgeObserver final : public MetricObserver {
     ++rows_of_age_[std::min(age, static_cast<std::uint64_t>(rows_of_age_.size() - 1))];
   }
   void tell(Section& s) const override {
-    s.metric("age_p50_s", "s", "half of the rows use contacts found at most so long before", age_of_rank(0.5));
-    s.metric("age_p95_s", "s", "95 % of the rows use contacts found at most so long before", age_of_rank(0.95));
-    s.metric("age_max_s", "s", "largest time from the query of contacts to a row that uses them",
-             if_any(rows_ > 0, dt_ * static_cast<double>(oldest_)));
-    s.metric("asked", "1", "times that contacts were asked for, lost ones included", requested_);
-    s.metric("lost_share", "1", "share of these that were lost", per(lost_, requested_));
+    s.metric(
+        "age_p50_s", "s",
+        "median age of the contacts in use, from the contact query to the step that uses its result; no value if no "
+        "step used contacts",
+        age_of_rank(0.5));
+    s.metric(
+        "age_p95_s", "s",
+        "95th percentile of the age of the contacts in use, from the contact query to the step that uses its result; "
+        "no value if no step used contacts",
+        age_of_rank(0.95));
+    s.metric(
+        "age_max_s", "s",
+        "largest age of the contacts in use, from the contact query to the step that uses its result; no value if no "
+        "step used contacts",
+        if_any(rows_ > 0, dt_ * static_cast<double>(oldest_)));
+    s.metric("asked", "1", "number of contact queries, including queries whose result was lost", requested_);
+    s.metric("lost_share", "1",
+             "fraction of the contact queries (contacts.asked) whose result was lost; no value without a query",
+             per(lost_, requested_));
   }
 
  private:
@@ -77,11 +90,16 @@ class LostTorqueObserver final : public MetricObserver {
     sum_ += std::sqrt(squared);
   }
   void tell(Section& s) const override {
-    s.metric("lost_mean_Nm", "Nm",
-             "mean ||tau|| of the rows in contact; tau = sum r_i x f_i about the tip's centre is the torque that "
-             "the rendered contacts would exert by their shares f_i of f_spring, and that is lost",
-             per(sum_, rows_in_contact_));
-    s.metric("lost_max_Nm", "Nm", "largest ||tau|| of a row", if_any(rows_in_contact_ > 0, std::sqrt(max_squared_)));
+    s.metric(
+        "lost_mean_Nm", "Nm",
+        "mean norm of the lost torque over the steps in contact, mean ||tau|| with tau = sum r_i x f_i about the "
+        "tip's centre, where contact i contributes f_i to f_spring: torque that the contacts exert and a 3-DOF device "
+        "cannot render; no value without contact",
+        per(sum_, rows_in_contact_));
+    s.metric("lost_max_Nm", "Nm",
+             "largest norm of the lost torque, max ||tau||, tau = sum r_i x f_i as in torque.lost_mean_Nm; no value "
+             "without contact",
+             if_any(rows_in_contact_ > 0, std::sqrt(max_squared_)));
   }
 
  private:
@@ -108,9 +126,15 @@ class FrictionObserver final : public MetricObserver {
   }
   void tell(Section& s) const override {
     const std::uint64_t with_load = sticking_ + sliding_;
-    s.metric("stick_share", "1", "share of the rows with load in which dry friction sticks", per(sticking_, with_load));
-    s.metric("slips_per_s", "1/s", "times that a sticking tool began to slide, per second of the run",
-             if_any(with_load > 0, per(slips_, dt_ * static_cast<double>(rows_))));
+    s.metric(
+        "stick_share", "1",
+        "fraction of the steps with a friction load in which dry friction sticks (instead of sliding); no value if no "
+        "step has a friction load",
+        per(sticking_, with_load));
+    s.metric(
+        "slips_per_s", "1/s",
+        "number of changes from sticking to sliding per second of the run; no value if no step has a friction load",
+        if_any(with_load > 0, per(slips_, dt_ * static_cast<double>(rows_))));
   }
 
  private:
@@ -131,10 +155,10 @@ class ForceStageObserver final : public MetricObserver {
     work_ = algorithm_->work();
   }
   void tell(Section& s) const override {
-    s.metric("changed_share", "1", "share of the rows in which the force stage changes the force",
+    s.metric("changed_share", "1", "fraction of the steps in which the force stage changes the force",
              per(work_.steps_staged, rows_));
     s.metric("taken_J", "J",
-             "energy that the force stage kept the force from giving to the tool, along the way it went",
+             "energy that the force stage removed: force change of the stage, integrated along the tool's path",
              if_any(rows_ > 0, work_.energy_staged));
   }
 

@@ -126,25 +126,39 @@ void EnergyLedger::add_event(const StepRecord& now, double created) noexcept {
 
 void EnergyLedger::tell(Section& s) const {
   const EnergyBalance& b = balance_;
-  s.metric("created_sum_J", "J", "sum of created energy over the steps that created some", created_sum_, Better::less);
-  s.metric("created_max_J", "J", "most energy that a single step created", created_max_, Better::less);
-  s.metric("created_J", "J",
-           "what the springs store at the end beyond the work that translation and rotation did on them: made by "
-           "contacts that appear, vanish or change their weights",
-           b.created);
-  s.metric("input_J", "J", "work of f_in on the tool", b.input);
-  s.metric("spring_J", "J",
-           "work of f_spring on the tool; along a prescribed motion by the trapezoidal rule, off by up to K d^2 / 8 "
-           "where a contact begins or ends between rows d apart",
-           b.spring);
-  s.metric("damping_J", "J", "work of damping, friction and force limit: of f - f_spring", b.damping);
-  s.metric("rotation_J", "J", "what the tool's turning put into the springs", b.rotation);
-  s.metric("integration_J", "J", "energy made by the integrator", b.integration);
-  s.metric("script_J", "J", "work of a prescribed motion", b.script);
+  s.metric(
+      "created_sum_J", "J",
+      "created energy, summed over only the steps in which it is positive (energy that later steps take back is not "
+      "subtracted; see energy.created_J)",
+      created_sum_, Better::less);
+  s.metric("created_max_J", "J", "largest created energy of a single step", created_max_, Better::less);
+  s.metric(
+      "created_J", "J",
+      "created energy over the whole run: energy stored in the springs at the end, minus the work that translation "
+      "and rotation of the tool did on the springs; it arises when contacts appear, vanish or change their weights",
+      b.created);
+  s.metric("input_J", "J", "work of the input force f_in on the tool", b.input);
+  s.metric(
+      "spring_J", "J",
+      "work of the spring force f_spring on the tool; for a prescribed motion by the trapezoidal rule, with an error "
+      "of up to K d^2 / 8 where a contact begins or ends between steps whose depths differ by d",
+      b.spring);
+  s.metric(
+      "damping_J", "J",
+      "work of damping, friction and force limit on the tool, i.e. of f - f_spring; negative: energy is dissipated",
+      b.damping);
+  s.metric("rotation_J", "J", "work that the tool's rotation did on the springs", b.rotation);
+  s.metric("integration_J", "J",
+           "energy created by the numerical integrator (discretisation error); 0 for an exact integration",
+           b.integration);
+  s.metric("script_J", "J", "work of the scripted motion on the tool; 0 for a freely moving tool", b.script);
   s.metric("hand_J", "J", "work of the hand on the handle", b.hand);
   s.metric("actuator_J", "J", "work of the device's actuators", b.actuator);
-  s.metric("residual_max_J", "J", "largest |kinetic energy that the terms do not explain| of a row: rounding",
-           residual_max_, Better::less);
+  s.metric(
+      "residual_max_J", "J",
+      "largest |kinetic energy that no other term of the balance explains| over the steps; a correct balance leaves "
+      "rounding errors only",
+      residual_max_, Better::less);
 }
 
 void EnergyLedger::add_members(nlohmann::ordered_json& section) const {
@@ -190,13 +204,16 @@ PassivityObserver::Extremes PassivityObserver::worst() const noexcept {
 
 void PassivityObserver::tell(Section& s) const {
   const Extremes e = worst();
-  s.metric("energy_min_J", "J",
-           "least observed energy of a row: what translation and rotation have put into the rendering; "
-           "negative when it gave more than it had",
-           if_any(e.rows, e.energy_min));
-  s.metric("time_of_min_s", "s", "time of the first row that has it", if_any(e.rows, e.time_of_min));
-  s.metric("energy_end_J", "J", "observed energy of the last row", if_any(e.rows, e.energy_end));
-  s.metric("net_created_J", "J", "energy that the rendering created, max(0, -energy_min_J)",
+  s.metric(
+      "energy_min_J", "J",
+      "smallest energy that the rendering held: minimum over the steps of the work that the tool's translation and "
+      "rotation did on the rendering; negative if the rendering returned more energy than it had received",
+      if_any(e.rows, e.energy_min));
+  s.metric("time_of_min_s", "s", "time at which energy_min_J is first reached", if_any(e.rows, e.time_of_min));
+  s.metric("energy_end_J", "J", "energy that the rendering held at the last step (defined as in energy_min_J)",
+           if_any(e.rows, e.energy_end));
+  s.metric("net_created_J", "J",
+           "net created energy, max(0, -energy_min_J); 0 means that the run shows no violation of passivity",
            if_any(e.rows, e.net_created()), Better::less);
 }
 

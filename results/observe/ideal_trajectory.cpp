@@ -185,28 +185,41 @@ void IdealTrajectoryObserver::Errors::tell(Section s) const {
   const auto rms = [this](const Spread& of) { return std::sqrt(per(of.squares, rows)); };
   s.metric(
       "rows", "1",
-      "recorded rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
+      "number of recorded steps at whose tilt the ideal trajectory exists, with a hand force below 2 N (gentle) or of "
+      "at least 2 N (firm)",
       rows);
-  s.metric("height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in", per(height.sum, rows));
-  s.metric("height_error_rms_m", "m", "root mean square of tip height - ideal height", rms(height), Better::less);
-  s.metric("height_error_min_m", "m", "least tip height - ideal height", height.min);
-  s.metric("height_error_max_m", "m", "largest tip height - ideal height", height.max);
-  s.metric("lateral_error_mean_m", "m", "mean of lateral place of the tip - ideal one, towards the lean",
-           per(lateral.sum, rows));
-  s.metric("lateral_error_rms_m", "m", "root mean square of lateral place of the tip - ideal one", rms(lateral),
+  s.metric("height_error_mean_m", "m",
+           "mean height error (tip height - ideal height) over the compared steps; negative: the tool sank in",
+           per(height.sum, rows));
+  s.metric("height_error_rms_m", "m", "root mean square of the height error (tip height - ideal height)", rms(height),
            Better::less);
-  s.metric("lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|",
+  s.metric("height_error_min_m", "m", "smallest (most negative) height error (tip height - ideal height)", height.min);
+  s.metric("height_error_max_m", "m", "largest height error (tip height - ideal height)", height.max);
+  s.metric(
+      "lateral_error_mean_m", "m",
+      "mean lateral error (lateral position of the tip - ideal lateral position), positive in the direction in which "
+      "the tool leans",
+      per(lateral.sum, rows));
+  s.metric("lateral_error_rms_m", "m",
+           "root mean square of the lateral error (lateral position of the tip - ideal lateral position)", rms(lateral),
+           Better::less);
+  s.metric("lateral_error_max_m", "m",
+           "largest absolute lateral error |lateral position of the tip - ideal lateral position|",
            std::max(lateral.max, -lateral.min), Better::less);
-  s.metric("interpenetration_mean_m", "m", "mean true depth of the tool in the exact block",
-           per(interpenetration.sum, rows), Better::less);
-  s.metric("interpenetration_max_m", "m", "largest true depth of the tool in the exact block", interpenetration.max,
-           Better::less);
+  s.metric(
+      "interpenetration_mean_m", "m",
+      "mean interpenetration: depth of the tool in the exact block, computed from the shapes and not from the shell",
+      per(interpenetration.sum, rows), Better::less);
+  s.metric(
+      "interpenetration_max_m", "m",
+      "largest interpenetration: depth of the tool in the exact block, computed from the shapes and not from the shell",
+      interpenetration.max, Better::less);
 }
 
 void IdealTrajectoryObserver::tell(Section& s) const {
   gentle_.tell(s.part("gentle"));
   firm_.tell(s.part("firm"));
-  s.metric("rows_without_ideal", "1", "recorded rows at whose tilt the ideal trajectory does not exist",
+  s.metric("rows_without_ideal", "1", "number of recorded steps at whose tilt the ideal trajectory does not exist",
            rows_without_ideal_);
 }
 

@@ -70,19 +70,24 @@ std::optional<double> InsideDepths::settled_median() const {
 void InsideDepths::tell(Section& s, bool has_settled) const {
   s.metric(
        "inside_max_m", "m",
-       "largest distance below the environment's surface of any point of the tool in any row, with record.inside "
-       "in any recorded row; no row is deeper by more than 2 % of it and of the tool's half width, or its tolerance "
-       "tells by how much; none of springs and beyond the border of an open surface",
+       "largest distance of the tool's deepest point below the environment's surface over all steps (with "
+       "record.inside: over the recorded steps); the true maximum exceeds it by at most 2 % of itself and of the "
+       "tool's half width, or by its tolerance if one is given; no value for springs and beyond the border of an open "
+       "surface",
        max, Better::less)
       .within(InsideSearch::kTolerance, max_within);
-  s.metric("inside_settled_m", "m",
-           "median of that distance over up to twelve rows in settled contact, evenly spread, or with record.inside "
-           "over all recorded ones",
-           has_settled ? settled_median() : std::nullopt, Better::less)
+  s.metric(
+       "inside_settled_m", "m",
+       "median distance of the tool's deepest point below the environment's surface, over up to twelve evenly spread "
+       "steps in settled contact (with record.inside: over all recorded steps in settled contact); no value if "
+       "settled_s < 1/30 s",
+       has_settled ? settled_median() : std::nullopt, Better::less)
       .within(InsideSearch::kTolerance, settled_within);
-  s.metric("centre_inside_share", "1",
-           "share of the rows with the tip centre below the surface; a flat tip's is when it is pressed in",
-           per(centre_inside, rows), Better::less);
+  s.metric(
+      "centre_inside_share", "1",
+      "fraction of the steps in which the tip centre is below the surface; the tip centre of a flat tip is below it "
+      "whenever the tip is pressed in",
+      per(centre_inside, rows), Better::less);
 }
 
 double way_to_core(const ToolShape& tool) {

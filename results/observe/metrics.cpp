@@ -135,68 +135,90 @@ void MetricsObserver::tell(Section& s) const {
   report_motion_and_force(s);
   report_contacts(s);
   s.metric("speed_max_m_per_s", "m/s", "largest speed of the tip's centre", std::sqrt(speed_max_squared_));
-  s.metric("explicit_friction_limit_N", "N",
-           "largest ||f_spring|| whose friction the explicit integrator steps stably, (B_max - mu_s) / mu_f",
-           friction_limit_);
-  s.metric("explicit_friction_rows_beyond", "1", "rows with a larger ||f_spring||",
+  s.metric(
+      "explicit_friction_limit_N", "N",
+      "largest ||f_spring|| at which the explicit integrator is stable with friction, (B_max - mu_s) / mu_f with the "
+      "friction coefficients mu_s [N s/m] and mu_f [s/m]; no value if the run has no such limit",
+      friction_limit_);
+  s.metric("explicit_friction_rows_beyond", "1",
+           "number of steps with ||f_spring|| above explicit_friction_limit_N; no value without this limit",
            if_any(friction_limit_.has_value(), rows_beyond_friction_), Better::less);
-  s.metric("explicit_friction_first_step", "1", "the first of those rows", first_beyond_friction_);
+  s.metric(
+      "explicit_friction_first_step", "1",
+      "number of the first step with ||f_spring|| above explicit_friction_limit_N; no value if no step is above it",
+      first_beyond_friction_);
   contact_forces_.tell(s);
   s.metric("reduction_changes", "1",
-           "rows in contact whose set of kept points is another than in the row before, in contact too; with "
-           "rendering.reduction",
+           "number of steps in contact whose set of points kept by rendering.reduction differs from the set of the "
+           "previous step, also in contact; no value without rendering.reduction",
            reduction_ ? std::optional(reduction_->changes()) : std::nullopt, Better::less);
   s.metric("reduction_force_step_max_N", "N",
-           "largest force step ||f_k - f_(k-1)|| of such rows in settled contact; with rendering.reduction",
+           "largest force step ||f_k - f_(k-1)|| over the steps in settled contact at which the set of points kept by "
+           "rendering.reduction changes; no value without rendering.reduction",
            reduction_ ? reduction_->step_max() : std::nullopt, Better::less);
 }
 
 void MetricsObserver::report_motion_and_force(Section& s) const {
-  s.metric("force_max_N", "N", "largest ||f|| of a row", std::sqrt((before_ + now_).force_max_squared), Better::less);
-  s.metric("force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||, landings included",
+  s.metric("force_max_N", "N", "largest norm of the rendered force over the run, max ||f||, landings included",
+           std::sqrt((before_ + now_).force_max_squared), Better::less);
+  s.metric("force_step_max_N", "N",
+           "largest force step ||f_k - f_(k-1)|| from one time step to the next, landings included",
            std::sqrt(force_step_max_squared_), Better::less);
-  s.metric("velocity_total_variation_m_per_s", "m/s",
-           "sum ||v_k - v_(k-1)|| over all rows: what a smooth motion has little of", velocity_variation_,
-           Better::less);
-  s.metric("force_reversals", "1", "rows whose f has a negative inner product with that of the row before",
-           force_reversals_, Better::less);
+  s.metric(
+      "velocity_total_variation_m_per_s", "m/s",
+      "total variation of the velocity: sum of ||v_k - v_(k-1)|| over all steps; a smooth motion has a small value",
+      velocity_variation_, Better::less);
+  s.metric(
+      "force_reversals", "1",
+      "number of reversals: steps whose force has a negative inner product with the force of the previous step, f_k . "
+      "f_(k-1) < 0",
+      force_reversals_, Better::less);
   s.metric("vibration_power_above_30Hz_m2_per_s2", "m2/s2",
-           "mean ||v||^2 of all rows behind a high-pass (Butterworth, fourth order, 30 Hz); none at sampling rates of "
-           "60 Hz or less",
+           "mean ||v||^2 of the tool's velocity after a 30 Hz high-pass (Butterworth, fourth order) over all steps; no "
+           "value at sampling rates of 60 Hz or less",
            vibration_.mean_square(), Better::less);
-  s.metric("depth_max_m", "m",
-           "largest penetration depth of a colliding point: at most the tool's half width, however deep the tool is",
-           depth_max_, Better::less);
+  s.metric(
+      "depth_max_m", "m",
+      "largest penetration depth of a colliding point, by the depth model; at most the tool's half width, even if the "
+      "tool is deeper in the environment (inside_max_m)",
+      depth_max_, Better::less);
 }
 
 void MetricsObserver::report_contacts(Section& s) const {
   const TrialContact all = before_ + now_;
   s.metric("ratio_min", "1",
-           "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in units "
-           "of K",
+           "smallest stiffness ratio rho = u^T S u over all rendered contacts: combined stiffness along the contact's "
+           "gradient u, in units of K; no value without contact",
            ratio_.min);
-  s.metric("ratio_max", "1", "largest such ratio", ratio_.max);
-  s.metric("colliding_mean", "1", "colliding points per row, rows without contact included",
+  s.metric("ratio_max", "1",
+           "largest stiffness ratio rho = u^T S u over all rendered contacts: combined stiffness along the contact's "
+           "gradient u, in units of K; no value without contact",
+           ratio_.max);
+  s.metric("colliding_mean", "1", "mean number of colliding points per step, including steps without contact",
            per(colliding_sum_, rows()));
-  s.metric("colliding_max", "1", "most colliding points of a row", colliding_max_);
+  s.metric("colliding_max", "1", "largest number of colliding points in one step", colliding_max_);
   s.metric("rendered_mean", "1",
-           "points that the force law saw (after local average and reduction) per row, rows without contact included",
+           "mean number of rendered points (colliding points after local average and reduction, which the force law "
+           "receives) per step, including steps without contact",
            per(rendered_sum_, rows()));
-  s.metric("rendered_max", "1", "most points that the force law saw in a row", rendered_max_);
-  s.metric("steps_in_contact", "1", "rows with a colliding point", all.in_contact);
-  s.metric("contact_share", "1", "steps_in_contact / steps", per(all.in_contact, rows()));
-  s.metric("last_contact_s", "s", "time of the last row with a colliding point", all.last);
+  s.metric("rendered_max", "1", "largest number of rendered points (points that the force law receives) in one step",
+           rendered_max_);
+  s.metric("steps_in_contact", "1", "number of steps with at least one colliding point", all.in_contact);
+  s.metric("contact_share", "1", "fraction of the run in contact: steps_in_contact / steps",
+           per(all.in_contact, rows()));
+  s.metric("last_contact_s", "s", "time of the last step with a colliding point; no value without contact", all.last);
 }
 
 void MetricsObserver::tell_end(Section& s) const {
-  s.metric("vibration_last_quarter_m_per_s", "m/s",
-           "root mean square of the handle's speed above 30 Hz in the last quarter of the run, by which limit "
-           "--stable still judges it; none at sampling rates of 60 Hz or less",
-           last_quarter_.value(), Better::less);
+  s.metric(
+      "vibration_last_quarter_m_per_s", "m/s",
+      "vibration of the handle: root mean square of its velocity after a 30 Hz high-pass over the last quarter of the "
+      "run; `limit --stable still` compares this value with its threshold; no value at sampling rates of 60 Hz or less",
+      last_quarter_.value(), Better::less);
   const bool any = rows() > 0;
-  s.metric("final_position_m.x", "m", "x of the tip's centre in the last row", if_any(any, position_.x()));
-  s.metric("final_position_m.y", "m", "y of the tip's centre in the last row", if_any(any, position_.y()));
-  s.metric("final_position_m.z", "m", "z of the tip's centre in the last row", if_any(any, position_.z()));
+  s.metric("final_position_m.x", "m", "x of the tip's centre at the last step", if_any(any, position_.x()));
+  s.metric("final_position_m.y", "m", "y of the tip's centre at the last step", if_any(any, position_.y()));
+  s.metric("final_position_m.z", "m", "z of the tip's centre at the last step", if_any(any, position_.z()));
 }
 
 }  // namespace hapbench

@@ -67,8 +67,9 @@ SubjectMean over_subjects(const ValuesOfSubjects& subjects) {
 void report_mean(Section s, const SubjectMean& m, const char* unit, const char* meaning, Better better = Better::none) {
   const bool any = m.subjects > 0;
   s.metric("mean", unit, meaning, if_any(any, m.mean), better);
-  s.metric("standard_error", unit, "standard error of that mean, over subjects", if_any(any, m.standard_error));
-  s.metric("subjects", "1", "subjects that have a value", m.subjects);
+  s.metric("standard_error", unit, "standard error of the mean, from the differences between the subjects' means",
+           if_any(any, m.standard_error));
+  s.metric("subjects", "1", "number of simulated subjects that have a value at this target position", m.subjects);
 }
 
 }  // namespace
@@ -104,15 +105,20 @@ void TargetMetricsObserver::tell(Section& s) const {
   }
   for (const PlaceMetrics& place : places) {
     const Section at = s.part(std::to_string(place.place));
-    report_mean(at.part("success_rate"), place.success_rate, "1",
-                "share of the targets at this place that were removed, mean over subjects", Better::more);
-    report_mean(at.part("completion_time_s"), place.completion_time, "s",
-                "time until a target at this place was removed or the limit was reached, mean over subjects",
-                Better::less);
+    report_mean(
+        at.part("success_rate"), place.success_rate, "1",
+        "fraction of the targets at this position that the subject removed before the time limit, mean over the "
+        "subjects",
+        Better::more);
+    report_mean(
+        at.part("completion_time_s"), place.completion_time, "s",
+        "time until a target at this position was removed, or the time limit if it was not; mean over the subjects",
+        Better::less);
     report_mean(at.part("model_force_N"), place.model_force, "N",
-                "mean ||f|| of the rows logged at a target of this place, mean over subjects");
-    report_mean(at.part("speed_m_per_s"), place.speed, "m/s",
-                "mean speed of the handle in the rows logged at a target of this place, mean over subjects");
+                "mean ||f|| over the steps with the tip on a target at this position, mean over the subjects");
+    report_mean(
+        at.part("speed_m_per_s"), place.speed, "m/s",
+        "mean speed of the handle over the steps with the tip on a target at this position, mean over the subjects");
   }
 }
 

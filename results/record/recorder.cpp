@@ -36,11 +36,11 @@ constexpr auto kCommonColumns = std::tuple{
             {"py_m", "m", "y of the tip's centre"},
             {"pz_m", "m", "z of the tip's centre"}},
            [](const StepRecord& r) -> const Vec3& { return r.tool.pose.position; }),
-    filled({{"vx_m_per_s", "m/s", "x of its velocity"},
-            {"vy_m_per_s", "m/s", "y of its velocity"},
-            {"vz_m_per_s", "m/s", "z of its velocity"}},
+    filled({{"vx_m_per_s", "m/s", "x of the tip centre's velocity"},
+            {"vy_m_per_s", "m/s", "y of the tip centre's velocity"},
+            {"vz_m_per_s", "m/s", "z of the tip centre's velocity"}},
            [](const StepRecord& r) -> const Vec3& { return r.tool.velocity; }),
-    filled({{"axis_x", "1", "x of the tool's axis, the unit vector out of the tip"},
+    filled({{"axis_x", "1", "x of the tool's axis, the unit vector that points out of the tip"},
             {"axis_y", "1", "y of the tool's axis"},
             {"axis_z", "1", "z of the tool's axis"}},
            [](const StepRecord& r) -> const Vec3& { return r.tool.pose.axis; }),
@@ -48,23 +48,26 @@ constexpr auto kCommonColumns = std::tuple{
             {"fy_N", "N", "y of f"},
             {"fz_N", "N", "z of f"}},
            [](const StepRecord& r) -> const Vec3& { return r.force.rendered; }),
-    filled({{"fspring_x_N", "N", "x of f_spring, the part of f before damping, friction and limits"},
+    filled({{"fspring_x_N", "N",
+             "x of f_spring, the spring force: the rendered force f before damping, friction and limits"},
             {"fspring_y_N", "N", "y of f_spring"},
             {"fspring_z_N", "N", "z of f_spring"}},
            [](const StepRecord& r) -> const Vec3& { return r.force.spring; }),
-    filled({{"fmeas_x_N", "N", "x of f_meas, what the force sensor read of the hand"},
+    filled({{"fmeas_x_N", "N", "x of f_meas, the hand force that the force sensor measured"},
             {"fmeas_y_N", "N", "y of f_meas"},
             {"fmeas_z_N", "N", "z of f_meas"}},
            [](const StepRecord& r) -> const Vec3& { return r.hand.measured; }),
-    filled({{"fin_x_N", "N", "x of f_in, what the input-force limiter made of f_meas: it moves the tool with f"},
-            {"fin_y_N", "N", "y of f_in"},
-            {"fin_z_N", "N", "z of f_in"}},
-           [](const StepRecord& r) -> const Vec3& { return r.hand.input; }),
+    filled(
+        {{"fin_x_N", "N", "x of f_in, the measured hand force after the input-force limiter; f_in + f moves the tool"},
+         {"fin_y_N", "N", "y of f_in"},
+         {"fin_z_N", "N", "z of f_in"}},
+        [](const StepRecord& r) -> const Vec3& { return r.hand.input; }),
     filled({{"hx_m", "m", "x of the handle"}, {"hy_m", "m", "y of the handle"}, {"hz_m", "m", "z of the handle"}},
            [](const StepRecord& r) -> const Vec3& { return r.handle.position; }),
-    filled({{"colliding", "1", "points in the tool or on its surface, before local average and reduction"}},
-           [](const StepRecord& r) { return r.colliding; }),
-    filled({{"rendered", "1", "points that the force law saw"}},
+    filled(
+        {{"colliding", "1", "number of points inside the tool or on its surface, before local average and reduction"}},
+        [](const StepRecord& r) { return r.colliding; }),
+    filled({{"rendered", "1", "number of rendered points, which the force law receives"}},
            [](const StepRecord& r) { return r.rendered->size(); }),
     filled({{"depth_max_m", "m", "largest penetration depth of a colliding point; 0 without contact"}},
            [](const StepRecord& r) { return r.force.depth_max; }),
@@ -81,20 +84,21 @@ std::array<double, 4> quaternion(const Mat3& rotation) noexcept {
 }
 
 constexpr Column kPoseColumns[] = {
-    {"qw", "1", "w of the unit quaternion that turns the tool's frame, its axis along -z, into the world's; >= 0"},
-    {"qx", "1", "x of this quaternion"},
-    {"qy", "1", "y of this quaternion"},
-    {"qz", "1", "z of this quaternion"}};
+    {"qw", "1",
+     "w of the unit quaternion that rotates the tool's frame (tool axis along -z) into the world's frame; w >= 0"},
+    {"qx", "1", "x of the unit quaternion of the orientation"},
+    {"qy", "1", "y of the unit quaternion of the orientation"},
+    {"qz", "1", "z of the unit quaternion of the orientation"}};
 constexpr Column kTorqueColumns[] = {
     {"tx_Nm", "Nm",
-     "x of the lost torque: what the rendered contacts would exert on the tool about its tip's centre and the device "
-     "cannot render, sum r_i x f_i, f_i contact i's share of f_spring"},
+     "x of the lost torque tau = sum r_i x f_i about the tip's centre, with contact i's contribution f_i to f_spring: "
+     "torque that the contacts exert and a 3-DOF device cannot render"},
     {"ty_Nm", "Nm", "y of the lost torque"},
     {"tz_Nm", "Nm", "z of the lost torque"}};
 constexpr Column kInsideColumns[] = {
     {"inside_m", "m",
-     "largest distance below the environment's surface of any point of the tool (inside_max_m); empty of springs and "
-     "beyond the border of an open surface"}};
+     "distance of the tool's deepest point below the environment's surface (inside_max_m is its maximum); empty for "
+     "springs and beyond the border of an open surface"}};
 
 constexpr TrajectoryGroup kGroups[] = {
     {&TrajectoryExtras::pose, "pose", "add the tool's orientation to trajectory.csv, as a quaternion qw,qx,qy,qz",
@@ -105,16 +109,16 @@ constexpr TrajectoryGroup kGroups[] = {
      },
      true},
     {&TrajectoryExtras::torque, "torque",
-     "add the torque that is lost to trajectory.csv, tx_Nm,ty_Nm,tz_Nm, and its metrics: what the rendered "
-     "contacts would exert about the tip centre and the device cannot render",
+     "add the lost torque tx_Nm,ty_Nm,tz_Nm to trajectory.csv, and its metrics: torque of the rendered contacts about "
+     "the tip centre, which a 3-DOF device cannot render",
      kTorqueColumns,
      [](const StepRecord& r, const InsideObserver*, std::optional<double>* cells) {
        std::copy(r.springs.moment.begin(), r.springs.moment.end(), cells);
      },
      false, true},
     {&TrajectoryExtras::inside, "inside",
-     "add how deep the tool is in the environment to trajectory.csv, inside_m, and take its metrics from every "
-     "recorded row",
+     "add the depth of the tool in the environment, inside_m, to trajectory.csv, and compute its metrics from every "
+     "recorded step",
      kInsideColumns, [](const StepRecord&, const InsideObserver* inside, std::optional<double>* cells) {
        *cells = inside != nullptr ? inside->depth() : std::nullopt;
      }}};
@@ -131,7 +135,7 @@ std::vector<Column> trajectory_columns(const TrajectoryExtras& extras) {
 
 /// Returns the documentation of trajectory.csv: all columns, and the fields that add some of them.
 ResultTable whole_trajectory() {
-  ResultTable whole{"trajectory.csv", "one line per recorded row, before the tool moves on", {}};
+  ResultTable whole{"trajectory.csv", "one line per recorded time step, before the integrator moves the tool", {}};
   TrajectoryExtras all;
   for (const TrajectoryGroup& group : kGroups) {
     const std::string first = group.columns.front().name, last = group.columns.back().name;
@@ -152,111 +156,119 @@ std::span<const TrajectoryGroup> trajectory_groups() {
 const ResultTable kTrajectoryTable = whole_trajectory();
 const ResultTable kContactTable = {
     "contacts.csv",
-    "with record.contacts: one line per rendered contact of each recorded row",
+    "with record.contacts: one line per rendered contact of each recorded time step",
     {kStepColumn,
      kTimeColumn,
-     {"index", "1", "number of the shell point, spring or, of another library's contact, triangle, from 0"},
+     {"index", "1",
+      "index of the shell point or spring, from 0; of contacts from another library: index of the triangle"},
      {"x_m", "m", "x of the colliding point"},
      {"y_m", "m", "y of the colliding point"},
      {"z_m", "m", "z of the colliding point"},
-     {"nx", "1", "x of the environment's outward unit normal there"},
-     {"ny", "1", "y of the environment's outward unit normal there"},
-     {"nz", "1", "z of the environment's outward unit normal there"},
+     {"nx", "1", "x of the environment's outward unit normal at the colliding point"},
+     {"ny", "1", "y of the environment's outward unit normal at the colliding point"},
+     {"nz", "1", "z of the environment's outward unit normal at the colliding point"},
      {"depth_m", "m", "penetration depth d, by the depth model"},
-     {"gradient_x", "1", "x of the unit gradient u, along which the point would leave the tool"},
+     {"gradient_x", "1", "x of the unit gradient u, the direction in which the point would leave the tool"},
      {"gradient_y", "1", "y of the unit gradient u"},
      {"gradient_z", "1", "z of the unit gradient u"},
-     {"weight", "1", "c_i of the law; 0 for laws without weights"}}};
+     {"weight", "1", "weight c_i that the force law gave to the contact; 0 for laws without weights"}}};
 const ResultTable kContactTraceTable = {
     "contact_trace.csv",
-    "with record.contacts: one line per colliding point of each recorded row, before local average and reduction; "
-    "rendering.contact_source of type trace reads it",
+    "with record.contacts: one line per colliding point of each recorded time step, before local average and "
+    "reduction; rendering.contact_source of type trace reads this file",
     {kTimeColumn,
      {"x_m", "m", "x of the colliding point"},
      {"y_m", "m", "y of the colliding point"},
      {"z_m", "m", "z of the colliding point"},
-     {"ux", "1", "x of the unit gradient u, along which the tool gets deeper"},
+     {"ux", "1", "x of the unit gradient u, the direction in which the tool would move deeper"},
      {"uy", "1", "y of the unit gradient u"},
      {"uz", "1", "z of the unit gradient u"},
-     {"depth_m", "m", "penetration depth d"}}};
+     {"depth_m", "m", "penetration depth d, by the depth model"}}};
 const ResultTable kStiffnessTable = {
     "stiffness_tensor.csv",
-    "with record.stiffness_tensor: one line per recorded row",
+    "with record.stiffness_tensor: one line per recorded time step",
     {kStepColumn,
      kTimeColumn,
-     {"sxx", "1", "entry xx of the stiffness tensor S that the force was rendered with, in units of K"},
-     {"sxy", "1", "entry xy of S"},
-     {"sxz", "1", "entry xz of S"},
-     {"syy", "1", "entry yy of S"},
-     {"syz", "1", "entry yz of S"},
-     {"szz", "1", "entry zz of S"},
-     {"lambda_max", "1", "largest eigenvalue of S"}}};
+     {"sxx", "1", "element xx of the stiffness tensor S = sum c u u^T of the rendered contacts, in units of K"},
+     {"sxy", "1", "element xy of S"},
+     {"sxz", "1", "element xz of S"},
+     {"syy", "1", "element yy of S"},
+     {"syz", "1", "element yz of S"},
+     {"szz", "1", "element zz of S"},
+     {"lambda_max", "1", "largest eigenvalue of S: largest combined stiffness in any direction, in units of K"}}};
 const ResultTable kRatioTable = {
     "ratios.csv",
-    "with record.ratio_iterations: one line per iteration of each recorded row in contact",
+    "with record.ratio_iterations: one line per iteration of each recorded time step in contact",
     {kStepColumn,
      kTimeColumn,
-     {"iteration", "1", "number m of shaping updates, from equal weights 1"},
-     {"rendered", "1", "points that the force law saw"},
+     {"iteration", "1", "number m of shaping iterations, starting from weights of 1"},
+     {"rendered", "1", "number of rendered points, which the force law receives"},
      {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact after m updates"},
      {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact after m updates"},
-     {"lambda_max", "1", "largest eigenvalue of S after m updates: the stiffness in units of K"}}};
+     {"lambda_max", "1", "largest eigenvalue of S after m updates: largest combined stiffness in units of K"}}};
 const ResultTable kEnergyTable = {
     "energy.csv",
-    "with record.energy: the energy balance, one line per recorded row",
+    "with record.energy: the energy balance, one line per recorded time step",
     {kStepColumn,
      kTimeColumn,
-     {"kinetic_J", "J", "kinetic energy of the virtual mass, now"},
-     {"stored_J", "J", "elastic energy of the penalty springs, now"},
-     {"input_J", "J", "work of f_in on the tool since the first row"},
-     {"spring_J", "J", "work of f_spring on the tool since the first row"},
-     {"damping_J", "J", "work of damping, friction and force limit, of f - f_spring, since the first row"},
-     {"rotation_J", "J", "what the tool's turning put into the springs since the first row"},
-     {"created_J", "J", "what the springs store beyond the work that translation and rotation did on them"},
-     {"integration_J", "J", "energy made by the integrator since the first row"},
-     {"script_J", "J", "work of a prescribed motion since the first row"},
-     {"residual_J", "J", "kinetic energy that the other terms do not explain: rounding"},
-     {"hand_J", "J", "work of the hand on the handle since the first row"},
-     {"actuator_J", "J", "work of the device's actuators since the first row"},
+     {"kinetic_J", "J", "kinetic energy of the virtual mass at this time"},
+     {"stored_J", "J", "elastic energy of the penalty springs at this time"},
+     {"input_J", "J", "work of f_in on the tool since the first step"},
+     {"spring_J", "J", "work of f_spring on the tool since the first step"},
+     {"damping_J", "J", "work of damping, friction and force limit (of f - f_spring) on the tool since the first step"},
+     {"rotation_J", "J", "work that the tool's rotation did on the springs since the first step"},
+     {"created_J", "J",
+      "created energy since the first step: energy stored in the springs, minus the work that translation and "
+      "rotation did on them"},
+     {"integration_J", "J", "energy created by the numerical integrator since the first step"},
+     {"script_J", "J", "work of the scripted motion since the first step"},
+     {"residual_J", "J", "kinetic energy that the other terms do not explain; rounding errors in a correct balance"},
+     {"hand_J", "J", "work of the hand on the handle since the first step"},
+     {"actuator_J", "J", "work of the device's actuators since the first step"},
      {"device_dissipated_J", "J",
-      "work of the friction in the device's mechanics since the first row: what they dissipated, negative; empty "
-      "when the handle is the tool"},
-     {"device_stored_J", "J", "what the device's mechanics store, now; empty when the handle is the tool"}}};
+      "work of the friction in the device's mechanics since the first step; negative: dissipated; empty if handle and "
+      "tool are one body"},
+     {"device_stored_J", "J",
+      "energy stored in the device's mechanics at this time; empty if handle and tool are one body"}}};
 const ResultTable kIdealTrajectoryTable = {
     "ideal_trajectory.csv",
-    "with record.ideal_trajectory: one line per recorded row at whose tilt the ideal trajectory exists",
+    "with record.ideal_trajectory: one line per recorded time step at whose tilt the ideal trajectory exists",
     {kStepColumn,
      kTimeColumn,
-     {"tilt_rad", "rad", "angle of the tool's axis to the hole's"},
-     {"height_m", "m", "tip's centre above the hole's mouth; negative in the hole"},
-     {"ideal_height_m", "m", "the same of the ideal trajectory"},
-     {"lateral_m", "m", "tip's centre from the hole's axis, towards where the tool leans"},
-     {"ideal_lateral_m", "m", "the same of the ideal trajectory"},
-     {"interpenetration_m", "m", "true depth of the tool in the exact block"},
+     {"tilt_rad", "rad", "angle between the tool's axis and the hole's axis"},
+     {"height_m", "m", "height of the tip's centre above the hole's mouth; negative inside the hole"},
+     {"ideal_height_m", "m", "height of the tip's centre on the ideal trajectory at the same tilt"},
+     {"lateral_m", "m",
+      "distance of the tip's centre from the hole's axis, positive in the direction in which the tool leans"},
+     {"ideal_lateral_m", "m",
+      "distance of the tip's centre from the hole's axis on the ideal trajectory at the same tilt"},
+     {"interpenetration_m", "m",
+      "depth of the tool in the exact block, computed from the shapes and not from the shell"},
      {"hand_force_N", "N", "norm of the hand's force"}}};
 const ResultTable kForceReferenceTable = {
     "force_reference.csv",
-    "with record.force_reference: the measured force of a stroke, one line per recorded row",
+    "with record.force_reference: the reference force, one line per recorded time step",
     {kStepColumn,
      kTimeColumn,
      {"mfx_N", "N", "x of the reference force f_m on the tool; empty where none was measured"},
      {"mfy_N", "N", "y of f_m"},
      {"mfz_N", "N", "z of f_m"},
-     {"force_error_x_N", "N", "x of f - f_m"},
+     {"force_error_x_N", "N", "x of the force error f - f_m"},
      {"force_error_y_N", "N", "y of f - f_m"},
      {"force_error_z_N", "N", "z of f - f_m"}}};
 const ResultTable kTargetTable = {
     "targets.csv",
-    "of a tracking hand: one line per target of every trial",
-    {{"subject", "1", "simulated subject, from 0"},
-     {"trial", "1", "its trial, from 0"},
-     {"target", "1", "target of the trial, from 0"},
-     {"place", "1", "where the target was: index of the task's places"},
-     {"removed", "1", "1 when the subject removed it, 0 when it disappeared at the time limit"},
-     {"time_s", "s", "from the press that activated the task to the end of the target"},
-     {"rows_on_target", "1", "rows with the tip on it"},
-     {"model_force_N", "N", "mean ||f|| of these rows; empty without any"},
-     {"speed_m_per_s", "m/s", "mean speed of the handle in these rows; empty without any"}}};
+    "with a hand of type tracking: one line per target of every trial",
+    {{"subject", "1", "index of the simulated subject, from 0"},
+     {"trial", "1", "index of the subject's trial, from 0"},
+     {"target", "1", "index of the target in the trial, from 0"},
+     {"place", "1", "position of the target: index in the task's list of places"},
+     {"removed", "1", "1 if the subject removed the target, 0 if it disappeared at the time limit"},
+     {"time_s", "s", "time from the press that activated the task to the end of the target"},
+     {"rows_on_target", "1", "number of steps with the tip on the target"},
+     {"model_force_N", "N", "mean ||f|| over the steps with the tip on the target; empty if there are none"},
+     {"speed_m_per_s", "m/s",
+      "mean speed of the handle over the steps with the tip on the target; empty if there are none"}}};
 
 Recorder::Recorder(const TableTarget& target, RowSource source, std::uint64_t every)
     : source_(std::move(source)), writer_(target, source_.columns), every_(every) {

@@ -8,34 +8,37 @@ namespace hapbench {
 namespace {
 
 constexpr OutcomeInfo kOutcomes[] = {
-    {"completes", "all steps are done, or the hand has finished its task"},
-    {"leaves_hole", "the tip centre rose above height 0"},
-    {"tool_horizontal", "the tool's axis reached the horizontal plane"},
+    {"completes", "all steps were computed, or the hand finished its task"},
+    {"leaves_hole", "stop condition: the tip centre rose above height 0"},
+    {"tool_horizontal", "stop condition: the tool's axis reached the horizontal plane"},
     {"not_dragged",
-     "all steps are done, but a tool that a hand of type drag was to lead further than two of its widths came less "
-     "than one along the path",
+     "all steps were computed, but a hand of type drag, which was to move the tool by more than two tool widths, "
+     "moved it by less than one width along the path",
      true},
     {"stuck",
-     "all steps are done, but the tool stood still in the end while the target of its hand (drag, impedance, "
-     "mass_spring_damper, or of tracking the intended position) went on by more than the tool's width: it came less "
-     "than a tenth of that, and not because it pressed on the surface; or a tool that a hand of type drag was to "
-     "lead ended further behind than a tenth of its way and than its half width, and not because it was half as far "
-     "behind at half way, as friction holds it",
+     "all steps were computed, but at the end the tool stood still while the hand's target (drag, impedance, "
+     "mass_spring_damper, or the intended position of tracking) moved on by more than the tool's width: the tool "
+     "moved by less than a tenth of that distance, and not because it pressed on the surface. Or: a tool led by a "
+     "hand of type drag ended behind the path's end by more than a tenth of the path and more than its half width "
+     "(unless it was already half as far behind at half of the path, as friction causes)",
      true},
-    {"no_contact", "all steps are done, and the tool never touched the environment", true},
+    {"no_contact", "all steps were computed, and the tool never touched the environment", true},
     {"lost_contact",
-     "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide "
-     "and the tool reaches together; or a hand of type drag pressed its tool on where there was no surface, past an "
-     "edge or a hole: no contact in the last 0.05 s or longer",
+     "all steps were computed, but at the end a freely moving tool was further from the environment's bounding box "
+     "than the sum of the box's width and the tool's extent. Or: a hand of type drag pressed its tool into empty "
+     "space, past an edge or a hole, without contact for at least the last 0.05 s",
      true},
     {"went_through",
-     "all steps are done, but the tool passed the surface, by itself or led by a script: its tip centre came deeper "
-     "than its half width, or its core (its axis from the tip centre to the far end; of a flat tip only from 0.9 "
-     "half widths behind the tip centre while no contact is as deep as that) crossed the environment from face to "
-     "face or left it on another side than it had entered, also where it is thinner than the tool, or the place "
-     "half a width behind its tip ended inside, or another part of it, as its shank, came deeper than its half width",
+     "all steps were computed, but the tool passed through the surface (freely moving or scripted). One of these "
+     "holds: the tip centre was deeper than the tool's half width; the core (the axis from the tip centre to the far "
+     "end; for a flat tip only from 0.9 half widths behind the tip centre, as long as no contact is that deep) "
+     "crossed the environment from face to face, or left it on a different side than it had entered, also where the "
+     "environment is thinner than the tool; the point half a width behind the tip ended inside; another part of the "
+     "tool, such as its shank, was deeper than its half width",
      true},
-    {"diverges", "a value stopped being finite or left its bound (describe bounds)", true}};
+    {"diverges",
+     "a value became infinite or not a number, or left its bound (position, speed or force; hapbench describe bounds)",
+     true}};
 static_assert(static_cast<std::size_t>(Outcome::diverges) == std::size(kOutcomes) - 1);
 
 }  // namespace

@@ -103,7 +103,7 @@ std::string quoted_list(std::span<const std::string> names, std::string_view sho
   const std::size_t max_shown = shown_by.empty() ? 50 : 8, more = names.size() - std::min(names.size(), max_shown);
   std::string text = fmt::format("\"{}\"", fmt::join(names.first(names.size() - more), "\", \""));
   if (more > 0) text += fmt::format(" and {} more", more);
-  return more > 0 && !shown_by.empty() ? text + fmt::format(", which \"{}\" tells", shown_by) : text;
+  return more > 0 && !shown_by.empty() ? text + fmt::format("; run \"{}\" to list them", shown_by) : text;
 }
 
 }  // namespace hapbench

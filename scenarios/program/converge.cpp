@@ -91,28 +91,36 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
     return has_order && r.order ? fmt::format("{:.2f}", *r.order) : "-";
   };
   const auto percent = [](const Row& r) { return r.share ? significant(100.0 * *r.share, 2) : "-"; };
-  return {{"metric", "", "name of the metric", &Row::metric, kOnlyCsv},
-          {"value", "by field", "value of the field that is refined", value},
-          {study.field, "1", "", &Row::value, only_printed()},
-          {"outcome", "", "how the run ended", &Row::outcome, under("outcome")},
-          {"result", "by name",
-           "the metric, at the times of the coarsest rows; empty where the run has none or diverges", &Row::result},
-          {study.metric, "1", "", result, only_printed()},
-          {"observed_order", "1", "p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level and the two before, if any",
-           &Row::order},
-          {"order", "1", "observed_order", order, only_printed()},
-          {"error_estimate", "by name",
-           "with an order 1.25 |f - f*|, else the largest distance from a finer level or in the band", &Row::error},
-          {"error %", "1", "of converge: error over the result of the finest level", percent, only_printed()},
-          {"seconds", "s", "of converge: processor time of the level's run [s]", &Row::seconds,
-           under("run s", 2, kOnlyJson)}};
+  return {
+      {"metric", "", "name of the metric", &Row::metric, kOnlyCsv},
+      {"value", "unit of the field", "value of the refined field at this level", value},
+      {study.field, "1", "", &Row::value, only_printed()},
+      {"outcome", "", "outcome of the run", &Row::outcome, under("outcome")},
+      {"result", "unit of the metric",
+       "value of the metric, sampled at the times of the coarsest level's steps; empty if the run has no value or "
+       "diverges",
+       &Row::result},
+      {study.metric, "1", "", result, only_printed()},
+      {"observed_order", "1",
+       "observed order p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level (f_3) and the two coarser levels, with "
+       "the refinement ratio r; empty without these",
+       &Row::order},
+      {"order", "1", "observed_order", order, only_printed()},
+      {"error_estimate", "unit of the metric",
+       "estimated error of this level's result: with an order 1.25 |f - f*| (f* is the extrapolated value), else the "
+       "larger of the width of the band and the largest difference from a finer level",
+       &Row::error},
+      {"error %", "1", "of converge: error_estimate divided by the result of the finest level", percent,
+       only_printed()},
+      {"seconds", "s", "of converge: processor time of the level's run [s]", &Row::seconds,
+       under("run s", 2, kOnlyJson)}};
 }
 
 /// Returns the columns of the times. They have a file of their own, because all other files are identical in
 /// every run.
 Columns<LevelRow> time_columns() {
-  return {{"value", "by field", "value of the field that is refined", &LevelRow::value},
-          {"seconds", "s", "processor time of the run", &LevelRow::seconds}};
+  return {{"value", "unit of the field", "value of the refined field at this level", &LevelRow::value},
+          {"seconds", "s", "processor time of the level's run", &LevelRow::seconds}};
 }
 
 Columns<ConvergeStudy> order_columns() {
@@ -121,23 +129,33 @@ Columns<ConvergeStudy> order_columns() {
   const auto high = [](const Row& r) { return r.band ? Cell(r.band->second) : Cell(); };
   return {
       {"metric", "", "name of the metric", &Row::metric},
-      {"field", "", "path of the field", &Row::field},
+      {"field", "", "path of the refined field", &Row::field},
       {"formal_order", "1",
-       "of the integrator; 1 with a device, which holds the force between samples; 2 of other fields",
+       "formal order, expected from theory: order of the integrator for time.step_s (1 with a device, which holds the "
+       "force between samples), 2 for other fields",
        &Row::formal_order},
-      {"observed_order", "1", "at the three finest levels; empty where none is credible", &Row::order, kOnlyCsv},
-      {"order", "1", "the same", &Row::order, kOnlyJson},
-      {"reason", "", "why no order is stated", &Row::reason},
-      {"extrapolated", "by name", "Richardson's value f* = f_3 + (f_3 - f_2) / (r^p - 1); only with an order",
+      {"observed_order", "1",
+       "observed order of the three finest levels; empty if no order is credible (column reason)", &Row::order,
+       kOnlyCsv},
+      {"order", "1", "observed order of the three finest levels; null if no order is credible (field reason)",
+       &Row::order, kOnlyJson},
+      {"reason", "", "reason why no order is stated; empty if there is an order", &Row::reason},
+      {"extrapolated", "unit of the metric",
+       "extrapolated value (Richardson) f* = f_3 + (f_3 - f_2) / (r^p - 1), f_3 the finest level; empty without an "
+       "order",
        &Row::extrapolated},
       {"gci", "1",
-       "grid convergence index 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)) of the finest level; only with an order",
+       "grid convergence index of the finest level, 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)): relative error with a "
+       "factor of safety; empty without an order",
        &Row::gci},
       {"asymptotic", "",
-       "true when GCI_21 / (r^p GCI_32) is 1 within 0.1 at the last three levels and the three before",
+       "true if the order is asymptotic: GCI_21 / (r^p GCI_32) is within 0.1 of 1 for the last three levels and for "
+       "the three before",
        &Row::asymptotic},
-      {"low", "by name", "least result of the band: of the last three levels that ended as the finest", low, kOnlyCsv},
-      {"high", "by name", "the largest", high, kOnlyCsv}};
+      {"low", "unit of the metric",
+       "smallest result of the band (the last three levels that have the outcome of the finest level)", low, kOnlyCsv},
+      {"high", "unit of the metric",
+       "largest result of the band (the last three levels that have the outcome of the finest level)", high, kOnlyCsv}};
 }
 
 Json study_json(const ConvergeStudy& study) {
@@ -150,20 +168,20 @@ Json study_json(const ConvergeStudy& study) {
 /// States how far an observed order is reliable.
 std::string order_text(const ConvergeStudy& study) {
   const auto is_known = [](const auto& error) { return error.has_value(); };
-  if (std::ranges::count_if(study.errors, is_known) == 3) return "of three levels alone";
+  if (std::ranges::count_if(study.errors, is_known) == 3) return "from three levels only";
   return study.asymptotic ? "asymptotic" : "not yet asymptotic";
 }
 
 std::string verdict_text(const ConvergeStudy& study) {
   if (study.order) {
     const std::string gci = study.gci ? fmt::format(", GCI {:.2g} %", 100.0 * *study.gci) : "";
-    return fmt::format("order {:.2f}, {}: tends to {}{}", *study.order, order_text(study),
+    return fmt::format("order {:.2f} ({}): extrapolated value {}{}", *study.order, order_text(study),
                        with_error_text(*study.extrapolated, study.errors.back()), gci);
   }
   if (!study.band) return fmt::format("no order: {}", study.reason);
   const auto [low, high] = *study.band;
-  if (low == high) return fmt::format("no order: {}; last levels {}", study.reason, significant(low, 6));
-  return fmt::format("no order: {}; last levels {} ... {}", study.reason, number_text(low, high - low),
+  if (low == high) return fmt::format("no order: {}; the last levels give {}", study.reason, significant(low, 6));
+  return fmt::format("no order: {}; the last levels give {} ... {}", study.reason, number_text(low, high - low),
                      number_text(high, high - low));
 }
 
@@ -173,20 +191,20 @@ std::string enough_text(const ConvergeStudy& study, double most) {
   const std::vector<LevelRow>& levels = study.levels;
   std::size_t first = levels.size();
   while (first > 0 && levels[first - 1].share && *levels[first - 1].share < most) --first;
-  const std::string below = fmt::format("below {:g} %: ", 100.0 * most);
+  const std::string below = fmt::format("error below {:g} %: ", 100.0 * most);
   if (first < levels.size()) {
     const LevelRow& enough = levels[first];
-    const std::string cost = fmt::format(", {:.2g} s a run, {:.2g} times the first level's", enough.seconds,
+    const std::string cost = fmt::format(", {:.2g} s per run, {:.2g} times the time of the first level", enough.seconds,
                                          enough.seconds / levels.front().seconds);
     return below + fmt::format("{} = {} ({:.2g} %{}){}", study.field, enough.value, 100.0 * *enough.share,
-                               study.order ? "" : " by what the levels show",
-                               first == 0 ? ", the coarsest that was tried" : cost);
+                               study.order ? "" : ", estimated from the differences of the levels",
+                               first == 0 ? ", already at the coarsest level" : cost);
   }
   // Otherwise extrapolate the required value of the field by the observed order.
   const LevelRow& finest = levels.back();
-  if (!study.asymptotic || !finest.share) return below + "no level is known to be";
+  if (!study.asymptotic || !finest.share) return below + "not known for any level";
   const double finer = math::pow(*finest.share / most, 1.0 / *study.order);
-  return below + fmt::format("no level is; by this order {} = {:.2g} would be", study.field,
+  return below + fmt::format("not reached by any level; extrapolated: {} = {:.2g}", study.field,
                              *finite_number(finest.value) / finer);
 }
 
@@ -251,8 +269,9 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   // Run all levels.
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(checked(plan.cases.load(i))); });
-  report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().result.name,
-                         levels.axis.path, levels.axis.values.front(), levels.ratio, levels.formal_order));
+  report.say(fmt::format("{}: {} refined from {} by a factor of {:g} per level, formal order {:g}\n\n",
+                         runs.front().result.name, levels.axis.path, levels.axis.values.front(), levels.ratio,
+                         levels.formal_order));
   std::vector<ConvergeStudy> studies;
   std::vector<LevelRow> rows;
   for (const std::string& metric : metrics) {
@@ -274,10 +293,13 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
 }  // namespace
 
 std::vector<DescribedTable> converge_tables() {
-  return {order_columns().described(kOrders, "of converge: one line per metric"),
-          level_columns({}).described(kLevels, "of converge: one line per metric and level"),
-          time_columns().described(
-              kTimes, "of converge: one line per level; all its other files are the same bytes in every run")};
+  return {
+      order_columns().described(kOrders, "written by converge: one line per metric"),
+      level_columns({}).described(kLevels, "written by converge: one line per metric and level"),
+      time_columns().described(
+          kTimes,
+          "written by converge: processor times, one line per level (in a file of their own because they differ from "
+          "run to run)")};
 }
 
 void add_converge(CommandLine& line) {

@@ -66,7 +66,8 @@ void write_error(std::string_view text) {
 void print_errors(const ProgramContext& context, const InputError& error) {
   const std::vector<InputError> faults = error.faults();
   for (const InputError& fault : faults) print_error(context, fault.what());
-  if (faults.size() == kMostFaults) print_error(context, fmt::format("no more than {} are shown", kMostFaults));
+  if (faults.size() == kMostFaults)
+    print_error(context, fmt::format("only the first {} errors are shown", kMostFaults));
 }
 
 }  // namespace hapbench

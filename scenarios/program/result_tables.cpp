@@ -18,10 +18,12 @@
 namespace hapbench {
 namespace {
 
-const std::vector<Column> kShellColumns = {
-    {"x_m", "m", "x of a point of the shell"},         {"y_m", "m", "y of a point of the shell"},
-    {"z_m", "m", "z of a point of the shell"},         {"nx", "1", "x of the outward unit normal there"},
-    {"ny", "1", "y of the outward unit normal there"}, {"nz", "1", "z of the outward unit normal there"}};
+const std::vector<Column> kShellColumns = {{"x_m", "m", "x of the point of the shell"},
+                                           {"y_m", "m", "y of the point of the shell"},
+                                           {"z_m", "m", "z of the point of the shell"},
+                                           {"nx", "1", "x of the outward unit normal at the point"},
+                                           {"ny", "1", "y of the outward unit normal at the point"},
+                                           {"nz", "1", "z of the outward unit normal at the point"}};
 
 }  // namespace
 
@@ -36,7 +38,7 @@ std::vector<DescribedTable> result_tables() {
   for (auto* tables_of : {run_tables, single_run_tables, league_tables, limit_tables, converge_tables, tune_tables,
                           claim_tables, sweep_tables, stress_tables})
     std::ranges::move(tables_of(), std::back_inserter(tables));
-  add({"shell.csv", "of validate --points: one line per point of the environment", kShellColumns});
+  add({"shell.csv", "written by validate --points: one line per point of the environment", kShellColumns});
   return tables;
 }
 

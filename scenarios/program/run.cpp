@@ -52,7 +52,7 @@ Columns<PlaceMetrics> target_columns() {
     };
   };
   return {
-      {"place", "1", "number of the target, from 0", &PlaceMetrics::place, only_printed()},
+      {"place", "1", "index of the target position, from 0", &PlaceMetrics::place, only_printed()},
       {"success rate", "1", "targets.0.success_rate.mean", mean(&PlaceMetrics::success_rate), only_printed()},
       {"completion [s]", "1", "targets.0.completion_time_s.mean", mean(&PlaceMetrics::completion_time), only_printed()},
       {"model force [N]", "1", "targets.0.model_force_N.mean", mean(&PlaceMetrics::model_force), only_printed()},
@@ -68,22 +68,23 @@ Columns<Result> latency_columns() {
     };
   };
   Columns<Result> columns = {
-      {"step latency", "", "of run --latency: the scene whose steps were timed", &Result::name, only_printed()},
+      {"step latency", "", "of run --latency: scenario whose steps were timed", &Result::name, only_printed()},
       {"steps", "1", "", [](const Result& r) { return r.timing.latency->steps; }, only_printed()}};
   for (const auto& [part, of] : {std::pair{"50", &StepLatency::p50},
                                  {"95", &StepLatency::p95},
                                  {"99", &StepLatency::p99},
                                  {"99.9", &StepLatency::p99_9}}) {
-    columns.add(
-        {{fmt::format("p{} us", part), "us",
-          fmt::format("what {} % of the steps take at most, each by itself [us]", part), time(of), only_printed()}});
+    columns.add({{fmt::format("p{} us", part), "us",
+                  fmt::format("{} % of the time steps take at most this wall time each [us]", part), time(of),
+                  only_printed()}});
   }
-  columns.add({{"max us", "us", "the longest step [us]", time(&StepLatency::max), only_printed()}});
+  columns.add({{"max us", "us", "wall time of the longest time step [us]", time(&StepLatency::max), only_printed()}});
   for (std::size_t i = 0; i < std::size(kStepDeadlines); ++i) {
-    columns.add({{fmt::format("> {:.3f} ms", 1e3 * kStepDeadlines[i]), "1", "number of steps that took longer",
+    columns.add({{fmt::format("> {:.3f} ms", 1e3 * kStepDeadlines[i]), "1",
+                  "number of time steps that took longer than this deadline",
                   [i](const Result& r) { return r.timing.latency->misses[i]; }, only_printed()}});
   }
-  columns.add({{"clock us", "us", "what reading the clock takes, which is within each step's time [us]",
+  columns.add({{"clock us", "us", "wall time of reading the clock, which is included in each step's time [us]",
                 time(&StepLatency::overhead), only_printed()}});
   return columns;
 }
@@ -104,7 +105,7 @@ std::string diagnosis_text(std::span<const Result> reports, const Layout& layout
       text += layout.wrapped("try: " + found.attempt, 2);
     }
     if (reports.size() > 1 && !rules.empty())
-      text += layout.wrapped(fmt::format("wrong with {}: {}", report.name, rules), 0);
+      text += layout.wrapped(fmt::format("diagnosis of {}: {}", report.name, rules), 0);
   }
   return text.empty() ? "" : "\n" + text;
 }
@@ -136,8 +137,9 @@ int run(const RunOptions& options, ProgramContext& context) {
         scenarios[i], directories[i], {!options.output.quiet, context.progress}, nullptr, /*diagnose=*/true));
     // Tell users who try values of a field that the results of the previous value were replaced.
     if (result.replaces_other && options.out.empty() && !options.overrides.empty())
-      print_note(context, fmt::format("replaced the run of other fields in {}; --out DIRECTORY keeps both",
-                                      directories[i].string()));
+      print_note(context,
+                 fmt::format("replaced the results of a run with other fields in {}; --out DIRECTORY keeps both",
+                             directories[i].string()));
     if (result.sections.contains("targets"))
       targets += fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", result.name,
                              target_columns().text(place_metrics(result.targets), layout));
@@ -145,7 +147,7 @@ int run(const RunOptions& options, ProgramContext& context) {
     Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
     for (const std::string& unmet : result.unmet) {
-      report.fault(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
+      report.fault(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} accepts this outcome))",
                                scenarios[i].loaded().file.string(), unmet, outcome_name(result.end.outcome)),
                    kUnexpectedOutcome);
     }

@@ -62,15 +62,17 @@ Columns<Result> run_columns(bool of_scenes) {
     return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
   };
   const auto step_time = [](const Result& r) { return short_text(r.timing.step_p50, std::nullopt, 1e6); };
-  Columns<Result> columns = {
-      {of_scenes ? "scenario" : "", "", "", &Result::name, only_printed()},
-      {"algorithm", "", "", &Result::algorithm, only_printed()},
-      {"how it ended", "", "outcome, and when, as far as that was before the last row", ending_text, only_printed()}};
+  Columns<Result> columns = {{of_scenes ? "scenario" : "", "", "", &Result::name, only_printed()},
+                             {"algorithm", "", "", &Result::algorithm, only_printed()},
+                             {"outcome", "", "outcome of the run, and its time if it ended before the last step",
+                              ending_text, only_printed()}};
   add_metrics(columns, kRunHeadings);
-  columns.add({{"tool shakes\n[mm/s rms]", "1", "root of vibration_power_above_30Hz_m2_per_s2, over all rows", shaking,
-                only_printed(of_scenes)},
-               {"stiffness\nratio", "1", "ratio_min", ratios, only_printed(true)},
-               {"half of the\nsteps [us]", "1", "step_p50_s", step_time, only_printed(true)}});
+  columns.add(
+      {{"tool vibration\n[mm/s rms]", "1",
+        "root of vibration_power_above_30Hz_m2_per_s2: rms of the tool's velocity above 30 Hz, over all time steps",
+        shaking, only_printed(of_scenes)},
+       {"stiffness\nratio", "1", "ratio_min", ratios, only_printed(true)},
+       {"median step\ntime [us]", "1", "step_p50_s", step_time, only_printed(true)}});
   return columns;
 }
 
@@ -101,7 +103,7 @@ std::string fidelity_text(std::span<const Result> reports, const Layout& layout)
   const auto name = distinct_name(reports);
   Columns<Result> columns = {{name == &Result::algorithm ? "algorithm" : "scenario", "", "", name, only_printed()}};
   add_metrics(columns, kFidelityHeadings);
-  return fmt::format("\nrendered force against the reference, measured or ideal\n\n{}",
+  return fmt::format("\nrendered force compared with the reference force (measured, or given by reference_force)\n\n{}",
                      columns.text(with_reference, layout));
 }
 
@@ -130,10 +132,12 @@ std::string step_time_text(std::span<const Result> reports, const Layout& layout
   if (p99(slowest) == 0.0) return "";
   const std::string whose = reports.size() == 1 ? "" : fmt::format(" ({})", slowest.*distinct_name(reports));
   const double step = slowest.duration / static_cast<double>(slowest.end.rows);
-  std::string text = fmt::format("99 % of the steps take at most {} us{}", cell(1e6 * p99(slowest), 2), whose);
+  std::string text =
+      fmt::format("99 % of the time steps are computed within {} us{}", cell(1e6 * p99(slowest), 2), whose);
   if (p99(slowest) > step)
-    text += fmt::format(", longer than a step of {} us: fewer points, rendering.reduction or a cheaper law",
-                        cell(1e6 * step, 2));
+    text +=
+        fmt::format(", longer than the time step of {} us; try fewer points, rendering.reduction or a faster algorithm",
+                    cell(1e6 * step, 2));
   return "\n" + layout.wrapped(text, 0);
 }
 

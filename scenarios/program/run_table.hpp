@@ -24,7 +24,7 @@ inline constexpr RunHeading kRunHeadings[] = {
     {"largest\nforce [N]", "force_max_N", 1.0, false}, {"in contact\n[%]", "contact_share", 100.0},
     {"landing\nforce [N]", "landing_force_max_N"},     {"mean\nforce [N]", "force_mean_in_contact_N", 1.0, false},
     {"force step\n(99 %) [N]", "force_step_p99_N"},    {"vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0, false},
-    {"reversals\n[1/s]", "force_reversals_per_s"},     {"deepest\ninside [mm]", "inside_max_m", 1e3, false}};
+    {"reversals\n[1/s]", "force_reversals_per_s"},     {"max depth\ninside [mm]", "inside_max_m", 1e3, false}};
 
 /// Returns `factor` times the value with the digits that are significant at its tolerance, three at most; "-"
 /// without a value. `tolerance` is in the unit of `value`.

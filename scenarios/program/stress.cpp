@@ -23,9 +23,11 @@ Columns<StressCounts> stress_columns() {
       {"points_dropped", "1", "contacts that a full reduction refused", &Row::points_dropped, under("points dropped")},
       {"largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration",
        &Row::largest_force, under("largest |f|/(K d)")},
-      {"largest_share_of_bound", "1", "largest ||f_spring|| in units of the law's bound; empty for laws without one",
-       &Row::largest_share, under("of its bound", 3)},
-      {"first_bad_set", "1", "number of the first set with a bad answer", &Row::first_bad, kOnlyJson}};
+      {"largest_share_of_bound", "1",
+       "largest ||f_spring|| divided by the bound that the algorithm guarantees; empty if it guarantees none",
+       &Row::largest_share, under("fraction of bound", 3)},
+      {"first_bad_set", "1", "index of the first contact set with a force that is not finite or above the bound",
+       &Row::first_bad, kOnlyJson}};
 }
 
 int stress(const StressOptions& options, ProgramContext& context) {
@@ -35,14 +37,19 @@ int stress(const StressOptions& options, ProgramContext& context) {
       stress_laws(options.count, options.seed, job_options(options, "stress", context));
   const Columns<StressCounts> columns = stress_columns();
   report.write("stress.csv", columns, all);
-  report.say(columns.text(all, layout));
+  report.say(columns.text(all, layout) + "\n");
+  report.say(layout.wrapped(
+      "every force must be finite and within the bound that its algorithm guarantees: non-finite and out of bound "
+      "must be 0. points dropped: contacts beyond the largest number of points of the reduction",
+      0));
   report.json() = columns.json_list(all);
   // Report each law with an invalid force as a failure.
   for (const StressCounts& c : all) {
     if (!c.first_bad) continue;
-    report.fault(fmt::format("{}: {} of {} forces are not finite, {} out of bound; the first in set {} of seed {}",
-                             c.algorithm, c.non_finite, c.sets, c.out_of_bound, *c.first_bad, options.seed),
-                 kUnexpectedOutcome);
+    report.fault(
+        fmt::format("{}: {} of {} forces are not finite, {} are above the bound; the first in set {} of seed {}",
+                    c.algorithm, c.non_finite, c.sets, c.out_of_bound, *c.first_bad, options.seed),
+        kUnexpectedOutcome);
   }
   return report.finish();
 }
@@ -50,7 +57,7 @@ int stress(const StressOptions& options, ProgramContext& context) {
 }  // namespace
 
 std::vector<DescribedTable> stress_tables() {
-  return {stress_columns().described("stress.csv", "of stress: one line per algorithm")};
+  return {stress_columns().described("stress.csv", "written by stress: one line per algorithm")};
 }
 
 void add_stress(CommandLine& line) {

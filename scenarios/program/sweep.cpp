@@ -53,7 +53,7 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
       const auto number = rounds ? finite_number(row[c]) : std::nullopt;
       return number ? significant(*number, 6) : row[c];
     };
-    columns.add({{title, "by name", table.columns[c], value, only_printed()}});
+    columns.add({{title, "unit of the metric", table.columns[c], value, only_printed()}});
   }
   const auto outcome = [&table](const SweepRow& row) { return table.outcome(row); };
   columns.add({{"outcome", "", "outcome", outcome, only_printed()}});
@@ -75,9 +75,9 @@ using OutcomeCount = std::pair<const std::string, SweepCounts::Count>;
 
 Columns<OutcomeCount> count_columns() {
   return {{"outcome", "", "outcome", &OutcomeCount::first, only_printed()},
-          {"runs", "1", "of sweep: number of the runs with this outcome",
+          {"runs", "1", "of sweep: number of runs with this outcome",
            [](const OutcomeCount& c) { return c.second.runs; }, only_printed()},
-          {"as expected", "1", "of sweep: number of these that ended as the scenario's expect says",
+          {"as expected", "1", "of sweep: number of the runs with this outcome that meet the scenario's expect",
            [](const OutcomeCount& c) { return c.second.expected; }, only_printed()}};
 }
 
@@ -94,7 +94,7 @@ std::string summary_text(const SweepTable& table, const std::string& metric, con
       const bool failed = table.outcome(row) == kErrorOutcome || is_failure(table.outcome(row));
       return std::pair(failed, table.number(row, metric).value_or(std::numeric_limits<double>::infinity()));
     });
-    text = fmt::format("{} of {} runs, least {} first\n\n", shown, rows.size(), metric);
+    text = fmt::format("{} of {} runs, smallest {} first\n\n", shown, rows.size(), metric);
   }
   if (shown < rows.size() && single) text = fmt::format("the first {} of {} runs\n\n", shown, rows.size());
   rows.resize(shown);
@@ -178,8 +178,8 @@ int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& co
     return kInternalFault;
   }
   if (counts.unexpected == 0) return kSuccess;
-  print_note(context, fmt::format("{}: {} of {} runs did not end as expected, the first: {}", scene, counts.unexpected,
-                                  counts.runs, run_text(*counts.first_unexpected)));
+  print_note(context, fmt::format("{}: {} of {} runs did not meet the scenario's expect, the first: {}", scene,
+                                  counts.unexpected, counts.runs, run_text(*counts.first_unexpected)));
   return kUnexpectedOutcome;
 }
 
@@ -204,13 +204,14 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramCo
   const std::string metric = chosen_metric(table.metrics(), command.metric);
   if (command.output.json) return print(context, command.output, "", summary_json(table));
   std::string text = summary_text(table, metric, layout);
-  if (resumed > 0) text += fmt::format("\n{} of the runs were done before\n", resumed);
+  if (resumed > 0) text += fmt::format("\n{} of the runs were taken from the interrupted sweep\n", resumed);
   text += fmt::format("\nresults in {}\n", table.file.string());
   if (!command.where.empty())
-    text +=
-        fmt::format("{} of {} runs have {}\n", table.kept.runs, table.counts.runs, fmt::join(command.where, " and "));
+    text += fmt::format("{} of {} runs satisfy {}\n", table.kept.runs, table.counts.runs,
+                        fmt::join(command.where, " and "));
   if (table.fields() > 1)
-    text += fmt::format("\"hapbench plot {} --metric {}\" draws it\n", table.file.parent_path().string(), metric);
+    text +=
+        fmt::format("\"hapbench plot {} --metric {}\" draws the results\n", table.file.parent_path().string(), metric);
   print(context, command.output, text, {});
 }
 
@@ -262,18 +263,20 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
 }  // namespace
 
 std::vector<DescribedTable> sweep_tables() {
-  DescribedTable table{"sweep.csv", "of sweep: one line per run", {}, count_columns().headings()};
-  table.columns = {{"index", "1", "number of the run, from 0; the varied fields follow, by their paths"},
-                   {"outcome", "", "how the run ended; \"error\" for one that could not be computed"},
-                   {"expected", "", "true when it ended as the scenario's expect says"},
-                   {"steps", "1", "rows of the run"}};
+  DescribedTable table{"sweep.csv", "written by sweep: one line per run", {}, count_columns().headings()};
+  table.columns = {
+      {"index", "1", "index of the run, from 0; one column per varied field follows, named by the field's path"},
+      {"outcome", "", "outcome of the run; \"error\" if the run could not be computed"},
+      {"expected", "", "true if the run meets the scenario's expect"},
+      {"steps", "1", "number of time steps of the run"}};
   for (const Metric& metric : all_metrics()) table.columns.push_back({metric.name, metric.unit, metric.meaning});
   for (const Metric& metric : all_metrics())
     if (metric.bounded)
-      table.columns.push_back(
-          {std::string(kToleranceOf) + metric.name, metric.unit, "by how much the metric may be wrong"});
+      table.columns.push_back({std::string(kToleranceOf) + metric.name, metric.unit,
+                               "tolerance: largest error of the metric that its definition allows"});
   table.columns.push_back(
-      {"state_hash", "", "over the bits of position, velocity and force of every row: equal for equal runs"});
+      {"state_hash", "",
+       "hash over the bits of position, velocity and force of every time step: equal for identical runs"});
   return {table};
 }
 

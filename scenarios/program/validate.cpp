@@ -43,7 +43,7 @@ struct ValidateOptions : CommonOptions {
 std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool> is_closed) {
   const std::string closed = is_closed ? (*is_closed ? ", closed" : ", open") : "";
   const auto& [gap, touching] = surface.start;
-  const std::string start = touching > 0 ? fmt::format("starts in contact: {} points in it, the deepest by {}",
+  const std::string start = touching > 0 ? fmt::format("starts in contact: {} points inside the tool, largest depth {}",
                                                        touching, length_text(std::abs(gap)))
                                          : fmt::format("starts {} from the surface", length_text(gap));
   return fmt::format("  environment  {} ({}), {} points{}\n  start        {}\n", size_text(surface.box),
@@ -65,7 +65,8 @@ std::string tool_text(const LoadedScenario& loaded, const SceneFacts& facts) {
   if (!facts.tool->convex()) text += ", not convex";
   if (const MeshTool* mesh = mesh_of(facts)) {
     text += fmt::format(
-        "\n               from its tip centre {}\n               {} triangles, closed; grid {}, depths right to {}",
+        "\n               relative to its tip centre {}\n               {} triangles, closed; grid {}, depth error at "
+        "most {}",
         place_text(mesh->grid().box()), triangles_of_tool(loaded), length_text(mesh->grid().nodes().spacing),
         length_text(mesh->grid().error_bound()));
   }
@@ -151,7 +152,7 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
       const std::filesystem::path file = find_scenario(argument);
       if (options.points.empty() && is_device_file(file)) {
         device_of_file(file);  // throws what is wrong with it
-        text += fmt::format("{}: a valid device, not a scenario: {}\n", argument,
+        text += fmt::format("{}: valid, but a device and not a scenario; use it with: {}\n", argument,
                             shell_line({"hapbench", "limit", "tap_wall", "--device", argument}));
         verdict["kind"] = "device";
         continue;
@@ -166,7 +167,7 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded, facts));
       verdict.update(facts_json(loaded, facts));
       if (options.points.empty()) continue;
-      text += fmt::format("  points       in {}\n", options.points);
+      text += fmt::format("  points       written to {}\n", options.points);
       verdict["environment"]["points_file"] = options.points;
     } catch (const InputError& error) {
       print_errors(context, error);

@@ -172,29 +172,29 @@ std::string other_laws(const DiagnosedRun& run, std::initializer_list<const char
   return text;
 }
 
-constexpr const char* kShorterStep = "a shorter time.step_s: in one step the tool moves further than its half width";
+constexpr const char* kShorterStep = "a shorter time.step_s: in one step the tool moves by more than its half width";
 
 std::string against_sinking(const DiagnosedRun& run) {
   if (step_exceeds_half_width(run)) return kShorterStep;
-  if (!run.is_free()) return "another motion.position, which leads the tool there";
-  return "more K or a gentler hand; another law where it is also soft";
+  if (!run.is_free()) return "another motion.position, because the script moves the tool there";
+  return "a larger K or a smaller hand force; if the rule \"soft\" is listed, another algorithm";
 }
 
 std::string against_loss(const DiagnosedRun& run) {
   if (step_exceeds_half_width(run)) return kShorterStep;
   if (run.ended(Outcome::no_contact))
-    return "environment.scale, initial.position_m and the hand's direction: \"hapbench validate\" shows them; more "
-           "time.steps where the tool came nearer to the end";
-  return "less K where it is beyond the edge, or a hand whose way ends on the surface";
+    return "check environment.scale, initial.position_m and the hand's direction (\"hapbench validate\" prints sizes "
+           "and distances); if the tool came nearer until the end of the run, more time.steps";
+  return "a smaller K if the rule \"edge\" is listed, or a hand whose path ends on the surface";
 }
 
 std::string laws_that_never_soften(const DiagnosedRun& run) {
-  return "a law that does not get softer with contacts, such as " +
+  return "an algorithm whose stiffness does not fall with the number of contacts, such as " +
          other_laws(run, {"shaped_stiffness", "exact_shaping", "proxy"});
 }
 
 std::string laws_that_never_add_up(const DiagnosedRun& run) {
-  return "K divided by that, or a law whose contacts do not add up, such as " +
+  return "K divided by this number, or an algorithm whose contacts do not add up, such as " +
          other_laws(run, {"shaped_stiffness", "mean"});
 }
 
@@ -228,81 +228,106 @@ struct Rule {
 };
 
 constexpr Rule kRules[] = {
-    {"diverged", "1 where the run left its bounds", "1", 0.5, "it diverged", ended<Outcome::diverges>,
-     "a shorter time.step_s or less K; \"hapbench tune\" for K and zeta"},
-    {"sank", "1 where the tool went through the surface", "1", 0.5, "the tool went through the surface",
+    {"diverged", "1 if the run diverged (left its bounds)", "1", 0.5, "the run diverged", ended<Outcome::diverges>,
+     "a shorter time.step_s or a smaller K; \"hapbench tune\" finds K and zeta"},
+    {"sank", "1 if the tool passed through the surface", "1", 0.5, "the tool passed through the surface",
      ended<Outcome::went_through>, against_sinking},
-    {"lost", "1 where the tool touched nothing, or not in the end", "1", 0.5, "the tool is not where the surface is",
+    {"lost", "1 if the tool never touched the environment, or lost contact before the end", "1", 0.5,
+     "the tool never touched the surface, or lost contact before the end",
      ended<Outcome::no_contact, Outcome::lost_contact>, against_loss},
-    {"stuck", "1 where the hand went on and the tool did not", "1", 0.5, "the tool is stuck",
+    {"stuck", "1 if the hand's target moved on and the tool did not", "1", 0.5, "the tool is stuck",
      ended<Outcome::stuck, Outcome::not_dragged>,
-     "a stiffer hand, less friction where there is any; \"hapbench compare --algorithms all\" shows which law goes on"},
-    {"step", "longest way of the tip in a step near the surface over the tool's half width", "1", 1.0,
-     "near the surface a step takes the tool {} of its half widths further", longest_step,
-     "a shorter time.step_s, a slower hand"},
-    {"edge", "K over the edge of the loop of device, tool and stiffest contact, without dry friction, where it shakes",
-     "1", 0.8, "K is {} times the edge of the stable loop", stability_limit_ratio,
-     "less K, a shorter time.step_s, less delay or filter where there is one; \"hapbench tune\""},
-    {"buzz", "force above 30 Hz over the mean force in settled contact", "1", 0.1,
-     "it buzzes: the force above 30 Hz is {} of the mean force", buzz,
-     "less K; a velocity filter or less zeta where the encoder is also felt; \"hapbench tune --bound "
-     "force_rms_above_30Hz_N=0.05\"",
+     "a stiffer hand, or less friction if the scene has friction; \"hapbench compare --algorithms all\" shows with "
+     "which algorithms the tool moves on"},
+    {"step", "largest displacement of the tip in one time step near the surface, divided by the tool's half width", "1",
+     1.0, "near the surface the tool moves by up to {} of its half widths in one time step", longest_step,
+     "a shorter time.step_s or a slower hand"},
+    {"edge",
+     "K divided by the linear limit of the loop of device, tool and stiffest contact (without dry friction), in a run "
+     "that vibrates, diverges or loses contact",
+     "1", 0.8, "K is {} times the linear stability limit", stability_limit_ratio,
+     "a smaller K, a shorter time.step_s, or a shorter delay or filter if the device has one; \"hapbench tune\" finds "
+     "a stable setting"},
+    {"buzz", "rms of the force above 30 Hz, divided by the mean force in settled contact", "1", 0.1,
+     "the force vibrates: its rms above 30 Hz is {} of the mean force", buzz,
+     "a smaller K; if the rule \"encoder\" is also listed, a velocity filter or a smaller zeta; \"hapbench tune "
+     "--bound force_rms_above_30Hz_N=0.05\"",
      buzz_frequency, true},
-    {"pop", "largest force step in settled contact over the mean force", "1", 0.5,
-     "it pops: a step of the force is {} of the mean force",
+    {"pop", "largest force step in settled contact, divided by the mean force", "1", 0.5,
+     "the force jumps: in settled contact one force step is {} of the mean force",
      [](const DiagnosedRun& r) { return r.if_completed(r.of_mean_force("settled_force_step_max_N")); },
-     "rendering.reduction null where it also steps; \"hapbench compare --algorithms all\" shows which law steps least",
+     "if the rule \"reduction\" is also listed, rendering.reduction null; \"hapbench compare --algorithms all\" shows "
+     "which algorithm has the smallest force steps",
      "", true},
-    {"reduction", "largest force step where the kept contacts change, over the mean force in settled contact", "1", 0.1,
-     "the force steps by {} of its mean when the kept contacts change",
+    {"reduction",
+     "largest force step at a change of the contacts kept by rendering.reduction, divided by the mean force in "
+     "settled contact",
+     "1", 0.1, "the force jumps by {} of its mean when the set of contacts kept by rendering.reduction changes",
      [](const DiagnosedRun& r) { return r.of_mean_force("reduction_force_step_max_N"); }, "rendering.reduction null",
      "", false, true},
-    {"facets", "distance of the surface's points over that at which four are in contact, where the tool moves on them",
-     "1", 1.15, "the surface is sampled coarsely: at {} times the distance that keeps four points in contact",
-     coarseness, "half of environment.spacing_m or grid_m; \"compare --errors\" tells what depends on it",
+    {"facets",
+     "spacing of the surface's points, divided by the spacing at which four points are in contact, for a tool that "
+     "moves along the surface",
+     "1", 1.15,
+     "the surface is sampled coarsely: the spacing of its points is {} times the spacing that keeps four points in "
+     "contact",
+     coarseness,
+     "half of environment.spacing_m or grid_m; \"hapbench compare --errors\" shows which metrics depend on it",
      point_spacing},
-    {"deep", "depth inside in settled contact over the tool's half width", "1", 0.75,
-     "the tool sinks in by {} of its half width",
+    {"deep", "median depth of the tool below the surface in settled contact, divided by its half width", "1", 0.75,
+     "the tool sinks into the surface by {} of its half width",
      [](const DiagnosedRun& r) { return r.if_completed(quotient(r.metric("inside_settled_m"), r.half_width())); },
-     "more K; \"hapbench tune --bound inside_max_m=3e-4\" tells whether the loop allows it"},
-    {"soft", "K over the stiffness along the softest contact", "1", 3.0,
-     "along some contact it is {} times as soft as K says",
+     "a larger K; \"hapbench tune --bound inside_max_m=3e-4\" finds whether a stable K keeps this depth"},
+    {"soft", "K divided by the combined stiffness along the softest contact (1 / ratio_min)", "1", 3.0,
+     "along some contact the rendered stiffness is {} times smaller than K",
      [](const DiagnosedRun& r) { return quotient(1.0, r.metric("ratio_min")); }, laws_that_never_soften},
-    {"hard", "stiffness along the stiffest contact over K", "1", 3.0, "contacts add up to {} K",
-     [](const DiagnosedRun& r) { return r.metric("ratio_max"); }, laws_that_never_add_up},
-    {"damping", "B dt / m of the mass that moves, along the stiffest contact, over the most that a step bears", "1",
-     0.5, "the damping is {} of the most that a step bears", damping,
-     "less zeta, a shorter time.step_s, a smaller rendering.limits.max_damping_N_s_per_m"},
-    {"friction", "rows beyond the force whose friction an explicit step bears", "1", 0.0,
-     "explicit friction is unstable in {} rows: what follows is the integrator's doing",
+    {"hard", "combined stiffness along the stiffest contact, divided by K (ratio_max)", "1", 3.0,
+     "the stiffnesses of the contacts add up to {} K", [](const DiagnosedRun& r) { return r.metric("ratio_max"); },
+     laws_that_never_add_up},
+    {"damping",
+     "B dt / m of the moving mass along the stiffest contact, divided by the stability limit of one integration step",
+     "1", 0.5, "the damping is {} of the largest damping at which one time step is stable", damping,
+     "a smaller zeta, a shorter time.step_s, or a smaller rendering.limits.max_damping_N_s_per_m"},
+    {"friction",
+     "number of steps with a force above explicit_friction_limit_N, beyond which explicit integration of friction is "
+     "unstable",
+     "1", 0.0,
+     "explicit integration of friction is unstable in {} steps: the motion after them is a numerical artefact",
      [](const DiagnosedRun& r) { return r.metric("explicit_friction_rows_beyond"); },
      R"(smaller rendering.friction.mu_f_s_per_m, {"type": "dry"}, or a shorter step)", "", false, true},
-    {"encoder", "force of one step of the encoder through B over the mean force", "1", 0.1,
-     "each step of the encoder is a force of {} of the mean through the damping", encoder_force,
-     "less zeta, a finer encoder, a low pass as device.velocity_filter or a lower cutoff_Hz of it"},
-    {"saturated", "share of the rows in contact at the largest force", "1", 0.01,
-     "the force is saturated in {} of the contact",
-     [](const DiagnosedRun& r) { return share(r.observations.at_force_limit, r.observations.in_contact); },
-     "less K or a gentler hand; a stronger device, a larger rendering.limits.max_force_N where that is given"},
-    {"limiter", "share of the rows in contact with more hand force than the device's limiter lets in", "1", 0.2,
-     "the limiter of the hand's force cuts in {} of the contact",
-     [](const DiagnosedRun& r) { return share(r.observations.at_input_limit, r.observations.in_contact); },
-     "a gentler hand; device.force_limit_N is f_th of 2.7"},
-    {"bounces", "landings a second of a tool that no script leads", "1/s", 8.0, "it bounces: {} landings a second",
+    {"encoder", "force that one encoder step causes through the damping B, divided by the mean force", "1", 0.1,
+     "each encoder step causes a force of {} of the mean force, through the damping", encoder_force,
+     "a smaller zeta, a finer encoder, or a low-pass device.velocity_filter (with a lower cutoff_Hz if the device has "
+     "one)"},
+    {"saturated", "fraction of the steps in contact in which the force is at its upper limit", "1", 0.01,
+     "the force is saturated during {} of the contact time",
+     [](const DiagnosedRun& r) { return share(r.rows.at_force_limit, r.rows.in_contact); },
+     "a smaller K or a smaller hand force; a stronger device, or a larger rendering.limits.max_force_N if the "
+     "scenario sets it"},
+    {"limiter", "fraction of the steps in contact in which the input-force limiter of the device cuts the hand's force",
+     "1", 0.2, "the device's limiter cuts the hand's force during {} of the contact time",
+     [](const DiagnosedRun& r) { return share(r.rows.at_input_limit, r.rows.in_contact); },
+     "a smaller hand force, or a larger device.force_limit_N (f_th in section 2.7 of the thesis)"},
+    {"bounces", "number of landings per second of a tool that no script moves", "1/s", 8.0,
+     "the tool bounces: {} landings per second",
      [](const DiagnosedRun& r) {
        return r.is_free() ? quotient(r.metric("landings"), r.result.duration) : std::nullopt;
      },
-     "more zeta or less K"},
-    {"chatter", "turns of the force by more than 90 degrees a second in settled contact", "1/s", 10.0,
-     "it chatters: the force turns round {} times a second",
+     "a larger zeta or a smaller K"},
+    {"chatter",
+     "number of force reversals (by more than 90 degrees from one step to the next) per second in settled contact",
+     "1/s", 10.0, "the force chatters: it reverses {} times per second",
      [](const DiagnosedRun& r) { return r.if_completed(r.metric("force_reversals_per_s")); },
-     "less K; \"hapbench compare --algorithms all\" shows which law turns least here", "", true},
-    {"energy", "energy that the rendering created", "J", 1e-3, "the rendering created {} J",
+     "a smaller K; \"hapbench compare --algorithms all\" shows which algorithm has the fewest reversals in this scene",
+     "", true},
+    {"energy", "net energy created by the rendering", "J", 1e-3, "the rendering created {} J of net energy",
      [](const DiagnosedRun& r) { return r.if_completed(r.metric("passivity.net_created_J")); },
-     "less K; rendering.passivity_controller where it is off", "", true},
-    {"drift", "way across the force of a tool that a constant hand holds, in the last quarter, over its half width",
-     "1", 0.05, "it drifts by {} of its half width under a constant hand", drift,
-     "rendering.friction {\"type\": \"dry\"} with enough mu; viscous friction never holds"},
+     "a smaller K, or rendering.passivity_controller if it is off", "", true},
+    {"drift",
+     "displacement across the force in the last quarter of the run, of a tool under a constant hand force, divided by "
+     "the tool's half width",
+     "1", 0.05, "the tool drifts by {} of its half width in the last quarter of the run, under a constant hand force",
+     drift, "rendering.friction {\"type\": \"dry\"} with a sufficient mu; viscous friction cannot hold a tool"},
 };
 
 /// Evaluates the rules for which the member `mark` is true, or all rules if `mark` is null. With

@@ -30,7 +30,7 @@ std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Re
   for (const auto& [name, bound] : expect.metrics) {
     const auto number = number_of(run.metrics, name);
     if (!number) {
-      unmet.push_back(fmt::format("{} has no value; expected one", name));
+      unmet.push_back(fmt::format("{} has no value; the scenario expects one", name));
       continue;
     }
     if (bound.min && *number < *bound.min)

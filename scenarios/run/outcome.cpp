@@ -127,18 +127,19 @@ class OutcomeObserverImpl final : public OutcomeObserver {
       return question;
     if (longest > tool_->half_width()) {
       return fmt::format(
-          "near it the tool moved {} in one step, more than its half width of {}: is time.step_s too long?",
+          "near the surface the tool moved by {} in one time step, more than its half width of {}: is time.step_s too "
+          "long?",
           length_text(longest), length_text(tool_->half_width()));
     }
     if (last_contact_) {
       const bool is_constant = std::holds_alternative<ForceHandFields>(scenario_.hand) ||
                                std::holds_alternative<PushHandFields>(scenario_.hand);
-      if (is_constant) return "a hand of constant force goes on pushing where there is no surface";
+      if (is_constant) return "the hand keeps pushing with a constant force where there is no surface";
       return fmt::format("the largest force was {:.3g} N", std::sqrt(metrics_->trial().force_max_squared));
     }
     if (time_to_contact &&
         *time_to_contact < kMaxTimeToContact * scenario_.time.step * static_cast<double>(scenario_.time.steps))
-      return fmt::format("it came nearer to the end and would touch in {:.2g} s: is time.steps too small?",
+      return fmt::format("it was approaching at the end and would touch {:.2g} s later: is time.steps too small?",
                          *time_to_contact);
     if (!position_is_free(scenario_.motion)) return "is motion.position right?";
     if (spring_of(scenario_.hand) != nullptr) return "does hand.target lead to the surface?";
@@ -156,41 +157,44 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     std::string question = scale_question(scenario_, *tool_, approach_->environment());
     if (question.empty() && is_scan && inside_->passage().began_inside)
       question = "are the normals of an open scan inverted (environment.flip_normals)?";
-    const char* const begins = inside_->passage().began_inside      ? "the tool began inside the environment"
-                               : position_is_free(scenario_.motion) ? "the tool went through the surface"
-                                                                    : "the script led the tool through the surface";
+    const char* const begins = inside_->passage().began_inside      ? "the tool started inside the environment"
+                               : position_is_free(scenario_.motion) ? "the tool passed through the surface"
+                                                                    : "the script moved the tool through the surface";
     return fmt::format("{}: {}{}{}", begins, passage_text(), question.empty() ? "" : "; ", question);
   }
   std::string passage_text() {
     const Passage& p = inside_->passage();
     const double half_width = tool_->half_width();
     const std::string end =
-        p.left ? fmt::format("left on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->place))
-        : p.last_depth > 0.0 ? fmt::format("{} below it in the end", length_text(p.last_depth))
-                             : std::string("not below it in the end");
+        p.left ? fmt::format("left it on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->place))
+        : p.last_depth > 0.0 ? fmt::format("at the end it was {} below the surface", length_text(p.last_depth))
+                             : std::string("at the end it was not below the surface");
     if (p.deep) {
       return fmt::format(
-          "its tip centre was more than its half width, {}, below it at {:.4g} s at {}, {} at most, and {}",
+          "its tip centre was deeper below the surface than its half width, {}, at {:.4g} s at {}; largest depth {}; "
+          "{}",
           length_text(half_width), p.deep->time, millimetres(p.deep->place), length_text(p.deepest), end);
     }
     // The tip centre never was deeper than the half width.
-    if (p.left) return fmt::format("it entered at {} and {}", millimetres(p.entered), end);
-    if (p.ends_inside) return fmt::format("its core ended inside, its tip centre {}", end);
+    if (p.left) return fmt::format("it entered the environment at {} and {}", millimetres(p.entered), end);
+    if (p.ends_inside)
+      return fmt::format("the core of the tool ended inside the environment; for the tip centre: {}", end);
     if (const auto& core = inside_->core_passage().event(); core && inside_max() <= half_width) {
       return fmt::format("its axis {} at {:.4g} s, from {} to {}",
                          core->at_once ? "crossed it from face to face" : "entered it and left on another side",
                          core->time, millimetres(core->entered), millimetres(core->left));
     }
-    return fmt::format("a part of it was {} inside, more than its half width of {}, though its tip centre was not",
-                       length_text(inside_max()), length_text(half_width));
+    return fmt::format(
+        "a part of the tool was {} deep, more than its half width of {}, although its tip centre was not",
+        length_text(inside_max()), length_text(half_width));
   }
 
   bool never_touched() { return !last_contact_; }
   std::string never_touched_text() {
     const auto closest = approach_->closest_to_surface(*tool_);
     return fmt::format(
-        "never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the environment "
-        "({}); {}",
+        "the tool never touched the environment: its smallest distance to the surface was {} (at {:.4g} s); "
+        "environment {}; {}",
         length_text(closest.distance), closest.time, environment_text(), likely_cause(closest.time_to_contact));
   }
 
@@ -204,13 +208,14 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     if (drag_lost()) {
       const SurfacePoint foot = drag_->path().at(drag_->nearest());
       const double height = foot.normal.dot(position_ - foot.position);
-      return fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *last_contact_,
+      return fmt::format("the dragged tool lost contact with the surface at {:.4g} s and ended {} {}", *last_contact_,
                          length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it");
     }
     const TrialContact& contact = metrics_->trial();
     const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
     return fmt::format(
-        "in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment ({}); {}",
+        "the tool was in contact for {:.3g} % of the run, last at {:.4g} s, and ended {} away from the environment "
+        "({}); {}",
         100.0 * share, contact.last.value_or(0.0), length_text(approach_->distance()), environment_text(),
         likely_cause());
   }
@@ -227,8 +232,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     const auto s = stuck();
     if (!s) return "";
     return fmt::format(
-        "the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it was "
-        "at {} under a force of {:.3g} N in the end",
+        "the tool stood still from {:.4g} s on: it moved by {} while its target moved by {}; at the end it was at {} "
+        "with a force of {:.3g} N",
         s->since, length_text(s->tool_distance), length_text(s->target_distance), millimetres(position_),
         force_.norm());
   }
@@ -236,9 +241,9 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   bool is_stuck() { return stuck() || (progress_ && progress_->left_behind()); }
   std::string stuck_text() {
     if (stuck()) return standstill_text();
-    return fmt::format("the dragged tool ended {} behind where its hand led it, {} along the path, at {}",
-                       length_text(*progress_->left_behind()), length_text(progress_->target_progress()),
-                       millimetres(position_));
+    return fmt::format(
+        "the dragged tool ended {} behind the position to which its hand should have led it, {} along the path, at {}",
+        length_text(*progress_->left_behind()), length_text(progress_->target_progress()), millimetres(position_));
   }
 
   std::string environment_text() const {

@@ -135,7 +135,7 @@ class Run {
     // With several trials, name the first trial that has warnings.
     if (trials_ > 1) {
       for (Warning& warning : warnings_)
-        warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
+        warning.text = fmt::format("in {} of {} trials, first in trial {}: {}", with_warnings_, trials_,
                                    first_with_warnings_, warning.text);
     }
     for (const auto& more : {warnings_, tool_warnings(scenario_.rendering, *tool_),
@@ -238,7 +238,7 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<fs::path
   const auto start = Clock::now();
   // Build the point shell, unless the caller has one.
   if (!shell) {
-    const WaitNotice notice(scenario.name + ": building the shell", progress.is_shown);
+    const WaitNotice notice(scenario.name + ": computing the point shell", progress.is_shown);
     shell = make_shell(scenario, checked.files());
   }
   const std::chrono::duration<double> shell_time = Clock::now() - start;

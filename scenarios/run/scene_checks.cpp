@@ -39,7 +39,7 @@ std::optional<Warning> size_warning(const Environment& environment, const Box& b
   const bool may_be_a_patch = std::holds_alternative<PointShellEnvironment>(environment);
   if (longest <= kLongestObject && (longest >= kShortestObject || may_be_a_patch)) return std::nullopt;
   return Warning{"size", "",
-                 fmt::format("the environment is {}; a hand works on what is {} ... {} long: {}", size_text(box),
+                 fmt::format("the environment is {} in size; usual environments are {} ... {} long: {}", size_text(box),
                              length_text(kShortestObject), length_text(kLongestObject), size_question(environment))};
 }
 
@@ -53,7 +53,7 @@ std::optional<Warning> spacing_warning(const LoadedScenario& loaded, const ToolS
   const double width = 2.0 * tool.half_width();
   if (distance.metres <= kRoughSpacing * width) return std::nullopt;
   return Warning{"spacing", distance.is_given ? "/environment/spacing_m" : "/environment",
-                 fmt::format("{} are {} apart; a tool of {} feels them as a rough surface; --set {}={:.1g}",
+                 fmt::format("{} are {} apart, which a tool {} wide feels as a rough surface; try --set {}={:.1g}",
                              distance.is_given ? "the points" : "the mesh's vertices", length_text(distance.metres),
                              length_text(width), distance.path, kSmoothSpacing * width)};
 }
@@ -65,7 +65,7 @@ std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Su
   if (!(gap > kUnitFactor * smaller)) return std::nullopt;
   return Warning{
       "start", "",
-      fmt::format("the tool starts {} from the environment, {:.0f} times the size of {}: is its place in metres?",
+      fmt::format("the tool starts {} from the environment, {:.0f} times the size of {}: is its position in metres?",
                   length_text(gap), gap / smaller, smaller == tool.reach() ? "the tool" : "the environment")};
 }
 
@@ -77,7 +77,7 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
   Box box = Box::nothing();
   for (const RecordedMotion::Sample& sample : samples) box.add(sample.position);
   const double size = diagonal(environment), extent = diagonal(box);
-  const std::string of = fmt::format("the stroke's places are within {}", size_text(box));
+  const std::string of = fmt::format("the positions of the stroke span {}", size_text(box));
   std::vector<Warning> warnings;
   const auto warn = [&warnings](std::string text) {
     warnings.push_back({"stroke", std::string(kMotionFile), std::move(text)});
@@ -93,8 +93,8 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
   const double interval = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
   if (interval > kUnitFactor * time.step || interval * kUnitFactor < time.step) {
     warn(fmt::format(
-        "the stroke has a sample each {:.3g} ms, the run a step each {:.3g} ms: are times in seconds, and is "
-        "time.step_s right?",
+        "the stroke has one sample per {:.3g} ms, the run one step per {:.3g} ms: are the stroke's times in seconds, "
+        "and is time.step_s right?",
         1e3 * interval, 1e3 * time.step));
   }
   return warnings;
@@ -120,9 +120,10 @@ std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolSha
   if (behind <= 0.0 || behind < kBehind * distance) return std::nullopt;
   return Warning{
       "wrong_side", "",
-      fmt::format("the tool starts {} behind the surface, on the side its normals point away from: does it start "
-                  "inside, or are the normals of an open scan inverted (environment.flip_normals)?",
-                  length_text(behind))};
+      fmt::format(
+          "the tool starts {} behind the surface, on the side opposite to its normals: does the tool start inside, or "
+          "are the normals of an open scan inverted (environment.flip_normals)?",
+          length_text(behind))};
 }
 
 /// Returns a warning if the sizes of tool and environment are out of proportion.
@@ -130,16 +131,19 @@ std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& 
   const std::string question = scale_question(scenario, tool, environment);
   if (question.empty()) return std::nullopt;
   const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
-  return Warning{"scale", "",
-                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
-                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
-                             is_mesh ? "" : "are the tool's lengths in metres, or ", question)};
+  return Warning{
+      "scale", "",
+      fmt::format("the tool is {} wide and reaches {} from its tip centre, and the environment is {} in size: {}{}",
+                  length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
+                  is_mesh ? "" : "are the tool's lengths in metres, or ", question)};
 }
 
 /// Returns a warning if the time step probably has a wrong unit.
 std::optional<Warning> step_warning(double step) {
   if (step <= kUnitFactor * kTypicalStep && kUnitFactor * step >= kTypicalStep) return std::nullopt;
-  return Warning{"step", "/time/step_s", fmt::format("{:.3g} s; haptic loops step each 1 ms: is it in seconds?", step)};
+  return Warning{
+      "step", "/time/step_s",
+      fmt::format("{:.3g} s per step, while haptic loops usually have 1 ms: is the value in seconds?", step)};
 }
 
 /// Collects the warnings of a scene. Each check may return nothing.

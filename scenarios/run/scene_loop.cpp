@@ -53,7 +53,7 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
     loop.hand_stiffness = hand->stiffness;
     loop.hand_damping = hand->damping;
   } else if (!force_ignores_handle(scenario.hand)) {
-    result.no_theory = "the hand is not a spring and damper";
+    result.no_theory = "the hand is not a linear spring and damper";
   }
   return result;
 }
@@ -166,9 +166,9 @@ DeviceLoop device_loop(const Scenario& scenario, double lambda) {
   DeviceLoop result = impedance != nullptr ? impedance_loop(scenario, *impedance, lambda)
                                            : admittance_loop(scenario, *admittance, lambda);
   if (delay_of(scenario) > kLongestLoopDelay)
-    result.no_theory = "a delay beyond 200 samples makes the loop too large to solve";
+    result.no_theory = "the delay is longer than 200 samples, too long for the eigenvalue computation";
   if (const std::string unknown = unknown_to_theory(scenario); !unknown.empty())
-    result.no_theory = unknown + ": not in the theory of the loop";
+    result.no_theory = unknown + ": not part of the linear theory";
   return result;
 }
 

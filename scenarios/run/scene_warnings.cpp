@@ -24,12 +24,14 @@ std::optional<Warning> short_path_warning(const DragHandFields& fields, const Dr
   // If the path is short by less than the tool's width, the drag ends at an edge of the surface, which is
   // normal.
   if (to_cover <= path + 2.0 * tool.half_width()) return std::nullopt;
-  const std::string ends =
-      fmt::format("the path of the drag ends after {} of {}: ", length_text(path), length_text(to_cover));
-  return Warning{"short_path", "",
-                 ends + (fields.path ? "hand.path_m leads no further over the surface; let its points lie on it"
-                                     : "beyond, the surface ends or turns against hand.direction; another "
-                                       "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
+  const std::string ends = fmt::format(
+      "the path of the drag ends after {}, but the hand would move {}: ", length_text(path), length_text(to_cover));
+  return Warning{
+      "short_path", "",
+      ends + (fields.path
+                  ? "hand.path_m does not continue over the surface; choose its points on or near the surface"
+                  : "there the surface ends or turns against hand.direction; another initial.position_m, a larger "
+                    "hand.smoothing_m, or hand.path_m gives a longer path")};
 }
 
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
@@ -46,10 +48,10 @@ std::string odd_frame(const Box& tool) {
   constexpr double kSuspectRatio = 2.0;  // ratio of lengths from which the frame is probably wrong
   const Vec3 size = tool.size();
   const double gap = distance_to(tool, Vec3::Zero());
-  if (gap > 0.0) return fmt::format("lies {} away from its tip centre", length_text(gap));
+  if (gap > 0.0) return fmt::format("is {} away from its tip centre", length_text(gap));
   const auto [short_side, long_side] = std::minmax(size.x(), size.y());
-  if (long_side > kSuspectRatio * std::max(short_side, size.z())) return "lies across its axis";
-  if (-tool.min.z() > kSuspectRatio * tool.max.z()) return "lies before its tip centre, not behind";
+  if (long_side > kSuspectRatio * std::max(short_side, size.z())) return "is longer across its axis than along it";
+  if (-tool.min.z() > kSuspectRatio * tool.max.z()) return "extends in front of its tip centre instead of behind it";
   return "";
 }
 
@@ -58,16 +60,18 @@ std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolS
   if (rendering.algorithm == "proxy" && !tool.convex()) {
     warnings.push_back(
         {"not_convex", "",
-         "the tool is not convex: the proxy's guarantee that no point enters it is lost, points may enter "
-         "where it is concave, as at the neck of a bur; a convex tool, or another algorithm, has no such "
-         "gap"});
+         "the tool is not convex, so the proxy cannot guarantee that no point enters it: points may enter concave "
+         "regions, such as the neck of a bur; use a convex tool or another algorithm"});
   }
   if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) {
     const Box& box = mesh->grid().box();
     if (const std::string odd = odd_frame(box); !odd.empty()) {
       warnings.push_back(
           {"tool_frame", "",
-           fmt::format("the tool {} (from there {}): are tool.tip_m and tool.tip_axis right?", odd, place_text(box))});
+           fmt::format(
+               "the mesh of the tool {} (relative to the tip centre it spans {}): are tool.tip_m and tool.tip_axis "
+               "right?",
+               odd, place_text(box))});
     }
   }
   return warnings;

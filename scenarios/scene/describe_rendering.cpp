@@ -62,7 +62,7 @@ void own_parameters(Fields& f, RenderingConfig& rendering) {
     return written ? Presence::no_default : Presence::omitted;
   };
   const bool any = std::ranges::any_of(algorithms(), [&](auto& entry) { return presence(entry) != Presence::omitted; });
-  f.group("parameters", "parameters that algorithms have for themselves: an object for each algorithm",
+  f.group("parameters", "parameters that belong to one algorithm: an object for each algorithm",
           any ? Presence::no_default : Presence::omitted, [&](Fields& all) {
             for (const AlgorithmEntry& entry : algorithms()) {
               if (entry.own_parameters.empty()) continue;
@@ -75,62 +75,72 @@ void own_parameters(Fields& f, RenderingConfig& rendering) {
 }  // namespace
 
 static void describe(Fields& f, ReductionConfig& reduction) {
-  number(f, parameter::kThreshold, reduction.threshold, "alpha_TH: gradients with a larger inner product are similar");
-  number(f, parameter::kMaxPoints, reduction.max_points, "n_ext: most points kept");
+  number(f, parameter::kThreshold, reduction.threshold,
+         "alpha_TH: gradients with an inner product above this value count as similar");
+  number(f, parameter::kMaxPoints, reduction.max_points, "n_ext: largest number of points that the reduction keeps");
   f.nullable(key(parameter::kShuffleSeed), reduction.shuffle_seed,
-             "visit the points in a fixed random order; null: ascending index",
+             "seed of a random but fixed order in which the points are visited; null: ascending index",
              [](Fields& s, std::uint64_t& seed) { s.integer(seed, integers(parameter::kShuffleSeed)); });
 }
 
 static void describe(Fields& f, DryFrictionConfig& dry) {
-  number(f, parameter::kDryMu, dry.mu, "coefficient of friction");
-  number(f, parameter::kDryStiffness, dry.stiffness, "K_t of the bristle by which the tool sticks; null: K");
-  number(f, parameter::kDryDampingRatio, dry.damping_ratio, "zeta_t of the bristle with the virtual mass");
+  number(f, parameter::kDryMu, dry.mu, "coefficient of dry friction");
+  number(f, parameter::kDryStiffness, dry.stiffness,
+         "K_t, stiffness of the bristle that holds a sticking tool; null: K");
+  number(f, parameter::kDryDampingRatio, dry.damping_ratio,
+         "zeta_t, damping ratio of the bristle with the virtual mass");
 }
 
 /// Describes the field `friction`: the thesis's viscous friction, whose defaults depend on the scene, or dry
 /// friction instead.
 static void describe_friction(Fields& f, RenderingConfig& rendering) {
-  constexpr TypeName kTypes[] = {{"viscous", "the thesis's, proportional to the velocity; the default"},
-                                 {"dry", "sticks up to mu times the load and slides above (ours)"}};
-  f.alternatives("friction", kTypes, Untyped::first, rendering.dry_friction ? 1 : 0,
-                 [&rendering](Fields& fields, std::size_t type) {
-                   if (type == 1) {
-                     DryFrictionConfig dry = rendering.dry_friction.value_or(DryFrictionConfig{});
-                     describe(fields, dry);
-                     if (!fields.reads()) return;
-                     rendering.dry_friction = dry;
-                     rendering.mu_s = rendering.mu_f = 0.0;
-                     return;
-                   }
-                   number(fields, parameter::kMuS, rendering.mu_s, "viscous friction; default 0 for springs, else 5",
-                          Presence::no_default);
-                   number(fields, parameter::kMuF, rendering.mu_f,
-                          "viscous friction per newton of spring force; default 0 for springs, else 10",
-                          Presence::no_default);
-                 });
+  constexpr TypeName kTypes[] = {
+      {"viscous", "viscous friction of the thesis, proportional to the velocity (default)"},
+      {"dry", "dry friction (not in the thesis): sticks up to mu times the load, and slides above it"}};
+  f.alternatives(
+      "friction", kTypes, Untyped::first, rendering.dry_friction ? 1 : 0,
+      [&rendering](Fields& fields, std::size_t type) {
+        if (type == 1) {
+          DryFrictionConfig dry = rendering.dry_friction.value_or(DryFrictionConfig{});
+          describe(fields, dry);
+          if (!fields.reads()) return;
+          rendering.dry_friction = dry;
+          rendering.mu_s = rendering.mu_f = 0.0;
+          return;
+        }
+        number(fields, parameter::kMuS, rendering.mu_s,
+               "mu_s, coefficient of viscous friction independent of the load; default 0 for springs, else 5",
+               Presence::no_default);
+        number(fields, parameter::kMuF, rendering.mu_f,
+               "mu_f, coefficient of viscous friction per newton of spring force; default 0 for springs, else 10",
+               Presence::no_default);
+      });
 }
 
 /// Describes Hunt-Crossley damping with the coefficient `chi`.
 static void describe_hunt_crossley(Fields& f, double& chi) {
-  constexpr TypeName kTypes[] = {{"hunt_crossley", "-chi K sum c_i d_i <v, u_i> u_i: no step at contact on and off"}};
+  constexpr TypeName kTypes[] = {
+      {"hunt_crossley",
+       "damping force -chi K sum c_i d_i <v, u_i> u_i, which is continuous when contacts begin and end"}};
   f.alternatives("damping", kTypes, Untyped::refused, 0, [&chi](Fields& fields, std::size_t) {
     number(fields, parameter::kChi, chi, "chi", Presence::required);
   });
 }
 
 static void describe(Fields& f, Lateness& late) {
-  number(f, parameter::kEvery, late.every, "contacts are found in every n-th row, from row 0 on");
-  number(f, parameter::kDelay, late.delay, "rows from when contacts are found until they serve");
+  number(f, parameter::kEvery, late.every, "contacts are computed in every n-th time step, starting with the first");
+  number(f, parameter::kDelay, late.delay, "delay, in time steps, from computing the contacts to using them");
   f.choice("between", late.linear, {"hold", "linear"}, "kind of contacts between queries",
-           "hold: depths as found; linear: depths follow the tool's motion along the gradients");
-  number(f, parameter::kDropout, late.dropout, "probability that a query after the first is lost, by the seed");
+           "hold: depths stay as computed; linear: depths follow the tool's motion along the gradients");
+  number(f, parameter::kDropout, late.dropout,
+         "probability that the result of a contact query is lost (except the first), drawn by the seed");
 }
 
 /// Describes the source of contacts: a name, or an object that names a file (a recording or a shared library).
 static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
-  constexpr TypeName kTypes[] = {{kTrace, "contacts recorded at times, of a prescribed motion"},
-                                 {kContactPlugin, "a shared library by hapbench_module.h, whose code is run"}};
+  constexpr TypeName kTypes[] = {
+      {kTrace, "contacts recorded at times of a prescribed motion"},
+      {kContactPlugin, "shared library that implements hapbench_module.h; its code is executed"}};
   std::string& source = rendering.contact_source;
   const bool is_plugin = source == kContactPlugin;
   f.plain_or_object(
@@ -140,32 +150,34 @@ static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
             "source of contacts", kTypes, Untyped::refused, is_plugin ? 1 : 0, [&](Fields& fields, std::size_t type) {
               if (fields.reads()) source = kTypes[type].name;
               using Kind = FileContent::Kind;
-              fields.file(rendering.contact_file, {type == 0 ? Kind::trace : Kind::library},
-                          type == 0 ? "CSV with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m" : "the library");
+              fields.file(
+                  rendering.contact_file, {type == 0 ? Kind::trace : Kind::library},
+                  type == 0 ? "CSV with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m" : "file of the shared library");
               if (type == 0) return;
-              fields.field("config", "handed to the library as JSON text", Presence::has_default,
+              fields.field("config", "configuration passed to the library as JSON text", Presence::has_default,
                            [&](Fields& config) { config.any_object(rendering.contact_config); });
             });
       });
 }
 
 static void describe(Fields& f, EnergyTankConfig& tank) {
-  number(f, parameter::kTankCapacity, tank.capacity, "C, most energy that is kept for later");
-  number(f, parameter::kTankInitial, tank.initial, "energy at the start, besides that of the springs");
+  number(f, parameter::kTankCapacity, tank.capacity, "C, largest energy that the tank stores");
+  number(f, parameter::kTankInitial, tank.initial,
+         "energy in the tank at the start, in addition to the energy of the springs");
 }
 
 static void describe(Fields& f, ActuatorLimitedPassivityConfig& limited) {
   f.nullable(key(parameter::kActuatorForce), limited.max_force,
-             "most force of the actuator along each axis of the world; null: no limit",
+             "largest force of the actuators along each axis of the world; null: no limit",
              [](Fields& v, Vec3& force) { v.vector3(force, parameter::kActuatorForce.range); });
   number(f, parameter::kActuatorDamping, limited.max_damping,
-         "most damping; null: M / dt, which stops the virtual tool in one step");
+         "largest damping; null: M / dt, which stops the virtual tool in one time step");
 }
 
 static void describe(Fields& f, ForceStageConfig& stage) {
   f.variant(stage, "force stage",
-            {{"energy_tank", "gives away no more energy than it holds"},
-             {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"}});
+            {{"energy_tank", "the rendering releases no more energy than the tank holds"},
+             {"actuator_limited_passivity", "time-domain passivity control within the force limits of each actuator"}});
 }
 
 void describe(Fields& f, RenderingConfig& rendering) {
@@ -174,45 +186,55 @@ void describe(Fields& f, RenderingConfig& rendering) {
   f.choice("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
   // Set the stages that the algorithm fixes. They are the defaults of the fields below.
   if (f.reads()) rendering = with_fixed_stages(rendering);
-  number(f, parameter::kIterations, rendering.iterations, "m of the shaping iteration");
+  number(f, parameter::kIterations, rendering.iterations, "m, number of shaping iterations");
   f.choice("depth_model", rendering.depth_model, kDepthModels, "depth model",
-           "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
-  f.field(
-      "contact_source",
-      "own: our search, with the depth model; else whose contacts, depths and directions are taken instead: of a file",
-      Presence::has_default, [&rendering](Fields& source) { describe_contact_source(source, rendering); });
-  if_not_null(f, "contacts", rendering.late,
-              "contacts that a slower loop finds (multi-rate rendering); null: every row has its own",
-              [](Fields& late, Lateness& value) { late.object(value); });
+           "default: surface_normal, unless the algorithm's definition requires another depth model",
+           Presence::no_default);
+  f.field("contact_source",
+          "own: hapbench finds the contacts, with the depth model; an object names a file or a library that supplies "
+          "contacts, depths and gradients",
+          Presence::has_default, [&rendering](Fields& source) { describe_contact_source(source, rendering); });
+  if_not_null(
+      f, "contacts", rendering.late,
+      "multi-rate rendering: a slower loop computes the contacts; null: contacts are computed in every time step",
+      [](Fields& late, Lateness& value) { late.object(value); });
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
             "merge colliding points that share a grid cell of the shell");
-  f.object("reduction", rendering.reduction, "gradient-based reduction, whose kept points change in jumps; null: off");
+  f.object(
+      "reduction", rendering.reduction,
+      "gradient-based reduction: keeps the deepest of contacts with similar gradients; the kept set changes abruptly; "
+      "null: off");
   number(f, parameter::kStiffness, rendering.stiffness, "K");
-  number(f, parameter::kDampingRatio, rendering.damping_ratio, "zeta; B = 2 zeta sqrt(K M)");
-  number(f, parameter::kDamping, rendering.damping, "B instead of the one from zeta; null: from zeta");
-  f.boolean(key(parameter::kAngularDamping), rendering.angular_damping,
-            "damping and friction see the velocity of the tool's material at each contact, not only the tip centre's");
+  number(f, parameter::kDampingRatio, rendering.damping_ratio,
+         "zeta, damping ratio of a contact, which gives B = 2 zeta sqrt(K M)");
+  number(f, parameter::kDamping, rendering.damping,
+         "B, damping of a contact, in place of the value from zeta; null: from zeta");
+  f.boolean(
+      key(parameter::kAngularDamping), rendering.angular_damping,
+      "true: damping and friction use the velocity of the tool's material at each contact; false: of the tip centre");
   number(f, parameter::kAngularVelocityCutoff, rendering.angular_velocity_cutoff,
-         "first-order low-pass of the angular velocity that angular_damping sees; null: none");
-  number(f, parameter::kMass, rendering.mass, "M of the virtual tool; default 0.2 in planar scenes, else 0.1",
+         "cutoff frequency of a first-order low-pass of the angular velocity used by angular_damping; null: none");
+  number(f, parameter::kMass, rendering.mass, "M, mass of the virtual tool; default 0.2 in planar scenes, else 0.1",
          Presence::no_default);
   if_not_null(f, "damping", rendering.hunt_crossley,
               "damping that grows with depth, in place of damping_ratio; null: off", describe_hunt_crossley);
   f.field("friction", "friction along the surface", Presence::has_default,
           [&rendering](Fields& friction) { describe_friction(friction, rendering); });
-  f.group("limits", "optional limits", Presence::has_default, [&rendering](Fields& limits) {
-    number(limits, parameter::kMaxDamping, rendering.max_damping, "B_max; null: off");
-    number(limits, parameter::kMaxForce, rendering.max_force, "F_max; null: off");
+  f.group("limits", "optional limits of damping and force", Presence::has_default, [&rendering](Fields& limits) {
+    number(limits, parameter::kMaxDamping, rendering.max_damping, "B_max, largest damping; null: no limit");
+    number(limits, parameter::kMaxForce, rendering.max_force,
+           "F_max, largest norm of the rendered force; null: no limit");
   });
-  number(f, parameter::kVirtualCoupling, rendering.virtual_coupling, "K_vc of algorithm virtual_coupling; null: K");
-  number(f, parameter::kRegularisation, rendering.regularisation, "eps of algorithm least_squares");
+  number(f, parameter::kVirtualCoupling, rendering.virtual_coupling,
+         "K_vc, stiffness of the coupling spring of algorithm virtual_coupling; null: K");
+  number(f, parameter::kRegularisation, rendering.regularisation, "eps, regularisation of algorithm least_squares");
   if_not_null(
       f, "force_stage", rendering.force_stage,
-      "a controller behind the algorithm: sees its force with damping, friction and limits, and answers the one to "
-      "render; null: off",
+      "force stage after the algorithm: receives its force with damping, friction and limits, and computes the force "
+      "to render; null: off",
       [](Fields& held, ForceStageConfig& value) { describe(held, value); });
   f.boolean(key(parameter::kPassivityController), rendering.passivity_controller,
-            "adaptive damping that lets the algorithm create no energy");
+            "adaptive damping that prevents the algorithm from creating energy");
   own_parameters(f, rendering);
 }
 

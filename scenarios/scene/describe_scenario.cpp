@@ -36,14 +36,21 @@ constexpr auto kMaxStepsOrRows = static_cast<std::int64_t>(kMostSteps);
 double describe_time(Fields& f, TimeFields& time) {
   std::optional<double> duration;
   f.number("step_s", time.step, {0.0, 1.0, "s", true}, "time step", Presence::required);
-  f.integer("steps", time.steps, {1, kMaxStepsOrRows}, "number of steps (rows)", Presence::no_default);
-  f.if_any("duration_s", duration, "instead of steps: duration_s / step_s, rounded", [](Fields& d, double& value) {
-    d.number(value, {0.0, 1e9, "s", true});
-  });
-  f.list("stop_when", time.stop_when, {0, 2}, "end early: tip centre above height 0; axis in the horizontal plane",
-         [](Fields& s, StopCondition& value) {
-           s.choice(value, {"leaves_hole", "tool_horizontal"}, "stop condition");
-         });
+  f.integer("steps", time.steps, {1, kMaxStepsOrRows},
+            "number of time steps, which is the number of rows of trajectory.csv if every step is recorded",
+            Presence::no_default);
+  f.if_any("duration_s", duration,
+           "duration of the run, in place of steps; the number of steps is duration_s / step_s, rounded",
+           [](Fields& d, double& value) {
+             d.number(value, {0.0, 1e9, "s", true});
+           });
+  f.list(
+      "stop_when", time.stop_when, {0, 2},
+      "conditions that end the run early: leaves_hole (tip centre above height 0), tool_horizontal (tool axis in the "
+      "horizontal plane)",
+      [](Fields& s, StopCondition& value) {
+        s.choice(value, {"leaves_hole", "tool_horizontal"}, "stop condition");
+      });
   f.exactly_one_of("steps", "duration_s");
   return duration ? std::round(*duration / time.step) : static_cast<double>(time.steps);
 }
@@ -83,71 +90,80 @@ void set_scene_defaults(Scenario& scenario) {
 
 static void describe(Fields& f, InitialFields& initial) {
   f.vector3("position_m", initial.position, {-1000.0, 1000.0, "m"},
-            "tip centre at t = 0; ignored when the motion prescribes it");
-  f.vector3("velocity_m_per_s", initial.velocity, {-1e6, 1e6, "m/s"}, "velocity at t = 0");
+            "position of the tip centre at t = 0; ignored if motion prescribes the position");
+  f.vector3("velocity_m_per_s", initial.velocity, {-1e6, 1e6, "m/s"},
+            "velocity of the tip centre at t = 0; ignored if motion prescribes the position");
 }
 
 static void describe(Fields& f, IntegratorFields& integrator) {
   std::string type = integrator.type->info.name;
   const auto names = names_of(kIntegrators, [](const IntegratorEntry* entry) { return entry->info.name; });
-  f.choice("type", type, names, "integrator", "leapfrog is the thesis's; \"hapbench describe NAME\" explains each",
+  f.choice("type", type, names, "integrator",
+           "integration method; the thesis uses leapfrog; \"hapbench describe NAME\" explains each",
            Presence::required);
   if (f.reads()) integrator.type = *std::ranges::find(kIntegrators, type, [](auto* entry) { return entry->info.name; });
   f.number("tolerance_s", integrator.tolerance, {1e-15, 1.0, "s"},
-           "of event: within which it finds the times of contact on and off; 1e-9 unless it is given",
+           "with integrator event: accuracy of the times at which contacts begin and end; default 1e-9",
            integrator.type == &kEvent ? Presence::no_default : Presence::omitted);
 }
 
 static void describe(Fields& f, DivergenceBounds& bounds) {
   f.number("position_m", bounds.position, {0.0, 1e9, "m", true},
-           "a run whose tip centre is further from the origin has diverged");
-  f.number("speed_m_per_s", bounds.speed, {0.0, 1e12, "m/s", true}, "a run whose tool is faster has diverged");
-  f.number("force_N", bounds.force, {0.0, 1e15, "N", true}, "a run whose rendered force is larger has diverged");
+           "largest distance of the tip centre from the origin; a run beyond it has diverged");
+  f.number("speed_m_per_s", bounds.speed, {0.0, 1e12, "m/s", true},
+           "largest speed of the tool; a run beyond it has diverged");
+  f.number("force_N", bounds.force, {0.0, 1e15, "N", true},
+           "largest norm of the rendered force; a run beyond it has diverged");
 }
 
 static void describe(Fields& f, RecordFields& record) {
   f.boolean("trajectory", record.trajectory, "write trajectory.csv");
-  f.integer("every", record.every, {1, kMaxStepsOrRows}, "record each N-th step only");
+  f.integer("every", record.every, {1, kMaxStepsOrRows}, "record only every n-th time step");
   f.list("ratio_iterations", record.ratio_iterations, {0, 1000},
-         "write ratios.csv after these numbers of shaping iterations", [](Fields& i, std::int64_t& value) {
+         "numbers of shaping iterations after which stiffness ratios are written to ratios.csv",
+         [](Fields& i, std::int64_t& value) {
            i.integer(value, {0, 100'000});
          });
-  f.boolean("contacts", record.contacts, "write contacts.csv");
+  f.boolean("contacts", record.contacts, "write contacts.csv and contact_trace.csv");
   f.boolean("stiffness_tensor", record.stiffness_tensor, "write stiffness_tensor.csv");
-  f.boolean("timing", record.timing, "time every step and write timing.json");
-  f.boolean("energy", record.energy, "keep the energy ledger and write energy.csv");
-  f.boolean("ideal_trajectory", record.ideal_trajectory,
-            "block_with_hole only: compare the recorded rows with the ideal trajectory and write ideal_trajectory.csv");
+  f.boolean("timing", record.timing, "measure the wall time of every step and write timing.json");
+  f.boolean("energy", record.energy, "compute the energy balance and write energy.csv");
+  f.boolean(
+      "ideal_trajectory", record.ideal_trajectory,
+      "block_with_hole only: compare the recorded steps with the ideal trajectory and write ideal_trajectory.csv");
   f.boolean("force_reference", record.force_reference,
-            "with reference_force, or a stroke with a measured force: write it and the error into force_reference.csv");
+            "with reference_force, or a stroke with a measured force: write the reference force and the force error to "
+            "force_reference.csv");
   for (const TrajectoryGroup& group : trajectory_groups())
     f.boolean(group.field, record.*group.is_wanted, group.effect);
 }
 
 static void describe(Fields& f, SettlingRule& metrics) {
-  f.number("from_s", metrics.from, {0.0, 1e9, "s"},
-           "rows in contact from here on are settled, all before are landing; null: a landing is what follows a first "
-           "touch");
+  f.number(
+      "from_s", metrics.from, {0.0, 1e9, "s"},
+      "time from which all steps in contact count as settled, and before which all count as landing; null: a landing "
+      "begins at each first touch");
   f.number("settling_s", metrics.time, {0.0, 1e9, "s"},
-           "how long a landing lasts, and how long the tool must be away for the next touch to be a first one");
+           "duration of a landing, and time without contact after which the next touch is a first touch");
 }
 
 static void describe(Fields& f, MetricBound& bound) {
   const auto number = [](Fields& b, double& value) { b.number(value, {-1e15, 1e15}); };
-  f.if_any("min", bound.min, "smallest value allowed", number);
-  f.if_any("max", bound.max, "largest value allowed", number);
+  f.if_any("min", bound.min, "smallest allowed value", number);
+  f.if_any("max", bound.max, "largest allowed value", number);
   if (!f.reads() || !bound.min || !bound.max || !(*bound.min > *bound.max)) return;
   fail_at(f.at(), fmt::format("got min {} above max {}; allowed: min <= max", *bound.min, *bound.max));
 }
 
 static void describe(Fields& f, ReferenceForceFields& reference) {
-  profiles(f, {"x_N", "y_N", "z_N"}, reference.force, "N", "force on the tool over time");
+  profiles(f, {"x_N", "y_N", "z_N"}, reference.force, "N",
+           "component of the reference force on the tool, as a function of time");
 }
 
 static void describe(Fields& f, ExpectFields& expect) {
-  f.field("outcome", "how the run must end, or a list of ways", Presence::has_default,
+  f.field("outcome", "expected outcome of the run, or a list of allowed outcomes", Presence::has_default,
           [&expect](Fields& value) { describe_outcomes(value, expect.outcomes); });
-  f.group("metrics", "bounds on the run's metrics, min and max of each; \"hapbench describe metrics\" shows them",
+  f.group("metrics", "bounds on metrics of the run, with min and max; \"hapbench describe metrics\" lists the metrics",
           Presence::has_default, [&expect](Fields& metrics) {
             for (const Metric& metric : all_metrics()) {
               const auto known = expect.metrics.find(metric.name);
@@ -166,8 +182,8 @@ static void describe(Fields& f, ExpectFields& expect) {
 static void describe_extends(Fields& f) {
   std::string other;
   f.text(kExtends, other, 4096,
-         "another scenario, a file or a bundled name, over whose fields (but name and expect) these are merged; "
-         "null replaces; so does an object of another type",
+         "base scenario, as a file or a bundled name: the fields of this file are merged over its fields (except name "
+         "and expect). null and an object of another type replace the base's field",
          Presence::omitted);
   if (!f.reads() || !f.given(kExtends)) return;
   fail_at(member(f.at(), kExtends), "got it in no file; allowed: in files");
@@ -176,32 +192,35 @@ static void describe_extends(Fields& f) {
 void describe(Fields& f, Scenario& scenario) {
   // Name, origin and seed.
   double steps = 0.0;
-  f.ignored("$schema", "the JSON Schema, for editors");
+  f.ignored("$schema", "JSON Schema of this file, for editors");
   describe_extends(f);
-  f.text("name", scenario.name, 200, "default: the file's name");
-  f.text("description", scenario.description, 10'000, "what it shows");
-  f.text("source", scenario.source, 1000, "where the numbers come from");
-  f.integer("seed", scenario.seed, {0, std::int64_t{1} << 53}, "of everything random");
+  f.text("name", scenario.name, 200, "name of the scenario; default: the file's name");
+  f.text("description", scenario.description, 10'000, "what the scenario shows");
+  f.text("source", scenario.source, 1000, "source of the scenario's numbers");
+  f.integer("seed", scenario.seed, {0, std::int64_t{1} << 53}, "seed of all random numbers");
   // Time and environment. The environment's type determines defaults of the fields below.
-  f.group("time", "time steps", Presence::required, [&](Fields& time) { steps = describe_time(time, scenario.time); });
-  f.value("environment", scenario.environment, "what the tool touches", Presence::required);
+  f.group("time", "time step and number of steps", Presence::required,
+          [&](Fields& time) { steps = describe_time(time, scenario.time); });
+  f.value("environment", scenario.environment, "environment: the object that the tool touches", Presence::required);
   if (f.reads()) set_scene_defaults(scenario);
   // Tool, hand, device and rendering.
-  f.object("initial", scenario.initial, "state at t = 0");
-  f.value("tool", scenario.tool, "the tool; without a type it is a cylinder");
-  f.object("motion", scenario.motion, "scripted motion");
-  f.value("hand", scenario.hand, "who holds the handle");
-  f.value("device", scenario.device, "the haptic device");
-  f.object("rendering", scenario.rendering, "how contacts become a force");
-  f.object("integrator", scenario.integrator, "how forces become motion");
+  f.object("initial", scenario.initial, "state of the tool at t = 0");
+  f.value("tool", scenario.tool, "tool; without a type it is a cylinder");
+  f.object("motion", scenario.motion, "scripted motion of the tool");
+  f.value("hand", scenario.hand, "model of the hand that holds the handle");
+  f.value("device", scenario.device, "model of the haptic device");
+  f.object("rendering", scenario.rendering, "how forces are computed from contacts");
+  f.object("integrator", scenario.integrator, "how the motion is computed from forces");
   // Limits, output and expectations.
-  f.object("bounds", scenario.bounds, "where a run counts as diverged");
+  f.object("bounds", scenario.bounds, "bounds beyond which a run counts as diverged");
   f.object_if_any(
       "reference_force", scenario.reference_force,
-      "the force an ideal rendering would give on a prescribed way; the metrics of fidelity are taken against it");
-  f.object("record", scenario.record, "what is written besides the summary");
-  f.object("metrics", scenario.metrics, "where metrics of settled contact begin");
-  f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");
+      "force that an ideal rendering would give on the prescribed motion; the metrics of group fidelity compare the "
+      "rendered force with it");
+  f.object("record", scenario.record, "what is written in addition to summary.json");
+  f.object("metrics", scenario.metrics, "which steps count as landing and which as settled contact");
+  f.object("expect", scenario.expect,
+           "requirements on the result of the run; an unmet requirement gives exit status 3");
   if (!f.reads()) return;
   // Check the rules between fields and derive values.
   resolve_delay(scenario);

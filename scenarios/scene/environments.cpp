@@ -70,94 +70,106 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
 }  // namespace
 
 static void describe(Fields& f, SpringGroup& group) {
-  f.vector3("direction", group.direction, {-1e9, 1e9, "1"},
-            "gradient u of the springs, towards deeper penetration; normalised", Presence::required);
-  f.integer("count", group.count, kSpringCount, "number of springs", Presence::required);
+  f.vector3(
+      "direction", group.direction, {-1e9, 1e9, "1"},
+      "gradient u of the springs, the direction in which the penetration becomes deeper; its length does not matter",
+      Presence::required);
+  f.integer("count", group.count, kSpringCount, "number of springs with this direction", Presence::required);
 }
 
 static void describe(Fields& f, RandomSprings& random) {
-  f.integer("count", random.count, kSpringCount, "number of springs with random gradients from the seed");
-  f.boolean("planar", random.planar, "gradients uniform on the circle z = 0 instead of the sphere");
+  f.integer("count", random.count, kSpringCount, "number of springs with random gradients, drawn by the seed");
+  f.boolean("planar", random.planar, "true: gradients are uniform on the circle z = 0; false: on the sphere");
 }
 
 static void describe(Fields& f, SpringsEnvironment& springs) {
-  f.boolean("bilateral", springs.bilateral, "springs push and pull; false: only while their depth is positive");
-  f.boolean("signed", springs.signed_depths,
-            "depths of bilateral springs are <p, u>; false: |<p, u>|, with gradients along the displacement");
-  f.objects("groups", springs.groups, {0, 10'000}, "springs by direction, in this order");
-  f.object("random", springs.random, "springs with random directions, after the groups");
+  f.boolean("bilateral", springs.bilateral,
+            "true: springs push and pull; false: a spring acts only while its depth is positive");
+  f.boolean(
+      "signed", springs.signed_depths,
+      "depth of a bilateral spring for the displacement p: true: <p, u>, which may be negative; false: |<p, u>|, with "
+      "the gradient along the displacement");
+  f.objects("groups", springs.groups, {0, 10'000}, "groups of springs with one direction each, in this order");
+  f.object("random", springs.random, "springs with random directions, in the list after the groups");
   if (f.reads()) check_springs(springs, f.at());
 }
 
 static void describe(Fields& f, Hole2d& hole) {
   f.number("width_m", hole.width, kLength, "width of the hole");
   f.number("depth_m", hole.depth, kLength, "depth of the hole");
-  f.number("spacing_m", hole.spacing, kLength, "largest distance of neighbours");
-  f.number("mouth_m", hole.mouth, kLength, "flat top either side");
+  f.number("spacing_m", hole.spacing, kLength, "largest distance of neighbouring points");
+  f.number("mouth_m", hole.mouth, kLength, "width of the flat top on either side of the hole");
   check_point_count(f, hole);
 }
 
 static void describe(Fields& f, Plane& plane) {
-  f.number("size_m", plane.size, kLength, "edge of the square, centred at 0");
-  f.number("spacing_m", plane.spacing, kLength, "largest distance of neighbours");
+  f.number("size_m", plane.size, kLength, "side length of the square, which is centred at the origin");
+  f.number("spacing_m", plane.spacing, kLength, "largest distance of neighbouring points");
   check_point_count(f, plane);
 }
 
 static void describe(Fields& f, Slot& slot) {
-  f.number("gap_m", slot.gap, kLength, "distance of the two faces, along x", Presence::required);
+  f.number("gap_m", slot.gap, kLength, "distance between the two faces, along x", Presence::required);
   f.number("depth_m", slot.depth, kLength, "height of the faces below z = 0", Presence::required);
   f.number("length_m", slot.length, kLength, "width of the faces along y", Presence::required);
-  f.number("spacing_m", slot.spacing, kLength, "largest distance of neighbours", Presence::required);
+  f.number("spacing_m", slot.spacing, kLength, "largest distance of neighbouring points", Presence::required);
   check_point_count(f, slot);
 }
 
 static void describe(Fields& f, ConicalHole& cone) {
-  f.number("half_angle_rad", cone.half_angle, {0.01, 1.56, "rad"}, "between the axis z and the wall");
-  f.number("depth_m", cone.depth, kLength, "of the apex below the mouth, which is at z = 0");
-  f.number("spacing_m", cone.spacing, kLength, "largest distance of neighbours in a ring, and of rings");
+  f.number("half_angle_rad", cone.half_angle, {0.01, 1.56, "rad"}, "angle between the z axis and the wall");
+  f.number("depth_m", cone.depth, kLength, "depth of the apex below the mouth, which is at z = 0");
+  f.number("spacing_m", cone.spacing, kLength,
+           "largest distance of neighbouring points on a ring, and of neighbouring rings");
   check_point_count(f, cone);
 }
 
 static void describe(Fields& f, BlockEnvironment& environment) {
   BlockWithHole& block = environment.block;
-  f.vector3("size_m", block.size, kLength, "edges of the block, centred at x = y = 0, top face in z = 0");
-  f.number("hole_diameter_m", block.hole_diameter, kLength, "round blind hole");
-  f.number("hole_depth_m", block.hole_depth, kLength, "below the top face");
-  f.number("grid_m", environment.grid, kLength, "grid of the density field; its nodes lie at half-integer multiples");
+  f.vector3("size_m", block.size, kLength,
+            "side lengths of the block, which is centred at x = y = 0 with its top face in z = 0");
+  f.number("hole_diameter_m", block.hole_diameter, kLength, "diameter of the round blind hole");
+  f.number("hole_depth_m", block.hole_depth, kLength, "depth of the hole below the top face");
+  f.number("grid_m", environment.grid, kLength,
+           "spacing of the density grid; its nodes are at half-integer multiples of it");
   f.choice("density", environment.density, {"signed_distance", "binary"}, "density",
-           "what the nodes store: minus the signed distance, or 1 and 0");
-  f.choice("vertices", environment.per_cell, {"shared", "per_cell"}, "listing",
-           "points of the shell: each vertex once, or once for each grid cell that has it on an edge (the thesis)");
+           "value at the nodes: negative signed distance, or 1 (inside) and 0 (outside)");
+  f.choice(
+      "vertices", environment.per_cell, {"shared", "per_cell"}, "listing",
+      "points of the shell: each vertex once (shared), or once for each grid cell that has it on an edge (per_cell, "
+      "as in the thesis)");
   if (f.reads()) check_block(environment, f.at());
 }
 
 static void describe(Fields& f, PointShellEnvironment& shell) {
   f.file(shell.file, {FileContent::Kind::point_shell},
          "CSV with header x_m,y_m,z_m,nx,ny,nz, or PLY with normals; relative to the scenario file");
-  f.number("grid_m", shell.grid, kLength, "cell of the local average; null: no grid");
+  f.number("grid_m", shell.grid, kLength, "size of the grid cells of the local average; null: no grid");
 }
 
 static void describe(Fields& f, MeshEnvironment& mesh) {
   f.file(mesh.file, {FileContent::Kind::mesh, {mesh.scale, mesh.spacing, mesh.flip}},
          "surface as OBJ, OFF, PLY or STL, the last two also binary; relative to the scenario file");
-  f.number("scale", mesh.scale, {0.0, 1e6, "m", true}, "length of the file's unit: 0.001 for millimetres",
-           Presence::required);
+  f.number("scale", mesh.scale, {0.0, 1e6, "m", true},
+           "length of one unit of the file in metres: 0.001 for millimetres", Presence::required);
   f.number("spacing_m", mesh.spacing, kLength,
-           "resamples: no edge longer, one point in a cube of this size; null: the mesh's own vertices");
-  f.boolean("flip_normals", mesh.flip, "turns an open surface's normals round, which a scan may have inside out");
-  f.number("grid_m", mesh.grid, kLength, "cell of the local average; null: no grid");
+           "spacing of the shell's points: the mesh is resampled so that no edge is longer and a cube of this size "
+           "contains one point; null: the mesh's own vertices");
+  f.boolean("flip_normals", mesh.flip,
+            "inverts the normals of an open surface, such as a scan whose normals point inwards");
+  f.number("grid_m", mesh.grid, kLength, "size of the grid cells of the local average; null: no grid");
 }
 
 void describe(Fields& f, Environment& environment) {
   f.variant(environment, "environment",
-            {{"springs", "springs on the tool's tip, without a surface"},
-             {"hole_2d", "a hole in the plane, with its mouth"},
-             {"plane", "a flat square"},
+            {{"springs", "springs that act on the tool's tip, without a surface"},
+             {"hole_2d", "planar hole with its mouth"},
+             {"plane", "flat square"},
              {"slot", "two parallel faces"},
-             {"block_with_hole", "a block with a round blind hole, its shell by marching cubes"},
+             {"block_with_hole", "block with a round blind hole, whose shell is made by marching cubes"},
              {"point_shell", "points with normals from a CSV or PLY file"},
-             {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},
-             {"conical_hole", "a hole that tapers to a point"}});
+             {"mesh", "surface from an OBJ, PLY, STL or OFF file"},
+             {"conical_hole", "hole that tapers to a point"}});
 }
 
 namespace {

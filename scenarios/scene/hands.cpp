@@ -18,136 +18,168 @@ constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
 constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn in both directions
 
 static void describe(Fields& f, ForceHandFields& hand) {
-  profiles(f, {"x_N", "y_N", "z_N"}, hand.force, "N", "force on the handle over time");
+  profiles(f, {"x_N", "y_N", "z_N"}, hand.force, "N",
+           "component of the hand's force on the handle, as a function of time");
 }
 
 static void describe(Fields& f, PushHandFields& hand) {
-  profile(f, "force_N", hand.force, "N", "force on the handle over time", Presence::required);
-  f.number("angle_rad", hand.angle, kAngle, "of the force from straight down, -z; 3-D scenes only");
-  f.number("azimuth_rad", hand.azimuth, kAngle, "of its lean, from +x about z");
+  profile(f, "force_N", hand.force, "N", "magnitude of the hand's force on the handle, as a function of time",
+          Presence::required);
+  f.number("angle_rad", hand.angle, kAngle, "angle of the force from straight down (-z); 3-D scenes only");
+  f.number("azimuth_rad", hand.azimuth, kAngle, "direction in which the force leans, as an angle from +x about z");
 }
 
 static void describe(Fields& f, TremorConfig& tremor) {
   f.vector3(
       "rms_m", tremor.rms, {0.0, 0.1, "m"},
-      "standard deviation of each axis; 30e-6 of a resting finger, up to 5 times that with the arm held out (Growdon "
-      "et al. 2000)");
-  f.number("low_Hz", tremor.low, {0.0, 1000.0, "Hz"}, "lower end of its band (Novak and Newell 2017)");
-  f.number("high_Hz", tremor.high, {0.0, 1000.0, "Hz"}, "upper end of its band");
+      "standard deviation of the tremor along each axis; 30e-6 for a resting finger, up to 5 times as much with the "
+      "arm held out (Growdon et al. 2000)");
+  f.number("low_Hz", tremor.low, {0.0, 1000.0, "Hz"},
+           "lower end of the tremor's frequency band (Novak and Newell 2017)");
+  f.number("high_Hz", tremor.high, {0.0, 1000.0, "Hz"}, "upper end of the tremor's frequency band");
   if (f.reads() && tremor.low > tremor.high) fail_at(f.at() + "/high_Hz", "allowed: low_Hz or more");
 }
 
 static void describe(Fields& f, ImpedanceHandFields& hand) {
-  f.number("stiffness_N_per_m", hand.stiffness, {0.0, 1e9, "N/m"}, "of the spring from target to handle");
-  f.number("damping_N_s_per_m", hand.damping, {0.0, 1e9, "N s/m"}, "of the damper parallel to it");
-  f.group("target", "where the hand wants the handle", Presence::required, [&hand](Fields& t) {
-    profiles(t, {"x_m", "y_m", "z_m"}, hand.target, "m", "over time", Presence::required);
-  });
+  f.number("stiffness_N_per_m", hand.stiffness, {0.0, 1e9, "N/m"}, "stiffness of the spring between target and handle");
+  f.number("damping_N_s_per_m", hand.damping, {0.0, 1e9, "N s/m"}, "damping of the damper parallel to this spring");
+  f.group("target", "target of the hand: position to which its spring pulls the handle", Presence::required,
+          [&hand](Fields& t) {
+            profiles(t, {"x_m", "y_m", "z_m"}, hand.target, "m", "coordinate of the target, as a function of time",
+                     Presence::required);
+          });
   f.object_if_any("tremor", hand.tremor,
-                  "how the target trembles besides, by the scenario's seed; without it the hand rests ideally");
+                  "tremor added to the target, random by the scenario's seed; without it the target is free of noise");
 }
 
 static void describe(Fields& f, MassSpringDamperHandFields& hand) {
-  f.number("mass_kg", hand.mass, {0.0, 1e6, "kg"}, "of the hand, fixed to the handle (ours)");
+  f.number("mass_kg", hand.mass, {0.0, 1e6, "kg"}, "mass of the hand, fixed to the handle (our assumption)");
   describe(f, hand.spring);
 }
 
 static void describe(Fields& f, DragHandFields& hand) {
   Drag& drag = hand.drag;
-  profile(f, "force_N", drag.force, "N", "along the inward normal of the surface, over time");
-  f.if_any("path_m", hand.path, "way of the tool over the surface, straight legs between points on or near it",
+  profile(f, "force_N", drag.force, "N",
+          "force with which the hand presses along the inward normal of the surface, as a function of time");
+  f.if_any("path_m", hand.path, "path of the tool over the surface: straight segments between points on or near it",
            [](Fields& path, std::vector<Vec3>& points) {
              path.list(points, {2, 10'000}, [](Fields& p, Vec3& point) { p.vector3(point, kCoordinate); });
            });
-  f.if_any("direction", hand.direction,
-           "instead of path_m: from initial.position on along this direction within the surface, to its edge",
-           [](Fields& d, Vec3& direction) {
-             d.vector3(direction, {-1e9, 1e9, "1"});
-           });
+  f.if_any(
+      "direction", hand.direction,
+      "direction of the path within the surface, from initial.position to the edge of the surface; in place of path_m",
+      [](Fields& d, Vec3& direction) {
+        d.vector3(direction, {-1e9, 1e9, "1"});
+      });
   f.exactly_one_of("path_m", "direction");
-  f.number("speed_m_per_s", drag.speed, {0.0, 100.0, "m/s", true}, "along the path");
-  f.number("tilt_rad", hand.tilt, kAngle,
-           "of the axis from the normal, towards the direction of travel; null: motion.orientation turns the tool");
-  f.number("azimuth_rad", hand.azimuth, kAngle, "turns that lean from the direction of travel, about the normal");
-  f.number("stiffness_N_per_m", drag.stiffness, {0.0, 1e9, "N/m"}, "within the surface, towards the moving point");
-  f.number("damping_N_s_per_m", drag.damping, {0.0, 1e9, "N s/m"}, "within the surface, parallel to that spring");
+  f.number("speed_m_per_s", drag.speed, {0.0, 100.0, "m/s", true}, "speed along the path");
+  f.number(
+      "tilt_rad", hand.tilt, kAngle,
+      "angle of the tool's axis from the surface normal, towards the direction of travel; null: motion.orientation "
+      "gives the orientation");
+  f.number("azimuth_rad", hand.azimuth, kAngle, "rotation of this tilt about the normal, from the direction of travel");
+  f.number("stiffness_N_per_m", drag.stiffness, {0.0, 1e9, "N/m"},
+           "stiffness of the spring that pulls the tool within the surface to the moving point of the path");
+  f.number("damping_N_s_per_m", drag.damping, {0.0, 1e9, "N s/m"},
+           "damping within the surface, parallel to this spring");
   f.number("normal_damping_N_s_per_m", drag.normal_damping, {0.0, 1e9, "N s/m"},
-           "along the normal; the tool is lowered at force_N / normal_damping_N_s_per_m");
+           "damping along the normal; without contact the hand lowers the tool at the speed force_N / "
+           "normal_damping_N_s_per_m");
   f.number("smoothing_m", hand.smoothing, {0.0, 1000.0, "m", true},
-           "radius over which the hand feels place and normal of the surface");
+           "radius over which position and normal of the surface are averaged for the hand");
 }
 
 static void describe(Fields& f, Gauge& gauge) {
-  f.number("cutoff_Hz", gauge.cutoff, {0.0, 1e6, "Hz", true}, "of the low-pass of the spring force it shows");
-  f.number("grace_s", gauge.grace, {0.0, 1000.0, "s"},
-           "how long it may show less than least_press_N without a break of the hold; without effect together with "
-           "threshold");
+  f.number("cutoff_Hz", gauge.cutoff, {0.0, 1e6, "Hz", true},
+           "cutoff frequency of the low-pass of the displayed spring force");
+  f.number(
+      "grace_s", gauge.grace, {0.0, 1000.0, "s"},
+      "longest time for which the displayed force may be below least_press_N without interrupting the hold; no effect "
+      "if threshold is given");
 }
 
 static void describe(Fields& f, Threshold& threshold) {
-  f.choice("force", threshold.force, {"rendered", "spring"}, "force", "whose component along +z counts");
+  f.choice("force", threshold.force, {"rendered", "spring"}, "force",
+           "force whose component along +z is compared with least_press_N");
   f.number("cutoff_Hz", threshold.cutoff, {0.0, 1e6, "Hz", true},
-           "of a first-order low-pass; null: every sample counts");
+           "cutoff frequency of a first-order low-pass of this force; null: unfiltered");
   f.number("grace_s", threshold.grace, {0.0, 1000.0, "s"},
-           "how long it may be less than least_press_N without a break of the hold");
-  f.choice("low", threshold.low, {"restarts", "pauses", "closes", "nothing"}, "effect",
-           "of a longer dip: the hold restarts, or pauses, the target closes, or nothing");
+           "longest time for which the force may be below least_press_N without interrupting the hold");
+  f.choice(
+      "low", threshold.low, {"restarts", "pauses", "closes", "nothing"}, "effect",
+      "effect of a longer interruption: the hold restarts, the hold pauses, the target closes, or nothing happens");
 }
 
 static void describe(Fields& f, TargetRules& task) {
-  f.choice("display", task.display, {"panel", "height"}, "display",
-           "panel: x and y count, the orientation is scripted; height: z counts, the hand turns the tool");
+  f.choice(
+      "display", task.display, {"panel", "height"}, "display",
+      "panel: the target has x and y, and the orientation is scripted; height: the target has z, and the hand turns "
+      "the tool");
   f.list(
-      "places_m", task.places, {1, TrackingHandFields::kMostPlaces}, "where targets appear",
+      "places_m", task.places, {1, TrackingHandFields::kMostPlaces}, "positions at which targets appear",
       [](Fields& p, Vec3& position) { p.vector3(position, kCoordinate); }, Presence::required);
-  f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "in one trial");
-  f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "the tip is on the target within this distance");
+  f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "number of targets per position in one trial");
+  f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "distance within which the tip is on the target");
   f.number("logged_m", task.logged, {0.0, 1.0, "m", true},
-           "model force and speed are means over the rows within this distance of the target; null: tolerance_m");
+           "distance within which steps count for the mean model force and speed at a target; null: tolerance_m");
   f.number("least_press_N", task.least_press, {0.0, 1000.0, "N"},
-           "force along +z that activates the task and must last while it is held");
-  f.object("gauge", task.gauge, "a display of the spring force; null: the rendered force, every sample of it");
-  f.object("threshold", task.threshold,
-           "what the task checks against least_press_N, apart from what the gauge shows; null: what the gauge shows");
-  f.number("hold_s", task.hold, {0.0, 1000.0, "s", true}, "time on the target, without a break, that removes it");
+           "force along +z that activates the task and is required during the hold");
+  f.object("gauge", task.gauge,
+           "filtered display of the spring force to the subject; null: the unfiltered rendered force is displayed");
+  f.object(
+      "threshold", task.threshold,
+      "force that the task compares with least_press_N, if it differs from the displayed force; null: the displayed "
+      "force");
+  f.number("hold_s", task.hold, {0.0, 1000.0, "s", true}, "uninterrupted time on the target after which it is removed");
   f.number("time_limit_s", task.time_limit, {0.0, 1000.0, "s", true},
-           "from the activation until the target disappears");
+           "time from activation after which the target disappears");
 }
 
 static void describe(Fields& f, Subject& subject) {
-  f.number("reaction_delay_s", subject.reaction_delay, {0.0, 10.0, "s"}, "from the display to the hand (ours)");
-  f.number("bandwidth_Hz", subject.bandwidth, {0.0, 100.0, "Hz"}, "of following the target on the display (ours)");
-  f.number("stiffness_N_per_m", subject.stiffness, {1.0, 1e6, "N/m"}, "of the hand about its intended position (ours)");
-  f.number("damping_N_s_per_m", subject.damping, {0.0, 1e6, "N s/m"}, "of the hand (ours)");
-  f.number("press_N", subject.press, {0.0, 1000.0, "N"}, "force the subject wants to see on the gauge (ours)");
-  f.number("press_bandwidth_Hz", subject.press_bandwidth, {0.0, 100.0, "Hz"}, "of correcting it (ours)");
+  f.number("reaction_delay_s", subject.reaction_delay, {0.0, 10.0, "s"},
+           "reaction time, from the display to the hand (our assumption)");
+  f.number("bandwidth_Hz", subject.bandwidth, {0.0, 100.0, "Hz"},
+           "bandwidth with which the subject follows the target on the display (our assumption)");
+  f.number("stiffness_N_per_m", subject.stiffness, {1.0, 1e6, "N/m"},
+           "stiffness of the hand about its intended position (our assumption)");
+  f.number("damping_N_s_per_m", subject.damping, {0.0, 1e6, "N s/m"}, "damping of the hand (our assumption)");
+  f.number("press_N", subject.press, {0.0, 1000.0, "N"},
+           "force on the gauge that the subject aims at (our assumption)");
+  f.number("press_bandwidth_Hz", subject.press_bandwidth, {0.0, 100.0, "Hz"},
+           "bandwidth with which the subject corrects the force (our assumption)");
   f.number("motor_noise_N", subject.motor_noise, {0.0, 1000.0, "N"},
-           "standard deviation of each force component (ours)");
+           "standard deviation of the noise of each force component (our assumption)");
   f.number("tilt_noise_rad", subject.tilt_noise, {0.0, 1.0, "rad"},
-           "standard deviation of the tilt, where the wrist turns the tool (ours)");
-  f.number("noise_bandwidth_Hz", subject.noise_bandwidth, {0.0, 1e4, "Hz"}, "of both noises, first order (ours)");
+           "standard deviation of the noise of the tilt, for a wrist that turns the tool (our assumption)");
+  f.number("noise_bandwidth_Hz", subject.noise_bandwidth, {0.0, 1e4, "Hz"},
+           "cutoff frequency of the first-order low-pass of both noises (our assumption)");
   f.number("height_per_tilt_m_per_rad", subject.height_per_tilt, {1e-6, 1.0, "m/rad"},
-           "how much the subject expects the tip to rise with the tilt (ours)");
-  f.number("max_speed_m_per_s", subject.max_speed, {0.0, 100.0, "m/s"}, "of the intended position (ours)");
-  f.number("max_turn_rad_per_s", subject.max_turn, {0.0, 100.0, "rad/s"}, "of the wrist (ours)");
-  f.number("max_force_N", subject.max_force, {0.0, 1000.0, "N"}, "the arm yields rather than push harder (ours)");
+           "rise of the tip per change of tilt that the subject expects (our assumption)");
+  f.number("max_speed_m_per_s", subject.max_speed, {0.0, 100.0, "m/s"},
+           "largest speed of the intended position (our assumption)");
+  f.number("max_turn_rad_per_s", subject.max_turn, {0.0, 100.0, "rad/s"},
+           "largest speed of the wrist (our assumption)");
+  f.number("max_force_N", subject.max_force, {0.0, 1000.0, "N"},
+           "largest force of the arm; it yields rather than push harder (our assumption)");
 }
 
 static void describe(Fields& f, TrackingHandFields& hand) {
   f.object("task", hand.task, "targets and rules of a trial", Presence::required);
-  f.objects("subjects", hand.subjects, {1, 1000}, "simulated subjects");
-  f.integer("trials", hand.trials, {1, 1000}, "of each subject, each from the initial state with a seed of its own");
+  f.objects("subjects", hand.subjects, {1, 1000},
+            "simulated subjects; each object holds the parameters of one subject");
+  f.integer("trials", hand.trials, {1, 1000},
+            "number of trials of each subject; each starts from the initial state with its own seed");
 }
 
 void describe(Fields& f, HandFields& hand) {
   f.variant(hand, "hand",
-            {{"none", "nobody: the tool moves by the rendered force alone"},
-             {"force", "a force over time"},
-             {"push", "a force over time along a direction that leans from straight down"},
-             {"impedance", "a spring and damper towards a moving target"},
-             {"drag", "leads the tool over the surface, pressing along its normal"},
-             {"tracking", "a simulated subject who follows targets on a display"},
-             {"mass_spring_damper", "a passive hand fixed to the handle of an impedance device"}});
+            {{"none", "no hand: only the rendered force moves the tool"},
+             {"force", "force as a function of time"},
+             {"push", "force as a function of time, along a direction that leans from straight down"},
+             {"impedance", "spring and damper that pull the handle to a moving target"},
+             {"drag", "hand that leads the tool along a path over the surface and presses along its normal"},
+             {"tracking", "simulated subject that follows targets on a display"},
+             {"mass_spring_damper", "passive mass, spring and damper, fixed to the handle of an impedance device"}});
 }
 
 namespace {

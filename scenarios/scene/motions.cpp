@@ -12,37 +12,47 @@ namespace hapbench {
 
 static void describe(Fields& f, OrientationFields& orientation) {
   constexpr NumberRange kDirection = {-1e9, 1e9, "1"};
-  f.vector3("up", orientation.up, kDirection, "against gravity; default [0,1,0] in planar scenes, else [0,0,1]",
-            Presence::no_default);
-  f.vector3("lean", orientation.lean, kDirection, "where the tool leans at azimuth 0; perpendicular to up");
-  profile(f, "tilt_rad", orientation.tilt, "rad", "alpha: axis = -(cos alpha up + sin alpha lean')");
-  profile(f, "azimuth_rad", orientation.azimuth, "rad", "lean' is lean turned by this about up, right-handed");
-  profile(f, "roll_rad", orientation.roll, "rad",
-          "turn about the tool's axis, right-handed; where all three angles are 0 its x points along lean, its z along "
-          "up");
+  f.vector3("up", orientation.up, kDirection,
+            "direction opposite to gravity; default [0,1,0] in planar scenes, else [0,0,1]", Presence::no_default);
+  f.vector3("lean", orientation.lean, kDirection,
+            "direction in which the tool leans at azimuth 0; perpendicular to up");
+  profile(f, "tilt_rad", orientation.tilt, "rad",
+          "tilt alpha as a function of time: the tool's axis is -(cos alpha up + sin alpha lean')");
+  profile(f, "azimuth_rad", orientation.azimuth, "rad",
+          "azimuth as a function of time: lean' is the direction lean, rotated by this angle about up (right-handed)");
+  profile(
+      f, "roll_rad", orientation.roll, "rad",
+      "roll as a function of time: rotation about the tool's own axis (right-handed); if tilt, azimuth and roll are "
+      "0, the tool's x axis points along lean and its z axis along up");
 }
 
 static void describe(Fields& f, PrescribedPosition& position) {
-  profiles(f, {"x_m", "y_m", "z_m"}, position.coordinates, "m", "tip centre over time", Presence::required);
+  profiles(f, {"x_m", "y_m", "z_m"}, position.coordinates, "m", "coordinate of the tip centre, as a function of time",
+           Presence::required);
 }
 
 static void describe(Fields& f, RecordedPosition& position) {
   f.file(
       position.file, {FileContent::Kind::stroke},
-      "CSV with header time_s,px_m,py_m,pz_m, then axis_x,axis_y,axis_z or qw,qx,qy,qz, then perhaps a measured force "
-      "mfx_N,mfy_N,mfz_N (\"hapbench import stroke\" makes one); relative to the scenario file");
+      "stroke as CSV with the header time_s,px_m,py_m,pz_m, then axis_x,axis_y,axis_z or qw,qx,qy,qz, then optionally "
+      "a measured force mfx_N,mfy_N,mfz_N; \"hapbench import stroke\" writes such a file; path relative to the "
+      "scenario file");
 }
 
 static void describe(Fields& f, PositionFields& position) {
   f.variant(position, "position",
-            {{"free", "forces move the tool"},
-             {"prescribed", "the tip centre follows functions of time"},
-             {"file", "plays a recorded stroke back"}});
+            {{"free", "the forces move the tool"},
+             {"prescribed", "the tip centre follows given functions of time"},
+             {"file", "the tool follows a recorded stroke"}});
 }
 
 void describe(Fields& f, MotionFields& motion) {
-  f.object_if_any("orientation", motion.orientation, "scripted orientation; not with a recorded motion");
-  f.value("position", motion.position, "free: integrated; prescribed or file: forces are computed, not integrated");
+  f.object_if_any("orientation", motion.orientation,
+                  "scripted orientation of the tool; not allowed with a recorded motion");
+  f.value(
+      "position", motion.position,
+      "free: the integrator computes the position; prescribed or file: the position is given, and forces are computed "
+      "but do not move the tool");
   if (!f.reads() || !std::holds_alternative<RecordedPosition>(motion.position)) return;
   // A recorded motion includes the orientation.
   if (f.given("orientation")) {

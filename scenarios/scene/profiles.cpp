@@ -30,13 +30,13 @@ void check_times(const Profile::Waypoints& waypoints, const std::string& at) {
 
 void describe_shape(Fields& f, Profile::Ramp& ramp, NumberRange range) {
   f.number("start", ramp.start, range, "value at t = 0", Presence::required);
-  f.number("rate_per_s", ramp.rate_per_s, range, "slope, per second", Presence::required);
+  f.number("rate_per_s", ramp.rate_per_s, range, "slope, in units of the value per second", Presence::required);
 }
 
 void describe_shape(Fields& f, Profile::Sine& sine, NumberRange range) {
-  f.number("mean", sine.mean, range, "m of m + a sin(2 pi t / T + phase)", Presence::required);
-  f.number("amplitude", sine.amplitude, range, "a", Presence::required);
-  f.number("period_s", sine.period_s, {0.0, kMaxMagnitude, "s", true}, "T", Presence::required);
+  f.number("mean", sine.mean, range, "mean value m of m + a sin(2 pi t / T + phase)", Presence::required);
+  f.number("amplitude", sine.amplitude, range, "amplitude a", Presence::required);
+  f.number("period_s", sine.period_s, {0.0, kMaxMagnitude, "s", true}, "period T", Presence::required);
   f.number("phase_rad", sine.phase_rad, {-kMaxMagnitude, kMaxMagnitude, "rad"}, "phase at t = 0");
 }
 
@@ -44,10 +44,11 @@ void describe_shape(Fields& f, Profile::Waypoints& waypoints, NumberRange range)
   const auto point = [range](Fields& p, std::pair<double, double>& value) {
     p.pair("a pair [time in s, value]", value.first, {-kMaxMagnitude, kMaxMagnitude, "s"}, value.second, range);
   };
-  f.list("points", waypoints.points, {1, 1'000'000}, "[t, v] pairs, t increasing; held constant outside", point,
-         Presence::required);
+  f.list("points", waypoints.points, {1, 1'000'000},
+         "pairs [time in s, value] with increasing times; before the first and after the last, the value is constant",
+         point, Presence::required);
   f.choice("interpolation", waypoints.interpolation, {"linear", "cosine"}, "interpolation",
-           "between the points: straight, or cosine (at rest in each point)");
+           "between the points: linear, or cosine (zero slope at each point)");
   if (f.reads()) check_times(waypoints, f.at());
 }
 
@@ -72,9 +73,9 @@ void profile(Fields& f, std::string_view name, Profile& profile, const char* uni
         },
         [&](Fields& v) {
           v.variant(moving, "profile",
-                    {{"ramp", "a value that grows at a constant rate"},
-                     {"sine", "an oscillation about a value"},
-                     {"waypoints", "values at times, joined by straight lines or cosines"}},
+                    {{"ramp", "value that grows at a constant rate"},
+                     {"sine", "sinusoidal oscillation about a mean value"},
+                     {"waypoints", "values at given times, with linear or cosine interpolation"}},
                     Untyped::refused, [range](Fields& s, auto& shape) { describe_shape(s, shape, range); });
           if (!v.reads()) return;
           std::visit([&](auto& shape) { profile = Profile(Profile::Shape(std::move(shape))); }, moving);

@@ -30,31 +30,33 @@ void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vecto
   const std::string depth_model = json.value("rendering", Json::object()).value("depth_model", fixed.depth_model);
   if (!std::holds_alternative<SpringsEnvironment>(scenario.environment) && depth_model != fixed.depth_model) {
     warnings.push_back({kNoEffect, "/rendering/depth_model",
-                        fmt::format("\"{}\" is not used: algorithm \"{}\" is defined with \"{}\"", depth_model,
+                        fmt::format("\"{}\" is not used: algorithm \"{}\" requires \"{}\"", depth_model,
                                     fixed.algorithm, fixed.depth_model)});
   }
   if (has_external_contacts(scenario) && !entry.reported_depth_model.empty()) {
     warnings.push_back({kNoEffect, "/rendering/contact_source",
-                        fmt::format("not used: algorithm \"{}\" finds its points itself", fixed.algorithm)});
+                        fmt::format("not used: algorithm \"{}\" finds its contacts itself", fixed.algorithm)});
   } else if (has_external_contacts(scenario) && !entry.fixed_depth_model.empty()) {
     warnings.push_back(
         {"other_depths", "/rendering/contact_source",
-         fmt::format("algorithm \"{}\" is defined with depth model \"{}\"; here it has the depths of \"{}\"",
+         fmt::format("algorithm \"{}\" is defined with depth model \"{}\", but here it receives the depths of \"{}\"",
                      fixed.algorithm, entry.fixed_depth_model, fixed.contact_source)});
   }
   const Json::json_pointer reduction("/rendering/reduction");
   if (!fixed.reduction && json.contains(reduction) && !json.at(reduction).is_null()) {
     warnings.push_back({kNoEffect, reduction.to_string(),
-                        fmt::format("not used: algorithm \"{}\" is defined without", fixed.algorithm)});
+                        fmt::format("not used: algorithm \"{}\" is defined without a reduction", fixed.algorithm)});
   }
 }
 
 /// Warns about an integrator other than the default if the device has no virtual mass to integrate.
 void warn_of_idle_integrator(const Scenario& scenario, std::vector<Warning>& warnings) {
   if (!handle_moves_tool(scenario.device) || scenario.integrator.type == IntegratorFields{}.type) return;
-  warnings.push_back({kNoEffect, "/integrator/type",
-                      fmt::format("\"{}\" is not used: device \"impedance\" moves the tool, without a virtual mass",
-                                  scenario.integrator.type->info.name)});
+  warnings.push_back(
+      {kNoEffect, "/integrator/type",
+       fmt::format(
+           "\"{}\" is not used: with device \"impedance\" the handle moves the tool, and no virtual mass is integrated",
+           scenario.integrator.type->info.name)});
 }
 
 /// Warns about an admittance device if the hand does not feel the handle: then servo and mechanics have no
@@ -73,8 +75,9 @@ void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warning
   warnings.push_back(
       {kNoEffect, "/device",
        fmt::format(
-           "servo and mechanics (lag, delay, structure) move the handle alone and have no effect on the tool and "
-           "its force: hand.type \"{}\" does not feel the handle; \"impedance\", \"drag\" and \"tracking\" do",
+           "servo and mechanics (lag, delay, structure) move only the handle; with hand.type \"{}\" they have no "
+           "effect on the tool and its force, because this hand does not react to the handle (\"impedance\", \"drag\" "
+           "and \"tracking\" do)",
            hand)});
 }
 
@@ -133,9 +136,10 @@ void warn_of_stiff_bristle(const Scenario& scenario, std::vector<Warning>& warni
   if (bristle.is_stable()) return;
   warnings.push_back(
       {"stiff_bristle", "/rendering/friction",
-       fmt::format("a tool that sticks will chatter: a bristle of {:.4g} N/m is too stiff for steps of {:.4g} s and a "
-                   "mass of {:.4g} kg",
-                   bristle.K, bristle.dt, r.mass)});
+       fmt::format(
+           "a sticking tool will chatter: a bristle of {:.4g} N/m is too stiff for a time step of {:.4g} s and a mass "
+           "of {:.4g} kg",
+           bristle.K, bristle.dt, r.mass)});
 }
 
 /// Returns a warning about the first script of waypoints within `json` whose last segment begins after the end of

@@ -18,7 +18,9 @@ namespace {
 ValueGuide full_scenario(Json* definitions) {
   Scenario defaults;
   ValueGuide guide = guide_to([&defaults](Fields& f) { f.object(defaults); }, definitions);
-  Json schema = {{"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
+  Json schema = {
+      {"description",
+       "All values have SI units; the unit is part of a field's name. A profile is a scalar function of time."}};
   schema.update(guide.schema);
   guide.schema = std::move(schema);
   return guide;

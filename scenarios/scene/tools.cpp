@@ -18,10 +18,10 @@ constexpr std::size_t kMaxProfilePoints = 1000;  // of a tool's outline; the cos
 
 /// Types of tools, in the order of the variant ToolFields.
 constexpr TypeName kToolTypes[] = {
-    {"cylinder", "a drill's stylus with a flat or a round tip"},
-    {"revolved", "a solid of revolution, given by its profile"},
-    {"bur", "a dental or bone bur by the name of its shape, with its shank"},
-    {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},
+    {"cylinder", "cylinder with a flat or a round tip, like a drill's stylus"},
+    {"revolved", "solid of revolution, given by its profile"},
+    {"bur", "dental or bone bur with its shank, given by the name of its shape"},
+    {"mesh", "surface from an OBJ, PLY, STL or OFF file"},
 };
 
 /// Calls `make`, which constructs a shape. Converts a std::invalid_argument into an InputError at the JSON
@@ -46,49 +46,56 @@ Revolved revolved_of(const BurFields& bur) {
 
 static void describe(Fields& f, CylinderFields& tool) {
   f.number("diameter_m", tool.diameter, kLength, "diameter of the cylinder; default 0.001", Presence::no_default);
-  f.number("length_m", tool.length, kLength, "from the tip plane to the bottom; default 0.005 in hole_2d, else 0.01",
-           Presence::no_default);
-  f.choice("tip", tool.tip, {"flat", "round"}, "tip", "round adds a half ball; default round in hole_2d, else flat",
-           Presence::no_default);
+  f.number("length_m", tool.length, kLength,
+           "length from the tip plane to the far end; default 0.005 in hole_2d, else 0.01", Presence::no_default);
+  f.choice("tip", tool.tip, {"flat", "round"}, "tip",
+           "flat, or round with a half ball added; default round in hole_2d, else flat", Presence::no_default);
 }
 
 static void describe(Fields& f, RevolvedFields& tool) {
   f.list(
       "profile_m", tool.profile, {2, kMaxProfilePoints},
-      "corners [s, rho] of the outline beside the axis, from the far end to the tip: s <= 0 along the axis from the "
-      "tip centre, rho from the axis",
+      "corners [s, rho] of the outline, from the far end to the tip: s <= 0 is the position along the axis from the "
+      "tip centre, rho the distance from the axis",
       [](Fields& p, ProfilePoint& point) {
-        p.pair("two numbers [s, rho]: along the axis from the tip centre, and from the axis [m]", point.s,
-               {-1000.0, 1000.0, "m"}, point.rho, {0.0, 1000.0, "m"});
+        p.pair("two numbers [s, rho]: position along the axis from the tip centre, and distance from the axis [m]",
+               point.s, {-1000.0, 1000.0, "m"}, point.rho, {0.0, 1000.0, "m"});
       },
       Presence::required);
-  f.choice("tip", tool.tip, {"flat", "round"}, "tip", "round adds a half ball beyond the last corner");
+  f.choice("tip", tool.tip, {"flat", "round"}, "tip", "flat, or round with a half ball added beyond the last corner");
   if (f.reads()) {
-    check_shape(f.at() + "/profile_m", "an outline from the far end to the tip that does not meet itself",
+    check_shape(f.at() + "/profile_m", "an outline from the far end to the tip that does not intersect itself",
                 [&tool] { Revolved(tool.profile, tool.tip); });
   }
 }
 
 static void describe(Fields& f, BurFields& tool) {
   f.choice("family", tool.family, {"ball", "cylinder", "round_cylinder", "tapered", "inverted_cone", "pear", "flame"},
-           "family", "shape of the head", Presence::required);
-  f.number("diameter_m", tool.diameter, kLength, "of the head, where it is widest", Presence::required);
-  f.number("length_m", tool.length, kLength, "of the head, its round end included; null: its diameter");
-  f.number("shank_diameter_m", tool.shank_diameter, kLength,
-           "of the shank, or neck, behind the head, which is ten times as long; null: 0.6 of the head's");
+           "family", "shape of the bur's head", Presence::required);
+  f.number("diameter_m", tool.diameter, kLength, "largest diameter of the head", Presence::required);
+  f.number("length_m", tool.length, kLength,
+           "length of the head, including its round end; null: equal to its diameter");
+  f.number(
+      "shank_diameter_m", tool.shank_diameter, kLength,
+      "diameter of the shank (neck) behind the head; the shank is ten times as long as its diameter; null: 0.6 of the "
+      "head's diameter");
   if (f.reads()) check_shape(f.at(), "lengths that suit the family", [&tool] { revolved_of(tool); });
 }
 
 static void describe(Fields& f, MeshToolFields& tool) {
   f.file(tool.file, {FileContent::Kind::mesh, {tool.scale, {}}},
-         "closed surface as OBJ, PLY, STL or OFF, its tip where tip_m and tip_axis say; relative to the scenario file");
-  f.number("scale", tool.scale, {0.0, 1e6, "m", true}, "length of the file's unit: 0.001 for millimetres",
-           Presence::required);
-  f.vector3("tip_m", tool.tip, {-1000.0, 1000.0, "m"}, "place in the file, scaled, that is the tip centre");
-  f.vector3("tip_axis", tool.tip_axis, {-1e9, 1e9, "1"},
-            "where the tip points in the file; the least turn takes it to -z, where the tool's axis points unturned");
+         "closed surface as OBJ, PLY, STL or OFF; tip_m and tip_axis give the position and direction of its tip; path "
+         "relative to the scenario file");
+  f.number("scale", tool.scale, {0.0, 1e6, "m", true},
+           "length of one unit of the file in metres: 0.001 for millimetres", Presence::required);
+  f.vector3("tip_m", tool.tip, {-1000.0, 1000.0, "m"},
+            "position of the tip centre in the file's coordinates, after scaling");
+  f.vector3(
+      "tip_axis", tool.tip_axis, {-1e9, 1e9, "1"},
+      "direction of the tip in the file's coordinates; the smallest rotation maps it to -z, the tool's axis in its "
+      "reference orientation");
   f.number("grid_m", tool.grid, kLength,
-           "spacing of the grid that holds the signed distances; null: such that it has about 128^3 nodes");
+           "spacing of the grid that stores the signed distances; null: chosen for about 128^3 nodes");
   if (f.reads()) require_direction(tool.tip_axis, f.at() + "/tip_axis");
 }
 

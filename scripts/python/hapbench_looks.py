@@ -60,12 +60,12 @@ SERIES = (
 # Class of a run -> its name, colour and hatching; light to dark, so that they can be told apart in grey.
 CLASSES = {
     "stable": ("stable", "#CFE6F5", ""),
-    "dying_out": ("dying out", "#E9F3FA", "/////"),
+    "dying_out": ("decaying", "#E9F3FA", "/////"),
     "vibrating": ("vibrating", "#E0A030", ""),
     "thrown_out": ("thrown out", "#B05A1E", ""),
     "diverged": ("diverged", "#7A2E00", ""),
     # Classes of runs that tell nothing of stability, and outcomes of a sweep's runs.
-    "went_through": ("went through", "#8E7CC3", "xxxxx"),
+    "went_through": ("passed through", "#8E7CC3", "xxxxx"),
     "stuck": ("stuck", "#5B7F95", "....."),
     "lost_contact": ("lost contact", "#B05A1E", "\\\\\\\\\\"),
     "not_dragged": ("not dragged", "#C9B458", "-----"),

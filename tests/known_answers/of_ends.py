@@ -325,7 +325,7 @@ def divergence(bench, run):
         ("unit", "1", "of K", "N/m"),
         (
             "says",
-            f"K is {share:.3g} times the edge of the stable loop",
+            f"K is {share:.3g} times the linear stability limit",
             "as if stable",
             "K is 0.5 times",
         ),
@@ -347,7 +347,7 @@ def divergence(bench, run):
         EXACT,
         ("what happened alone", ["diverged"]),
     )
-    for name, words in (("number", "K over the edge"), ("try", "a shorter time.step_s")):
+    for name, words in (("number", "K divided by the linear limit"), ("try", "a shorter time.step_s")):
         bench.add(
             f"run --json: diagnosis.{name}",
             words in edge[name],

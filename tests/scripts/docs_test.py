@@ -220,7 +220,7 @@ class Generated(unittest.TestCase):
     def test_measured_times_are_no_news(self):
         old = (
             "    law     force   us/\n                   step\n    ------  -----  ----\n    mean     1.25  0.25\n\n"
-            "    99 % of the steps take at most 0.24 us (mean) to 4.2 us (proxy)"
+            "    99 % of the time steps are computed within 0.24 us (mean) to 4.2 us (proxy)"
         )
         slower = (
             old.replace("0.25", "10.5")

@@ -163,8 +163,8 @@ class Identify(unittest.TestCase):
         self.assertIsNone(told["coulomb_N"]["value"])
         self.assertRegex(
             warned,
-            r"coulomb_N: the log cannot tell it: moved one way only \(at rest for \d+ % of the "
-            r"log, 1 strokes one way and 0",
+            r"coulomb_N cannot be identified from this log: the handle moved in one direction only "
+            r"\(at rest for \d+ % of the log, 1 strokes in one direction and 0",
         )
         self.assertNotIn("coulomb_N", json.loads((self.root / "device.json").read_text()))
         self.assertAlmostEqual(told["handle_mass_kg"]["value"] / M, 1.0, delta=0.02)
@@ -237,7 +237,7 @@ class Design(unittest.TestCase):
         )
         warned = designed("chirp,travel=0.08,mass=0.1,force=2").stderr
         self.assertIn(
-            "the travel of 0.08 m limits the force to 0.72 N of 2 N: the log tells dry friction up to 0.432 N",
+            "the travel of 0.08 m limits the force to 0.72 N instead of 2 N, so that dry friction can be identified up to 0.432 N",
             warned,
         )
         asked = warned.split("force=")[1].split()[0]

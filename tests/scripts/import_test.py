@@ -145,7 +145,7 @@ class Recordings(Given):
         even = "".join(f"{1999 * i},{1e-5 * i},0,0\n" for i in range(5))  # [us]
         self.assertEqual(
             self.refusal(even),
-            "rec.csv: got intervals of 1999 s in the median; allowed: 0.5 s (--set max_gap=...); are times "
+            "rec.csv: got a median interval of 1999 s; allowed: 0.5 s (--set max_gap=...); are times "
             "in other units? (--scale time=1e-06)",
         )
         self.assertEqual(self.refusal(even, scale="time=1e-6"), "")

@@ -126,7 +126,7 @@ class Plot(Given):
         self.assert_shows(
             folder / "plot.svg",
             "diverges",
-            "went through",
+            "passed through",
             "no value",
             *(CLASSES[name][1].lower() for name in ("went_through", "diverges")),
         )
@@ -214,8 +214,8 @@ class Plot(Given):
         )
         self.assert_plot_shows(
             over,
-            "limit, theory",
-            "limit, bisection",
+            "theoretical limit",
+            "simulated limit",
             "damping [N s/m]",
             "stiffness K [N/m]",
             "diverged",
@@ -234,7 +234,7 @@ class Plot(Given):
             "--resolution",
             0.1,
         )
-        self.assert_plot_shows(limit, "limit, bisection", "stiffness K [N/m]", "mean")
+        self.assert_plot_shows(limit, "simulated limit", "stiffness K [N/m]", "mean")
         # Without a linear edge no closed form of it is drawn.
         rubbed = made(
             "rubbed",
@@ -248,7 +248,7 @@ class Plot(Given):
             "device.coulomb_N=0.1",
         )
         plotted(rubbed)
-        for text in ("limit, theory", "stable (Gil, Hulin)", "exact, undamped handle"):
+        for text in ("theoretical limit", "stable (Gil, Hulin)", "exact, undamped handle"):
             self.assertNotIn(text, (rubbed / "plot.svg").read_text())
         for words, said in (
             ((over, limit), "one such folder alone"),
@@ -276,7 +276,7 @@ class Plot(Given):
             "formal order 1",
             "time step [s]",
             "relative error",
-            "processor time of the run [s]",
+            "processor time per run [s]",
         )
         made("converge", "converge", "springs_oscillation", "--metric", "inside_max_m")
         self.assertIn("nothing to draw: no level has an error above 0", plotted(folder, expected=2))
@@ -294,9 +294,9 @@ class Plot(Given):
         self.assert_plot_shows(
             folder,
             "stiffness [N/m]",
-            "deepest inside [mm]",
+            "largest depth inside [mm]",
             "force above 30 Hz [N rms]",
-            "the choice",
+            "recommended",
             "not feasible",
             "mean",
         )
@@ -434,7 +434,7 @@ class Page(Given):
             "force_max_N",
         )
         said = re.findall(
-            r"<code>force_max_N</code>: (\w+) has (\S+) ± (\S+) more than (\w+) over 4 seeds, which (\w+)",
+            r"<code>force_max_N</code>: (\w+) is (\S+) ± (\S+) above (\w+) over 4 seeds: (\w+)",
             re.search(r'<section id="seeds".*?</section>', self.page(out), re.S)[0],
         )
         self.assertEqual(len(said), 2)
@@ -451,7 +451,7 @@ class Page(Given):
             low, high = stats.t.interval(0.95, 3, more.mean(), stats.sem(more))
             self.assertAlmostEqual(float(mean) / more.mean(), 1, delta=0.006)
             self.assertAlmostEqual(float(within) / (0.5 * (high - low)), 1, delta=0.06)
-            self.assertEqual(word, "chance" if low > 0 else "may")
+            self.assertEqual(word, "significant" if low > 0 else "not")
 
     def test_the_commands_repeat_the_run(self):
         command = re.search(

@@ -22,12 +22,12 @@ constexpr double kErrorRatio = 2.0;
 LevelSweep spacing_levels(const LoadedScenario& loaded, bool has_points) {
   const auto distance = point_distance(loaded);
   if (!distance)
-    throw InputError(has_points ? "no field sets the distance of the points; only a finer file could tell"
-                                : "springs have no points");
+    throw InputError(has_points ? "point spacing not refined, because no field sets it (a finer file would be needed)"
+                                : "point spacing not refined, because springs have no points");
   LevelSweep levels = level_sweep(loaded, distance->path, kErrorLevels, kErrorRatio);
   if (!distance->is_given) {
-    levels.no_order = "the mesh's own points are not as far apart everywhere as those of the other levels";
-    levels.axis.values.front() = "the mesh's own";
+    levels.no_order = "the spacing of the mesh's vertices is not uniform, unlike the spacing at the other levels";
+    levels.axis.values.front() = "the mesh's vertices";
   }
   return levels;
 }

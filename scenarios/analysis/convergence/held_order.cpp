@@ -58,12 +58,12 @@ std::string held_text(std::span<const NumberWithError> numbers, std::span<const 
   std::vector<std::size_t> without_error;
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i].value && !numbers[i].error) without_error.push_back(i);
-  const char* prefix = groups.size() == 1                                      ? "no order holds: "
-                       : groups.size() == grouped && indistinguishable.empty() ? "the order holds: "
-                                                                               : "the order holds in part: ";
-  std::string text = grouped < 2 ? "there is nothing to compare" : fmt::format("{}{}", prefix, fmt::join(parts, " < "));
-  if (!indistinguishable.empty()) text += "; too uncertain for a place: " + joined(indistinguishable, names, ", ");
-  if (!without_error.empty()) text += "; no error is known of " + joined(without_error, names, ", ");
+  const char* prefix = groups.size() == 1                                      ? "no significant order: "
+                       : groups.size() == grouped && indistinguishable.empty() ? "significant order: "
+                                                                               : "partly significant order: ";
+  std::string text = grouped < 2 ? "nothing to compare" : fmt::format("{}{}", prefix, fmt::join(parts, " < "));
+  if (!indistinguishable.empty()) text += "; error too large to rank: " + joined(indistinguishable, names, ", ");
+  if (!without_error.empty()) text += "; no error estimate for: " + joined(without_error, names, ", ");
   return text;
 }
 

@@ -33,9 +33,10 @@ double order_in_step(const Scenario& scenario) {
 std::string noise_reason(const Scenario& scenario) {
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
   if (std::holds_alternative<TrackingHandFields>(scenario.hand))
-    return "the noise of the hand is drawn anew in every step";
+    return "the noise of the hand is drawn anew at every step, so that a finer step is another signal";
   const bool senses = admittance != nullptr && admittance->sensor.noise > 0.0;
-  return senses ? "the noise of the force sensor is drawn anew in every step" : "";
+  return senses ? "the noise of the force sensor is drawn anew at every step, so that a finer step is another signal"
+                : "";
 }
 
 /// Returns the levels of the time step. Throws InputError if the ratio is not an integer.

@@ -21,12 +21,12 @@ constexpr std::size_t kMinLevels = 3;
 /// Returns why fewer than three levels count. `first`: index of the first level that counts.
 std::string too_few_reason(std::span<const LevelResult> levels, std::size_t first) {
   const std::size_t count = levels.size() - first;
-  if (first == 0) return fmt::format("{} levels are fewer than three", count);
+  if (first == 0) return fmt::format("three levels are needed, got {}", count);
   const LevelResult& last = levels[first - 1];
-  const std::string why =
-      fmt::format(fmt::runtime(last.result ? "ends with {}" : "has no value of the metric ({})"), last.outcome);
+  const std::string why = fmt::format(
+      fmt::runtime(last.result ? "has the outcome {}" : "has no value of the metric (outcome {})"), last.outcome);
   if (count == 0) return fmt::format("the finest run, at {}, {}", last.setting, why);
-  return fmt::format("the run at {} {}, which leaves {} levels; an order takes three", last.setting, why, count);
+  return fmt::format("the run at {} {}, which leaves {} levels, and an order needs three", last.setting, why, count);
 }
 
 /// Returns a clause about the first contact count that differs between the levels; empty if none differs.
@@ -35,7 +35,7 @@ std::string switching_reason(std::span<const LevelResult> last) {
     const auto& [name, coarse] = last.front().contacts[i];
     for (const LevelResult& level : last.subspan(1)) {
       if (level.contacts[i].second == coarse) continue;
-      return fmt::format("contacts switch between the last levels ({} is {:.10g} at {}, {:.10g} at {})", name, coarse,
+      return fmt::format("contacts change between the last levels ({} is {:.10g} at {}, {:.10g} at {})", name, coarse,
                          last.front().setting, level.contacts[i].second, level.setting);
     }
   }
@@ -48,11 +48,11 @@ std::string incredible_reason(std::span<const double> f, std::span<const std::op
   const std::size_t last = f.size() - 1, from = last >= 3 ? last - 3 : 0;
   for (std::size_t i = from + 2; i <= last; ++i) {
     const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];
-    if (coarse * fine < 0.0) return "the differences between the last levels change their sign";
+    if (coarse * fine < 0.0) return "the differences between the last levels change sign";
     if (!orders[i]) return "some of the last levels differ by rounding only";
     if (*orders[i] <= 0.0) return fmt::format("the differences do not shrink (order {:.2g})", *orders[i]);
     if (*orders[i] > most)
-      return fmt::format("the order {:.3g} is not credible: more than twice the formal one, {:g}", *orders[i],
+      return fmt::format("the order {:.3g} is not credible: it is more than twice the formal order {:g}", *orders[i],
                          most / 2);
   }
   return "";
@@ -109,7 +109,7 @@ std::string no_order_reason(const LevelSweep& sweep, std::span<const LevelResult
                             std::span<const std::optional<double>> orders) {
   const auto is_first = [&](const LevelResult& level) { return level.state_hash == levels.front().state_hash; };
   if (levels.size() > 1 && levels.back().result && std::ranges::all_of(levels, is_first))
-    return fmt::format("{} has no effect here: all runs are the same, bit for bit", sweep.axis.path);
+    return fmt::format("{} has no effect here: the runs of all levels are identical", sweep.axis.path);
   if (!sweep.no_order.empty()) return sweep.no_order;
   const std::vector<double>& f = counted.f;
   if (f.size() < kMinLevels) return too_few_reason(levels, counted.first);

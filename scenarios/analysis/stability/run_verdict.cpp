@@ -16,22 +16,25 @@ RunVerdictText of_outcome(Outcome outcome) {
 std::span<const RunVerdictText> run_verdict_texts() noexcept {
   // In the order of RunVerdict.
   static const RunVerdictText kTexts[] = {
-      {"stable", "at rest, died out or creeping", "all else: at rest, died out, creeping"},
-      {"dying_out", "still oscillates, but comes to rest if the run goes on",
-       "oscillates as much, but loses a tenth of its amplitude from the second quarter to the third and again to the "
-       "last"},
-      {"vibrating", "oscillates and does not decay",
-       "does not decay: oscillates in the last quarter with at least 1 % of the first quarter's amplitude"},
-      {"diverged", "left its bounds, or oscillates with a growing amplitude",
-       "left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next"},
+      {"stable", "at rest, decayed to rest, or creeping slowly",
+       "none of the other classes: at rest, decayed to rest, or creeping slowly"},
+      {"dying_out", "decaying: still oscillates at the end, but comes to rest if the run goes on",
+       "decaying: oscillates like \"vibrating\", but the amplitude falls by at least a tenth from the second quarter "
+       "to the third and again to the last"},
+      {"vibrating", "oscillates without decay",
+       "oscillates without decay: the amplitude in the last quarter is at least 1 % of the amplitude in the first "
+       "quarter"},
+      {"diverged", "left its bounds, or oscillates with growing amplitude",
+       "left its bounds, or oscillates with an amplitude that grows by at least 1 % from each quarter to the next"},
       {"thrown_out",
-       "the tool left the hole, or ended without contact beyond the environment's box by more than it reaches"},
-      {"no_contact", "the tool touched nothing in any row"},
+       "the tool left the hole, or ended without contact further outside the environment's bounding box than its own "
+       "extent"},
+      {"no_contact", "the tool never touched the environment"},
       of_outcome(Outcome::lost_contact),
       of_outcome(Outcome::went_through),
       of_outcome(Outcome::not_dragged),
       of_outcome(Outcome::stuck),
-      {"beyond_bound", "stable but for a metric that a --bound does not allow"}};
+      {"beyond_bound", "stable, but a metric violates a --bound"}};
   return kTexts;
 }
 

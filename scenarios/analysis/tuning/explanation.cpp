@@ -22,12 +22,14 @@ std::string then_text(const TuneTrial& trial) {
 /// Returns a clause about the relaxed value of a limit with which the trial keeps it, including the metric's error.
 std::string relaxed(const Trials& trials, const TuneTrial& trial, const std::string& name) {
   const auto worst = value_in(trial.worst, name);
-  if (!worst) return fmt::format("drop the limit on {}, which has no value here", name);
+  if (!worst) return fmt::format("drop the bound on {}, which has no value here", name);
   const double more = value_in(trials.error(), name).value_or(0.0);
   const auto requested = trials.question().limits.find(name);
   const MetricBound& bound = requested == trials.question().limits.end() ? trials.limit_on(name) : requested->second;
-  if (bound.max) return fmt::format("{} <= {:.3g} in place of {:.3g}", name, (*worst + more) * 1.001, *bound.max);
-  return fmt::format("{} >= {:.3g} in place of {:.3g}", name, (*worst - more) * 0.999, bound.min.value_or(0.0));
+  if (bound.max)
+    return fmt::format("relax {} to at most {:.3g} (now {:.3g})", name, (*worst + more) * 1.001, *bound.max);
+  return fmt::format("relax {} to at least {:.3g} (now {:.3g})", name, (*worst - more) * 0.999,
+                     bound.min.value_or(0.0));
 }
 
 /// Returns for each limit the smallest relaxation of this limit alone with which a trial keeps all limits; if there is
@@ -63,8 +65,8 @@ void explain(Trials& trials, TunedLaw& law) {
   law.binding = trial.binding;
   law.why = trial.why;
   if (nearest == nullptr) {
-    law.relax = law.binding == "margin" ? "a smaller --margin; else" : "no limit is to blame:";
-    law.relax += " a gentler hand, a wider tool or another device, or other runs with --family";
+    law.relax = law.binding == "margin" ? "a smaller --margin may help; otherwise try" : "no bound is responsible; try";
+    law.relax += " a gentler hand, a wider tool, another device, or other runs with --family";
     return;
   }
   if (!trials.requires_low_vibration()) trials.set_error(known_errors(trials, trial));
@@ -72,7 +74,8 @@ void explain(Trials& trials, TunedLaw& law) {
     law.why += fmt::format(" +- {:.2g}", *error);
   law.relax = relaxations(trials, trial);
   if (trials.requires_low_vibration())
-    law.relax += "; a limit of your own, such as --bound force_rms_above_30Hz_N=0.05, takes the place of what is quiet";
+    law.relax +=
+        "; a bound of your own, such as --bound force_rms_above_30Hz_N=0.05, replaces the rules of low vibration";
 }
 
 }  // namespace hapbench

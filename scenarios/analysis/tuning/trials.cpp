@@ -74,7 +74,7 @@ Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
   // Without limits of the user, use the thresholds of the diagnosis.
   if (requires_low_vibration_)
     for (const Diagnosed& rule : diagnosis_rules(requires_low_vibration_)) limits_[rule.rule].max = rule.threshold;
-  end_.fail("range", "the end of the range that was searched");
+  end_.fail("range", "the end of the search range");
 }
 
 // ---- The question
@@ -142,11 +142,11 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
   const double lambda = lambda_of(trial), K = trial.stiffness;
   std::vector<std::string> why(count);
   in_parallel(count, [&](std::size_t i) {
+    // Check the linear loop in contact, then run.
     const SceneVariant& variant = variants_[i % variants_.size()];
     const CheckedScenario scene = checked(load(trial.setting, K, variant, more(i)));
-    // Check the linear loop in contact, then run.
     if (unstable_loop(scene.scenario(), lambda, K, scene.scenario().rendering.stiffness)) {
-      why[i] = "unstable in contact" + with(variant);
+      why[i] = "the contact loop is unstable" + with(variant);
       return;
     }
     const RunStability run = stability_of(scene, shell_, rule_of(scene.scenario()));
@@ -204,7 +204,7 @@ bool Trials::judge_loop(TuneTrial& trial, const SceneVariant& variant, double la
   const double K = trial.stiffness;
   const auto hand = unstable_loop(load(trial.setting, K, variant).scenario, lambda, K, question_.margin * K);
   if (!hand) return true;
-  trial.fail("margin", fmt::format("below {:g} K the loop in contact is unstable with {}", question_.margin,
+  trial.fail("margin", fmt::format("between K and {:g} K the contact loop is unstable with {}", question_.margin,
                                    hand->empty() ? own_hand : *hand));
   return false;
 }
@@ -226,7 +226,7 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
     }
     trial.settled = true;
     if (!is_stable(at_GK.verdict))
-      return trial.fail("margin", fmt::format("at {:g} K {}", question_.margin, verdict_with(at_GK, variants_[i])));
+      return trial.fail("margin", fmt::format("at {:g} K: {}", question_.margin, verdict_with(at_GK, variants_[i])));
     // For springs in permanent contact, judge() checked the loop before the runs.
     if (!springs_lambda_ && !judge_loop(trial, variants_[i], at_K.settled.lambda_max, variants_[i].name)) return;
   }

@@ -23,7 +23,7 @@ constexpr double kStiffnessReduction = 1.25;  // K is divided by this if a longe
 bool refute(Trials& trials, const TuneTrial& choice, double K, const std::string& why) {
   trials.note_unstable(K);
   trials.set_cap(K / trials.question().margin * (1.0 - kTuneResolution), "margin",
-                 fmt::format("at {:.4g} N/m{} {}", K, setting_text(choice.setting), why));
+                 fmt::format("at {:.4g} N/m{}: {}", K, setting_text(choice.setting), why));
   return true;
 }
 
@@ -51,7 +51,7 @@ bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law)
   trials.count_runs(law.edge.runs.size());
   const double G_K = trials.question().margin * choice.stiffness;
   // Reject a choice without a contiguous stable interval, or with a limit below G K.
-  if (!law.edge.end.value) return refute(trials, choice, G_K, "stable values are scattered");
+  if (!law.edge.end.value) return refute(trials, choice, G_K, "stable and unstable values alternate");
   if (!law.edge.end.beyond) return false;
   const auto& [K, verdict] = *law.edge.end.beyond;
   if (K < G_K) return refute(trials, choice, K, std::string(run_verdict_name(verdict)));
@@ -69,7 +69,7 @@ bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
   const auto failing = trials.first_failing(choice, trials.variant_count(), twice);
   if (!failing) return false;
   trials.set_cap(choice.stiffness / kStiffnessReduction, "settled",
-                 fmt::format("at {:.4g} N/m{} in a run twice as long {}", choice.stiffness,
+                 fmt::format("at {:.4g} N/m{}, in a run twice as long: {}", choice.stiffness,
                              setting_text(choice.setting), failing->why));
   return true;
 }

@@ -40,10 +40,12 @@ std::optional<double> error_of_mean(const Standing& standing) {
 Columns<ComparedRun> comparison_columns(bool seeds) {
   using Row = ComparedRun;
   Columns<Row> columns = {
-      {"seed", "1", "number of the repetition", &Row::seed, when(seeds)},
+      {"seed", "1", "index of the repetition, from 0; repetition k runs with the scenario's seed + k", &Row::seed,
+       when(seeds)},
       {"algorithm", "", "force algorithm", [](const Row& r) { return r.run.algorithm; }},
-      {"outcome", "", "how the run ended", [](const Row& r) { return outcome_name(r.run.end.outcome); }},
-      {"steps", "1", "rows of the run", [](const Row& r) { return r.run.end.rows; }}};
+      {"outcome", "", "outcome of the run, such as completes or diverges (hapbench describe outcome)",
+       [](const Row& r) { return outcome_name(r.run.end.outcome); }},
+      {"steps", "1", "number of time steps of the run", [](const Row& r) { return r.run.end.rows; }}};
   for (const std::string_view name : words_of(kComparedMetrics)) {
     const Metric& metric = *find_metric(all_metrics(), name);
     columns.add(
@@ -61,23 +63,29 @@ Columns<Standing> league_columns(bool seeds) {
       {"scenario", "", "name of the scenario", &Row::scenario, under("scenario")},
       {"algorithm", "", "force algorithm", &Row::algorithm, under("algorithm")},
       {"metric", "", "name of the metric; its unit is part of the name", &Row::metric, under("metric")},
-      {"seeds", "1", "seeds of the algorithm in the scenario", &Row::seeds},
-      {"failed", "1", "seeds that failed", &Row::failed},
-      {"outcome", "", "how the runs ended; of several ways with their numbers", &Row::outcome, under("how it ended")},
-      {"mean", "by name", "mean of the metric over the common seeds; empty when there is none", &Row::mean,
+      {"seeds", "1", "number of seeds with which the algorithm ran the scenario", &Row::seeds},
+      {"failed", "1", "number of seeds whose run failed (hapbench describe \"failed run\")", &Row::failed},
+      {"outcome", "", "outcomes of the runs; if they differ, each outcome with its number of runs", &Row::outcome,
+       under("outcome")},
+      {"mean", "unit of the metric",
+       "mean of the metric over the common seeds (column common_seeds); empty if no run has a value", &Row::mean,
        under("mean"), error_of_mean},
-      {"spread", "by name",
-       "standard deviation over these seeds; empty when there is one, or when seeds change nothing", &Row::spread,
-       under(seeds ? "spread" : "", 2)},
+      {"spread", "unit of the metric",
+       "standard deviation of the metric over the common seeds; empty with a single seed, or if the seed changes "
+       "nothing in the scenario",
+       &Row::spread, under(seeds ? "spread" : "", 2)},
       {"rank", "1",
-       "1 + the number of algorithms that did better in this scenario by this metric, by more than 0.1 % and both "
-       "errors; those with failures are last, by the number of these",
+       "rank of the algorithm in this scenario by this metric: 1 + the number of algorithms that are better by more "
+       "than 0.1 % and by more than the sum of both errors; algorithms with failed runs come last, ordered by the "
+       "number of failed runs; empty if the metric has no better direction",
        &Row::rank, under("rank")},
       {"common_seeds", "1",
-       "seeds that mean and spread are over: those in which no algorithm failed that has any success in the "
-       "scenario; if there are none, all seeds of the algorithms that never failed",
+       "number of seeds over which mean and spread are taken: seeds with which every algorithm succeeded that "
+       "succeeds at all in the scenario; if there are none, all seeds of the algorithms that never failed",
        &Row::common_seeds},
-      {"better", "", "less or more, whichever is better of the metric; empty when neither is, and nothing is ranked",
+      {"better", "",
+       "direction in which the metric improves: less or more; empty if neither is better, and then the metric is not "
+       "ranked",
        better}};
 }
 
@@ -85,16 +93,19 @@ Columns<LawStanding> law_columns() {
   const auto fails = [](const LawStanding& l) {
     return l.fails.empty() ? "-" : fmt::format("{}", fmt::join(l.fails, ", "));
   };
-  return {{"algorithm", "", "", &LawStanding::algorithm, under("algorithm")},
-          {"mean_rank", "1", "mean of the algorithm's ranks over all metrics and scenarios, with those after failures",
-           &LawStanding::mean_rank, under("mean rank", 3)},
-          {"fails in", "", "scenarios in which a run failed", fails, only_printed()}};
+  return {
+      {"algorithm", "", "", &LawStanding::algorithm, under("algorithm")},
+      {"mean_rank", "1",
+       "mean of the algorithm's ranks over all metrics and scenarios, including the ranks after failed runs; 1 is best",
+       &LawStanding::mean_rank, under("mean rank", 3)},
+      {"fails in", "", "scenarios in which a run of the algorithm failed", fails, only_printed()}};
 }
 
 std::vector<DescribedTable> league_tables() {
-  return {comparison_columns(false).described("comparison.csv", "of compare: one line per algorithm"),
+  return {comparison_columns(false).described("comparison.csv", "written by compare: one line per algorithm"),
           league_columns(true).described(
-              "league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric"),
+              "league.csv",
+              "written by compare for several scenarios or seeds: one line per scenario, algorithm and metric"),
           law_columns().described()};
 }
 

@@ -156,7 +156,11 @@ int compare(const CompareOptions& options, ProgramContext& context) {
     const FinerRuns finer(comparison, reports, jobs);
     for (std::size_t s = 0; s < league.scenarios.size(); ++s)
       report_errors(league, finer, s, ranks || layout.in_full(), report, layout);
-    report.say("\n" + layout.wrapped("<: less by more than both errors; ~: not so; ?: a finer run ends otherwise", 0));
+    report.say("\n" +
+               layout.wrapped(
+                   "<: smaller by more than the sum of both errors; ~: not distinguishable; ?: a finer run has another "
+                   "outcome, so that no error is known",
+                   0));
   }
   report.say(fmt::format("\nresults in {}\n", out.string()));
   judge(comparison, reports, report);

@@ -85,8 +85,9 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
     }
     sentences += layout.wrapped(fmt::format("{}: {}", metric, says), 0);
   }
-  report.say(fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario], table.text(layout.prose_width()),
-                         sentences, layout.wrapped(fmt::format("+-: {}", finer.refined(scenario)), 0)));
+  report.say(fmt::format(
+      "\nerror estimates: {}\n\n{}\n{}\n{}", league.scenarios[scenario], table.text(layout.prose_width()), sentences,
+      layout.wrapped(fmt::format("+-: error estimated by refinement: {}", finer.refined(scenario)), 0)));
 }
 
 std::string vibration_text(const League& league, const Layout& layout) {
@@ -116,8 +117,8 @@ std::string vibration_text(const League& league, const Layout& layout) {
     says = fmt::format("vibration of the {}: {}", of, held_text(numbers, league.algorithms));
     if (known + failing.size() == league.algorithms.size()) break;
   }
-  if (!failing.empty()) says += fmt::format("; failing: {}", fmt::join(failing, ", "));
-  return "\n" + layout.wrapped(says + "; --errors tells whether finer runs agree", 0);
+  if (!failing.empty()) says += fmt::format("; failed: {}", fmt::join(failing, ", "));
+  return "\n" + layout.wrapped(says + "; --errors checks this order with finer runs", 0);
 }
 
 }  // namespace hapbench

@@ -51,7 +51,7 @@ RankCount rank_count(const League& league, const std::string& algorithm) {
 
 std::string firsts_text(const League& league) {
   constexpr std::size_t kMostNamed = 5;
-  if (!league.laws.front().mean_rank) return "nothing is ranked: neither less nor more of these metrics is better";
+  if (!league.laws.front().mean_rank) return "nothing is ranked: none of these metrics has a better direction";
   std::size_t rankings = 0;  // the same number for each law
   std::vector<std::string> firsts;
   for (const LawStanding& law : league.laws) {
@@ -60,24 +60,27 @@ std::string firsts_text(const League& league) {
     if (count.first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count.first));
   }
   if (firsts.size() == 1)
-    return fmt::format("{} alone is first in each of {} rankings", league.laws.front().algorithm, rankings);
-  return fmt::format("no algorithm alone is first in each of {} rankings; first are {}", rankings,
-                     fmt::join(first_few(firsts, kMostNamed), ", "));
+    return fmt::format("{} alone has rank 1 in all {} rankings (scenario and metric)", league.laws.front().algorithm,
+                       rankings);
+  return fmt::format("no algorithm alone has rank 1 in all {} rankings (scenario and metric); times with rank 1: {}",
+                     rankings, fmt::join(first_few(firsts, kMostNamed), ", "));
 }
 
 /// Summarizes which algorithms are first, and whether the seeds give a spread.
 std::string verdict(const League& league, const Layout& layout) {
   const std::string text = layout.wrapped(firsts_text(league), 0);
-  if (league.seeds < 2) return text + "one seed: no spread is known; --seeds K gives one\n";
+  if (league.seeds < 2) return text + "one seed: the spread is unknown; --seeds K estimates it\n";
   std::vector<std::string> alike;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s)
     if (!league.seeds_matter[s]) alike.push_back(league.scenarios[s]);
-  if (alike.empty()) return text + "\"hapbench report\" says what lies between laws, seed by seed\n";
+  if (alike.empty()) return text + "\"hapbench report\" shows the differences between algorithms, seed by seed\n";
   return text +
-         layout.wrapped(fmt::format("nothing is random in {}: all seeds are one run, no spread is known; --jitter "
-                                    "METRES shifts the start",
-                                    fmt::join(alike, ", ")),
-                        0);
+         layout.wrapped(
+             fmt::format(
+                 "nothing is random in {}: all seeds give the same run, and the spread is unknown; --jitter METRES "
+                 "shifts the start position of each seed",
+                 fmt::join(alike, ", ")),
+             0);
 }
 
 }  // namespace
@@ -87,8 +90,10 @@ std::string league_text(const League& league, const Layout& layout) {
   const std::string table =
       league.standings.size() <= kMostPrinted || layout.in_full()
           ? league_columns(league.seeds > 1).text(ranked(league), layout)
-          : fmt::format("{} standings are in league.csv; --wide prints them\n", league.standings.size());
-  return fmt::format("{}\n{}\n{}", table, law_columns().text(league.laws, layout), verdict(league, layout));
+          : fmt::format("{} ranks are in ranking.csv; --wide prints them\n", league.standings.size());
+  const std::string note =
+      layout.wrapped("rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %", 0);
+  return fmt::format("{}\n{}\n{}{}", table, law_columns().text(league.laws, layout), note, verdict(league, layout));
 }
 
 }  // namespace hapbench

@@ -77,8 +77,9 @@ Description describe_types(const std::string& path, const Layout& layout) {
   const std::string field = path.substr(0, path.size() - end.size());
   const FieldGuide* found = find_field(field);
   if (found == nullptr || found->value.choices.empty()) return {};
-  std::string text = fmt::format("{}\n  chooses the fields of {}; \"hapbench describe {}\" shows those of each\n\n",
-                                 bold(stdout, path), field, field);
+  std::string text =
+      fmt::format("{}\n  selects the fields of {}; \"hapbench describe {}\" shows the fields of each type\n\n",
+                  bold(stdout, path), field, field);
   for (const ValueGuide& type : found->value.choices)
     text += layout.entry(fmt::format("\"{}\"", type.type), type.summary, 4, 24);
   return {text, {{"field", path}, {"types", names_of(found->value.choices, &ValueGuide::type)}}};
@@ -118,14 +119,14 @@ Description describe_field(const std::string& path, const Layout& layout) {
 
 Description describe_algorithms(const Layout& layout) {
   Description d = describe_field("rendering.algorithm", layout);
-  d.text += layout.wrapped("\"hapbench describe algorithms\" shows them with what they do");
+  d.text += layout.wrapped("\"hapbench describe algorithms\" lists them with summaries");
   return d;
 }
 
 Description describe_profile(const Layout& layout) {
   const FieldGuide& any = *find_field("motion.orientation.tilt_rad");  // whose value is a function of time
   Json schema = any.schema();
-  schema["description"] = "a function of time: a number that does not change, or an object";
+  schema["description"] = "a function of time: a constant number, or an object";
   schema.erase("default");
   return {value_text("profile", "", schema["description"].get<std::string>(), any.value, layout), schema};
 }

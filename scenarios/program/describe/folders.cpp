@@ -51,7 +51,7 @@ Named named_scenario(const BundledScenario& bundled, const Layout& layout) {
 
 Description describe_study(const BundledStudy& study, const Layout& layout) {
   const std::string text = read_text_file(study.file, kLargestJsonFile);
-  return {fmt::format("study {}\n{}\n{}\n{}\n  asked by: hapbench {} {}\n", bold(stdout, study.name),
+  return {fmt::format("study {}\n{}\n{}\n{}\n  run it with: hapbench {} {}\n", bold(stdout, study.name),
                       layout.wrapped(study.summary), study.file.string(), text, study.ask, study.name),
           {{"kind", "study"}, {"name", study.name}, {"file", study.file.string()}, {"study", parse_json(text)}}};
 }
@@ -64,11 +64,11 @@ Json list_on_record(const std::string& list) {
 /// Returns the entry of a claim or choice of the reference results.
 Named on_record(const char* kind, const Json& thing, const Layout& layout) {
   const auto describe = [=] {
-    Json titled = {{"kind", fmt::format("{}, on record", kind)}, {"name", thing.at("id")}};
+    Json titled = {{"kind", fmt::format("{}, as recorded in results/reference", kind)}, {"name", thing.at("id")}};
     titled.update(thing);
     if (const Json& counts = thing.value("robustness", Json()); !counts.is_null())
       titled["sureness"] =
-          fmt::format("{}: {} of {} readings give this verdict", thing.at("sureness").get<std::string>(),
+          fmt::format("{}: {} of {} tested assumption sets give this verdict", thing.at("sureness").get<std::string>(),
                       counts.at("holds").dump(), counts.at("judged").dump());
     // Omit the members that the text gives in another form, and data for programs.
     for (const char* member : {"id", "cases", "choices_reach_it", "ours", "robustness", "timing"}) titled.erase(member);
@@ -89,7 +89,9 @@ Description describe_scenario(const std::filesystem::path& file, const Layout& l
   if (!scenario.description.empty()) text += layout.wrapped(scenario.description);
   text += fmt::format("\n  file    {}\n", file.string());  // whole, to be copied
   if (!scenario.source.empty()) text += layout.entry("source", scenario.source, 2, 10);
-  text += "\n  set (\"hapbench describe scenario\" explains the fields, --json has all with their defaults)\n";
+  text +=
+      "\n  fields that the file sets (\"hapbench describe scenario\" explains them, --json prints all fields with "
+      "their defaults)\n";
   add_assignments(text, "", given.json, layout);
   return {text, effective_scenario(scenario, scenario.directory)};
 }

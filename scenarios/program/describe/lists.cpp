@@ -98,15 +98,16 @@ int list(const DescribeOptions& options, ProgramContext& context) {
   for (const std::string_view kind : kListed)
     for (const Named& thing : index)
       if (thing.kind == kind && is_asked(thing)) all.push_back(thing);
-  if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
+  if (all.empty()) throw InputError(fmt::format("--grep: no name or text contains \"{}\"", options.grep));
   Json json = Json::array();
   for (const Named& thing : all) {
     Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});
     entry.update(thing.more);
   }
   const char* more =
-      of_everything ? ", \"hapbench describe KIND\" lists a kind with what each is; more kinds: metrics, claims, terms"
-                    : "";
+      of_everything
+          ? ", \"hapbench describe KIND\" lists one kind with summaries; further kinds: metrics, claims, terms"
+          : "";
   print(context, options.output,
         list_text(all, of_everything, layout) + "\n" +
             layout.wrapped(fmt::format("\"hapbench describe NAME\" explains each{}.", more), 0),

@@ -48,11 +48,11 @@ Json model_json(const char* kind, const ModelInfo& info, std::span<const OwnPara
 
 Description describe_preset(const DevicePreset& preset, const Layout& layout) {
   Description d;
-  d.text =
-      fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
-                  layout.wrapped("of device.type \"impedance\": \"device\": {\"type\": \"impedance\", \"preset\": \"" +
-                                 std::string(preset.name) + "\"}; fields next to it override its numbers")) +
-      "\n";
+  d.text = fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
+                       layout.wrapped("use it in a scenario with \"device\": {\"type\": \"impedance\", \"preset\": \"" +
+                                      std::string(preset.name) +
+                                      "\"}; other fields of \"device\" replace the preset's values")) +
+           "\n";
   d.json = {{"kind", "preset"}, {"name", preset.name}, {"device", preset.device}, {"numbers", Json::object()}};
   const std::tuple<const char*, SourcedNumber, const char*> numbers[] = {
       {"handle_mass_kg", preset.handle_mass, ""},
@@ -60,12 +60,12 @@ Description describe_preset(const DevicePreset& preset, const Layout& layout) {
       {"coulomb_N", preset.coulomb, ""},
       {"encoder_step_m", preset.encoder_step, ""},
       {"force_max_N", preset.force_max, ""},
-      {"delay_samples", {config_of(preset).delay_samples, kOurEstimate}, "none is published; "},
-      {"max_stiffness_N_per_m", preset.max_stiffness, "published largest stable stiffness; "},
-      {"max_damping_N_s_per_m", preset.max_damping, "published largest stable damping; "}};
+      {"delay_samples", {config_of(preset).delay_samples, kOurEstimate}, "no value is published; "},
+      {"max_stiffness_N_per_m", preset.max_stiffness, "largest stable stiffness, as published; "},
+      {"max_damping_N_s_per_m", preset.max_damping, "largest stable damping, as published; "}};
   for (const auto& [name, number, meaning] : numbers) {
     const std::string range =
-        number.low < number.high ? fmt::format(", may be {:.3g} to {:.3g}", number.low, number.high) : "";
+        number.low < number.high ? fmt::format(", plausible range {:.3g} to {:.3g}", number.low, number.high) : "";
     d.text +=
         layout.entry(fmt::format("{} {:g}", name, number.value), meaning + (std::string(number.source) + range), 2, 32);
     d.json["numbers"][name] = {
@@ -102,32 +102,37 @@ Description describe_stability(const Layout& layout) {
         {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
   d.text = "stability\n";
   d.text += layout.wrapped(
-      "A run is judged by its motion, quarter by quarter; the amplitude is the largest speed. One that is too short to "
-      "tell is made up to 64 times as long.\n\n");
+      "Stability is judged from the motion of a run: the amplitude (largest speed) in each quarter of the run is "
+      "compared. A run that is too short for a decision is extended to up to 64 times its length.\n\n");
   for (std::size_t i = kMotionClasses; i-- > 0;)  // "all else" last
     d.text += layout.entry(run_verdict_texts()[i].name, run_verdict_texts()[i].rule, 2, 13);
   d.text +=
       "\n" +
       layout.wrapped(
-          "Limits count stable and dying out as stable: the tool comes to rest if the run goes on. A run that goes "
-          "through the surface, loses contact, is stuck or never touches (describe outcomes) has a class of its own "
-          "and is not stable, however calm it is.\n\n"
-          "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = "
-          "lambda_max(S), is given where the tool is alone with springs that stay in contact and the force is -K S "
-          "p. Under velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have "
-          "none. With a device in the loop it is where the first eigenvalue of the loop of hand, handle and wall "
-          "leaves the unit circle, as long as nothing saturates and the contact lasts. With --stable bounded the "
-          "edge by bisection is that of \"diverged\".");
-  d.text += "\nlimits of the stiffness K of a wall on an impedance device\n";
+          "`limit` counts the classes stable and dying_out (decaying) as stable: the tool comes to rest if the run "
+          "goes on. A run that passes through the surface, loses contact, gets stuck or never touches (describe "
+          "outcome) is reported as its own class. It is never stable, even if it does not vibrate.\n\nThe theoretical "
+          "limit exists for a tool without device on springs that stay in contact, with the force -K S p. With "
+          "leapfrog it satisfies 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S). With "
+          "velocity_verlet and rk4 it follows from the eigenvalues of one step; the implicit integrators have no "
+          "limit. With a device, the theoretical limit (bilateral springs) and the linear limit (surfaces that only "
+          "push) are the value at which the first eigenvalue of the loop of hand, handle and wall leaves the unit "
+          "circle; it holds while nothing saturates and the contact lasts. With --stable bounded, the simulated limit "
+          "is the limit to the class \"diverged\".");
+  d.text += "\nformulas for the largest stiffness K of a wall on an impedance device\n";
   d.text += layout.wrapped(
-      "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d "
-      "= d T the delay. Each is written beside the edge where it applies.");
+      "Symbols: b damping of the handle, c its Coulomb friction, q encoder step, m moving mass, T time step, t_d = d "
+      "T delay, B damping of the wall. limit.csv has a column for each formula, with a value where the formula "
+      "applies.");
   for (const Json& limit : d.json["limits"]) d.text += thing_text(limit, layout, 2);
   return d;
 }
 
 Description describe_diagnosis(const Layout& layout) {
-  Description d{"rules of the diagnosis, which run prints and writes to summary.json\n\n", Json::array()};
+  Description d{
+      "Rules of the diagnosis. `run` prints each rule whose number exceeds its threshold, and writes it to "
+      "summary.json.\n\n",
+      Json::array()};
   for (const Diagnosed& rule : diagnosis_rules()) {
     const std::string unit = rule.unit == "1" ? "" : " " + rule.unit;
     d.text += layout.entry(rule.rule, fmt::format("{} > {:g}{}", rule.number, rule.threshold, unit), 2, 14);

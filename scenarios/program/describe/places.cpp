@@ -106,11 +106,11 @@ std::optional<Description> describe_place(const std::string& name, const Layout&
   for (const std::filesystem::path& picture : pictures_of(*place)) {
     std::string id = picture.stem().string().substr(std::string_view("figure_").size());
     std::replace(id.begin(), id.end(), '_', '-');
-    pictures += fmt::format("    {}\n    drawn anew by scripts/reproduce --figure {}\n", picture.string(), id);
+    pictures += fmt::format("    {}\n    redraw it with: scripts/reproduce --figure {}\n", picture.string(), id);
     json["pictures"].push_back(picture.string());
   }
   if (scenarios.empty() && claims.empty() && pictures.empty())
-    throw InputError(fmt::format("no bundled scenario and no claim names {} of the thesis", title));
+    throw InputError(fmt::format("no bundled scenario and no claim refers to {} of the thesis", title));
   return Description{fmt::format("{} of the thesis\n\n{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),
                                  pictures.empty() ? "" : "  picture\n" + pictures + "\n",
                                  scenarios.empty() ? "    none\n" : scenarios, claims.empty() ? "    none\n" : claims),

@@ -23,31 +23,32 @@ constexpr const char* kResultFile = "file of the results";
 
 /// Printed names that no enumeration defines.
 constexpr Word kWords[] = {
-    {"step_p50_s", kTime, "what half of the steps take at most, each by itself, without observers and recorders [s]"},
-    {"step_p99_s", kTime, "what 99 % of the steps take at most, each by itself, without observers and recorders [s]"},
+    {"step_p50_s", kTime, "median wall time of one step, without observers and recorders [s]"},
+    {"step_p99_s", kTime, "99th percentile of the wall time of one step, without observers and recorders [s]"},
     {"scenario.effective.json", kResultFile,
-     "the scenario with every default filled in; run again it gives the same files"},
+     "the scenario with the value of every field, defaults included; running this file gives the same result files"},
     {"timing.json", kResultFile,
-     "of record.timing: wall times, percentiles, missed deadlines and histogram of single steps"},
-    {"sweep.json", kResultFile,
-     "what a sweep's table is a function of: scenario, overrides, points, named files, program"},
+     "with record.timing: wall times of the steps, with percentiles, missed deadlines and a histogram"},
+    {"sweep.json", kResultFile, "definition of a sweep: scenario, overrides, points, named files and program"},
     {"sweep.csv.part", kResultFile,
-     "rows of a sweep that is under way or was interrupted, from which --resume goes on"},
+     "finished rows of a sweep that is running or was interrupted; --resume continues from them"},
     {"sweep.I_of_N.csv", kResultFile,
-     "rows of a shard of a sweep, which \"hapbench sweep FOLDER\" joins; columns as in sweep.csv"},
-    {"report.html", kResultFile, "a page to read and replay, of report or scripts/reproduce"},
-    {"plot.svg", kResultFile, "the picture of plot"},
-    {"figures.json", kResultFile,
-     "figures that scripts/figures drew, with their captions and the files they were drawn of"},
-    {"claims.json", kResultFile, "the ledger of reproduce: claims, what was measured, verdicts, robustness"},
-    {"claims.md", kResultFile, "the ledger of reproduce, for people"},
-    {"choices.json", kResultFile, "what the thesis leaves open and what was chosen; \"describe choices_schema\""},
-    {"robustness.csv", kResultFile, "of reproduce --choices: the choices and verdicts of each reading"},
+     "rows of one shard of a sweep; \"hapbench sweep FOLDER\" joins the shards; columns as in sweep.csv"},
+    {"report.html", kResultFile, "page with results and replay, written by report and scripts/reproduce"},
+    {"plot.svg", kResultFile, "picture written by plot"},
+    {"figures.json", kResultFile, "figures drawn by scripts/figures, with their captions and source files"},
+    {"claims.json", kResultFile, "ledger written by reproduce: claims, measured values, verdicts, robustness"},
+    {"claims.md", kResultFile, "ledger written by reproduce, as a table to read"},
+    {"choices.json", kResultFile,
+     "assumptions: what the thesis leaves open, and the value that the reproduction uses; \"describe choices_schema\" "
+     "explains the format"},
+    {"robustness.csv", kResultFile,
+     "written by reproduce --choices: one row per assumption set, with its assumptions and the verdicts"},
     {"robustness.json", kResultFile,
-     "how many samples have the verdict on record, and which choices decide it, for each claim"},
+     "for each claim: number of assumption sets that give the recorded verdict, and the assumptions that decide it"},
     {"quantum", "number of import",
-     "the step in which the recorded places come along an axis, seen in their differences (its row resolution, "
-     "quantum_m of --json); K times it is the step of force that the recording alone makes"}};
+     "resolution of a recording along an axis: smallest step between the recorded coordinates (quantum_m with "
+     "--json); K times this step is the force step that the recording alone causes"}};
 
 Json all_words() {
   Json all = Json::array();
@@ -72,9 +73,11 @@ void add_term(Index& index, const Json& json, const Layout& layout) {
 
 Description describe_metrics(const Layout& layout) {
   const Json json = {{"kind", "metrics"}, {"metrics", columns_json({}, all_metrics())["summary.json"]}};
-  return {"metrics of summary.json, which expect.metrics may bound; f is f_render, the force on the tool\n" +
-              thing_text(json, layout),
-          json};
+  return {
+      "metrics of summary.json; expect.metrics can bound each of them. f is f_render, the rendered force on the tool; "
+      "a step is one time step of the run\n" +
+          thing_text(json, layout),
+      json};
 }
 
 Description describe_table(const DescribedTable& table, const Layout& layout) {
@@ -94,7 +97,7 @@ Description describe_tables(const Layout& layout) {
 
 Description describe_words(const Layout& layout) {
   const Json json = {{"kind", "words"}, {"words", all_words()}};
-  return {"words that the program prints\n" + thing_text(json, layout), json};
+  return {"terms that the program prints\n" + thing_text(json, layout), json};
 }
 
 void add_metric_terms(Index& index, const Layout& layout) {

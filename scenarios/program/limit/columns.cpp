@@ -21,10 +21,10 @@ Columns<Row> place_columns(const LimitTable* table) {
   const bool devices = table == nullptr || !table->devices.empty();
   Columns<Row> columns = {
       {"device", "",
-       "ideal, admittance, the preset of an impedance device (* with numbers of --set, [soft] and [stiff] at the ends "
-       "of what is not published), or a file's",
+       "device of the row: ideal, admittance, a preset of an impedance device, or a device file; * marks a preset "
+       "changed by --set, [soft] and [stiff] a preset at the ends of its unpublished parameters",
        [](const LimitRow& r) { return r.device->name; }, when(devices, under("device"))},
-      {"scenario", "", "name of the scene's file", [](const LimitRow& r) { return r.scene(); },
+      {"scenario", "", "name of the scenario", [](const LimitRow& r) { return r.scene(); },
        when(devices || table->cases.scenes().size() > 1, under("scenario"))}};
   for (std::size_t i = 1; table != nullptr && i <= table->over(); ++i) {
     const std::string& path = table->cases.axes()[i].path;
@@ -32,7 +32,7 @@ Columns<Row> place_columns(const LimitTable* table) {
       const auto number = finite_number(r.axis_values[i]);
       return number ? Cell(*number) : Cell(r.axis_values[i]);
     };
-    columns.add({{path, "by name", "value of the field that varies besides", value, under(path)}});
+    columns.add({{path, "unit of the field", "value of the field given by --over", value, under(path)}});
   }
   columns.add(
       {{"algorithm", "", "force algorithm", [](const LimitRow& r) { return r.algorithm(); }, under("algorithm")}});
@@ -84,39 +84,56 @@ Columns<LimitRow> edge_columns(const LimitTable* table) {
   using Row = LimitRow;
   return {
       {"field", "", "path of the field", of(&Row::asked, &LimitQuestion::path), kOnlyCsv},
-      {"side", "", "largest or smallest: the stable value that was asked for", of(&Row::asked, &LimitQuestion::side),
+      {"side", "", "largest or smallest: which stable value was searched", of(&Row::asked, &LimitQuestion::side),
        kOnlyCsv},
-      {"linear\nedge", "by field", "of limit: theory, or where there is none linear", linear_edge_text, only_printed()},
-      {"limit", "by field",
-       "the last stable value before the first edge, by bisection on runs; empty when there is none",
-       of(limit_end, &IntervalEnd::value), under("edge in\nruns", 6), tolerance},
-      {"beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
+      {"linear\nlimit", "unit of the field",
+       "of limit: theoretical limit, or, if there is none, the linear limit; \"none\" if no value of the range or "
+       "every value is stable, \"-\" if neither limit applies",
+       linear_edge_text, only_printed()},
+      {"limit", "unit of the field",
+       "simulated limit: last stable value before the first unstable one, by bisection on simulated runs; empty if no "
+       "interval of values is stable",
+       of(limit_end, &IntervalEnd::value), under("simulated\nlimit", 6), tolerance},
+      {"beyond", "unit of the field",
+       "first unstable value beyond the limit; empty if the values are stable to the end of the range",
        of(limit_end, value_beyond)},
-      {"class_beyond", "", "what became of the run there (describe stability), or \"end of the range\"",
-       class_beyond_limit, under("beyond it")},
-      {"low", "by field",
-       "the low end of the interval of stable values that the limit ends: its smallest stable value, to the "
-       "resolution",
-       of(low_end, &IntervalEnd::value), under(is_printed(true) ? "low end" : "", 6),
+      {"class_beyond", "",
+       "class of the run at the first unstable value (hapbench describe stability), or \"end of the range\" if there "
+       "is no such value",
+       class_beyond_limit, under("first\nunstable")},
+      {"low", "unit of the field",
+       "low end of the interval of stable values that contains the limit: smallest stable value, to the resolution",
+       of(low_end, &IntervalEnd::value), under(is_printed(true) ? "stable\nfrom" : "", 6),
        [](const Row& r) { return low_end(r).tolerance(); }},
-      {"below", "by field", "the first value below that is not stable; empty when the range begins stable",
+      {"below", "unit of the field",
+       "first unstable value below the stable interval; empty if the values are stable to the low end of the range",
        of(low_end, value_beyond)},
-      {"class_below", "", "what became of the run there", of(low_end, class_beyond)},
-      {"high", "by field", "the high end of this interval", of(high_end, &IntervalEnd::value),
-       under(is_printed(false) ? "high end" : "", 6), [](const Row& r) { return high_end(r).tolerance(); }},
-      {"above", "by field", "the first value above that is not stable; empty when the range ends stable",
+      {"class_below", "", "class of the run at the first unstable value below the stable interval",
+       of(low_end, class_beyond)},
+      {"high", "unit of the field",
+       "high end of the interval of stable values that contains the limit: largest stable value, to the resolution",
+       of(high_end, &IntervalEnd::value), under(is_printed(false) ? "stable\nto" : "", 6),
+       [](const Row& r) { return high_end(r).tolerance(); }},
+      {"above", "unit of the field",
+       "first unstable value above the stable interval; empty if the values are stable to the high end of the range",
        of(high_end, value_beyond)},
-      {"class_above", "", "what became of the run there", of(high_end, class_beyond)},
-      {"theory", "by field", "the limit in theory; empty where there is none", of(&Row::limit, &FieldLimit::theory)},
-      {"closed_form", "by field",
-       "the same where the integrator's inequality ends, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0 "
-       "with lambda = lambda_max(S) (A.3); empty where it has none",
+      {"class_above", "", "class of the run at the first unstable value above the stable interval",
+       of(high_end, class_beyond)},
+      {"theory", "unit of the field",
+       "theoretical limit for contact that cannot be lost (bilateral springs), from the eigenvalues of one time step, "
+       "with or without a device; empty if the theory does not apply",
+       of(&Row::limit, &FieldLimit::theory)},
+      {"closed_form", "unit of the field",
+       "closed-form limit: theoretical limit from the integrator's inequality, for leapfrog 4 - 2 lambda B dt / M - "
+       "lambda K dt^2 / M >= 0 with lambda = lambda_max(S) (thesis A.3); empty if the integrator has no such "
+       "inequality",
        of(&Row::limit, &FieldLimit::closed_form),
        when(table == nullptr || std::ranges::any_of(table->rows, has_inequality))},
-      {"linear", "by field",
-       "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
-       "while they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by "
-       "bounces, dry friction or the end of the run; empty where there is a theory or no device",
+      {"linear", "unit of the field",
+       "linear limit of a device on a surface that can only push: largest value at which the contact loop of device, "
+       "hand and surface is stable by its eigenvalues, while contact lasts and without dry friction and encoder "
+       "steps; runs that are stable beyond it rely on bounces, dry friction or the end of the run; empty without a "
+       "device, or if a theoretical limit exists",
        of(&Row::limit, &FieldLimit::linear)}};
 }
 
@@ -132,34 +149,51 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
         [member](const Row& r) { return r.limit.end.value ? cell_of(std::invoke(member, r.limit.settled)) : Cell(); };
   };
   return {
-      {"limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit",
+      {"limit_tolerance", "unit of the field",
+       "uncertainty of the limit: distance from the limit to the first unstable value (columns beyond - limit)",
        [](const Row& r) { return r.limit.end.tolerance(); }, kOnlyJson},
-      {"low_tolerance", "by field", "the same of the low end", of(low_end, &IntervalEnd::tolerance), kOnlyJson},
-      {"high_tolerance", "by field", "the same of the high end", of(high_end, &IntervalEnd::tolerance), kOnlyJson},
-      {"undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
+      {"low_tolerance", "unit of the field",
+       "uncertainty of the low end of the stable interval: distance to the first unstable value below",
+       of(low_end, &IntervalEnd::tolerance), kOnlyJson},
+      {"high_tolerance", "unit of the field",
+       "uncertainty of the high end of the stable interval: distance to the first unstable value above",
+       of(high_end, &IntervalEnd::tolerance), kOnlyJson},
+      {"undecided", "1",
+       "number of runs that were too short to distinguish slow motion from rest, even after they were extended",
        of(&Row::limit, &FieldLimit::undecided)},
-      {"unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
+      {"unstable_without_contact", "",
+       "true if hand and device are unstable beyond the limit even without an environment",
        of(&Row::limit, &FieldLimit::unstable_alone), kOnlyJson},
-      {"has_effect", "", "false when the field changes no run", of(&Row::limit, &FieldLimit::has_effect), kOnlyJson},
-      {"scattered", "", "true where stable values are scattered and there is no edge",
+      {"has_effect", "", "true if the field changes at least one run; false if it has no effect",
+       of(&Row::limit, &FieldLimit::has_effect), kOnlyJson},
+      {"scattered", "",
+       "true if stable and unstable values alternate, so that there is no contiguous stable interval and no limit",
        of(&Row::limit, &FieldLimit::scattered), kOnlyJson},
       {"tried_between", "1",
-       "values between the ends of the interval that were tried, all stable; 0 in a table of devices or values",
+       "number of verification samples: extra values between the ends of the stable interval, all found stable; 0 in "
+       "a table of devices or values, which has no verification",
        of(&Row::limit, &FieldLimit::tried_between)},
-      {"may_fail_share", "1", "share of the interval that may be unstable for all that, with 95 % confidence",
+      {"may_fail_share", "1",
+       "largest fraction of the stable interval that may still be unstable, with 95 % confidence, given the "
+       "verification samples; empty without them",
        may_fail},
-      {"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
+      {"published_N_per_m", "N/m",
+       "largest stable stiffness of a wall on the device, as published; empty if none is published",
        of(&Row::device, &ComparedDevice::published_stiffness), when(devices, under("published"))},
       {"vibration_m_per_s", "m/s",
-       "at the limit: rms of the handle's speed above 30 Hz from a quarter of the contact on",
+       "vibration at the limit: rms of the handle's speed above 30 Hz after the first quarter of the contact time",
        settled(&SettledState::vibration), when(grid)},
-      {"contacts", "1", "at the limit: mean number of rendered contacts there", settled(&SettledState::contacts),
+      {"contacts", "1", "mean number of rendered contacts in the run at the limit", settled(&SettledState::contacts),
        when(grid)},
-      {"lambda_max", "1", "at the limit: largest eigenvalue of the mean S there", settled(&SettledState::lambda_max),
-       when(grid)},
-      {"stiffness_ratio", "1", "limit over that of the first scene with the first algorithm, all else equal",
+      {"lambda_max", "1", "largest eigenvalue of the mean stiffness tensor S in the run at the limit, in units of K",
+       settled(&SettledState::lambda_max), when(grid)},
+      {"stiffness_ratio", "1",
+       "limit divided by the limit of the first scene with the first algorithm, everything else equal",
        &Row::stiffness_ratio, when(grid)},
-      {"rendered_ratio", "1", "the same of K lambda_max", &Row::rendered_ratio, when(grid)}};
+      {"rendered_ratio", "1",
+       "rendered stiffness K lambda_max at the limit, divided by its value for the first scene with the first "
+       "algorithm, everything else equal",
+       &Row::rendered_ratio, when(grid)}};
 }
 
 }  // namespace
@@ -175,36 +209,41 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
   for (std::size_t i = 0; i < stiffness_limits().size(); ++i) {
     const StiffnessLimit& known = stiffness_limits()[i];
     columns.add(
-        {{known.name, "N/m", fmt::format("the K at which {}; for {} ({})", known.formula, known.applies, known.source),
+        {{known.name, "N/m",
+          fmt::format("limit of K by the formula {}; it applies to {} ({})", known.formula, known.applies,
+                      known.source),
           [i](const Row& r) { return r.limit.closed_forms.empty() ? Cell() : cell_of(r.limit.closed_forms[i]); },
           when(forms)}});
   }
   const auto inconsistent = [](const Row& r) { return r.limit.inconsistent.size(); };
-  columns.add({{"no_theory", "", "why the eigenvalues of the loop tell nothing; empty where they do",
-                of(&Row::limit, &FieldLimit::no_theory), when(forms)},
-               {"worst_hand", "N/m",
-                "least edge over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and none, by eigenvalues",
-                of(&Row::limit, &FieldLimit::worst_hand), when(forms)},
-               {"runs", "1", "runs of the search", [](const Row& r) { return r.limit.runs.size(); }},
-               {kInconsistent, "1", "runs that are unstable on the stable side of the limit, or stable beyond it",
-                inconsistent, under("inconsistent")},
-               {kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent}});
+  columns.add(
+      {{"no_theory", "", "reason why the linear theory does not apply to the contact loop; empty if it applies",
+        of(&Row::limit, &FieldLimit::no_theory), when(forms)},
+       {"worst_hand", "N/m",
+        "smallest linear limit over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and no hand; empty if the "
+        "linear theory does not apply",
+        of(&Row::limit, &FieldLimit::worst_hand), when(forms)},
+       {"runs", "1", "number of simulated runs of the search", [](const Row& r) { return r.limit.runs.size(); }},
+       {kInconsistent, "1",
+        "number of non-monotonic runs: unstable runs on the stable side of the limit, and stable runs beyond it",
+        inconsistent, under("non-\nmonotonic")},
+       {kAstray, "1", "same as inconsistent_runs (former name)", inconsistent}});
   return columns;
 }
 
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table) {
   Columns<LimitRunRow> columns = place_columns<LimitRunRow>(table);
-  columns.add({{table == nullptr ? "{field}" : table->first().asked.path, "by name", "value of the field",
-                [](const LimitRunRow& r) { return r.run.value; }},
-               {"class", "", "what became of the run (describe stability)",
+  columns.add({{table == nullptr ? "{field}" : table->first().asked.path, "unit of the field",
+                "value of the field in the run", [](const LimitRunRow& r) { return r.run.value; }},
+               {"class", "", "class of the run (hapbench describe stability)",
                 [](const LimitRunRow& r) { return run_verdict_name(r.run.verdict); }}});
   return columns;
 }
 
 std::vector<DescribedTable> limit_tables() {
-  return {limit_columns(nullptr).described("limit.csv",
-                                           "of limit: one line per device, values of --over, scene and algorithm"),
-          limit_run_columns(nullptr).described("limit_runs.csv", "of limit: one line per run")};
+  return {limit_columns(nullptr).described(
+              "limit.csv", "written by limit: one line per device, value of --over, scene and algorithm"),
+          limit_run_columns(nullptr).described("limit_runs.csv", "written by limit: one line per run")};
 }
 
 }  // namespace hapbench

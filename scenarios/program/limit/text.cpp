@@ -20,8 +20,8 @@ namespace hapbench {
 namespace {
 
 constexpr const char* kBeyondLinear =
-    "beyond it stable runs are intermittent contact: bounces below 30 Hz, dry friction or the end of the run hold the "
-    "tool, and one that rests on the surface may not be stable";
+    "runs are stable beyond the linear limit only through intermittent contact (bounces below 30 Hz), dry friction or "
+    "the end of the run; a tool that rests on the surface may be unstable there";
 
 std::string damping_text(const RenderingConfig& rendering) {
   if (rendering.damping) return fmt::format("B = {} N s/m", significant(*rendering.damping));
@@ -43,9 +43,9 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
   const SearchWay& search = question.search;
   const std::string width = resolution_text(question);
   const auto end = [&search](double value) { return significant(search.whole ? std::round(value) : value); };
-  std::string text = fmt::format("{}: {} stable {} between {} and {}, to {}", scenario.name, question.side(),
+  std::string text = fmt::format("{}: {} stable {} between {} and {}, resolution {}", scenario.name, question.side(),
                                  question.path, end(search.range.from), end(search.range.to), width);
-  if (!over) text += fmt::format("; {} steps", scenario.time.steps);
+  if (!over) text += fmt::format("; runs of {} steps", scenario.time.steps);
   if (!over && question.path != "time.step_s") text += fmt::format(" of {} s", significant(scenario.time.step));
   if (!over && question.path == kStiffnessPath) text += "; " + damping_text(scenario.rendering);
   return layout.wrapped(text, 0);
@@ -57,11 +57,11 @@ std::string none_text(const FieldLimit& limit) {
   for (const JudgedValue& run : limit.runs) ++counts[run.verdict];
   std::vector<std::string> texts;
   for (const auto& [verdict, count] : counts) texts.push_back(fmt::format("{} {}", count, run_verdict_name(verdict)));
-  return fmt::format("{} of {} values tried is stable: {}",
-                     limit.scattered
-                         ? fmt::format("no edge, stable values are scattered: no stretch of {:g} %", 100.0 * kNear)
-                         : "none",
-                     limit.runs.size(), fmt::join(texts, ", "));
+  const std::string runs = fmt::format("of {} evaluated values", limit.runs.size());
+  if (!limit.scattered) return fmt::format("none {} is stable: {}", runs, fmt::join(texts, ", "));
+  return fmt::format(
+      "no limit, because stable and unstable values alternate and no interval of {:g} % is stable; {}: {}",
+      100.0 * kNear, runs, fmt::join(texts, ", "));
 }
 
 /// Returns remarks on the answer of one row; may be empty.
@@ -71,21 +71,25 @@ std::string remarks_text(const LimitRow& row, const Layout& layout) {
   std::string text;
   const auto say = [&](const std::string& what) { text += layout.wrapped(row.algorithm() + ": " + what, 0); };
   if (limit.end.value && limit.own && !question.rule.holds(limit.own->verdict)) {
-    say(fmt::format("{} at the scenario's own {}: the edge is that of the first stable values from the {} end",
-                    run_verdict_name(limit.own->verdict), significant(limit.own->value),
-                    question.search.smallest ? "high" : "low"));
+    say(fmt::format(
+        "the run at the scenario's value {} is not stable ({}): the limit belongs to the first stable values from the "
+        "{} end of the range",
+        significant(limit.own->value), run_verdict_name(limit.own->verdict),
+        question.search.smallest ? "high" : "low"));
   }
   if (limit.theory_has_none)
-    say(fmt::format("by the eigenvalues of a step no value of the range is stable{}",
-                    limit.end.value ? ": the runs are too short for its growth" : ""));
+    say(fmt::format("by the eigenvalues of one step, no value of the range is stable{}",
+                    limit.end.value ? "; the runs are too short to show the growth" : ""));
   if (limit.undecided > 0)
-    say(fmt::format("{} runs were too short to tell slow motion from rest, though made up to 64 times as long",
+    say(fmt::format("{} runs were too short to distinguish slow motion from rest, even when extended up to 64 times",
                     limit.undecided));
   if (!limit.has_effect)
-    say(fmt::format("{} has no effect here: the handle moves alike in all {} runs", question.path, limit.runs.size()));
+    say(fmt::format("{} has no effect here: the handle moves identically in all {} runs", question.path,
+                    limit.runs.size()));
   if (limit.unstable_alone)
-    say(fmt::format("at {} hand and device are unstable by themselves: the tool also vibrates without contact",
-                    significant((limit.end.beyond ? *limit.end.beyond : limit.runs.front()).value)));
+    say(fmt::format(
+        "at {} hand and device are unstable even without contact: the handle vibrates without the environment",
+        significant((limit.end.beyond ? *limit.end.beyond : limit.runs.front()).value)));
   return text;
 }
 
@@ -104,21 +108,26 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
   const auto is_marked = [&names](const char* mark) { return names.find(mark) != std::string::npos; };
   const std::pair<bool, std::string> notes[] = {
       {table.is_grid() && std::ranges::any_of(table.rows, is_beyond_linear),
-       fmt::format("linear edge: of the loop of device, hand and surface while they touch; {}", kBeyondLinear)},
+       fmt::format(
+           "linear limit: by the eigenvalues of the loop of device, hand and surface in contact. If the simulated "
+           "limit is larger, use the linear limit: {}",
+           kBeyondLinear)},
       {table.is_grid(),
-       "a table tries no values between those of its searches, as the limit of one scene does. inconsistent: values "
-       "that are unstable before an edge or stable beyond it; limit_runs.csv has what becomes of each value"},
+       "a table makes no verification runs inside the stable interval; run limit with one scene, device and algorithm "
+       "for these. non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond "
+       "it; limit_runs.csv has the class of each run"},
       {std::ranges::any_of(table.devices, is_published),
-       "published: largest stable stiffness of a wall (\"hapbench describe DEVICE\" names its source)"},
-      {is_marked("* "), "*: a preset with numbers of --set, of which nothing is published"},
+       "published: largest stable stiffness of a wall, as published (\"hapbench describe DEVICE\" names the source)"},
+      {is_marked("* "), "*: a preset with fields changed by --set; nothing is published for this combination"},
       {is_marked("[soft]"),
-       fmt::format("[soft], [stiff]: the preset at either end of what nobody published of it ({})", kPresetRanges)},
-      {is_marked("[friction*"), "[friction*2]: with its dry friction times a factor"},
+       fmt::format("[soft], [stiff]: the preset at the two ends of its unpublished parameters ({})", kPresetRanges)},
+      {is_marked("[friction*"), "[friction*2]: the preset with its dry friction multiplied by this factor"},
       {table.first().asked.path == kStiffnessPath && friction.has_value(),
-       "which K to quote: device_model/README.md, \"Which K to quote?\""},
+       "which of these stiffnesses to quote: see device_model/README.md, \"Which K to quote?\""},
       {friction > 0.0,
-       "dry friction, which is ours in every preset, holds a hand that presses slowly: the limit is that of this "
-       "approach, not of a device; --set device.coulomb_N=0 shows what is left without"}};
+       "dry friction (our estimate in every preset) holds the tool if the hand presses slowly. Then the limit depends "
+       "on how this scene approaches the surface and is no property of the device; --set device.coulomb_N=0 gives the "
+       "limit without dry friction"}};
   std::string text;
   for (const auto& [holds, note] : notes)
     if (holds) text += layout.wrapped(note, 0);
@@ -136,34 +145,38 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
   std::string text =
       rule.most_vibration
           ? fmt::format(
-                "stable: at most {} m/s rms above {:.0f} Hz at the handle, from a quarter of the contact on, and no "
-                "bounces below that go on",
+                "criterion: a run is stable if the handle vibrates by at most {} m/s rms above {:.0f} Hz after the "
+                "first quarter of the contact time, and slower bounces do not persist",
                 *rule.most_vibration, kVibrationCutoff)
-          : fmt::format("stable: comes to rest or dies out{}", rule.bounded ? ", or vibrates without growing" : "");
+          : fmt::format("criterion: a run is stable if it comes to rest or its oscillation decays{}",
+                        rule.bounded ? ", or if it vibrates without growing" : "");
   if (!rule.most_vibration && is_moved(scenario))
     text +=
-        ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first "
-        "half of a run, all beyond 1 mm/s from then on";
+        "; because a script moves the tool, only motion above 30 Hz and above 1 mm/s counts, and if the script ends "
+        "in the first half of the run, all motion above 1 mm/s from then on";
   for (const auto& [metric, bound] : rule.bounds) {
-    if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
-    if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
+    if (bound.min) text += fmt::format(", and {} >= {}", metric, *bound.min);
+    if (bound.max) text += fmt::format(", and {} <= {}", metric, *bound.max);
   }
   return text;
 }
 
 std::string limit_answer(const FieldLimit& found, double resolution) {
   if (!found.end.value) return none_text(found);
-  std::string text = found.end.beyond
-                         ? fmt::format("edge in runs {}", deserved(*found.end.value, found.end.tolerance()))
-                         : fmt::format("stable in runs to the end of the range, {}", significant(*found.end.value, 6));
+  std::string text =
+      found.end.beyond
+          ? fmt::format("simulated limit {}", deserved(*found.end.value, found.end.tolerance()))
+          : fmt::format("stable in all runs up to the end of the range, {}", significant(*found.end.value, 6));
   const auto& linear = found.linear_edge();
   if (linear && std::isfinite(*linear) && *linear > 0.0) {
-    const std::string edge = fmt::format("linear edge {}; ", significant(*linear, 6));
-    text = edge + (found.is_beyond_linear(resolution) ? fmt::format("{} ({})", kBeyondLinear, text) : text);
+    text = fmt::format("linear limit {}; {}", significant(*linear, 6), text);
+    if (found.is_beyond_linear(resolution)) text += fmt::format(". Use the linear limit: {}", kBeyondLinear);
   }
   if (found.tried_between == 0) return text;
-  return text + fmt::format("; {} values between its ends are also stable: at most {:.0f} % of them may fail (95 %)",
-                            found.tried_between, 100.0 * may_fail_share(found.tried_between));
+  return text + fmt::format(
+                    ". {} verification samples inside the stable interval are also stable: at most {:.0f} % of "
+                    "the interval may be unstable (95 % confidence)",
+                    found.tried_between, 100.0 * may_fail_share(found.tried_between));
 }
 
 std::string limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout) {

@@ -57,7 +57,7 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   const std::filesystem::path directory = out.parent_path();
   // Make the scene and check it before anything is written.
   const StartedScene start = [&] {
-    const WaitNotice notice("trying the scene", !options.output.quiet);
+    const WaitNotice notice("simulating the scene", !options.output.quiet);
     return started_scene(kind, options, directory);
   }();
   LoadedScenario loaded = read_scenario(start.scene, directory);
@@ -72,11 +72,12 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   if (options.preview) draw_preview(out, picture, options.output.quiet || options.output.json, context);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
   for (const std::string& note : start.notes) text += note + "\n";
-  if (options.preview) text += fmt::format("picture of a run in {}\n", picture.string());
+  if (options.preview) text += fmt::format("picture of a run: {}\n", picture.string());
   text += "\n";
   const Json fields = field_meanings(start.scene);
   for (const auto& [path, meaning] : fields.items()) text += layout.entry(path, meaning.get<std::string>(), 0, 34);
-  text += fmt::format("\n\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
+  text +=
+      fmt::format("\n\"hapbench describe scenario\" explains all fields; next step: hapbench run {}\n", out.string());
   Json said = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
   if (options.preview) said["picture"] = picture.string();
   print(context, options.output, text, said);

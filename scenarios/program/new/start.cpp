@@ -70,7 +70,7 @@ class Start {
     }
     if (kind.source == "stroke") choose_stroke_steps();
     if (!has_type("environment", "mesh")) return;
-    notes_.push_back(fmt::format("{} points, {} apart: a tenth of the tool's diameter", shell()->size(),
+    notes_.push_back(fmt::format("{} points with a spacing of {}, a tenth of the tool's diameter", shell()->size(),
                                  length_text(scene_["environment"]["spacing_m"].get<double>())));
   }
 
@@ -178,12 +178,12 @@ class Start {
     const std::string side = options_.side.front() == '-' ? options_.side.substr(1) : "-" + options_.side;
     const std::string found = fmt::format("its normals point away from side {}", options_.side);
     if (!has_type("environment", "mesh")) {
-      throw InputError(fmt::format("--from {}: {}; allowed: normals turned round, or --side={}",
+      throw InputError(fmt::format("--from {}: {}; allowed: inverted normals, or --side={}",
                                    std::filesystem::path(options_.from).generic_string(), found, side));
     }
     scene_["environment"]["flip_normals"] = true;
     notes_.push_back(fmt::format(
-        "{} and are turned round, environment.flip_normals; or press from the other side: --side={}", found, side));
+        "{} and are inverted (environment.flip_normals); or press from the other side with --side={}", found, side));
     return points();
   }
 
@@ -203,7 +203,8 @@ class Start {
     start_at(start_above(top));
     const bool is_on_top = options_.side == "z" && named_.empty();
     notes_.push_back(fmt::format("{}{}the tool starts 1 mm {} {}", count, count.empty() ? "" : "; ",
-                                 is_on_top ? "above the highest, at" : "off the surface at", said(top, !is_on_top)));
+                                 is_on_top ? "above the highest point, at" : "off the surface at",
+                                 said(top, !is_on_top)));
   }
 
   /// Returns a position as text [mm], in the world frame.
@@ -255,7 +256,7 @@ class Start {
     start_at(start_above(first));
     drag_for(way);
     hand["smoothing_m"] = 0.5 * diameter_;
-    notes_.push_back(fmt::format("dragged over {}", length_text(way)));
+    notes_.push_back(fmt::format("dragged along a path of {}", length_text(way)));
   }
 
   /// Sets the speed of a drag, and enough steps for a path of this length [m].
@@ -274,8 +275,8 @@ class Start {
     scene_["tool"]["scale"] = scale;
     box = {scale / 0.001 * box.min, scale / 0.001 * box.max};
     notes_.emplace_back(
-        "taken for its tip centre: the file's origin, the tip pointing along -z; tool.tip_m and tool.tip_axis say "
-        "otherwise");
+        "assumed tip centre: the file's origin, with the tip pointing along -z; tool.tip_m and tool.tip_axis change "
+        "this");
     if (const std::string odd = odd_frame(box); !odd.empty())
       warnings_.push_back(fmt::format("the tool {}: set tool.tip_m and tool.tip_axis", odd));
     pressed_ = to_micrometres(-box.min.z() - kPressedBelow);
@@ -298,13 +299,13 @@ class Start {
     scene_["hand"]["smoothing_m"] = drag.smoothing;
     drag_for(has_room ? way : enough);
     if (!has_room) {
-      warnings_.push_back(
-          fmt::format("no way longer than {} was found over the surface along x or y, from its highest place or its "
-                      "middle: set hand.path_m to points on the surface, or initial.position_m and hand.direction",
-                      length_text(drag.room)));
+      warnings_.push_back(fmt::format(
+          "no path longer than {} was found over the surface along x or y, from its highest point or its middle: set "
+          "hand.path_m to points on the surface, or initial.position_m and hand.direction",
+          length_text(drag.room)));
       return;
     }
-    notes_.push_back(fmt::format("dragged from {} on along [{}, {}, {}] for {}; the surface ends or turns after {}",
+    notes_.push_back(fmt::format("dragged from {} along [{}, {}, {}] for {}; the surface ends or turns after {}",
                                  said(drag.position, options_.side != "z"), along[0].dump(), along[1].dump(),
                                  along[2].dump(), length_text(way), length_text(drag.room)));
   }
@@ -317,9 +318,9 @@ class Start {
     const auto height = [](const auto& sample) { return sample.position.z(); };
     const double lowest = height(*std::ranges::min_element(samples, {}, height)), last = samples.back().time;
     scene_["time"]["steps"] = static_cast<std::int64_t>(std::max(1.0, std::ceil(last / kStartStep) + 1.0));
-    notes_.push_back(fmt::format("the stroke lasts from {:.4g} to {:.4g} s; its lowest tip is at z = {:.4g} mm{}",
+    notes_.push_back(fmt::format("the stroke lasts from {:.4g} to {:.4g} s; its lowest tip position is z = {:.4g} mm{}",
                                  samples.front().time, last, 1e3 * lowest,
-                                 options_.on.empty() ? ", the plane at 0" : ""));
+                                 options_.on.empty() ? ", with the plane at z = 0" : ""));
   }
 
   Json scene_;

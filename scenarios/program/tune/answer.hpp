@@ -32,12 +32,14 @@ struct Margin {
   double most;
 };
 inline constexpr Margin kMargins[] = {
-    {"gain_margin", "1", "largest factor on K, up to 64, at which all runs and the loop in contact are settled", "gain",
-     "gain", "gain {}", &TuneMargins::gain, 0.99 * kMostGain},
-    {"delay_margin_samples", "time steps", "likewise of further delay of the device, up to 64; empty without device",
-     "delay", "delay_samples", "{} samples more delay", &TuneMargins::delay_samples, kMostDelay},
-    {"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one", "",
-     "damping_ratio", "least damped mode {}", &TuneMargins::damping_ratio, 2.0}};
+    {"gain_margin", "1", "largest factor on K, up to 64, with which all runs settle and the contact loop is stable",
+     "gain", "gain", "gain margin {}", &TuneMargins::gain, 0.99 * kMostGain},
+    {"delay_margin_samples", "time steps",
+     "largest additional delay of the device, up to 64 time steps, with which all runs settle and the contact loop is "
+     "stable; empty without a device",
+     "delay", "delay_samples", "delay margin {} samples", &TuneMargins::delay_samples, kMostDelay},
+    {"damping_margin", "1", "damping ratio of the least damped mode of the contact loop; empty without a contact loop",
+     "", "damping_ratio", "damping ratio {} of the least damped mode", &TuneMargins::damping_ratio, 2.0}};
 
 /// Returns the chosen stiffness K with the digits that the resolution of the search leaves.
 std::string stiffness_text(const TuneTrial& choice);

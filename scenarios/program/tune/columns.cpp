@@ -27,24 +27,30 @@ Columns<TunedLaw> choice_columns() {
   const auto stiffness = [](const Row& r) { return r.choice ? stiffness_text(*r.choice) : "none"; };
   return {
       {"algorithm", "", "force algorithm", &Row::algorithm, under("algorithm")},
-      {"feasible", "", "false when nothing that was tried keeps all constraints", feasible},
-      {"stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible", of_choice(&TuneTrial::stiffness)},
-      {"K [N/m]", "N/m", "of tune: the largest stiffness that keeps margin and limits [N/m]", stiffness,
+      {"feasible", "", "true if some stiffness of the search keeps all constraints", feasible},
+      {"stiffness_N_per_m", "N/m", "largest stiffness K that keeps all constraints; empty if no stiffness does",
+       of_choice(&TuneTrial::stiffness)},
+      {"K [N/m]", "N/m", "of tune: largest stiffness that keeps the margin and all bounds [N/m]", stiffness,
        only_printed()},
-      {kRatioColumn, "1", "zeta with it; empty where it has no part", of_setting(&TuneSetting::damping_ratio),
-       under("zeta", 3, kOnlyCsv)},
-      {"damping_ratio", "1", "the same", of_setting(&TuneSetting::damping_ratio), kOnlyJson},
-      {"mass_kg", "kg", "virtual mass with it, of an admittance device; else empty: the scene's",
+      {kRatioColumn, "1", "damping ratio zeta at this K; empty if the search does not vary it",
+       of_setting(&TuneSetting::damping_ratio), under("zeta", 3, kOnlyCsv)},
+      {"damping_ratio", "1", "damping ratio zeta at this K; empty if the search does not vary it",
+       of_setting(&TuneSetting::damping_ratio), kOnlyJson},
+      {"mass_kg", "kg", "virtual mass at this K; empty if the search does not vary it (the scene's mass)",
        of_setting(&TuneSetting::mass)},
-      {"velocity_filter", "", "with it, as JSON; empty: the scene's", of_setting(&TuneSetting::filter)},
+      {"velocity_filter", "",
+       "velocity filter of the device at this K, as JSON; empty if the search does not vary it (the scene's filter)",
+       of_setting(&TuneSetting::filter)},
       {"lambda_max", "1",
-       "largest eigenvalue of the mean S in the end of the run: K lambda_max is the stiffness rendered",
+       "largest eigenvalue of the mean stiffness tensor S at the end of the run, in units of K; the largest rendered "
+       "stiffness is K lambda_max",
        of_choice(&TuneTrial::lambda_max)},
       {"binding", "",
-       "what a larger K does not keep: settled, margin, a limited metric, or range, the end of the search",
+       "binding constraint, the first constraint that a larger K violates: settled, margin, a bounded metric, or "
+       "range (the end of the search range)",
        &Row::binding},
-      {"why", "", "the same in words", &Row::why},
-      {"relax", "", "where nothing is feasible: which limit to relax, and to what", &Row::relax}};
+      {"why", "", "explanation of the binding constraint", &Row::why},
+      {"relax", "", "if no stiffness keeps all constraints: the bound to relax, and its new value", &Row::relax}};
 }
 
 }  // namespace
@@ -62,18 +68,25 @@ Columns<TunedLaw> tuned_columns() {
       const auto value = r.choice ? value_in(r.choice->metrics, name, factor) : std::nullopt;
       return value ? number_text(*value, value_in(r.error, name, factor)) : "-";
     };
-    return Columns<Row>::Entry(heading, "by name", name, text, only_printed());
+    return Columns<Row>::Entry(heading, "unit of the metric", name, text, only_printed());
   };
   columns.add(
       {{"verified", "1",
-        fmt::format("full-length runs between K and G K, all settled, {} of them just below G K", kTriedNear),
+        fmt::format(
+            "number of verification samples: full-length runs between K and G K (G is the margin), all settled, {} of "
+            "them just below G K",
+            kTriedNear),
         &Row::verified},
-       {"may_fail_share", "1", "share of what lies between K and G K that may not be, with 95 % confidence", may_fail},
-       {"runs", "1", "simulations in all", &Row::runs},
-       metric("settled\ninside [mm]", "inside_settled_m", 1e3),
+       {"may_fail_share", "1",
+        "largest fraction of the values between K and G K that may still be unstable, with 95 % confidence, given the "
+        "verification samples",
+        may_fail},
+       {"runs", "1", "number of simulated runs of the search and the verification", &Row::runs},
+       metric("settled\ndepth [mm]", "inside_settled_m", 1e3),
        metric("vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0),
-       metric("largest\nstep [N]", "settled_force_step_max_N", 1.0),
-       {"binding", "", "of tune: what a larger K does not keep", &Row::binding, only_printed()}});
+       metric("max force\nstep [N]", "settled_force_step_max_N", 1.0),
+       {"binding", "", "of tune: binding constraint, the first constraint that a larger K violates", &Row::binding,
+        only_printed()}});
   return columns;
 }
 
@@ -83,29 +96,33 @@ Columns<TuneTrial> trial_columns() {
     return [member](const Row& r) { return cell_of(std::invoke(member, r.setting)); };
   };
   Columns<Row> columns = {
-      {"algorithm", "", "force algorithm", &Row::algorithm},
+      {"algorithm", "", "force algorithm of the trial", &Row::algorithm},
       {"stiffness_N_per_m", "N/m", "K", &Row::stiffness},
-      {kRatioColumn, "1", "zeta; empty where it has no part", of_setting(&TuneSetting::damping_ratio)},
-      {"mass_kg", "kg", "virtual mass; empty where it is not searched", of_setting(&TuneSetting::mass)},
-      {"velocity_filter", "", "of the device, as JSON; empty: the scene's", of_setting(&TuneSetting::filter)},
-      {"feasible", "", "true when every constraint is kept", &Row::feasible},
+      {kRatioColumn, "1", "damping ratio zeta of the trial; empty if the search does not vary it",
+       of_setting(&TuneSetting::damping_ratio)},
+      {"mass_kg", "kg", "virtual mass of the trial; empty if the search does not vary it",
+       of_setting(&TuneSetting::mass)},
+      {"velocity_filter", "",
+       "velocity filter of the device in the trial, as JSON; empty if the search does not vary it",
+       of_setting(&TuneSetting::filter)},
+      {"feasible", "", "true if the trial keeps all constraints", &Row::feasible},
       {"binding", "",
-       "the first constraint that is not: settled (at K), margin (up to G K), a limited metric, or runs, the bound on "
-       "them",
+       "first violated constraint: settled (at K), margin (at stiffnesses up to G K), a bounded metric, or runs (the "
+       "largest number of runs was reached)",
        &Row::binding},
-      {"why", "", "the same in words", &Row::why}};
+      {"why", "", "explanation of the violated constraint", &Row::why}};
   for (const char* name : {kTuneMetrics[0], kTuneMetrics[1], kTuneMetrics[2]}) {
-    columns.add(
-        {{name, name == kTuneMetrics[0] ? "m" : "N", "of the scene's own run at K; empty where it was not asked for",
-          [name](const Row& r) { return value_in(r.metrics, name); }}});
+    columns.add({{name, name == kTuneMetrics[0] ? "m" : "N",
+                  "metric of the same name in the scene's own run at K; empty if this run was not made",
+                  [name](const Row& r) { return value_in(r.metrics, name); }}});
   }
   return columns;
 }
 
 std::vector<DescribedTable> tune_tables() {
-  return {
-      tuned_columns().described("tune.csv", "of tune: one line per algorithm"),
-      trial_columns().described("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried")};
+  return {tuned_columns().described("tune.csv", "written by tune: one line per algorithm"),
+          trial_columns().described("tune_trials.csv",
+                                    "written by tune: one line per algorithm, setting and stiffness that was tried")};
 }
 
 }  // namespace hapbench

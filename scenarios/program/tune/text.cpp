@@ -16,13 +16,15 @@ namespace hapbench {
 namespace {
 
 std::string limits_text(const Tuning& tuning) {
-  std::string text = fmt::format("largest K that is settled up to {:g} K{}", tuning.question.margin,
-                                 tuning.ranges.damping_ratio ? ", with B = 2 zeta sqrt(K m) at each" : "");
+  std::string text =
+      fmt::format("largest K for which all runs settle at stiffnesses up to {:g} K{}", tuning.question.margin,
+                  tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m) at each stiffness" : "");
   if (tuning.question.limits.empty())
-    text += ", in a run that is quiet (describe diagnosis: buzz, pop, chatter, energy)";
+    text +=
+        ", and the run at K has low vibration (rules buzz, pop, chatter and energy of \"hapbench describe diagnosis\")";
   for (const auto& [name, bound] : tuning.question.limits) {
-    if (bound.min) text += fmt::format(", {} >= {:g}", name, *bound.min);
-    if (bound.max) text += fmt::format(", {} <= {:g}", name, *bound.max);
+    if (bound.min) text += fmt::format(", and {} >= {:g}", name, *bound.min);
+    if (bound.max) text += fmt::format(", and {} <= {:g}", name, *bound.max);
   }
   const auto range = [](const char* name, const std::optional<Range>& found) {
     return found ? fmt::format("; {} {:.3g} ... {:.3g}", name, found->from, found->to) : "";
@@ -38,30 +40,30 @@ std::string margins_text(const TuneMargins& margins) {
   std::vector<std::string> texts;
   for (const Margin& margin : kMargins)
     if (const auto& found = margins.*margin.of)
-      texts.push_back(
-          fmt::format(fmt::runtime(margin.words), (*found >= margin.most ? "over " : "") + significant(*found, 3)));
+      texts.push_back(fmt::format(fmt::runtime(margin.words),
+                                  (*found >= margin.most ? "more than " : "") + significant(*found, 3)));
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
-  if (tuning.ranking.empty()) return "nothing is feasible\n";
+  if (tuning.ranking.empty()) return "no stiffness keeps all constraints\n";
   const TunedLaw* best = tuning.ranking[0];
   std::string text = bold(stdout, fmt::format("use {}, {}", best->algorithm, choice_text(*best->choice))) + "\n";
   const auto line = [&](const char* name, const std::string& what) { text += layout.entry(name, what, 2, 14); };
-  line("stops at", fmt::format("{}: {}", best->binding, best->why));
+  line("limited by", fmt::format("{}: {}", best->binding, best->why));
   line("margins", margins_text(best->margins));
   if (tuning.ranking.size() > 1) {
     const TunedLaw* next = tuning.ranking[1];
-    line("runner-up",
-         fmt::format("{}, {}: {} times the rendered stiffness", next->algorithm, choice_text(*next->choice),
-                     significant(next->choice->rendered() / best->choice->rendered(), 2)));
+    line("runner-up", fmt::format("{}, {}: renders {} times the stiffness", next->algorithm, choice_text(*next->choice),
+                                  significant(next->choice->rendered() / best->choice->rendered(), 2)));
   }
-  line("K's edges", limit_answer(best->edge, kEdgeResolution));
+  line("limits of K", limit_answer(best->edge, kEdgeResolution));
   line("verified",
-       fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of what lies "
-                   "between may not be (95 %); {} runs in all",
+       fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
+                   "unstable (95 % confidence); {} runs in total",
                    best->verified, tuning.question.margin, 100.0 * may_fail_share(kTriedBetween), tuning.runs));
-  line("expect", "+-: how far half the step, half the distance of the points or a look at every row move it");
+  line("metrics at K",
+       "+-: change with half the time step, half the point spacing, and the depth evaluated at every step");
   for (const auto& [name, value] : best->choice->metrics)
     line("", fmt::format("{} {}", name, with_error_text(value, value_in(best->error, name))));
   return text;
@@ -74,7 +76,8 @@ std::string tuning_text(const Tuning& tuning, const Layout& layout) {
                      recommendation_text(tuning, layout) + "\n" + tuned_columns().text(tuning.laws, layout) + "\n";
   for (const TunedLaw& law : tuning.laws)
     if (!law.choice)
-      text += layout.wrapped(fmt::format("{}: nothing is feasible, {}; {}", law.algorithm, law.why, law.relax), 0);
+      text += layout.wrapped(
+          fmt::format("{}: no stiffness keeps all constraints: {}; {}", law.algorithm, law.why, law.relax), 0);
   return text;
 }
 

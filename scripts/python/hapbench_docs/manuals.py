@@ -241,7 +241,9 @@ def same_but_for_times(a, b):
 
 def _words(text):
     text = re.sub(r"\S+ us( \(\w+\)|$)", "TIME us", text, flags=re.M)
-    text = re.sub(r"\S+\s+(s\s+a\s+run|times\s+the\s+first)", r"TIME \1", text)
+    text = re.sub(
+        r"\S+\s+(s\s+(?:a|per)\s+run|times\s+the\s+(?:time\s+of\s+the\s+)?first)", r"TIME \1", text
+    )
     if re.search(r" (us/|run s)$", text, re.M):  # a table whose last column is a time
         text = re.sub(r" [\d.e+-]+$", " TIME", text, flags=re.M)
     return re.sub(r"-{3,}", "---", text).split()

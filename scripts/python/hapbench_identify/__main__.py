@@ -110,9 +110,9 @@ def run(options):
     if options.log:
         refuse_source(out, options.log, "log")
     table, data = play(kind, numbers, out) if kind else identify(options, out)
-    headings = ["of the signal" if options.design else "of the device", "", "from", "to, 95 %"]
+    headings = ["signal" if options.design else "identified device", "value", "95 % from", "to"]
     next_line = (
-        "command these forces, log time_s,force_N,position_m, then "
+        "play these forces on the device, log time_s,force_N,position_m, then "
         f"{shell_line('hapbench', 'import', 'device', 'LOG.csv')}"
         if options.design
         else shell_line("hapbench", "limit", "tap_wall", "--device", out)
@@ -155,9 +155,9 @@ def identify(options, out):
     require_likely_units(options, found.values[0], step)
     if told["handle_mass_kg"]["value"] is None:
         fail(
-            f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. "
-            "Is a hand or a spring on the handle, or is a "
-            "sign or a unit wrong? hapbench import device --design makes a signal that tells",
+            f"the mass cannot be identified from this log: the simulated position is off by {found.rms:.3g} m "
+            "(rms). Is a hand or a spring on the handle, or is a sign or a unit wrong? "
+            '"hapbench import device --design" makes a suitable signal',
             options.log,
         )
     warnings = log.warnings + warnings_of(told, found, log)
@@ -170,7 +170,7 @@ def identify(options, out):
     table = [
         [
             f"{name} [{UNITS[name]}]",
-            "cannot be told" if one["value"] is None else f"{one['value']:.4g}",
+            "not identifiable" if one["value"] is None else f"{one['value']:.4g}",
             *map(shown_end, one["interval"]),
         ]
         for name, one in told.items()
@@ -200,9 +200,9 @@ def require_likely_units(options, mass, encoder_step):
     if options.scale or (1e-3 <= mass <= 20.0 and encoder_step <= 1e-3):
         return
     fail(
-        f"a handle of {mass:.3g} kg, an encoder's step of {encoder_step:.3g} m: are the units s, "
-        "N, m? For a log in ms and mm: --scale "
-        "time=1e-3,position=1e-3. If they are, --scale time=1 says so",
+        f"the fit gives a handle of {mass:.3g} kg and an encoder step of {encoder_step:.3g} m: are the "
+        "units s, N and m? For a log in ms and mm use --scale time=1e-3,position=1e-3; if the "
+        "units are right, confirm them with --scale time=1",
         options.log,
     )
 
@@ -213,22 +213,21 @@ def shown_end(end):
 
 def warnings_of(told, found, log):
     warnings = [
-        f"{name}: the log cannot tell it: {why}; 95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}"
+        f"{name} cannot be identified from this log: {why}; 95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}"
         for name, why in found.untold.items()
         if name in IN_DEVICE
     ]
     if told["offset_N"]["value"] is not None:
         warnings.append(
-            f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands "
-            "(weight, a cable): no device file has it"
+            f"a constant force of {told['offset_N']['value']:.3g} N acts in addition to the commanded "
+            "force (such as weight or a cable); device files cannot represent it"
         )
     if found.misfit:
         warnings.append(
-            f"the residual, {found.rms:.3g} m, is not noise. The device has something that this "
-            "model has not (a hand on it, elasticity, "
-            "friction that depends on the place): look at the picture. The parameters are those "
-            "of pieces of 0.2 s, and the intervals "
-            "those of leaving out one twelfth of the log after another"
+            f"the residual of {found.rms:.3g} m is larger than noise: the device has a property that "
+            "the model lacks, such as a hand on the handle, elasticity or friction that depends on "
+            "the position; see the picture. The parameters are therefore fitted to pieces of "
+            "0.2 s, and their intervals come from leaving out one twelfth of the log at a time"
         )
     return warnings
 
@@ -257,7 +256,13 @@ def draw(file, log, found):
         color=PETROL,
         label="measured" if every == 1 else f"measured, one sample in {every}",
     )
-    above.plot(time, 1e3 * (position - residual), color=AMBER, ls="--", label="device identified")
+    above.plot(
+        time,
+        1e3 * (position - residual),
+        color=AMBER,
+        ls="--",
+        label="simulated with the identified device",
+    )
     above.set_ylabel("position [mm]")
     above.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2)
     unit, name = (log.encoder_step, "encoder steps") if log.encoder_step else (1e-6, "µm")
@@ -292,8 +297,8 @@ def play(kind, numbers, out):
         ["signal", KINDS[kind], "", ""],
         ["samples", str(len(time)), "", ""],
         ["largest force [N]", f"{peak:.3g}", "", ""],
-        ["tells dry friction up to [N]", f"{FRICTION_TOLD * peak:.3g}", "", ""],
-        [f"way of {numbers['mass']:g} kg without friction [m]", f"{travel:.3g}", "", ""],
+        ["largest identifiable dry friction [N]", f"{FRICTION_TOLD * peak:.3g}", "", ""],
+        [f"travel of {numbers['mass']:g} kg without friction [m]", f"{travel:.3g}", "", ""],
     ]
     return table, {
         "file": out,
@@ -310,19 +315,19 @@ def limited_by_travel(kind, numbers, peak):
     if peak > 0.99 * force:
         return []
     said = (
-        f"the travel of {numbers['travel']:g} m limits the force to {peak:.3g} N of {force:g} N: "
-        "the log tells dry friction up to "
+        f"the travel of {numbers['travel']:g} m limits the force to {peak:.3g} N instead of {force:g} N, so "
+        "that dry friction can be identified up to "
         f"{FRICTION_TOLD * peak:.3g} N. "
     )
     asked = force_to_ask(kind, numbers)
     return [
         said
         + (
-            f"force={asked:.3g} begins at a higher frequency and reaches {force:g} N, which tells "
-            f"{FRICTION_TOLD * force:.3g} N"
+            f"force={asked:.3g} begins at a higher frequency and reaches {force:g} N, which is "
+            f"enough for {FRICTION_TOLD * force:.3g} N"
             if asked
-            else "A device with more of it needs more travel, or a mass of more than "
-            f"{numbers['mass']:g} kg if it is known to have it"
+            else "A device with more dry friction needs more travel, or mass= above "
+            f"{numbers['mass']:g} if its mass is known to be larger"
         )
     ]
 

@@ -145,9 +145,9 @@ def _fit(log, simulate):
     count = max(log.encoder_step, 1e-9 * way)
     if way < FEWEST_COUNTS * max(count, noise):
         fail(
-            f"the handle hardly moves: {way:.3g} m, {way / count:.3g} steps of the encoder, noise "
-            f"of {noise:.3g} m; nothing to identify. More "
-            "force, or slower changes of it, move it further"
+            f"the handle hardly moves: its range is {way:.3g} m, {way / count:.3g} encoder steps, with "
+            f"noise of {noise:.3g} m, so that nothing can be identified. Use a larger force, or "
+            "change it more slowly"
         )
     peak = float(np.abs(log.force).max())
     lag = max(1, round(0.01 / log.step))
@@ -178,13 +178,13 @@ def _fit(log, simulate):
     )
     half = 0.5 * np.diff(intervals)[:, 0]
     for i, most, said in (
-        (MASS, 0.25 * found.x[MASS], "25 % of it"),
+        (MASS, 0.25 * found.x[MASS], "25 % of the value"),
         (DELAY, 2.0 * log.step, "2 samples"),
         (DRY, 0.1 * peak, "10 % of the largest force"),
         (VISCOUS, 0.1 * peak / fast, "10 % of the largest force at full speed"),
     ):
         if i not in untold and not half[i] <= most:
-            untold[i] = f"the interval is wider than {said} either way"
+            untold[i] = f"its interval is wider than +- {said}"
     intervals[:OFFSET, 0] = np.maximum(intervals[:OFFSET, 0], 0.0)
     filled = np.full(len(log.time), np.nan)
     filled[whole.known] = residual
@@ -280,13 +280,13 @@ class Strokes:
 
     def said(self, encoder_step):
         counts = (
-            f"{self.travel / encoder_step:.0f} steps of the encoder"
+            f"{self.travel / encoder_step:.0f} encoder steps"
             if encoder_step
             else f"{self.travel:.3g} m"
         )
         return (
-            f"at rest for {100.0 * self.rest:.0f} % of the log, {self.up} strokes one way and "
-            f"{self.down} the other, travel {counts}"
+            f"at rest for {100.0 * self.rest:.0f} % of the log, {self.up} strokes in one direction and "
+            f"{self.down} in the other, travel {counts}"
         )
 
 
@@ -294,14 +294,17 @@ def _degenerate(J, strokes):
     """Which parameters can change together without a change of the positions, with the reason."""
     sizes = np.sqrt(np.mean(J**2, axis=1))
     felt = np.flatnonzero(sizes > 1e-12 * sizes.max())
-    untold = {i: "it changes nothing" for i in range(len(NAMES)) if i not in felt}
+    untold = {i: "it has no effect on the positions" for i in range(len(NAMES)) if i not in felt}
     unit = J[felt] / sizes[felt, None]
     values, vectors = np.linalg.eigh(unit @ unit.T / J.shape[1])
     for vector in vectors.T[values < 1e-8]:
         for i in felt[np.abs(vector) > 0.1]:
-            untold[int(i)] = "others make up for it"
+            untold[int(i)] = "other parameters have the same effect"
     if values[0] < 1e-5 and strokes.one_way:
-        untold |= {DRY: "moved one way only", OFFSET: "moved one way only"}
+        untold |= {
+            DRY: "the handle moved in one direction only",
+            OFFSET: "the handle moved in one direction only",
+        }
     untold.pop(len(NAMES), None)  # the first place
     return untold
 

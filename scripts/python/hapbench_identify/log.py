@@ -63,7 +63,7 @@ def read_log(options):
     log = log_of(time[kept], force[kept], position[kept])
     if faults:
         log.warnings.insert(
-            0, f"{len(faults)} bad rows left out, the first: {faults[0][0]}: {faults[0][1]}"
+            0, f"{len(faults)} bad rows were left out, the first: {faults[0][0]}: {faults[0][1]}"
         )
     for name, values in (("force", force[kept]), ("position", position[kept])):
         if np.ptp(values) == 0.0:
@@ -80,15 +80,14 @@ def log_of(time, force, position):
     step = float(intervals[even].mean())
     if missing.any():
         warnings.append(
-            f"{missing.sum()} samples are missing, at most {missing.max()} together: their forces "
-            "were taken on the line "
-            "between their neighbours'"
+            f"{missing.sum()} samples are missing, at most {missing.max()} in a row: their forces "
+            "were interpolated linearly"
         )
     if np.ptp(intervals[even]) > 0.05 * step:
         warnings.append(
-            f"the clock is not even: intervals of {1e3 * intervals[even].min():.3g} ... "
+            f"the sampling is not uniform: intervals of {1e3 * intervals[even].min():.3g} ... "
             f"{1e3 * intervals[even].max():.3g} ms; "
-            "times are taken as those of the samples"
+            "a constant interval is assumed"
         )
     all_times = np.concatenate(
         [np.linspace(a, b, n + 1, endpoint=False) for a, b, n in zip(time, time[1:], missing)]

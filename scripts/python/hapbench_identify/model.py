@@ -10,9 +10,9 @@ from hapbench_command import Faults, fail
 
 NAMES = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "offset_N", "start_m_per_s")
 KINDS = {
-    "chirp": "a sine from slow to fast",
-    "steps": "pushes to and fro, from short to long",
-    "multisine": "thirty sines at once",
+    "chirp": "a sine whose frequency rises",
+    "steps": "alternating pushes, from short to long",
+    "multisine": "sum of thirty sines",
 }
 FRICTION_TOLD = 0.6  # of the largest force; more dry friction leaves too little motion
 HIGHEST = 100.0  # frequency [Hz]; more tells little of a handle's mass and friction
@@ -24,7 +24,7 @@ class Simulator(subprocess.Popen):
     def __init__(self, time, force):
         program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
         if not program:
-            fail("the program hapbench, which simulates the handle, is not in the path")
+            fail("the program hapbench, which simulates the handle, was not found in PATH")
         super().__init__(
             [program, "import", "device", "--simulate-log"],
             stdin=subprocess.PIPE,

@@ -96,7 +96,7 @@ def gaps_in(read, median, longest):
     if median > longest:
         factor = next((unit for unit in (1e-3, 1e-6, 1e-9) if median * unit <= longest), 1e-9)
         fail(
-            f"got intervals of {median:.4g} s in the median; allowed: {longest:g} s (--set max_gap=...); are times in "
+            f"got a median interval of {median:.4g} s; allowed: {longest:g} s (--set max_gap=...); are times in "
             f"other units? (--scale time={factor:g})",
             read.recording.file,
         )
@@ -250,11 +250,11 @@ def table_of(found):
     rows = [
         (
             "rows",
-            f"{found['rows_read']} read, " + (f"{bad} bad ones left out" if bad else "all used"),
+            f"{found['rows_read']} read, " + (f"{bad} bad rows left out" if bad else "all used"),
         ),
         (
             "clock",
-            f"began at {found['first_time_s']:.9g} s; intervals {1e3 * interval['median']:.4g} ms in the median, "
+            f"starts at {found['first_time_s']:.9g} s; intervals: median {1e3 * interval['median']:.4g} ms, range "
             f"{1e3 * interval['min']:.4g} ... {1e3 * interval['max']:.4g} ms",
         ),
         (
@@ -264,9 +264,9 @@ def table_of(found):
         ),
         (
             "gaps",
-            f"{found['gaps']}, bridged"
+            f"{found['gaps']}, bridged by straight lines"
             if found["gaps"]
-            else "none (of ten median intervals and more)",
+            else "none (of at least ten median intervals)",
         ),
         (
             "tip",
@@ -277,18 +277,18 @@ def table_of(found):
         ),
         (
             "speed",
-            f"{found['speed_max_m_per_s']:.4g} m/s at most, 99 % below {found['speed_p99_m_per_s']:.4g} m/s",
+            f"{found['speed_max_m_per_s']:.4g} m/s at most; 99 % of the steps below {found['speed_p99_m_per_s']:.4g} m/s",
         ),
         (
             "pose",
-            f"quaternions; norms were within {found['unit_deviation']:.1e} of 1"
+            f"quaternions, with norms within {found['unit_deviation']:.1e} of 1"
             if found["has_roll"]
-            else "the axis alone; the roll is unknown",
+            else "direction of the axis only; the roll is unknown",
         ),
         (
-            "tip points",
-            f"along [{', '.join(f'{part + 0.0:.3g}' for part in found['tip_direction'])}] in the mean, within "
-            f"{math.degrees(found['tip_direction_spread_rad']):.3g} degrees of it",
+            "tip direction",
+            f"[{', '.join(f'{part + 0.0:.3g}' for part in found['tip_direction'])}] in the mean; all "
+            f"directions within {math.degrees(found['tip_direction_spread_rad']):.3g} degrees of it",
         ),
         (
             "resolution",
@@ -302,7 +302,7 @@ def table_of(found):
         rows.append(
             (
                 "",
-                f"alone makes steps of K q = {found['quantum_force_N']:.4g} N at the default K = {STIFFNESS:g} N/m",
+                f"this resolution q alone causes force steps of K q = {found['quantum_force_N']:.4g} N at the default K = {STIFFNESS:g} N/m",
             )
         )
     if smoothing:
@@ -310,8 +310,8 @@ def table_of(found):
         rows.append(
             (
                 "smoothing",
-                f"moved the tip by {1e6 * moved:.4g} um at most, {1e6 * moved_rms:.4g} um rms; turned it by "
-                f"{1e3 * turned:.4g} mrad, {1e3 * turned_rms:.4g} rms",
+                f"moves the tip by at most {1e6 * moved:.4g} um ({1e6 * moved_rms:.4g} um rms) and rotates the "
+                f"tool by at most {1e3 * turned:.4g} mrad ({1e3 * turned_rms:.4g} mrad rms)",
             )
         )
     least, most = found["force_min_N"], found["force_max_N"]
@@ -327,7 +327,7 @@ def _warnings(read, gaps, found):
         warnings.append(f"{len(read.left_out)} bad rows were left out")
     warnings += [f"{place}: {problem}" for place, problem in read.left_out[:20]]
     warnings += [
-        f"a gap of {duration:.4g} s behind {read.recording.row_word} "
+        f"a gap of {duration:.4g} s after {read.recording.row_word} "
         f"{read.recording.places[read.kept[i]]} is bridged by a straight line"
         for i, duration in gaps[:MOST_GAPS]
     ]
@@ -336,12 +336,12 @@ def _warnings(read, gaps, found):
     extent = float(np.ptp(found["box_m"], axis=0).max())
     if not SHORTEST <= extent <= LONGEST:
         warnings.append(
-            f"the tip's places are within {extent:.4g} m, which is not a stroke of a hand: is the scale right? "
+            f"the tip's positions span {extent:.4g} m, which is unusual for a hand: is the scale right? "
             "(--scale position=0.001 is for millimetres)"
         )
     if not USUAL_RATES[0] <= found["rate_Hz"] <= USUAL_RATES[1]:
         warnings.append(
-            f"{found['rate_Hz']:.4g} samples a second is an unusual rate: is the scale of time "
+            f"{found['rate_Hz']:.4g} samples per second is an unusual rate: is the scale of time "
             "right? (--scale time=1e-3 is for "
             "milliseconds)"
         )

@@ -34,7 +34,7 @@ def differences(a, b):
     pairs = [path for path in in_a if path in in_b]
     if not pairs:
         raise InputError(
-            f"{a} has {in_a[0]} and {b} has {in_b[0]}, nothing by the same name; allowed: the "
+            f"{a} has {in_a[0]} and {b} has {in_b[0]}, with no run of the same name; allowed: the "
             "folders of two runs, or of "
             "several each"
         )

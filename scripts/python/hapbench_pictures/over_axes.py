@@ -35,7 +35,7 @@ TRIALS, LAWS = "tune_trials.csv", "tune.csv"
 # Closed forms and what is known besides, as columns of limit.csv. Where the loop has no linear
 # edge, as with dry friction, those of stability say nothing of it.
 KNOWN = {
-    "worst_hand": "limit, worst hand",
+    "worst_hand": "linear limit, worst hand",
     "passive_colgate_schenkel": "passive (Colgate, Schenkel)",
     "passive_with_delay": "passive, with delay",
     "stable_gil_hulin": "stable (Gil, Hulin)",
@@ -163,9 +163,9 @@ class Limits:
 
     def lines(self, rows):
         found = [
-            ("limit, theory", numbers(rows, "theory"), THEORY),
+            ("theoretical limit", numbers(rows, "theory"), THEORY),
             *self.known(rows),
-            ("limit, bisection", numbers(rows, "limit"), FOUND),
+            ("simulated limit", numbers(rows, "limit"), FOUND),
         ]
         return [
             (label, np.where(values > 0, values, np.nan), own)
@@ -241,8 +241,8 @@ def draw_strip(found):
             {"color": colour, "mew": wide, "marker": "|", "ms": 18, "ls": "none"},
         )
         for key, label, colour, wide in (
-            ("theory", "limit, theory", PETROL, 3),
-            ("limit", "limit, bisection", BLACK, 1.4),
+            ("theory", "theoretical limit", PETROL, 3),
+            ("limit", "simulated limit", BLACK, 1.4),
         )
         if np.isfinite(numbers(found.rows, key)).any()
     ]
@@ -284,7 +284,7 @@ def draw_over(found):
         (look(name).label, *of(name, numbers(rows, "limit"))) for name, rows in curves.items()
     ]
     over_axes(limit, x, Axis.of(axis(found.field), numbers(found.rows, "limit")), limits)
-    limit.set_title("limit, by bisection")
+    limit.set_title("simulated limit")
     if ratio:
         finite = lambda theory: np.where(
             np.isfinite(theory), theory, np.nan
@@ -293,17 +293,17 @@ def draw_over(found):
             (None, *of(name, numbers(rows, "limit") / finite(numbers(rows, "theory"))))
             for name, rows in curves.items()
         ]
-        over_axes(ratio, x, Axis("bisection / theory", np.array([])), ratios)
+        over_axes(ratio, x, Axis("simulated / theoretical limit", np.array([])), ratios)
         low, high = min(ratio.dataLim.y0, 0.998), max(ratio.dataLim.y1, 1.002)
         room = 0.05 * (high - low)
-        ratio.set(title="its ratio to theory", ylim=(low - room, high + room))
+        ratio.set(title="ratio to the theoretical limit", ylim=(low - room, high + room))
         ratio.ticklabel_format(axis="y", useOffset=False)
     for ax, group in zip(others, groups):
         found.draw_classes(ax, group[0])
         names = ", ".join(look(name).label.removesuffix(" (ours)") for name in group)
         if group is groups[-1] and len(group) > 3:
             names = f"{'all others' if len(groups) > 1 else 'all'} ({len(group)})"
-        ax.set_title("\n".join(wrap(f"runs: {names}", 34)), fontsize=7.5)
+        ax.set_title("\n".join(wrap(f"class of the runs: {names}", 34)), fontsize=7.5)
     for ax in others[len(groups) :]:
         ax.set_visible(False)
     legend_above(figure, *zip(*entries))
@@ -372,7 +372,7 @@ def draw_devices(files, folder):
                 color=BLACK,
                 lw=1.2,
                 ls=PUBLISHED_LINE["ls"],
-                label="published, of a wall",
+                label="published, for a wall",
             )
         ax.set(title=scene.replace("_", " "), ylim=(len(devices) - 0.4, -0.6))
     legend_above(figure, *axes[0, 0].get_legend_handles_labels())
@@ -419,7 +419,9 @@ def draw_converge(files):
             )
         )
     if not any(np.isfinite(error).any() for _, _, error, _ in series):
-        raise InputError("nothing to draw: no level has an error above 0; converge.csv says why")
+        raise InputError(
+            "nothing to draw: no level has an error above 0; column reason of converge.csv explains why"
+        )
     timed = [(None, times, error, own) for _, _, error, own in series]
     ordered = [
         (h, error) for (_, h, error, _), verdict in zip(series, orders) if verdict["observed_order"]
@@ -439,7 +441,7 @@ def draw_converge(files):
     error = Axis("relative error", np.array([]), log=True)
     over_axes(
         right,
-        Axis("processor time of the run [s]", times, log=True),
+        Axis("processor time per run [s]", times, log=True),
         Axis("", np.array([]), log=True),
         timed,
     )
@@ -457,7 +459,7 @@ def draw_tune(files):
     ones settled but without the margin or beyond a limit.
     """
     trials, laws = files.records(TRIALS), files.records(LAWS)
-    axes_of = (axis(STIFFNESS), "deepest inside [mm]", "force above 30 Hz [N rms]")
+    axes_of = (axis(STIFFNESS), "largest depth inside [mm]", "force above 30 Hz [N rms]")
     figure, ((left, middle, right),) = panels(1, 3, 3.2)
     shown, drawn = np.empty((0, 3)), []
     for law in laws:
@@ -470,7 +472,9 @@ def draw_tune(files):
         shown = np.vstack([shown, values])
         drawn.append((law["algorithm"], values, feasible, chosen))
     if not shown.size:
-        raise InputError("nothing to draw: no trial is settled; tune.csv says why")
+        raise InputError(
+            "nothing to draw: no trial is settled; column why of tune.csv explains why"
+        )
     for ax, x, y in ((left, 0, 1), (middle, 0, 2), (right, 1, 2)):
         series = []
         for name, values, feasible, chosen in drawn:
@@ -513,7 +517,7 @@ def draw_tune(files):
     handles, labels = left.get_legend_handles_labels()
     choice = Line2D([], [], ls="none", marker="o", ms=8, color=BLACK, mfc="none")
     not_feasible = Line2D([], [], ls="none", marker="s", color=GREY, mfc="white")
-    legend_above(figure, [*handles, choice, not_feasible], [*labels, "the choice", "not feasible"])
+    legend_above(figure, [*handles, choice, not_feasible], [*labels, "recommended", "not feasible"])
     return figure
 
 

@@ -230,7 +230,7 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(False)
     if any((np.abs(way - (low + high) / 2) > (high - low) / 2).any() for way in all_ways):
-        ax.set_title("goes on outside", loc="right")
+        ax.set_title("path continues outside", loc="right")
 
 
 def draw_surface(ax, plane, middle, surface, reach, paper):

@@ -28,7 +28,7 @@ LETTER = 0.068  # width of a letter of the legend [inch]
 LONGEST_NAME = 90  # letters
 SAID = "circle: start; triangle: first touch"
 SOLID_SAID, TOOL_SAID = (
-    "filled: the solid, cut through the middle of the way",
+    "filled: section of the solid through the middle of the path",
     "outlines: the tool at four times",
 )
 

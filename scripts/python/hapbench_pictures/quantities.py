@@ -60,13 +60,11 @@ SHORT = {
         Quantity("spring", "spring force", "N", 1, TRAJECTORY, vector("fspring_", "N"), "norm"),
         Quantity("measured", "measured force", "N", 1, TRAJECTORY, vector("fmeas_", "N"), "norm"),
         Quantity("input", "input force", "N", 1, TRAJECTORY, vector("fin_", "N"), "norm"),
-        Quantity("reference", "force of the stroke", "N", 1, REFERENCE, vector("mf", "N"), "norm"),
+        Quantity("reference", "reference force", "N", 1, REFERENCE, vector("mf", "N"), "norm"),
         Quantity(
             "force_error", "force error", "N", 1, REFERENCE, vector("force_error_", "N"), "norm"
         ),
-        Quantity(
-            "torque", "torque that is lost", "mN m", 1e3, TRAJECTORY, vector("t", "Nm"), "norm"
-        ),
+        Quantity("torque", "lost torque", "mN m", 1e3, TRAJECTORY, vector("t", "Nm"), "norm"),
         Quantity("depth", "largest depth", "mm", 1e3, TRAJECTORY, ("depth_max_m",)),
         Quantity(
             "ratio", "stiffness ratio", "K", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"

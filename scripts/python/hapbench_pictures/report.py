@@ -126,14 +126,14 @@ def sections(runs, names, words):
         (
             "diagnosis",
             "Diagnosis",
-            "What is wrong, and what to try",
+            "Problems found, and what to try",
             said_section(runs, names, diagnosed),
         ),
         ("replay", "Replay", "Replay", drawn and player(replays(*zip(*drawn)))),
         ("curves", "Curves", "Curves", drawn and curves_section(*zip(*drawn))),
-        ("pareto", "Depth, vibration", "Depth against vibration", pareto_section(runs)),
+        ("pareto", "Depth, vibration", "Depth and vibration", pareto_section(runs)),
         ("metrics", "Metrics", "Metrics", metrics_section(runs, names)),
-        ("seeds", "Seeds", "Between algorithms, over the seeds", seeds_section(runs)),
+        ("seeds", "Seeds", "Differences between algorithms, over the seeds", seeds_section(runs)),
         ("scenario", "Scenario", "Scenario", scenario_section(runs, names)),
         ("rerun", "Rerun", "Run it again", commands_section(runs, words)),
         ("provenance", "Provenance", "Provenance", provenance_section(provenance_of(runs))),
@@ -157,7 +157,7 @@ def curves_section(runs, labels):
             ),
             light,
             "The scene",
-            "Circles: start; outlines: the tool of the first run; filled: the solid",
+            "Circles: start positions; outlines: the tool of the first run; filled: the solid environment",
         )
     ]
     figures += [
@@ -251,7 +251,7 @@ def pareto_section(runs):
         every = np.array(list(means.values()))
         over_axes(
             ax,
-            Axis.of("deepest inside [mm]", every[:, 0]),
+            Axis.of("largest depth inside [mm]", every[:, 0]),
             Axis.of("force above 30 Hz [N rms]", every[:, 1]),
             series,
         )
@@ -261,8 +261,8 @@ def pareto_section(runs):
     light = [RunLook(name, look(name).colour, look(name).dark, ()) for name in means]
     words = "; ".join(f"{name} {mean[0]:.3g} mm, {mean[1]:.3g} N" for name, mean in means.items())
     return (
-        "<p>Mean of all its runs. Dotted: no other algorithm is better in both.</p><div class=curves>"
-        + drawing(SCENE_SIZE, draw, light, "Depth against vibration", words)
+        "<p>Mean over all runs of an algorithm. Dotted line: algorithms that no other algorithm beats in both depth and vibration.</p><div class=curves>"
+        + drawing(SCENE_SIZE, draw, light, "Depth and vibration", words)
         + "</div>"
     )
 
@@ -305,12 +305,12 @@ def outcome_cell(run):
     how = text(run.outcome.replace("_", " ") or "–")
     if run.expected:
         return cell(how)
-    wanted = at(run.scenario, "/expect/outcome") or "other results"
+    wanted = at(run.scenario, "/expect/outcome") or "other metric values"
     wanted = " or ".join(map(str, wanted)) if isinstance(wanted, list) else wanted
     return cell(
-        f"<b class=bad>{how}</b><br><span class=note>its field <code>expect</code> names "
-        f"{text(wanted)}; a scenario that was copied "
-        "keeps that field, <code>--set expect={}</code> drops it</span>"
+        f"<b class=bad>{how}</b><br><span class=note>its field <code>expect</code> requires "
+        f"{text(wanted)}; a copied scenario keeps this field, and <code>--set expect={{}}</code> "
+        "removes it</span>"
     )
 
 
@@ -334,7 +334,7 @@ def said_section(runs, labels, of_run):
 
 def diagnosed(run):
     return [
-        f"{text(found['says'])} <i>try: {text(found['try'])}</i>"
+        f"{text(found['says'])} <i>Try: {text(found['try'])}</i>"
         for found in run.summary.get("diagnosis", ())
     ]
 
@@ -385,8 +385,8 @@ def seeds_section(runs):
     ]
     return (
         said
-        and f"<ul>{''.join(said)}</ul><p class=note>Seed by seed, as a seed gives all laws the "
-        "same start; ±: 95 % interval of the mean.</p>"
+        and f"<ul>{''.join(said)}</ul><p class=note>Paired differences: with one seed all "
+        "algorithms have the same start. ±: 95 % confidence interval of the mean difference.</p>"
     )
 
 
@@ -407,8 +407,8 @@ def between(laws, metric):
         more = np.array([values[law][seed] - values[least][seed] for seed in shared])
         mean, within = more.mean(), stats.t.ppf(0.975, len(more) - 1) * stats.sem(more)
         yield (
-            f"{law} has {number(mean, 3)} ± {number(within, 2)} more than {least} over {len(more)} seeds, "
-            + ("which chance does not explain" if mean > within else "which may be chance")
+            f"{law} is {number(mean, 3)} ± {number(within, 2)} above {least} over {len(more)} seeds: "
+            + ("significant" if mean > within else "not significant (may be chance)")
         )
 
 
@@ -440,9 +440,13 @@ def commands_section(runs, words):
     ]
     given = shell_line(*words)
     return (
-        (f"<p>Each run again, the same bytes:</p>{command(chr(10).join(lines))}" if lines else "")
-        + f"<p>Pictures and this page:</p>{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
-        + "<p class=note>The paths are those of the machine that wrote this page. Elsewhere, save "
+        (
+            f"<p>These commands repeat each run, with identical results:</p>{command(chr(10).join(lines))}"
+            if lines
+            else ""
+        )
+        + f"<p>These commands write the pictures and this page again:</p>{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
+        + "<p class=note>The paths belong to the machine that wrote this page. On another machine, save "
         "a scenario from above as a file.</p>"
     )
 

@@ -317,8 +317,8 @@ def sensitivity_table(sweep):
     )
     if not any(found):
         return [
-            f"how much each field matters cannot be told from {runs} runs with this "
-            f"metric{without}; needed: {LEAST_ROWS}, of several values"
+            f"too few runs for a sensitivity analysis: {runs} runs have this metric{without}; "
+            f"needed: {LEAST_ROWS} runs with several values of the metric"
         ]
     rows = [
         [
@@ -339,19 +339,17 @@ def sensitivity_table(sweep):
     together = hundredths(sum(of.first_order for of in found if of))
     return [
         table_text(
-            ["how much each field matters", "rank correlation", "first order", "+-"],
+            ["sensitivity to field", "rank correlation", "first order", "+-"],
             rows,
             wide=True,
             numbers=True,
         ),
         *textwrap.wrap(
-            "rank correlation: Spearman's; first order: Sobol's index, the share of the variance "
-            f"of {sweep.metric} that the field explains "
-            f"alone; together {together}, the rest is fields that act together, and what depends "
-            "on none. By regression on at most "
-            f"{MOST_COSINES} cosines of the field's place in its range, or on the values of a "
-            f"list, over {runs} runs{without}; +-: standard "
-            "error, by jackknife",
+            "rank correlation: Spearman's coefficient. First order: Sobol's index, the fraction of the "
+            f"variance of {sweep.metric} that the field alone explains; the sum is {together}, and "
+            "the rest is due to interactions of fields or to no field. Estimated by regression on "
+            f"at most {MOST_COSINES} cosines of the field's position in its range, or on the values "
+            f"of a list, over {runs} runs{without}. +-: standard error, by jackknife",
             WIDTH,
         ),
     ]

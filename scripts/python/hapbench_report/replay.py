@@ -55,7 +55,7 @@ def scene(i, runs, labels):
     shell, said = points_of(runs[0], recordings)
     longest = max(recording.columns["time_s"][-1] for recording in recordings)
     if any(len(recording.columns["time_s"]) > LONGEST for recording in recordings):
-        said = f"{said} Sound: the first {LONGEST} recorded rows of each run.".strip()
+        said = f"{said} The sound plays the first {LONGEST} recorded steps of each run.".strip()
     thinned_out = [
         recording
         for recording in recordings
@@ -65,7 +65,7 @@ def scene(i, runs, labels):
         drawn, every = (
             sum(map(len, of)) for of in zip(*((r.shown, r.columns["time_s"]) for r in thinned_out))
         )
-        said = f"{said} {drawn} of {every} recorded rows are drawn, every peak among them.".strip()
+        said = f"{said} {drawn} of {every} recorded steps are drawn, including every peak.".strip()
     names = list(dict.fromkeys(run.name for run in runs))
     about = {
         "id": names[0] if i == 0 else f"{names[0]}-{i + 1}",
@@ -155,12 +155,12 @@ def points_of(run, recordings):
         every = np.array([[*place, *normal] for place, normal in touched.items()]).reshape(-1, 6)
     radius = max((r for _, r in recordings[0].tool or ()), default=0.0)
     drawn = thinned(every, touched_box(recordings), MARGIN * radius)
-    count = f"{len(drawn)} of {len(every)} points of the surface are drawn, all around the contacts first."
+    count = f"{len(drawn)} of {len(every)} points of the surface are drawn, including all points near contacts."
     said = [failure] if failure else []
     if at(run.scenario, "/tool/type") == "mesh":
         said.append(
-            "Of the tool, a mesh, the silhouette is drawn, turned about its axis; points in the tool are marked "
-            "where contacts were recorded."
+            "The tool is a mesh: its silhouette is drawn as a solid of revolution. Points inside the tool are marked "
+            "if contacts were recorded."
         )
     return drawn, " ".join(said + ([count] if len(drawn) < len(every) else []))
 
@@ -209,7 +209,7 @@ def shell_of(scenario):
     if not program:
         return (
             None,
-            "Without the program hapbench in the path only points that were in contact are drawn.",
+            "Only points that were in contact are drawn, because the program hapbench was not found in PATH.",
         )
     with tempfile.TemporaryDirectory(prefix="hapbench-report-") as scratch:
         file = Path(scratch) / "shell.csv"

@@ -120,7 +120,8 @@ TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
   EXPECT_GT(lines_of(read_file(file("out/tune_trials.csv"))).size(), 30u);
 }
 
-/// Recommended, linear edge and edge in runs: for one scene and device the same from tune, limit and the device table.
+/// Recommended stiffness, linear limit and simulated limit: for one scene and device the same from tune, limit and the
+/// device table.
 TEST_F(TuneCommand, SaysTheEdgesThatLimitSays) {
   const Json law = tune({"--device", "touch", "--json"}).json()["algorithms"][0];
   ASSERT_TRUE(law["edge_in_runs"].is_number() && law["linear_edge"].is_number()) << law.dump(1);
@@ -180,8 +181,8 @@ TEST_F(ConvergeCommand, WritesTheSameBytesHoweverManyJobs) {
 /// The error falls as the step, by a factor of two from level to level.
 TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
   for (const auto& [to, said] :
-       {std::pair{"0.01", "\nbelow 1 %: time.step_s = 0.00025 ("},
-        {"0.1%", "\nbelow 0.1 %: no level is; by this order time.step_s = 2.8e-05 would be"}}) {
+       {std::pair{"0.01", "\nerror below 1 %: time.step_s = 0.00025 ("},
+        {"0.1%", "\nerror below 0.1 %: not reached by any level; extrapolated: time.step_s = 2.8e-05"}}) {
     const std::string out = converge({"--metric", "force_max_N", "--to", to}).out;
     EXPECT_NE(out.find(said), std::string::npos) << out;
   }

@@ -221,7 +221,8 @@ TEST_F(KilledSweep, GoesOnToTheSameBytes) {
   EXPECT_EQ(test::files_below(directory_ / "out"), left);
   const ProgramRun end = hapbench(words("out", {"--resume"}, "5"));
   EXPECT_EQ(end.status, 0) << end.err;
-  EXPECT_NE(end.out.find("\n" + std::to_string(done) + " of the runs were done before\n"), std::string::npos)
+  EXPECT_NE(end.out.find("\n" + std::to_string(done) + " of the runs were taken from the interrupted sweep\n"),
+            std::string::npos)
       << end.out;
   ASSERT_EQ(hapbench(words("whole")).status, 0);
   test::expect_same_files(directory_ / "whole", directory_ / "out");

@@ -132,7 +132,7 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
     const std::string err = hapbench({command, path("made.json"), "--set", "environment.flip_normals=false", "--set",
                                       "time.steps=10", "--set", "expect={}", "--out", path("out")})
                                 .err;
-    EXPECT_NE(err.find("the tool began inside the environment: "), std::string::npos) << err;
+    EXPECT_NE(err.find("the tool started inside the environment: "), std::string::npos) << err;
     EXPECT_NE(err.find("; are the normals of an open scan inverted (environment.flip_normals)?"), std::string::npos)
         << err;
   }
@@ -193,7 +193,7 @@ std::string warnings_of_tooth(std::vector<std::string> fields) {
 }
 
 TEST(ValidateCommand, NamesASizeThatNoHandWorksOn) {
-  const std::string size = "a hand works on what is 1 mm ... 1 m long: is environment.scale right?";
+  const std::string size = "usual environments are 1 mm ... 1 m long: is environment.scale right?";
   // Millimetres for metres, and a tool to match.
   const std::string large =
       warnings_of_tooth({"environment.scale=1", "environment.spacing_m=0.15", "tool.diameter_m=1", "tool.length_m=10"});
@@ -205,7 +205,7 @@ TEST(ValidateCommand, NamesASizeThatNoHandWorksOn) {
 
 TEST(ValidateCommand, NamesPointsThatTheToolFeelsOneByOne) {
   const std::string coarse = warnings_of_tooth({"environment.spacing_m=0.00017"});
-  EXPECT_NE(coarse.find("the points are 0.17 mm apart; a tool of 1 mm feels them as a rough surface; --set "
+  EXPECT_NE(coarse.find("the points are 0.17 mm apart, which a tool 1 mm wide feels as a rough surface; try --set "
                         "environment.spacing_m=0.0001\n"),
             std::string::npos)
       << coarse;

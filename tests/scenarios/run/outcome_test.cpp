@@ -49,8 +49,8 @@ TEST(Outcome, LostContactWhenTheToolEndedFarAway) {
   EXPECT_EQ(run.end.outcome, Outcome::lost_contact);
   ASSERT_EQ(run.warnings.size(), 1u);
   EXPECT_TRUE(run.warnings[0].text.ends_with(
-      " away from the environment (10 x 10 x 0 mm: x -5 ... 5, y -5 ... 5, z 0 ... 0 mm); a hand of constant force "
-      "goes on pushing where there is no surface"))
+      " away from the environment (10 x 10 x 0 mm: x -5 ... 5, y -5 ... 5, z 0 ... 0 mm); the hand keeps "
+      "pushing with a constant force where there is no surface"))
       << run.warnings[0].text;
 }
 
@@ -69,7 +69,7 @@ TEST(Outcome, NoContactIsMeasuredToTheSurface) {
   const Result run = run_of(in_hole);
   EXPECT_EQ(run.end.outcome, Outcome::no_contact);
   ASSERT_EQ(run.warnings.size(), 1u);
-  const std::string begin = "never in contact: the tool came as close as ";
+  const std::string begin = "the tool never touched the environment: its smallest distance to the surface was ";
   ASSERT_TRUE(run.warnings[0].text.starts_with(begin)) << run.warnings[0].text;
   EXPECT_NEAR(std::stod(run.warnings[0].text.substr(begin.size())), 1.0 - 0.3, 0.01) << run.warnings[0].text;
   EXPECT_TRUE(run.warnings[0].text.ends_with("; nothing pushes the tool: is hand missing?")) << run.warnings[0].text;
@@ -91,7 +91,7 @@ TEST(Outcome, NoContactTellsTheLikelyCause) {
            {R"({"hand": null, "initial": null,
                "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0,
                                        "z_m": {"type": "waypoints", "points": [[0, 0.0015], [1, 0.0005]]}}}})",
-            "; it came nearer to the end and would touch in 1.5 s: is time.steps too small?"},
+            "; it was approaching at the end and would touch 1.5 s later: is time.steps too small?"},
            // A tenth as fast, even a run that is a hundred times as long would not do.
            {R"({"hand": null, "initial": null,
                "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0,
@@ -169,7 +169,7 @@ TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
   to_and_fro["hand"]["path_m"] = {{-0.002, 0, 0.003}, {-0.002, 0, 0}};
   to_and_fro["tool"] = json["tool"];
   for (const auto& [scenario, remedy] :
-       {std::pair(json, "hand.smoothing_m"), {to_and_fro, "let its points lie on it"}}) {
+       {std::pair(json, "hand.smoothing_m"), {to_and_fro, "choose its points on or near the surface"}}) {
     const LoadedScenario loaded = read_scenario(scenario, "");
     const std::vector<Warning> before = scene_facts(loaded).warnings;
     ASSERT_EQ(before.size(), 1u) << remedy;
@@ -193,7 +193,7 @@ TEST(Outcome, OfAShankThatIsInside) {
   const std::vector<std::string> half = {"motion.orientation.tilt_rad=0.2", "expect={}"};
   EXPECT_EQ(run_scenario(checked(load_scenario(find_scenario("pure_rotation"), half)), std::nullopt, false).end.outcome,
             Outcome::completes);
-  EXPECT_NE(warnings_of(report).find("a part of it was 0.86"), std::string::npos) << warnings_of(report);
+  EXPECT_NE(warnings_of(report).find("a part of the tool was 0.86"), std::string::npos) << warnings_of(report);
 }
 
 // What is said of a run that has a fault, and that it is not said of one that is as like it as can be without.

@@ -88,7 +88,7 @@ TEST(ObservedOrder, IsNotStatedWhereContactsSwitch) {
   EXPECT_TRUE(judged(levels, 1.0).order) << "the coarse levels do not count";
   levels[4].contacts[1].second = 21.5;
   const Convergence c = judged(levels, 1.0);
-  expect_no_order(c, "contacts switch between the last levels (colliding_mean is 21 at");
+  expect_no_order(c, "contacts change between the last levels (colliding_mean is 21 at");
   EXPECT_EQ(c.band, std::pair(1.0625, 1.25));
   EXPECT_NEAR(*c.errors[0], 1.0 - 0.0625, 1e-12);
 }
@@ -103,16 +103,16 @@ TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
   EXPECT_FALSE(c.errors[0] || c.errors[1] || !c.errors[2]);
   levels[2].result.reset();
   const Convergence two = judged(levels, 1.0);
-  expect_no_order(two, "the run at h = 0.250000 has no value of the metric (completes), which leaves 2 levels");
+  expect_no_order(two, "the run at h = 0.250000 has no value of the metric (outcome completes), which leaves 2 levels");
   EXPECT_EQ(two.band, std::pair(1.0625, 1.125));
   levels[4].outcome = "stuck";
-  expect_no_order(judged(levels, 1.0), "ends with completes, which leaves 1 levels");
+  expect_no_order(judged(levels, 1.0), "has the outcome completes, which leaves 1 levels");
   EXPECT_FALSE(judged(levels, 1.0).band);
   levels[4].result.reset();
   const Convergence none = judged(levels, 1.0);
-  expect_no_order(none, "the finest run, at h = 0.062500, has no value of the metric (stuck)");
+  expect_no_order(none, "the finest run, at h = 0.062500, has no value of the metric (outcome stuck)");
   for (const auto& error : none.errors) EXPECT_FALSE(error);
-  expect_no_order(judged(levels_with({1.0, 2.0}), 1.0), "2 levels are fewer than three");
+  expect_no_order(judged(levels_with({1.0, 2.0}), 1.0), "three levels are needed, got 2");
 }
 
 }  // namespace
