@@ -34,8 +34,8 @@ class Command {
 
   explicit Command(CLI::App* app) : app_(app) {}
 
-  /// A name that begins with "--" is an option, another one a positional argument. The name may be followed by a blank
-  /// and the placeholder of its value in the help, such as "--out <dir>" or "scenarios <scenario>...".
+  /// Adds an option if the name begins with "--", otherwise a positional argument. A space and the placeholder
+  /// of its value in the help may follow the name, as in "--out <dir>" or "scenarios <scenario>...".
   void add(const std::string& name, Variable variable, const std::string& help, const ValueRules& rules = {});
   void flag(const std::string& name, bool& value, const std::string& help);
   /// Makes parsing fail if `option` is given without `other`. An option can require one other option at most.

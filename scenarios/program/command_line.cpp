@@ -49,7 +49,8 @@ const CLI::App* command_named(const CLI::App& program, const std::string& name) 
   return found.empty() ? nullptr : found.front();
 }
 
-/// Returns true for an option that takes a value, and for an unknown option, which may take one.
+/// Returns true if an option takes a value. Returns true for an unknown option too, because it may take a
+/// value.
 bool takes_next_word(const CLI::App& command, const std::string& option) {
   const CLI::Option* found = command.get_option_no_throw(option);
   return found == nullptr || found->get_items_expected_min() > 0;

@@ -18,7 +18,7 @@ std::string name_of(const CLI::Option& option) {
   return option.get_name(option.get_positional(), true);
 }
 
-/// The placeholder of the value, such as "<file>", or its kind, such as "TEXT ..."; empty for a flag.
+/// Returns the placeholder of the value, such as "<file>", or its type, such as "TEXT ..."; empty for a flag.
 std::string kind_of_value(const CLI::Option& option) {
   if (option.get_type_size() == 0 || option.get_type_name().empty()) return "";
   std::string kind = option.get_type_name();
@@ -48,7 +48,8 @@ std::string usage(const CLI::App& app) {
 constexpr std::size_t kHelpColumn = 28;
 constexpr const char* kSharedOptionsNote = "shared options; \"hapbench --help\" explains them";
 
-/// The entry of an argument or an option: its name with the placeholder of its value, its meaning and what it needs.
+/// Returns the entry of an argument or an option: its name with the placeholder of its value, its meaning and
+/// the options that it requires.
 std::string option_entry(const CLI::Option& option, const std::string& name, const Layout& layout) {
   if (option.get_positional()) return layout.entry(argument_name(option), option.get_description(), 2, kHelpColumn);
   const std::string kind = kind_of_value(option);
@@ -58,7 +59,7 @@ std::string option_entry(const CLI::Option& option, const std::string& name, con
   return layout.entry(kind.empty() ? name : name + " " + kind, help, 2, kHelpColumn);
 }
 
-/// The arguments, or the options. Options that all commands share stand in one line.
+/// Returns the arguments or the options. Options that all commands share stand in one line.
 std::string options_text(const CLI::App& app, bool arguments, const Layout& layout) {
   std::string text, shared;
   for (const CLI::Option* option : app.get_options()) {

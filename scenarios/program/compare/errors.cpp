@@ -65,7 +65,8 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
   Table table{{{"algorithm", false}}};
   for (const std::string& algorithm : league.algorithms) table.rows.push_back({algorithm});
   std::string sentences;
-  // Evaluate each metric. The JSON has all of them, the table those of the table of runs, unless `all`.
+  // Evaluate each metric. The JSON has all metrics. Unless `all` is true, the printed table has only the
+  // metrics of the table of runs.
   for (std::size_t m = 0; m < league.metrics.size(); ++m) {
     const std::string& metric = league.metrics[m];
     Json& json =

@@ -17,7 +17,7 @@ struct LimitRunRow {
   const LimitRow& limit;
   JudgedValue run;
 
-  operator const LimitRow&() const { return limit; }  // NOLINT: what it has of the case
+  operator const LimitRow&() const { return limit; }  // NOLINT: a run is also used as its case
 };
 
 /// Returns the columns of limit.csv. They include the published closed-form limits of a wall on an impedance
