@@ -23,8 +23,8 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/mesh/marching_cubes.hpp"
+#include "sim/tool/bur_profile.hpp"
 #include "sim/tool/motion.hpp"
-#include "sim/tool/revolved.hpp"
 
 /// A scenario file as plain structs, with every default in place: a default-constructed scenario is that of springs.
 /// The functions `describe` of this folder have names, units and ranges of the file's fields.
