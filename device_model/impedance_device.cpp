@@ -215,6 +215,21 @@ constexpr SourcedNumber ours(double value, const Factors& may_be) {
   return {value, kOurEstimate, may_be.low * value, may_be.high * value};
 }
 
+/// The presets of omega.6 and omega.7, which differ in the mass [kg] of what the hand holds.
+constexpr DevicePreset omega_with_wrist(const char* name, const char* device, double handle_mass) {
+  return {
+      .name = name,
+      .device = device,
+      .handle_mass = ours(handle_mass, kMass),
+      .viscous = ours(0.5, kViscous),
+      .coulomb = ours(0.3, kCoulomb),
+      .encoder_step = ours(0.01e-3, kEncoder),
+      .force_max = chai(12),
+      .max_stiffness = chai(5000),
+      .max_damping = chai(30),
+  };
+}
+
 constexpr DevicePreset kPresets[] = {
     {
         .name = "touch",
@@ -293,28 +308,8 @@ constexpr DevicePreset kPresets[] = {
         .max_stiffness = chai(5000),
         .max_damping = chai(30),
     },
-    {
-        .name = "omega.6",
-        .device = "Force Dimension omega.6",
-        .handle_mass = ours(0.3, kMass),
-        .viscous = ours(0.5, kViscous),
-        .coulomb = ours(0.3, kCoulomb),
-        .encoder_step = ours(0.01e-3, kEncoder),
-        .force_max = chai(12),
-        .max_stiffness = chai(5000),
-        .max_damping = chai(30),
-    },
-    {
-        .name = "omega.7",
-        .device = "Force Dimension omega.7",
-        .handle_mass = ours(0.35, kMass),
-        .viscous = ours(0.5, kViscous),
-        .coulomb = ours(0.3, kCoulomb),
-        .encoder_step = ours(0.01e-3, kEncoder),
-        .force_max = chai(12),
-        .max_stiffness = chai(5000),
-        .max_damping = chai(30),
-    },
+    omega_with_wrist("omega.6", "Force Dimension omega.6", 0.3),
+    omega_with_wrist("omega.7", "Force Dimension omega.7", 0.35),
     {
         .name = "delta.3",
         .device = "Force Dimension delta.3",
