@@ -11,6 +11,7 @@
 #include "scenarios/scene/recordings.hpp"
 #include "scenarios/scene/tools.hpp"
 #include "scenarios/scene/trials.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/contact/late_contacts.hpp"

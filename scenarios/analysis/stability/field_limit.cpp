@@ -13,6 +13,7 @@
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/field_files.hpp"
 
 namespace hapbench {
 namespace {

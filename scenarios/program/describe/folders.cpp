@@ -13,6 +13,7 @@
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/studies.hpp"
 #include "scenarios/program/text.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
 

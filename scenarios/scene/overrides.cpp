@@ -1,0 +1,66 @@
+#include "scenarios/scene/overrides.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/merge_scenarios.hpp"
+#include "scenarios/scene/scenario.hpp"
+
+namespace hapbench {
+
+void apply_override(Json& json, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos)
+    throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+  const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
+  const Words keys = parts_of(path, '.');
+  constexpr std::size_t kDeepestPath = 64;  // what walks through JSON goes down by a call for each
+  if (keys.size() > kDeepestPath)
+    throw InputError(fmt::format("--set: got a path of more than {0} keys; allowed: at most {0}", kDeepestPath));
+  Json* node = &json;
+  for (const std::string_view& key : keys) {
+    if (node->is_array()) {
+      const auto index = whole_number(key);
+      if (!index || *index >= node->size()) {
+        throw InputError(
+            fmt::format("{}: got list index \"{}\"; allowed: {}", path, key,
+                        node->empty() ? "none, the list is empty" : fmt::format("0 ... {}", node->size() - 1)));
+      }
+      node = &(*node)[*index];
+    } else {
+      if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
+      if (&key == &keys.back()) drop_alternative(*node, key);
+      node = &(*node)[std::string(key)];
+    }
+  }
+  *node = Json::accept(value) ? parse_json(value) : Json(value);
+  if (path == "time" || path == "time.step_s") drop_derived_samples(json);
+}
+
+bool leaves_run_alone(std::string_view override) {
+  constexpr std::string_view kSections[] = {"expect", "record", "name", "description", "source"};
+  // Metrics come and go with these, and those of the ideal trajectory are over the recorded rows.
+  constexpr std::string_view kMeasured[] = {"record.energy", "record.ideal_trajectory", "record.torque",
+                                            "record.every"};
+  const std::string_view path = overridden_path(override), section = path.substr(0, path.find('.'));
+  return std::ranges::count(kSections, section) > 0 && std::ranges::count(kMeasured, path) == 0;
+}
+
+void expect_less(Json& expect) {
+  if (!expect.is_object()) return;  // the reader will say so
+  expect.erase("metrics");
+  Json outcomes = Json::array();
+  for (const Outcome outcome : ExpectFields().outcomes) outcomes.push_back(outcome_name(outcome));
+  const Json given = expect.value("outcome", Json());
+  for (const Json& outcome : given.is_array() ? given : given.is_null() ? Json::array() : Json::array({given})) {
+    if (std::find(outcomes.begin(), outcomes.end(), outcome) == outcomes.end()) outcomes.push_back(outcome);
+  }
+  expect["outcome"] = std::move(outcomes);
+}
+
+}  // namespace hapbench
