@@ -137,6 +137,87 @@ Meridian::Line line_between(const ProfilePoint& a, const ProfilePoint& b) {
   return {{ns, nr, ns * a.s + nr * a.rho}, nr * a.s - ns * a.rho, length};
 }
 
+/// Cuts the section of a meridian with s <= 0 into convex parts.
+class SectionParts {
+ public:
+  /// A convex part in construction.
+  struct Part {
+    double low, high;                  ///< range of s
+    std::optional<std::size_t> below;  ///< its lower line; none if it lies on the axis
+    std::vector<std::size_t> above;    ///< its upper lines
+  };
+
+  explicit SectionParts(const Meridian& meridian) : profile_(meridian.profile), lines_(meridian.lines) {}
+
+  /// Cuts the section into the trapezoids between neighbouring corners and joins neighbours that are convex together.
+  std::vector<Part> cut() {
+    const std::vector<double> levels = corner_levels();
+    for (std::size_t k = 0; k + 1 < levels.size(); ++k) add_trapezoids(levels[k], levels[k + 1]);
+    return std::move(parts_);
+  }
+
+ private:
+  /// The coordinates s of the corners, in increasing order.
+  std::vector<double> corner_levels() const {
+    std::vector<double> levels;
+    for (const ProfilePoint& p : profile_) levels.push_back(p.s);
+    std::sort(levels.begin(), levels.end());
+    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    return levels;
+  }
+
+  /// The lines of the profile that cross the whole range between two levels, from the axis outwards.
+  std::vector<std::size_t> lines_across(double from, double to) const {
+    std::vector<std::size_t> across;
+    for (std::size_t i = 0; i + 1 < profile_.size(); ++i) {
+      const auto [least, most] = std::minmax(profile_[i].s, profile_[i + 1].s);
+      if (least <= from && most >= to) across.push_back(i);
+    }
+    const double middle = 0.5 * (from + to);
+    std::ranges::sort(across, {}, [&](std::size_t i) { return height(i, middle); });
+    return across;
+  }
+
+  /// Adds the trapezoids between two levels: each upper line with the lower line below it, or with the axis.
+  void add_trapezoids(double from, double to) {
+    std::optional<std::size_t> below;
+    for (const std::size_t i : lines_across(from, to)) {
+      const bool is_lower = lines_[i].nr < 0.0;
+      if (is_lower) {
+        below = i;
+      } else {
+        add_trapezoid(from, to, below, i);
+        below.reset();
+      }
+    }
+  }
+
+  /// Joins a trapezoid to a part that ends where it begins and stays convex with it, or begins a part with it.
+  void add_trapezoid(double from, double to, const std::optional<std::size_t>& below, std::size_t above) {
+    const auto part = std::find_if(parts_.begin(), parts_.end(), [&](const Part& p) {
+      return p.high == from && p.below == below && goes_on(p.above.back(), above);
+    });
+    if (part == parts_.end()) {
+      parts_.push_back({from, to, below, {above}});
+      return;
+    }
+    part->high = to;
+    if (part->above.back() != above) part->above.push_back(above);
+  }
+
+  /// Tests whether a line is the part's last upper line or follows that line without turning inwards.
+  bool goes_on(std::size_t from, std::size_t to) const {
+    return from == to ||
+           (to == from + 1 && lines_[from].ns * lines_[to].nr - lines_[from].nr * lines_[to].ns <= kStraight);
+  }
+
+  double height(std::size_t i, double s) const { return (lines_[i].offset - lines_[i].ns * s) / lines_[i].nr; }
+
+  const std::vector<ProfilePoint>& profile_;
+  const std::vector<Meridian::Line>& lines_;
+  std::vector<Part> parts_;
+};
+
 }  // namespace
 
 double cross(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
@@ -164,67 +245,25 @@ void Meridian::add_lines() {
   if (first.rho > 0.0) lines.push_back(line_between({first.s, 0.0}, first));
 }
 
-/// Cuts the section into the trapezoids between neighbouring corners and joins neighbours that are convex together: a
-/// trapezoid continues a part that ends where it begins if its upper line is the part's last upper line or follows that
-/// line without turning inwards.
 void Meridian::add_parts() {
-  struct Built {
-    double low, high;
-    std::optional<std::size_t> below;  ///< its lower line; none if it lies on the axis
-    std::vector<std::size_t> above;    ///< its upper lines
-  };
-  std::vector<double> levels;
-  for (const ProfilePoint& p : profile) levels.push_back(p.s);
-  std::sort(levels.begin(), levels.end());
-  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-
-  const std::size_t of_profile = profile.size() - 1;
-  const auto height = [this](std::size_t i, double s) { return (lines[i].offset - lines[i].ns * s) / lines[i].nr; };
-  const auto goes_on = [this](std::size_t from, std::size_t to) {
-    return from == to || (to == from + 1 && lines[from].ns * lines[to].nr - lines[from].nr * lines[to].ns <= kStraight);
-  };
-  std::vector<Built> built;
-  for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
-    const double from = levels[k], to = levels[k + 1], middle = 0.5 * (from + to);
-    std::vector<std::size_t> across;
-    for (std::size_t i = 0; i < of_profile; ++i) {
-      const auto [least, most] = std::minmax(profile[i].s, profile[i + 1].s);
-      if (least <= from && most >= to) across.push_back(i);
-    }
-    std::ranges::sort(across, {}, [&](std::size_t i) { return height(i, middle); });
-    std::optional<std::size_t> below;
-    for (const std::size_t i : across) {
-      if (lines[i].nr < 0.0) {
-        below = i;
-        continue;
-      }
-      const auto part = std::find_if(built.begin(), built.end(), [&](const Built& p) {
-        return p.high == from && p.below == below && goes_on(p.above.back(), i);
-      });
-      if (part == built.end()) {
-        built.push_back({from, to, below, {i}});
-      } else {
-        part->high = to;
-        if (part->above.back() != i) part->above.push_back(i);
-      }
-      below.reset();
-    }
-  }
   const auto add_height = [this](std::size_t i) {
     const ProfilePoint a = profile[i], b = profile[i + 1];
     const double slope = (b.rho - a.rho) / (b.s - a.s);
     heights.push_back({a.rho - slope * a.s, slope});
   };
-  for (const Built& part : built) {
+  const std::vector<SectionParts::Part> cut = SectionParts(*this).cut();
+  for (const SectionParts::Part& part : cut) {
     const std::size_t first = heights.size();
     for (const std::size_t i : part.above) add_height(i);
     if (part.below) add_height(*part.below);
     parts.push_back({part.low, part.high, first, heights.size(), part.below.has_value()});
   }
-  const Line& last = lines[of_profile - 1];
-  convex = built.size() == 1 && !built[0].below && (tip == Tip::flat || (last.nr > 0.0 && last.ns <= kStraight));
+
+  // The body is convex if its section is one part on the axis, and a round tip does not stand out from it.
+  const Line& last = lines[profile.size() - 2];
+  convex = cut.size() == 1 && !cut[0].below && (tip == Tip::flat || (last.nr > 0.0 && last.ns <= kStraight));
   if (!convex) return;
-  for (const std::size_t i : built[0].above) planes.push_back(lines[i]);
+  for (const std::size_t i : cut[0].above) planes.push_back(lines[i]);
 }
 
 }  // namespace hapbench
