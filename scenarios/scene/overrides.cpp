@@ -12,6 +12,19 @@
 #include "scenarios/scene/scenario.hpp"
 
 namespace hapbench {
+namespace {
+
+/// Returns the element of a list that a key of a dotted path names. Throws InputError.
+Json& element_at(Json& list, std::string_view key, const std::string& path) {
+  const auto index = whole_number(key);
+  if (!index || *index >= list.size()) {
+    throw InputError(fmt::format("{}: got list index \"{}\"; allowed: {}", path, key,
+                                 list.empty() ? "none, the list is empty" : fmt::format("0 ... {}", list.size() - 1)));
+  }
+  return list[*index];
+}
+
+}  // namespace
 
 void apply_override(Json& json, const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -25,13 +38,7 @@ void apply_override(Json& json, const std::string& text) {
   Json* node = &json;
   for (const std::string_view& key : keys) {
     if (node->is_array()) {
-      const auto index = whole_number(key);
-      if (!index || *index >= node->size()) {
-        throw InputError(
-            fmt::format("{}: got list index \"{}\"; allowed: {}", path, key,
-                        node->empty() ? "none, the list is empty" : fmt::format("0 ... {}", node->size() - 1)));
-      }
-      node = &(*node)[*index];
+      node = &element_at(*node, key, path);
     } else {
       if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
       if (&key == &keys.back()) drop_alternative(*node, key);
