@@ -226,6 +226,21 @@ constexpr SourcedNumber ours(double value, const Factors& range) {
   return {value, kOurEstimate, range.low * value, range.high * value};
 }
 
+/// Returns the preset of the omega.6 or the omega.7. The two presets differ only in the mass of the handle [kg].
+constexpr DevicePreset omega_with_wrist(const char* name, const char* device, double handle_mass) {
+  return {
+      .name = name,
+      .device = device,
+      .handle_mass = ours(handle_mass, kMass),
+      .viscous = ours(0.5, kViscous),
+      .coulomb = ours(0.3, kCoulomb),
+      .encoder_step = ours(0.01e-3, kEncoder),
+      .force_max = chai(12),
+      .max_stiffness = chai(5000),
+      .max_damping = chai(30),
+  };
+}
+
 constexpr DevicePreset kPresets[] = {
     {
         .name = "touch",
@@ -304,28 +319,8 @@ constexpr DevicePreset kPresets[] = {
         .max_stiffness = chai(5000),
         .max_damping = chai(30),
     },
-    {
-        .name = "omega.6",
-        .device = "Force Dimension omega.6",
-        .handle_mass = ours(0.3, kMass),
-        .viscous = ours(0.5, kViscous),
-        .coulomb = ours(0.3, kCoulomb),
-        .encoder_step = ours(0.01e-3, kEncoder),
-        .force_max = chai(12),
-        .max_stiffness = chai(5000),
-        .max_damping = chai(30),
-    },
-    {
-        .name = "omega.7",
-        .device = "Force Dimension omega.7",
-        .handle_mass = ours(0.35, kMass),
-        .viscous = ours(0.5, kViscous),
-        .coulomb = ours(0.3, kCoulomb),
-        .encoder_step = ours(0.01e-3, kEncoder),
-        .force_max = chai(12),
-        .max_stiffness = chai(5000),
-        .max_damping = chai(30),
-    },
+    omega_with_wrist("omega.6", "Force Dimension omega.6", 0.3),
+    omega_with_wrist("omega.7", "Force Dimension omega.7", 0.35),
     {
         .name = "delta.3",
         .device = "Force Dimension delta.3",

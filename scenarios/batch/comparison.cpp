@@ -11,6 +11,7 @@
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
 

@@ -13,6 +13,7 @@
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/describe_scenario.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/named_files.hpp"

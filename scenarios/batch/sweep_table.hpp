@@ -64,10 +64,12 @@ struct SweepTable {
   }
 };
 
-/// Reads the table of a sweep or of one of its shards, and the JSON file next to it. Keeps the rows that
-/// satisfy all `conditions`. A condition such as "inside_max_m<3e-4" consists of a column, an operator (< <= >
-/// >= = !=) and a number; with = and !=, also a text. A row whose cell is not a number satisfies no condition
-/// with a number. Throws InputError.
+/// Reads the table of a sweep or of one of its shards, and the JSON file next to it. Keeps the rows that satisfy all
+/// `conditions`, which are the texts of --where (row_condition.hpp). Throws InputError.
 SweepTable read_sweep(const std::filesystem::path& file, const std::vector<std::string>& conditions = {});
+
+/// Returns the numbers of the runs whose rows in the table meet all `conditions`, in the table's order, however many
+/// these are. Does not read the JSON file. Throws InputError.
+std::vector<std::size_t> runs_that_meet(const std::filesystem::path& file, const std::vector<std::string>& conditions);
 
 }  // namespace hapbench

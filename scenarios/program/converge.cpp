@@ -28,6 +28,7 @@
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/math.hpp"
 

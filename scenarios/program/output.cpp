@@ -6,6 +6,7 @@
 
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/text.hpp"
+#include "scenarios/scene/field_files.hpp"
 
 namespace hapbench {
 

@@ -1,6 +1,7 @@
 #include "scenarios/program/python_commands.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +14,8 @@
 
 #include "device_model/handle_motion.hpp"
 #include "results/io/atomic_file.hpp"
+#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/exit_status.hpp"
@@ -107,6 +110,19 @@ int simulate_log_for_pipe() {
   return kSuccess;
 }
 
+/// Makes "hapbench plot" evaluate the conditions of --where for its own Python. The arguments after it are the folder
+/// of a sweep and the conditions. Prints the number of each run whose row in sweep.csv meets all conditions, one number
+/// per line.
+constexpr const char* kRunsWhere = "--runs-where";
+
+int print_runs_where(const ProgramWords& given, ProgramContext& context) {
+  if (given.size() < 2) throw InputError("plot: --runs-where: got no folder; allowed: the folder of a sweep");
+  const std::filesystem::path folder = given[1];
+  const auto runs = runs_that_meet(folder / "sweep.csv", {given.begin() + 2, given.end()});
+  print(context, {}, fmt::format("{}\n", fmt::join(runs, "\n")), {});
+  return kSuccess;
+}
+
 /// Runs a package. Unless a host captures the output, this process becomes the launcher.
 int run(const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
   const std::string line = launch_line(package, given, context);
@@ -157,7 +173,9 @@ void write_way(ProgramContext& context, const std::filesystem::path& folder, con
 
 int run_python_command(const ProgramWords& words, ProgramContext& context) {
   const ProgramWords given(words.begin() + 1, words.end());
-  return words[0] == "import" ? run_import(given, context) : run({"hapbench_pictures", words[0]}, given, context);
+  if (words[0] == "import") return run_import(given, context);
+  if (words[0] == "plot" && !given.empty() && given[0] == kRunsWhere) return print_runs_where(given, context);
+  return run({"hapbench_pictures", words[0]}, given, context);
 }
 
 }  // namespace hapbench

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/overrides.hpp"
 
 namespace hapbench {
 

@@ -7,6 +7,7 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/load_module.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "scenarios/scene/tools.hpp"
 

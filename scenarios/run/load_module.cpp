@@ -13,6 +13,7 @@
 #include "algorithms/module/module.hpp"
 #include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/hash.hpp"
 

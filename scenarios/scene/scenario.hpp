@@ -23,8 +23,8 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/mesh/marching_cubes.hpp"
+#include "sim/tool/bur_profile.hpp"
 #include "sim/tool/motion.hpp"
-#include "sim/tool/revolved.hpp"
 
 /// The contents of a scenario file as plain structs. Default member values are the defaults of a scenario with
 /// springs. The functions `describe` in this folder list the names, units and ranges of the fields.

@@ -9,7 +9,9 @@
 #include "scenarios/input/shared_cache.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/scene/field_checks.hpp"
+#include "sim/tool/bur_profile.hpp"
 #include "sim/tool/mesh_tool.hpp"
+#include "sim/tool/revolved.hpp"
 
 namespace hapbench {
 namespace {

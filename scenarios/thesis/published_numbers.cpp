@@ -10,6 +10,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench {

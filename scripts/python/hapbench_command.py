@@ -9,6 +9,7 @@ import os
 import re
 import shlex
 import shutil
+import subprocess
 import sys
 import textwrap
 import threading
@@ -158,6 +159,31 @@ def entry(word, meaning, width):
         meaning, width, initial_indent=" " * column, subsequent_indent=" " * column, **WHOLE_WORDS
     )
     return f"  {word}\n{text}" if len(word) + 4 > column else f"  {word}{text[len(word) + 2:]}"
+
+
+def the_program():
+    """Returns the file of the program that started this process, or else of the program in the path; None without
+    either."""
+    return os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
+
+
+def asked_of_program(what, *words):
+    """Returns the text that the program prints for the arguments `words`. `what` completes the message for a missing
+    program, such as "evaluates --where". Raises InputError with the program's messages if the program fails."""
+    program = the_program()
+    if not program:
+        fail(f"the program hapbench, which {what}, is not in the path")
+    done = subprocess.run(
+        [program, *map(str, words)],
+        capture_output=True,
+        encoding="utf-8",
+        errors="surrogateescape",
+        stdin=subprocess.DEVNULL,
+    )
+    if done.returncode:
+        lines = done.stderr.strip().splitlines() or [f"{program}: exit status {done.returncode}"]
+        raise Faults([("", line.removeprefix("hapbench: error: ")) for line in lines])
+    return done.stdout
 
 
 def exit_status(name, doing, work):

@@ -1,25 +1,19 @@
+#include "sim/tool/meridian.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "sim/core/math.hpp"
 #include "sim/tool/refuse.hpp"
-#include "sim/tool/revolved.hpp"
 
 namespace hapbench {
 namespace {
 
 /// Sine of the largest angle by which a corner may turn inwards and still count as straight.
 constexpr double kStraight = 1e-12;
-
-/// Returns the cross product of b - a and c - a; positive if c is to the left of the line from a to b.
-double cross(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
-  return (b.s - a.s) * (c.rho - a.rho) - (b.rho - a.rho) * (c.s - a.s);
-}
 
 /// Returns the dot product of b - a and c - b.
 double dot(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
@@ -150,96 +144,95 @@ Meridian::Line line_between(const ProfilePoint& a, const ProfilePoint& b) {
   return {{ns, nr, ns * a.s + nr * a.rho}, nr * a.s - ns * a.rho, length};
 }
 
-constexpr double kSagittaPerDiameter = 1e-3;
-constexpr double kShankPerDiameter = 10.0;
-constexpr double kNarrowEnd = 0.6;  ///< narrow end of tapered and inverted cones, relative to the wide end
-constexpr double kRearOfFlame = 1.0 / 3.0;
-
-[[noreturn]] void refuse_length(const char* what, double is, const char* has_to, double bound) {
-  refuse(what, " is ", is, " m and has to be ", has_to, ' ', bound, " m");
-}
-
-/// Profile under construction, from the shank's end to the tip.
-class Outline {
+/// Divides the section of a meridian with s <= 0 into convex parts.
+class SectionParts {
  public:
-  Outline(double diameter, double shank_radius, double head_begins) : sagitta_(kSagittaPerDiameter * diameter) {
-    points_ = {{head_begins - 2.0 * kShankPerDiameter * shank_radius, shank_radius}, {head_begins, shank_radius}};
-  }
+  /// Convex part under construction.
+  struct Part {
+    double low, high;                  ///< range of s [m]
+    std::optional<std::size_t> below;  ///< its lower line; none if the part reaches the axis
+    std::vector<std::size_t> above;    ///< its upper lines, in order
+  };
 
-  /// Adds a segment to this point, unless the profile already ends there.
-  void line_to(double s, double rho) {
-    if (points_.back() != ProfilePoint{s, rho}) points_.push_back({s, rho});
-  }
+  explicit SectionParts(const Meridian& meridian) : profile_(meridian.profile), lines_(meridian.lines) {}
 
-  /// Adds an arc about (centre_s, centre_rho) from angle `from` to the smaller angle `to`, both measured from the
-  /// axis [rad]. The arc ends exactly at `end`.
-  void arc_to(double centre_s, double centre_rho, double radius, double from, double to, const ProfilePoint& end) {
-    // A chord over the angle a has the sagitta radius (1 - cos(a / 2)).
-    const double widest = 2.0 * math::acos(std::max(0.0, 1.0 - sagitta_ / radius));
-    const double count = std::ceil((from - to) / widest);
-    for (double k = 1.0; k < count; k += 1.0) {
-      const double angle = from + (to - from) * k / count;
-      line_to(centre_s + radius * math::cos(angle), centre_rho + radius * math::sin(angle));
-    }
-    line_to(end.s, end.rho);
+  /// Returns the convex parts. First cuts the section into trapezoids between consecutive values of s at the corners.
+  /// Then joins a trapezoid to the part that ends where the trapezoid begins, if both have the same lower line and the
+  /// upper line of the trapezoid continues the part's upper line without turning inwards.
+  std::vector<Part> cut() {
+    const std::vector<double> levels = corner_levels();
+    for (std::size_t k = 0; k + 1 < levels.size(); ++k) add_trapezoids(levels[k], levels[k + 1]);
+    return std::move(parts_);
   }
-
-  std::vector<ProfilePoint> points() && { return std::move(points_); }
 
  private:
-  double sagitta_;
-  std::vector<ProfilePoint> points_;
+  /// Returns the values of s at which trapezoids begin and end, in increasing order.
+  std::vector<double> corner_levels() const {
+    std::vector<double> levels;
+    for (const ProfilePoint& p : profile_) levels.push_back(p.s);
+    std::sort(levels.begin(), levels.end());
+    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    return levels;
+  }
+
+  /// Returns the lines of the profile across the interval `from` <= s <= `to`, from the axis outwards.
+  std::vector<std::size_t> lines_across(double from, double to) const {
+    std::vector<std::size_t> across;
+    for (std::size_t i = 0; i + 1 < profile_.size(); ++i) {
+      const auto [least, most] = std::minmax(profile_[i].s, profile_[i + 1].s);
+      if (least <= from && most >= to) across.push_back(i);
+    }
+    const double middle = 0.5 * (from + to);
+    std::ranges::sort(across, {}, [&](std::size_t i) { return height(i, middle); });
+    return across;
+  }
+
+  /// Adds the trapezoids between two consecutive levels: pairs each upper line with the lower line below it, or with
+  /// the axis.
+  void add_trapezoids(double from, double to) {
+    std::optional<std::size_t> below;
+    for (const std::size_t i : lines_across(from, to)) {
+      const bool is_lower = lines_[i].nr < 0.0;
+      if (is_lower) {
+        below = i;
+      } else {
+        add_trapezoid(from, to, below, i);
+        below.reset();
+      }
+    }
+  }
+
+  /// Joins a trapezoid to a part, or begins a new part.
+  void add_trapezoid(double from, double to, const std::optional<std::size_t>& below, std::size_t above) {
+    const auto part = std::find_if(parts_.begin(), parts_.end(), [&](const Part& p) {
+      return p.high == from && p.below == below && goes_on(p.above.back(), above);
+    });
+    if (part == parts_.end()) {
+      parts_.push_back({from, to, below, {above}});
+      return;
+    }
+    part->high = to;
+    if (part->above.back() != above) part->above.push_back(above);
+  }
+
+  /// Returns true if line `to` is line `from`, or continues it without turning inwards.
+  bool goes_on(std::size_t from, std::size_t to) const {
+    return from == to ||
+           (to == from + 1 && lines_[from].ns * lines_[to].nr - lines_[from].nr * lines_[to].ns <= kStraight);
+  }
+
+  double height(std::size_t i, double s) const { return (lines_[i].offset - lines_[i].ns * s) / lines_[i].nr; }
+
+  const std::vector<ProfilePoint>& profile_;
+  const std::vector<Meridian::Line>& lines_;
+  std::vector<Part> parts_;
 };
 
-constexpr double kAbreast = 0.5 * std::numbers::pi;  ///< angle of the point beside a circle's centre [rad]
-
-/// Returns a ball on a neck of radius `neck`.
-BurProfile ball(double radius, double neck) {
-  const double begins = -std::sqrt((radius - neck) * (radius + neck));
-  Outline outline(2.0 * radius, neck, begins);
-  outline.arc_to(0.0, 0.0, radius, math::atan2(neck, begins), kAbreast, {0.0, radius});
-  return {std::move(outline).points(), Tip::round};
-}
-
-/// Returns a cone frustum from s = `begins` to the tip centre, with the radii `rear` and `front` at its ends.
-BurProfile frustum(double begins, double rear, double front, double shank, Tip tip) {
-  Outline outline(2.0 * std::max(rear, front), shank, begins);
-  outline.line_to(begins, rear);
-  outline.line_to(0.0, front);
-  return {std::move(outline).points(), tip};
-}
-
-/// Returns a cone that widens from the shank at (begins, neck) and touches the ball. It touches at the angle
-/// `touches` from the axis: its unit normal n = (cos touches, sin touches) satisfies <n, (begins, neck)> = radius.
-BurProfile pear(double radius, double length, double neck) {
-  const double begins = radius - length;
-  const double distance = math::hypot(begins, neck);
-  if (distance <= radius)
-    refuse_length("the length of a pear bur", length, "more than",
-                  radius + std::sqrt((radius - neck) * (radius + neck)));
-  const double touches = math::atan2(neck, begins) - math::acos(radius / distance);
-  Outline outline(2.0 * radius, neck, begins);
-  outline.line_to(radius * math::cos(touches), radius * math::sin(touches));
-  outline.arc_to(0.0, 0.0, radius, touches, kAbreast, {0.0, radius});
-  return {std::move(outline).points(), Tip::round};
-}
-
-/// Returns two arcs: from the shank to the largest radius, and from there to the point. An arc that is parallel to
-/// the axis at its highest point and falls by h over the length l has the radius (l^2 + h^2) / (2 h).
-BurProfile flame(double radius, double length, double neck) {
-  const double rear = kRearOfFlame * length, front = length - rear, rise = radius - neck;
-  if (rise > rear || radius > front)
-    refuse_length("the length of a flame bur", length, "at least", 3.0 * std::max(rise, 0.5 * radius));
-  Outline outline(2.0 * radius, neck, -length);
-  const double rear_arc = (rear * rear + rise * rise) / (2.0 * rise);
-  outline.arc_to(-front, radius - rear_arc, rear_arc, kAbreast + math::asin(rear / rear_arc), kAbreast,
-                 {-front, radius});
-  const double front_arc = (front * front + radius * radius) / (2.0 * radius);
-  outline.arc_to(-front, radius - front_arc, front_arc, kAbreast, kAbreast - math::asin(front / front_arc), {0.0, 0.0});
-  return {std::move(outline).points(), Tip::flat};
-}
-
 }  // namespace
+
+double cross(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
+  return (b.s - a.s) * (c.rho - a.rho) - (b.rho - a.rho) * (c.s - a.s);
+}
 
 Meridian::Meridian(std::vector<ProfilePoint> points, Tip end) : profile(std::move(points)), tip(end) {
   Checker(profile, tip).check();
@@ -262,137 +255,26 @@ void Meridian::add_lines() {
   if (first.rho > 0.0) lines.push_back(line_between({first.s, 0.0}, first));
 }
 
-/// Divides the section into convex parts. First cuts it into trapezoids between consecutive values of s at the
-/// corners. Then joins a trapezoid to the part that ends where the trapezoid begins, if both have the same lower
-/// line and the upper line of the trapezoid continues the part's upper line without turning inwards.
 void Meridian::add_parts() {
-  struct Built {
-    double low, high;
-    std::optional<std::size_t> below;  ///< its lower line; none if the part reaches the axis
-    std::vector<std::size_t> above;    ///< its upper lines, in order
-  };
-  // Values of s at which trapezoids begin and end.
-  std::vector<double> levels;
-  for (const ProfilePoint& p : profile) levels.push_back(p.s);
-  std::sort(levels.begin(), levels.end());
-  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-
-  const std::size_t of_profile = profile.size() - 1;
-  const auto height = [this](std::size_t i, double s) { return (lines[i].offset - lines[i].ns * s) / lines[i].nr; };
-  const auto goes_on = [this](std::size_t from, std::size_t to) {
-    return from == to || (to == from + 1 && lines[from].ns * lines[to].nr - lines[from].nr * lines[to].ns <= kStraight);
-  };
-  std::vector<Built> built;
-  for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
-    const double from = levels[k], to = levels[k + 1], middle = 0.5 * (from + to);
-    // Find the lines across this interval, from the axis outwards.
-    std::vector<std::size_t> across;
-    for (std::size_t i = 0; i < of_profile; ++i) {
-      const auto [least, most] = std::minmax(profile[i].s, profile[i + 1].s);
-      if (least <= from && most >= to) across.push_back(i);
-    }
-    std::ranges::sort(across, {}, [&](std::size_t i) { return height(i, middle); });
-    // Pair each upper line with the lower line below it, and join the trapezoid to a part or begin a new part.
-    std::optional<std::size_t> below;
-    for (const std::size_t i : across) {
-      if (lines[i].nr < 0.0) {
-        below = i;
-        continue;
-      }
-      const auto part = std::find_if(built.begin(), built.end(), [&](const Built& p) {
-        return p.high == from && p.below == below && goes_on(p.above.back(), i);
-      });
-      if (part == built.end()) {
-        built.push_back({from, to, below, {i}});
-      } else {
-        part->high = to;
-        if (part->above.back() != i) part->above.push_back(i);
-      }
-      below.reset();
-    }
-  }
-  // Store the lines of the parts.
+  // Divide the section, and store the lines of the parts.
   const auto add_height = [this](std::size_t i) {
     const ProfilePoint a = profile[i], b = profile[i + 1];
     const double slope = (b.rho - a.rho) / (b.s - a.s);
     heights.push_back({a.rho - slope * a.s, slope});
   };
-  for (const Built& part : built) {
+  const std::vector<SectionParts::Part> cut = SectionParts(*this).cut();
+  for (const SectionParts::Part& part : cut) {
     const std::size_t first = heights.size();
     for (const std::size_t i : part.above) add_height(i);
     if (part.below) add_height(*part.below);
     parts.push_back({part.low, part.high, first, heights.size(), part.below.has_value()});
   }
+
   // The body is convex if it is one part above the axis, and a round tip continues it without turning inwards.
-  const Line& last = lines[of_profile - 1];
-  convex = built.size() == 1 && !built[0].below && (tip == Tip::flat || (last.nr > 0.0 && last.ns <= kStraight));
+  const Line& last = lines[profile.size() - 2];
+  convex = cut.size() == 1 && !cut[0].below && (tip == Tip::flat || (last.nr > 0.0 && last.ns <= kStraight));
   if (!convex) return;
-  for (const std::size_t i : built[0].above) planes.push_back(lines[i]);
-}
-
-// Defined here and not in revolved.cpp, because it is not called in the step loop.
-ToolShape::Grown Revolved::grown(double margin) const {
-  const bool round = tip() == Tip::round && meridian_.widest <= meridian_.ball;
-  std::vector<ProfilePoint> corners;
-  const auto add_square = [&](double s, double rho) {
-    corners.push_back({s - margin, rho + margin});
-    if (!round) corners.push_back({s + margin, rho + margin});
-  };
-  for (const ProfilePoint& p : profile()) add_square(p.s, p.rho);
-  // No part of the body is wider than the ball, so everything behind the centre of the ball is below the rear
-  // corners of the squares.
-  if (round) corners.push_back({0.0, meridian_.ball + margin});
-  if (!round && tip() == Tip::round) add_square(meridian_.ball, meridian_.ball);
-
-  std::sort(corners.begin(), corners.end(),
-            [](const ProfilePoint& a, const ProfilePoint& b) { return a.s < b.s || (a.s == b.s && a.rho < b.rho); });
-  // Upper convex hull of the corners.
-  std::vector<ProfilePoint> hull;
-  for (const ProfilePoint& p : corners) {
-    // Keep the widest point at each s.
-    while (!hull.empty() && hull.back().s == p.s) hull.pop_back();
-    while (hull.size() >= 2 && cross(hull[hull.size() - 2], hull.back(), p) >= 0.0) hull.pop_back();
-    hull.push_back(p);
-  }
-  // Move the tip centre of the hull to s = 0.
-  const double forward = hull.back().s;
-  for (ProfilePoint& p : hull) p.s -= forward;
-  return {std::make_unique<Revolved>(std::move(hull), round ? Tip::round : Tip::flat), forward};
-}
-
-BurProfile bur_profile(BurFamily family, double diameter, double length, double shank_diameter) {
-  const auto needs_length = [](const char* what, double value) {
-    if (!(value > 0.0 && std::isfinite(value))) refuse_length(what, value, "more than", 0.0);
-  };
-  needs_length("the diameter of a bur", diameter);
-  needs_length("the length of a bur", length);
-  needs_length("the shank diameter of a bur", shank_diameter);
-  const double radius = 0.5 * diameter, shank = 0.5 * shank_diameter;
-  const bool swells = family == BurFamily::ball || family == BurFamily::pear || family == BurFamily::flame;
-  if (swells && shank >= radius) {
-    refuse_length("the shank diameter of a ball, pear or flame bur", shank_diameter, "less than its head's,", diameter);
-  }
-  switch (family) {
-    case BurFamily::ball:
-      if (std::abs(length - diameter) > 1e-9 * diameter)
-        refuse_length("the length of a ball bur", length, "its diameter,", diameter);
-      return ball(radius, shank);
-    case BurFamily::cylinder:
-      return frustum(-length, radius, radius, shank, Tip::flat);
-    case BurFamily::tapered:
-      return frustum(-length, radius, kNarrowEnd * radius, shank, Tip::flat);
-    case BurFamily::inverted_cone:
-      return frustum(-length, kNarrowEnd * radius, radius, shank, Tip::flat);
-    case BurFamily::round_cylinder:
-      if (length < radius)
-        refuse_length("the length of a round cylinder bur", length, "at least half its diameter,", radius);
-      return frustum(radius - length, radius, radius, shank, Tip::round);
-    case BurFamily::pear:
-      return pear(radius, length, shank);
-    case BurFamily::flame:
-      break;
-  }
-  return flame(radius, length, shank);
+  for (const std::size_t i : cut[0].above) planes.push_back(lines[i]);
 }
 
 }  // namespace hapbench

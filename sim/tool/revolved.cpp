@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "sim/tool/axial.hpp"
 #include "sim/tool/cylinder.hpp"
@@ -435,6 +438,35 @@ void Revolved::foremost_places(const ToolPose& pose, const ContactBuffer& contac
     simd::store(select(at_ball, -ball * n.y, s * axis.y + rho * out.y) + position.y, &places.y[i]);
     simd::store(select(at_ball, -ball * n.z, s * axis.z + rho * out.z) + position.z, &places.z[i]);
   }
+}
+
+ToolShape::Grown Revolved::grown(double margin) const {
+  const bool round = tip() == Tip::round && meridian_.widest <= meridian_.ball;
+  std::vector<ProfilePoint> corners;
+  const auto add_square = [&](double s, double rho) {
+    corners.push_back({s - margin, rho + margin});
+    if (!round) corners.push_back({s + margin, rho + margin});
+  };
+  for (const ProfilePoint& p : profile()) add_square(p.s, p.rho);
+  // No part of the body is wider than the ball, so everything behind the centre of the ball is below the rear
+  // corners of the squares.
+  if (round) corners.push_back({0.0, meridian_.ball + margin});
+  if (!round && tip() == Tip::round) add_square(meridian_.ball, meridian_.ball);
+
+  std::sort(corners.begin(), corners.end(),
+            [](const ProfilePoint& a, const ProfilePoint& b) { return a.s < b.s || (a.s == b.s && a.rho < b.rho); });
+  // Upper convex hull of the corners.
+  std::vector<ProfilePoint> hull;
+  for (const ProfilePoint& p : corners) {
+    // Keep the widest point at each s.
+    while (!hull.empty() && hull.back().s == p.s) hull.pop_back();
+    while (hull.size() >= 2 && cross(hull[hull.size() - 2], hull.back(), p) >= 0.0) hull.pop_back();
+    hull.push_back(p);
+  }
+  // Move the tip centre of the hull to s = 0.
+  const double forward = hull.back().s;
+  for (ProfilePoint& p : hull) p.s -= forward;
+  return {std::make_unique<Revolved>(std::move(hull), round ? Tip::round : Tip::flat), forward};
 }
 
 }  // namespace hapbench

@@ -14,6 +14,7 @@ PLAIN = {
     "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0},
 }
 SUMMED = {**PLAIN, "algorithm": "summation"}
+UP = {"type": "springs", "groups": [{"direction": [0, 1, 0], "count": 2}]}
 SPRING = {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]}
 BELOW = {"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]}
 STEPPED = Within(

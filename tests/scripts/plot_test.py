@@ -3,16 +3,18 @@ import functools
 import html
 import json
 import math
+import os
 import re
 import shlex
 import shutil
 import tempfile
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 from scipy import stats
 
-from fixture import SOURCE, assert_whole, hapbench
+from fixture import PROGRAM, SOURCE, assert_whole, hapbench
 from pictures_test import Given, drawn, made, make_runs, plotted
 
 from hapbench.columns import header
@@ -158,6 +160,51 @@ class Plot(Given):
         self.assert_shows(folder / "plot.svg", "seed", "stiffness K [N/m]", "S\u2081")
         some = plotted(folder, "--metric", "force_max_N", "--where", "rendering.mass_kg<0.15")
         self.assertIn(" over 20 runs", " ".join(some.split()))
+
+    @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})  # which evaluates them
+    def test_conditions_are_those_of_sweep(self):
+        """The same rows, and the same messages for what is no condition."""
+        folder = made(
+            "conditions",
+            "sweep",
+            "springs_limited_mean",
+            "--vary",
+            "rendering.mass_kg=0.1,0.2,0.4",
+            "--vary",
+            "rendering.algorithm=mean,summation",
+            *FEW_STEPS,
+        )
+        table = folder / "sweep.csv"
+        names, (first, *rows) = header(table), table.read_text().splitlines()
+        cells = [row.split(",") for row in rows]
+        cells[0][names.index("force_max_N")] = ""
+        table.write_text("\n".join([first, *(",".join(row) for row in cells)]) + "\n")
+        for condition, count in (
+            ("rendering.mass_kg<=0.2", 4),
+            ("rendering.mass_kg=2e-1", 2),
+            ("rendering.mass_kg!=0.20", 4),
+            ("rendering.algorithm=mean", 3),
+            ("rendering.algorithm!=mean", 3),
+            ("force_max_N>=0", 5),
+            ("force_max_N!=-1", 5),
+        ):
+            kept = Sweep(folder, "force_max_N", [condition]).rows
+            said = json.loads(hapbench("sweep", folder, "--where", condition, "--json"))
+            self.assertEqual(len(kept), count, condition)
+            self.assertEqual(
+                [int(row["index"]) for row in kept], [row["index"] for row in said["rows"]]
+            )
+        both = ["rendering.mass_kg<0.3", "rendering.algorithm=mean"]
+        self.assertEqual(len(Sweep(folder, None, both).rows), 2)
+        for wrong in ("rendering.mass_kg==0.2", "rendering.mass<0.2", "outcome<a", "index=", "=1"):
+            self.assertEqual(
+                plotted(folder, "--where", wrong, expected=2),
+                hapbench("sweep", folder, "--where", wrong, expected=2),
+            )
+        self.assertEqual(
+            plotted(folder, "--where", "index>9", expected=2),
+            f"hapbench: error: {table}: holds no row with index>9\n",
+        )
 
     def test_first_order_indices_of_a_function_that_is_known(self):
         """Ishigami's, whose third variable acts together with the first alone; the last one's place

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/tool/bur_profile.hpp"
 #include "sim/tool/revolved.hpp"
 
 namespace hapbench::test {

@@ -11,7 +11,9 @@
 #include "scenarios/input/reader.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/scene/devices.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/overrides.hpp"
 #include "scenarios/scene/scenario.hpp"
 
 namespace hapbench {

@@ -14,6 +14,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/field_files.hpp"
 
 namespace hapbench {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "scenarios/analysis/current_value.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/scene/field_files.hpp"
 
 namespace hapbench {
 namespace {

@@ -16,6 +16,7 @@
 #include "scenarios/program/describe/glossary.hpp"
 #include "scenarios/program/studies.hpp"
 #include "scenarios/program/text.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
 

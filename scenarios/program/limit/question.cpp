@@ -17,7 +17,9 @@
 #include "scenarios/program/option_values.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/vibration_limit.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/overrides.hpp"
 #include "scenarios/scene/scenario.hpp"
 
 namespace hapbench {

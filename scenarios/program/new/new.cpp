@@ -18,6 +18,7 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
+#include "scenarios/scene/field_files.hpp"
 
 namespace hapbench {
 namespace {

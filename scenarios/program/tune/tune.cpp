@@ -19,6 +19,7 @@
 #include "scenarios/program/tune/text.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
 namespace hapbench {

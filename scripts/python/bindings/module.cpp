@@ -33,6 +33,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/run_tables.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/field_files.hpp"
 
 /// The engine and the commands of the program for Python. Users call the Python package around it (hapbench/).
 namespace hapbench {

@@ -1,12 +1,10 @@
 """The handle of an impedance device under held forces that come late: m x'' = u(t - delay) + offset
 - b x' - c sign(x'), integrated exactly by the program, stops included; and the signal of force to
 play to it for an identification."""
-import os
-import shutil
 import subprocess
 
 import numpy as np
-from hapbench_command import Faults, fail
+from hapbench_command import Faults, fail, the_program
 
 NAMES = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "offset_N", "start_m_per_s")
 KINDS = {
@@ -22,7 +20,7 @@ class Simulator(subprocess.Popen):
     """A process of the program that simulates a log, in a `with`; a fit needs some thousand simulations."""
 
     def __init__(self, time, force):
-        program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
+        program = the_program()
         if not program:
             fail("the program hapbench, which simulates the handle, was not found in PATH")
         super().__init__(

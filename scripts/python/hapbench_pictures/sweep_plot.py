@@ -1,7 +1,5 @@
 """A sweep's table as a picture: a metric over one varied field; over two as curves or a heat map;
 of a sample, or over more fields, points over each of them, with how much each matters."""
-import operator
-import re
 import textwrap
 from dataclasses import dataclass
 
@@ -13,7 +11,7 @@ from scipy.stats import spearmanr
 from hapbench.columns import is_number, read_records
 from hapbench.errors import InputError
 from hapbench.results import at, read_object
-from hapbench_command import nearest, table_text
+from hapbench_command import asked_of_program, nearest, table_text
 from hapbench_looks import by_class, look_of_class
 from hapbench_style import PETROL, SETTINGS, legend_above, plt
 
@@ -25,43 +23,24 @@ FAILURES = ("diverges", "error")
 # The look of places without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 WIDTH = 100  # of text
-SIGNS = {
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "=": operator.eq,
-    "!=": operator.ne,
-}
 PANELS_WIDE = 3
 MOST_COSINES, ROWS_PER_COSINE = 6, 10
 LEAST_ROWS = 20  # of a sample that tells how much a field matters
 
 
-def keeps(row, condition):
-    """Whether a row keeps a condition such as "inside_max_m<3e-4", as `hapbench sweep --where` has it."""
-    parts = re.fullmatch(r"([^<>=!]+)(<=|>=|!=|<|>|=)(.+)", condition)
-    if not parts or not (is_number(parts[3]) or parts[2] in ("=", "!=")):
-        raise InputError(
-            f"--where: got \"{condition}\"; allowed: a column, one of {' '.join(SIGNS)}, and a number or a text"
-        )
-    name, sign, value = parts.groups()
-    if name not in row:
-        raise InputError(
-            f'--where: got "{name}"; allowed: a column of sweep.csv{nearest(name, list(row))}'
-        )
-    if is_number(value):
-        return is_number(row[name]) and SIGNS[sign](float(row[name]), float(value))
-    return SIGNS[sign](row[name], value)
+def runs_that_meet(folder, conditions):
+    """Returns the numbers, as texts, of the runs of a sweep that meet all conditions, such as "inside_max_m<3e-4". The
+    program evaluates the conditions by the grammar of `hapbench sweep --where`."""
+    said = asked_of_program("evaluates --where", "plot", "--runs-where", folder, *conditions)
+    return set(said.split())
 
 
 class Sweep:
     def __init__(self, folder, metric, where=()):
         file = folder / "sweep.csv"
-        rows = read_records(file)
-        self.name, self.rows = folder.name, [
-            row for row in rows if all(keeps(row, condition) for condition in where)
-        ]
+        self.name, rows = folder.name, read_records(file)
+        kept = runs_that_meet(folder, where) if where else None
+        self.rows = [row for row in rows if kept is None or row["index"] in kept]
         if not self.rows:
             raise InputError(
                 f"{file}: holds no row{' with ' + ' and '.join(where) if rows else ''}"

@@ -2,8 +2,6 @@
 and points as a browser draws in a frame (contacts quantised to 16 bits, rows in single precision,
 base64), and its markup."""
 import json
-import os
-import shutil
 import subprocess
 import tempfile
 from functools import lru_cache
@@ -14,6 +12,7 @@ import numpy as np
 from hapbench.columns import read_columns
 from hapbench.errors import InputError
 from hapbench.results import at
+from hapbench_command import the_program
 from hapbench_looks import look
 
 from .markup import ASSETS, embedded_json, fill
@@ -205,7 +204,7 @@ def shell(run):
 
 @lru_cache(maxsize=1)  # curves and replay of a page ask for the same one
 def shell_of(scenario):
-    program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
+    program = the_program()
     if not program:
         return (
             None,

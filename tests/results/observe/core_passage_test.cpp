@@ -12,6 +12,7 @@
 
 #include "results/observe/inside_observer.hpp"
 #include "sim/geometry/solid.hpp"
+#include "sim/tool/bur_profile.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/revolved.hpp"

@@ -16,6 +16,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "sim/core/random.hpp"
 #include "tests/results/files.hpp"

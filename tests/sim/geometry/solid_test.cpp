@@ -5,6 +5,7 @@
 #include "sim/contact/inside.hpp"
 #include "sim/core/random.hpp"
 #include "sim/geometry/solid.hpp"
+#include "sim/tool/bur_profile.hpp"
 #include "sim/tool/revolved.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/tool_kinds.hpp"

@@ -7,6 +7,7 @@
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/core/random.hpp"
+#include "sim/tool/bur_profile.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/revolved.hpp"
 #include "tests/support/scale.hpp"

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "results/summary/summary.hpp"
+#include "scenarios/input/input_error.hpp"
+
+/// Names the file that sets a field of a scenario, in errors and warnings.
+namespace hapbench {
+
+struct LoadedScenario;
+
+/// Returns the file that sets the value at a JSON pointer: the scenario's file, or a file that it extends. If no
+/// file sets the value, returns the file that has the nearest enclosing object.
+std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer);
+
+/// Returns the warnings as texts for people. Each text begins with the file that sets the value, and its pointer.
+std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings);
+
+/// Throws a copy of the error that names `file` in front of each fault.
+[[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);
+/// Throws a copy of the error that names, in front of each fault, the file that has the fault: the scenario's
+/// file, or a file that it extends.
+[[noreturn]] void rethrow_with_file(const InputError& error, const LoadedScenario& loaded);
+
+/// Calls `work` and returns its result. An InputError that `work` throws is passed to rethrow_with_file with
+/// `place`, which is a file or a loaded scenario.
+template <class Place, class Work>
+auto with_file(const Place& place, Work work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    rethrow_with_file(error, place);
+  }
+}
+
+}  // namespace hapbench

@@ -1,0 +1,76 @@
+#include "scenarios/scene/overrides.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/scene/merge_scenarios.hpp"
+#include "scenarios/scene/scenario.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Returns the element of a list that a key of a dotted path names. Throws InputError.
+Json& element_at(Json& list, std::string_view key, const std::string& path) {
+  const auto index = whole_number(key);
+  if (!index || *index >= list.size()) {
+    throw InputError(fmt::format("{}: got list index \"{}\"; allowed: {}", path, key,
+                                 list.empty() ? "none, the list is empty" : fmt::format("0 ... {}", list.size() - 1)));
+  }
+  return list[*index];
+}
+
+}  // namespace
+
+void apply_override(Json& json, const std::string& text) {
+  // Split and check the override.
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos)
+    fail_in_option("--set", "got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+  const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
+  const Words keys = parts_of(path, '.');
+  constexpr std::size_t kDeepestPath = 64;  // functions that walk through JSON recurse once per level
+  if (keys.size() > kDeepestPath)
+    fail_in_option("--set", fmt::format("got a path of more than {0} keys; allowed: at most {0}", kDeepestPath));
+  // Follow the path, creating objects where they are missing.
+  Json* node = &json;
+  for (const std::string_view& key : keys) {
+    if (node->is_array()) {
+      node = &element_at(*node, key, path);
+    } else {
+      if (!node->is_object()) *node = Json::object();  // replaces null or a number
+      if (&key == &keys.back()) drop_alternative(*node, key);
+      node = &(*node)[std::string(key)];
+    }
+  }
+  *node = Json::accept(value) ? parse_json(value) : Json(value);
+  if (path == "time" || path == "time.step_s") drop_derived_samples(json);
+}
+
+bool leaves_run_alone(std::string_view override) {
+  constexpr std::string_view kSections[] = {"expect", "record", "name", "description", "source"};
+  // These fields add or remove metrics. `record.every` also selects the steps that the ideal-trajectory metrics
+  // use.
+  constexpr std::string_view kMeasured[] = {"record.energy", "record.ideal_trajectory", "record.torque",
+                                            "record.every"};
+  const std::string_view path = overridden_path(override), section = path.substr(0, path.find('.'));
+  return std::ranges::count(kSections, section) > 0 && std::ranges::count(kMeasured, path) == 0;
+}
+
+void expect_less(Json& expect) {
+  if (!expect.is_object()) return;  // the reader reports this error
+  expect.erase("metrics");
+  Json outcomes = Json::array();
+  for (const Outcome outcome : ExpectFields().outcomes) outcomes.push_back(outcome_name(outcome));
+  const Json given = expect.value("outcome", Json());
+  for (const Json& outcome : given.is_array() ? given : given.is_null() ? Json::array() : Json::array({given})) {
+    if (std::find(outcomes.begin(), outcomes.end(), outcome) == outcomes.end()) outcomes.push_back(outcome);
+  }
+  expect["outcome"] = std::move(outcomes);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "scenarios/input/json_file.hpp"
+
+/// Overrides `path=value` of a scenario's fields, given with --set.
+namespace hapbench {
+
+/// Returns the dotted path of an override `path=value`.
+inline std::string_view overridden_path(std::string_view override) noexcept {
+  return override.substr(0, override.find('='));
+}
+
+/// Applies an override "path=value". A number in the dotted path is an index of a list. A field that excludes the
+/// overridden field is removed. Throws InputError.
+void apply_override(Json& scenario, const std::string& text);
+
+/// Returns true if the override does not change the run, so that the scenario's expectations still apply to it.
+bool leaves_run_alone(std::string_view override);
+
+/// Relaxes the expectations for a run that an override has changed. Removes the bounds on metrics, and adds the
+/// default outcomes to the listed outcomes. A run that never touches its object or diverges stays unexpected
+/// unless the scenario lists that outcome.
+void expect_less(Json& expect);
+
+}  // namespace hapbench

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "scenarios/input/json_file.hpp"
+
+/// Reads a scenario file and the files that it extends, without checking their fields.
+namespace hapbench {
+
+/// Field that names a base scenario. The fields of the file that has it are merged over the base scenario's
+/// fields.
+inline constexpr const char* kExtends = "extends";
+
+/// A scenario file and its content before merging with the scenario that it extends.
+struct ScenarioLayer {
+  std::filesystem::path file;
+  Json json;
+};
+
+/// A scenario file after merging with the scenarios that it extends. It can be loaded several times with
+/// different overrides without reading the files again.
+struct ScenarioText {
+  std::filesystem::path file;
+  Json json;
+  /// The file, then the scenario that it extends, then that scenario's base, and so on; empty if it extends
+  /// nothing.
+  std::vector<ScenarioLayer> layers = {};
+};
+
+/// Reads a scenario file and, recursively, the scenario that its field "extends" names. The field holds a file
+/// path, relative to the file that has the field, or the name of a bundled scenario. Rules of the merge:
+///   - Objects are merged field by field. An object with another "type" replaces the base's object.
+///   - Every other value replaces the base's value; null does too.
+///   - If two fields exclude each other ("steps" and "duration_s"), the given field removes the
+///     base's other field.
+///   - "name" and "expect" are not inherited.
+///   - A relative path in a field "file" stays relative to the file that it was read from.
+/// Throws InputError whose message begins with the faulty file. A file that extends itself, directly or through
+/// other files, is an error.
+ScenarioText read_scenario_text(const std::filesystem::path& file);
+
+}  // namespace hapbench
