@@ -60,7 +60,7 @@ void require_text(const char* text, const std::string& what) {
   if (text == nullptr || *text == '\0') refuse(what, " is missing");
 }
 
-void check(const OwnParameter& p) {
+void check(const AlgorithmParameter& p) {
   require_name("a parameter", p.name);
   const std::string which = "parameter \"" + std::string(p.name) + "\": ";
   require_text(p.range.unit, which + "its unit");
@@ -84,7 +84,7 @@ void check(const AlgorithmEntry& entry) {
     require_text(text, what);
   }
   std::set<std::string_view> seen;
-  for (const OwnParameter& p : entry.own_parameters) {
+  for (const AlgorithmParameter& p : entry.algorithm_parameters) {
     check(p);
     if (!seen.insert(p.name).second) refuse("parameter \"", p.name, "\" is there twice");
   }
@@ -95,18 +95,18 @@ std::unique_ptr<ForceStage> make_force_stage(const ForceStageConfig& config) {
   return std::make_unique<ActuatorLimitedPassivity>(std::get<ActuatorLimitedPassivityConfig>(config));
 }
 
-/// Owner of the texts to which `info` and `own_parameters` of an external algorithm point.
+/// Owner of the texts to which `info` and `algorithm_parameters` of an external algorithm point.
 struct Texts {
   std::deque<std::string> all;
   ModelInfo info = {};
-  std::vector<OwnParameter> parameters;
+  std::vector<AlgorithmParameter> parameters;
 
   const char* copy(const char* text) { return all.emplace_back(text).c_str(); }
 };
 
 }  // namespace
 
-double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter) {
+double parameter_value(const RenderingConfig& config, const char* algorithm, const AlgorithmParameter& parameter) {
   const auto values = config.parameters.find(algorithm);
   if (values == config.parameters.end()) return parameter.initial;
   const auto value = values->second.find(parameter.name);
@@ -138,7 +138,7 @@ AlgorithmEntry checked_copy(AlgorithmEntry entry) {
   auto texts = std::make_shared<Texts>();
   Texts& t = *texts;
   // Copy the texts of the parameters, then the texts of the documentation.
-  for (OwnParameter p : entry.own_parameters) {
+  for (AlgorithmParameter p : entry.algorithm_parameters) {
     for (const char** text : {&p.name, &p.range.unit, &p.meaning}) *text = t.copy(*text);
     t.parameters.push_back(p);
   }
@@ -146,7 +146,7 @@ AlgorithmEntry checked_copy(AlgorithmEntry entry) {
   for (const char** text : {&t.info.name, &t.info.summary, &t.info.formula, &t.info.source, &t.info.known_failure})
     *text = t.copy(*text);
   entry.info = &t.info;
-  entry.own_parameters = t.parameters;
+  entry.algorithm_parameters = t.parameters;
   entry.texts = std::move(texts);
   return entry;
 }
@@ -170,9 +170,10 @@ std::size_t additions() {
   return table().additions;
 }
 
-std::vector<double> own_values(const RenderingConfig& config, const AlgorithmEntry& entry) {
+std::vector<double> parameter_values(const RenderingConfig& config, const AlgorithmEntry& entry) {
   std::vector<double> values;
-  for (const OwnParameter& p : entry.own_parameters) values.push_back(own_value(config, entry.info->name, p));
+  for (const AlgorithmParameter& p : entry.algorithm_parameters)
+    values.push_back(parameter_value(config, entry.info->name, p));
   return values;
 }
 

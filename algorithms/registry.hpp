@@ -24,7 +24,7 @@ namespace hapbench {
 
 /// A numeric parameter that belongs to one algorithm only and is not a member of RenderingConfig. In a scenario
 /// it is the field rendering.parameters.<algorithm>.<name>.
-struct OwnParameter {
+struct AlgorithmParameter {
   const char* name;
   NumberRange range;
   double initial;  ///< default value
@@ -32,7 +32,7 @@ struct OwnParameter {
 };
 
 /// Returns the parameter's value in `config`, or its default.
-double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter);
+double parameter_value(const RenderingConfig& config, const char* algorithm, const AlgorithmParameter& parameter);
 
 /// AlgorithmEntry::force_bound of a law whose force is at most the force of `count` springs, all at the largest
 /// depth. Without `count`: at most the force of all n springs.
@@ -64,9 +64,9 @@ struct AlgorithmEntry {
   bool may_reduce = true;
   /// Depth model for an algorithm that does not render depths but reports them; empty if it renders them.
   std::string_view reported_depth_model = {};
-  std::span<const OwnParameter> own_parameters = {};
+  std::span<const AlgorithmParameter> algorithm_parameters = {};
   AlgorithmOrigin origin = {};  ///< empty for a built-in algorithm
-  /// Owner of the targets of `info` and `own_parameters` of an external algorithm.
+  /// Owner of the targets of `info` and `algorithm_parameters` of an external algorithm.
   std::shared_ptr<const void> texts = {};
 };
 
@@ -101,7 +101,7 @@ std::size_t additions();
 
 /// Returns the values of the algorithm's own parameters, in the order of its table: the values in `config`, or
 /// the defaults.
-std::vector<double> own_values(const RenderingConfig& config, const AlgorithmEntry& entry);
+std::vector<double> parameter_values(const RenderingConfig& config, const AlgorithmEntry& entry);
 
 /// Returns `config` with the depth model and the reduction that its algorithm prescribes. Precondition: the
 /// algorithm exists.

@@ -23,7 +23,7 @@ struct ReductionConfig {
 };
 
 /// Value of RenderingConfig::contact_source for contacts from hapbench's own search and depth models.
-inline constexpr const char* kOwnContacts = "own";
+inline constexpr const char* kComputedContacts = "own";
 /// Values of RenderingConfig::contact_source for contacts from a file: the recorded contacts of a prescribed
 /// motion, or the user's shared library.
 inline constexpr const char* kTrace = "trace";
@@ -54,10 +54,10 @@ struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
   int iterations = 3;  ///< m, number of shaping iterations, for laws that iterate
   std::string depth_model = "surface_normal";
-  std::string contact_source = kOwnContacts;  ///< kOwnContacts, kTrace or kContactPlugin
-  std::string contact_file;                   ///< file of kTrace or kContactPlugin, relative to the scenario file
-  std::string contact_config = "{}";          ///< configuration for kContactPlugin: a JSON object
-  std::optional<Lateness> late;               ///< multi-rate contacts; nullopt: contacts are found in every step
+  std::string contact_source = kComputedContacts;  ///< kComputedContacts, kTrace or kContactPlugin
+  std::string contact_file;                        ///< file of kTrace or kContactPlugin, relative to the scenario file
+  std::string contact_config = "{}";               ///< configuration for kContactPlugin: a JSON object
+  std::optional<MultiRateSchedule> late;           ///< multi-rate contacts; nullopt: contacts are found in every step
   bool local_average = false;
   std::optional<ReductionConfig> reduction;
 
@@ -83,7 +83,7 @@ struct RenderingConfig {
   std::optional<ForceStageConfig> force_stage;
   bool passivity_controller = false;  ///< applied around algorithm and force stage
 
-  /// Given values of the parameters that belong to one algorithm only (OwnParameter), by algorithm and name.
+  /// Given values of the parameters that belong to one algorithm only (AlgorithmParameter), by algorithm and name.
   std::map<std::string, std::map<std::string, double>> parameters;
 
   bool has_friction() const { return mu_s != 0.0 || mu_f != 0.0 || dry_friction; }

@@ -64,7 +64,7 @@ FreeMotion free_motion(const MotionLaw& law, double time) noexcept {
 
 // With a = damping / 2, n = g - a v and d^2 = a^2 - stiffness, the velocity is e^(-a t) (v cosh(d t) + n sinh(d t)
 // / d). If d^2 < 0, cosine and sine with w = sqrt(-d^2) replace cosh and sinh.
-double time_of_rest(const MotionLaw& law, double v, double g) noexcept {
+double time_to_stop(const MotionLaw& law, double v, double g) noexcept {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double a = 0.5 * law.damping, n = g - a * v, square = a * a - law.stiffness;
   if (square < 0.0) {
@@ -90,7 +90,7 @@ HandleMotion::HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHa
 void HandleMotion::reset(const HandleState& handle) noexcept {
   handle_ = handle;
   work_ = {.stored = -stored()};
-  take_hand(Vec3::Zero());
+  set_hand_force(Vec3::Zero());
 }
 
 void HandleMotion::advance(const Vec3& motors, const FreeMotion& interval) noexcept {
@@ -114,7 +114,7 @@ void HandleMotion::advance_with_friction(Eigen::Index axis, double motors, const
     const double force = motors + hand_force_if_at_rest(axis);
     if (v == 0.0 && std::abs(force) <= coulomb_) return;  // the handle sticks until a force changes
     const double friction = std::copysign(coulomb_, v == 0.0 ? -force : -v);
-    const double stop_time = time_of_rest(law_, v, (force + friction) / mass_);
+    const double stop_time = time_to_stop(law_, v, (force + friction) / mass_);
     if (!(stop_time < remaining))
       return move(axis, motors, friction, remaining == interval.time ? interval : free_motion(law_, remaining));
     move(axis, motors, friction, free_motion(law_, stop_time));
@@ -230,7 +230,7 @@ ElasticMotion::Stretch ElasticMotion::stretch(double time) const {
 void ElasticMotion::reset(const HandleState& handle) noexcept {
   motor_ = handle_ = handle;
   work_ = {.stored = -stored()};
-  take_hand(Vec3::Zero());
+  set_hand_force(Vec3::Zero());
 }
 
 void ElasticMotion::advance(const Vec3& motors, const Stretch& stretch) noexcept {

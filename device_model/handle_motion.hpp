@@ -50,14 +50,14 @@ FreeMotion free_motion(const MotionLaw& law, double time) noexcept;
 
 /// Returns the first time after the start at which the velocity is zero [s]; infinity if there is none. `v`:
 /// initial velocity [m/s]; `g`: constant acceleration [m/s^2], force / mass. In closed form.
-double time_of_rest(const MotionLaw& law, double v, double g) noexcept;
+double time_to_stop(const MotionLaw& law, double v, double g) noexcept;
 
 /// Base of HandleMotion and ElasticMotion: holds the device's friction and the hand's force.
 class HandleMotionBase {
  public:
   /// Sets the hand's force at the current sample [N]. It stays valid until the next call; between samples it
   /// changes with the motion according to AttachedHand.
-  void take_hand(const Vec3& force) noexcept {
+  void set_hand_force(const Vec3& force) noexcept {
     origin_ = handle_.position;
     hand_force_at_rest_ = force + hand_.damping * handle_.velocity;
   }

@@ -166,8 +166,8 @@ ImpedanceDevice::ImpedanceDevice(const ImpedanceDeviceConfig& config, double dt,
       random_(config.seed),
       path_(config, dt),
       motion_(config, hand),
-      before_(free_motion(motion_.law(), path_.switch_part() * dt)),
-      after_(free_motion(motion_.law(), (1.0 - path_.switch_part()) * dt)) {
+      before_(free_motion(motion_.law(), path_.switch_fraction() * dt)),
+      after_(free_motion(motion_.law(), (1.0 - path_.switch_fraction()) * dt)) {
   if (config.position_filter) position_filter_.emplace(*config.position_filter, dt);
   if (config.transmission) {
     const ElasticMotion motion(config, *config.transmission, hand);
@@ -196,7 +196,7 @@ void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexce
   // Move the handle over the period; the motors' force may change within it.
   const HeldForce motors = path_.hold(rendered);
   const auto advance = [&](auto& motion, const auto& before, const auto& after) {
-    motion.take_hand(hand_force);
+    motion.set_hand_force(hand_force);
     if (before_.time > 0.0) motion.advance(motors.before, before);
     motion.advance(motors.after, after);
   };
@@ -367,16 +367,16 @@ const DevicePreset* find_device_preset(std::string_view name) noexcept {
   return found == std::end(kPresets) ? nullptr : found;
 }
 
-ImpedanceDeviceConfig config_of(const DevicePreset& preset, PresetEnd end) {
+ImpedanceDeviceConfig config_of(const DevicePreset& preset, PresetVariant end) {
   const auto at = [end](const SourcedNumber& number) {
-    return end == PresetEnd::own ? number.value : end == PresetEnd::soft ? number.low : number.high;
+    return end == PresetVariant::own ? number.value : end == PresetVariant::soft ? number.low : number.high;
   };
   ImpedanceDeviceConfig config;
   config.handle_mass = at(preset.handle_mass);
   config.viscous = at(preset.viscous);
   config.coulomb = at(preset.coulomb);
   const SourcedNumber& step = preset.encoder_step;
-  config.encoder_step = end == PresetEnd::own ? step.value : end == PresetEnd::soft ? step.high : step.low;
+  config.encoder_step = end == PresetVariant::own ? step.value : end == PresetVariant::soft ? step.high : step.low;
   config.force_max = preset.force_max.value;
   return config;
 }

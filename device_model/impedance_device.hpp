@@ -19,9 +19,9 @@ namespace hapbench {
 /// Continuous Butterworth low-pass filter, |H(f)|^2 = 1 / (1 + (f / cutoff)^(2 order)).
 struct LowPassFilter {
   double cutoff = 100.0;  ///< half-power frequency [Hz]
-  std::size_t order = 1;  ///< 1 to kHighest
+  std::size_t order = 1;  ///< 1 to kMaxOrder
   /// Largest order; up to it, the sum of modes loses less than 1e-12 of the input to rounding.
-  static constexpr int kHighest = 8;
+  static constexpr int kMaxOrder = 8;
 };
 
 /// One mode of a sampled low-pass: a term of the partial fractions of its transfer function. Its state is updated
@@ -123,7 +123,7 @@ struct ImpedanceDeviceConfig {
   std::optional<Transmission> transmission = {};  ///< between motors and handle; empty: rigid
 };
 
-/// Force of the motors over one period: `before` during the first fraction ForcePath::switch_part of the period,
+/// Force of the motors over one period: `before` during the first fraction ForcePath::switch_fraction of the period,
 /// `after` during the rest.
 struct HeldForce {
   Vec3 before = Vec3::Zero();  ///< [N]
@@ -143,7 +143,7 @@ class ForcePath {
   HeldForce hold(const Vec3& rendered) noexcept;
   /// Returns the fraction of a period after which the motors change their force, in [0, 1): the fractional part of
   /// the delay.
-  double switch_part() const noexcept { return switch_fraction_; }
+  double switch_fraction() const noexcept { return switch_fraction_; }
 
  private:
   Vec3 command(const Vec3& rendered) const noexcept;
@@ -237,12 +237,12 @@ const DevicePreset* find_device_preset(std::string_view name) noexcept;
 /// Selects the values of a preset's unpublished parameters: the estimates themselves (own); the end of each range
 /// at which a wall starts to vibrate at a lower stiffness (soft: little friction and mass, a coarse encoder); or
 /// the opposite end (stiff).
-enum class PresetEnd { own, soft, stiff };
+enum class PresetVariant { own, soft, stiff };
 inline constexpr const char* kPresetRanges =
     "dry friction 0 to twice our value, viscous friction 1 to 10 times, mass smaller or larger by a factor of 1.3, "
     "encoder finer or coarser by a factor of 2";
 
 /// Returns the device's configuration, with defaults for fields that a preset does not contain.
-ImpedanceDeviceConfig config_of(const DevicePreset& preset, PresetEnd end = PresetEnd::own);
+ImpedanceDeviceConfig config_of(const DevicePreset& preset, PresetVariant end = PresetVariant::own);
 
 }  // namespace hapbench

@@ -69,7 +69,7 @@ class SeriesLaw : public ForceLaw {
   Eigen::LLT<Mat3> series_;  ///< factorisation of M for the last contacts
 };
 
-constexpr OwnParameter kAlongSum[] = {
+constexpr AlgorithmParameter kAlongSum[] = {
     {"along_sum",
      {0.0, 1.0, "1"},
      0.0,
@@ -81,7 +81,7 @@ class VirtualCoupling final : public SeriesLaw {
  public:
   explicit VirtualCoupling(const RenderingConfig& config)
       : SeriesLaw(config.stiffness, 1.0, config.virtual_coupling ? config.stiffness / *config.virtual_coupling : 1.0),
-        along_sum_(own_value(config, "virtual_coupling", kAlongSum[0]) >= 0.5) {}
+        along_sum_(parameter_value(config, "virtual_coupling", kAlongSum[0]) >= 0.5) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     if (!along_sum_) return SeriesLaw::evaluate(contacts);
@@ -132,7 +132,7 @@ double least_squares_bound(const RenderingConfig& config, const ToolShape&, std:
   return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
 }
 
-constexpr OwnParameter kSaturation[] = {
+constexpr AlgorithmParameter kSaturation[] = {
     {"saturation_N",
      {1e-6, 1e12, "N"},
      30.0,
@@ -150,7 +150,7 @@ constexpr double kMinStiffnessRatio = 1e-12;
 constexpr double kMaxImbalance = 1e-13;
 
 double saturation_of(const RenderingConfig& config) {
-  return own_value(config, "static_coupling", kSaturation[0]);
+  return parameter_value(config, "static_coupling", kSaturation[0]);
 }
 
 /// Static virtual coupling: the tool is connected by a saturating spring to a massless copy of itself,
@@ -294,7 +294,7 @@ AlgorithmEntry virtual_coupling_entry() {
   return {.info = &kInfo,
           .make_law = law_of<VirtualCoupling>,
           .force_bound = virtual_coupling_bound,
-          .own_parameters = kAlongSum};
+          .algorithm_parameters = kAlongSum};
 }
 
 AlgorithmEntry least_squares_entry() {
@@ -346,7 +346,7 @@ AlgorithmEntry static_coupling_entry() {
           .make_law = law_of<StaticCoupling>,
           .force_bound = static_coupling_bound,
           .may_reduce = false,
-          .own_parameters = kSaturation};
+          .algorithm_parameters = kSaturation};
 }
 
 }  // namespace hapbench

@@ -25,11 +25,11 @@ class Mean final : public ForceLaw {
   }
 };
 
-constexpr OwnParameter kPoints[] = {
+constexpr AlgorithmParameter kPoints[] = {
     {"points", {1.0, 1e5, "1"}, 10.0, "largest number of springs that are added without scaling"}};
 
 double points_of(const RenderingConfig& config) {
-  return own_value(config, "mcneely", kPoints[0]);
+  return parameter_value(config, "mcneely", kPoints[0]);
 }
 
 class McNeely final : public ForceLaw {
@@ -100,7 +100,7 @@ AlgorithmEntry mcneely_entry() {
           .make_law = law_of<McNeely>,
           .force_bound = mcneely_bound,
           .may_reduce = false,
-          .own_parameters = kPoints};
+          .algorithm_parameters = kPoints};
 }
 
 }  // namespace hapbench

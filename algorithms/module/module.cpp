@@ -251,7 +251,7 @@ AlgorithmEntry law_entry(Module module, std::string hash) {
                           .source = table.source,
                           .known_failure = table.known_failure,
                           .parameters = kStiffnessAlone};
-  std::vector<OwnParameter> parameters;
+  std::vector<AlgorithmParameter> parameters;
   for (std::size_t i = 0; i < table.parameter_count; ++i) {
     const HapbenchParameter& p = table.parameters[i];
     parameters.push_back({.name = p.name, .range = {p.min, p.max, p.unit}, .initial = p.initial, .meaning = p.meaning});
@@ -259,10 +259,10 @@ AlgorithmEntry law_entry(Module module, std::string hash) {
   const std::string file = module.file;
   const auto make_law = [module = std::move(module)](const RenderingConfig& config) {
     return std::make_unique<ModuleLaw>(module, config.stiffness,
-                                       own_values(config, *find_algorithm(module.table->name)));
+                                       parameter_values(config, *find_algorithm(module.table->name)));
   };
   return checked_copy(
-      {.info = &info, .make_law = make_law, .own_parameters = parameters, .origin = {file, std::move(hash)}});
+      {.info = &info, .make_law = make_law, .algorithm_parameters = parameters, .origin = {file, std::move(hash)}});
 }
 
 ModuleFaults take_module_faults() {

@@ -321,8 +321,8 @@ void ShellConstraints::add_edges(const ToolPose& proxy, ContactBuffer& contacts)
   const PointColumns columns{contacts.index.data(), contacts.x.data(),  contacts.y.data(), contacts.z.data(),
                              contacts.nx.data(),    contacts.ny.data(), contacts.nz.data()};
   const Pack highest(margin_), deepest(-kMaxPatchDepth * spacing_), patch2(kPatch * spacing_ * kPatch * spacing_);
-  const PlaceArrays support{support_x_.data(), support_y_.data(), support_z_.data()};
-  tool_->foremost_places(proxy, contacts, support);
+  const MutablePointArrays support{support_x_.data(), support_y_.data(), support_z_.data()};
+  tool_->support_points(proxy, contacts, support);
   // For each contact whose support point lies on its patch, append the constraint of the patch.
   for (std::size_t i = 0; i < padded; i += simd::lanes) {
     const Pack nx = load(&contacts.nx[i]), ny = load(&contacts.ny[i]), nz = load(&contacts.nz[i]);

@@ -26,7 +26,7 @@ constexpr double kEqualPositions = 1e-3;
 /// to a few per cent, unless the tool itself pulls the proxy away.
 constexpr int kMaxShortenings = 3;
 
-constexpr OwnParameter kDampingTime[] = {
+constexpr AlgorithmParameter kDampingTime[] = {
     {"damping_time_s",
      {0.0, 10.0, "s"},
      0.0,
@@ -86,7 +86,7 @@ class ProxyRendering final : public ForceAlgorithm {
  public:
   explicit ProxyRendering(const RenderingConfig& config)
       : K_(config.stiffness),
-        damping_time_(own_value(config, "proxy", kDampingTime[0])),
+        damping_time_(parameter_value(config, "proxy", kDampingTime[0])),
         damping_and_limits_(config),
         skips_(config.skips) {}
 
@@ -404,7 +404,7 @@ AlgorithmEntry proxy_entry() {
           .force_bound = proxy_bound,
           .may_reduce = false,
           .reported_depth_model = "surface_normal",
-          .own_parameters = kDampingTime};
+          .algorithm_parameters = kDampingTime};
 }
 
 }  // namespace hapbench

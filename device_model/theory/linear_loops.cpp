@@ -147,25 +147,25 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
   return A;
 }
 
-double eigenvalue_edge(SampledLoop loop) {
+double linear_stability_limit(SampledLoop loop) {
   const double unit = loop.moving_mass() / (loop.period * loop.period);
-  return first_edge(kMinLimit * unit, kMaxLimit * unit, [&loop](double K) {
+  return first_stability_limit(kMinLimit * unit, kMaxLimit * unit, [&loop](double K) {
     loop.stiffness = K;
     return loop.state_matrix();
   });
 }
 
-std::span<const AttachedHand> hand_family() {
+std::span<const AttachedHand> typical_hands() {
   static constexpr AttachedHand kHands[] = {{},           {0.1, 100.0},  {0.1, 300.0}, {0.1, 1000.0}, {0.2, 100.0},
                                             {0.2, 300.0}, {0.2, 1000.0}, {0.5, 100.0}, {0.5, 300.0},  {0.5, 1000.0}};
   return kHands;
 }
 
-double worst_hand_edge(SampledLoop loop) {
+double worst_hand_stability_limit(SampledLoop loop) {
   double smallest = kInfinity;
-  for (const AttachedHand& hand : hand_family()) {
+  for (const AttachedHand& hand : typical_hands()) {
     loop.hand = hand;
-    smallest = std::min(smallest, eigenvalue_edge(loop));
+    smallest = std::min(smallest, linear_stability_limit(loop));
   }
   return smallest;
 }

@@ -32,7 +32,7 @@ inline bool is_stable_step(const Eigen::MatrixXd& A) {
 /// Tests values that increase by a factor of 1.1 from `lowest` on, then bisects between the last stable and the
 /// first unstable value. Misses an unstable range that lies between two neighbouring values.
 template <class StepMatrix>
-double first_edge(double lowest, double highest, StepMatrix step_matrix) {
+double first_stability_limit(double lowest, double highest, StepMatrix step_matrix) {
   constexpr double kNext = 1.1, kPrecision = 1e-11;
   const auto stable = [&](double value) { return is_stable_step(step_matrix(value)); };
   double low = 0.0, high = lowest;
@@ -80,16 +80,17 @@ struct SampledLoop {
   Eigen::MatrixXd state_matrix() const;
 };
 
-/// Returns the largest wall stiffness K [N/m] up to which the loop is stable (first_edge), with its other
+/// Returns the largest wall stiffness K [N/m] up to which the loop is stable (first_stability_limit), with its other
 /// parameters. Returns zero if this K is below 1e-8 m / T^2. Takes about 0.5 ms.
-double eigenvalue_edge(SampledLoop loop);
+double linear_stability_limit(SampledLoop loop);
 
 /// Returns a set of typical hands (100 to 1000 N/m, 0.1 to 0.5 kg); the first entry is no hand. The hands have no
 /// damping, because damping of the hand only raises the limit.
-std::span<const AttachedHand> hand_family();
+std::span<const AttachedHand> typical_hands();
 
-/// Returns the smallest eigenvalue_edge over hand_family(), with each hand in turn in place of the loop's own hand.
-double worst_hand_edge(SampledLoop loop);
+/// Returns the smallest linear_stability_limit over typical_hands(), with each hand in turn in place of the loop's own
+/// hand.
+double worst_hand_stability_limit(SampledLoop loop);
 
 /// A limit from the literature on the stiffness K that an impedance device can render. In the texts, b is the
 /// damping of the handle, m the moving mass, B the wall's damping, T the period and t_d = d T the delay.
@@ -124,7 +125,7 @@ struct AdmittanceLoop {
 };
 
 /// Largest delay for which eigenvalues are computed [samples]; with longer delays they would take seconds.
-inline constexpr double kLongestLoopDelay = 200.0;
+inline constexpr double kMaxLoopDelay = 200.0;
 
 /// Linear loop of device, hand and wall, valid while nothing saturates and the contact lasts.
 struct DeviceLoop {

@@ -110,7 +110,7 @@ std::optional<double> LastQuarterVibration::value() const noexcept {
   return std::max(of_earlier_trials_, vibration_.rms());  // an empty optional compares less than any number
 }
 
-void JudgedRows::touch(std::uint64_t step) noexcept {
+void EvaluationWindow::touch(std::uint64_t step) noexcept {
   if (begin_) return;
   const std::uint64_t quarter = step + (steps_ - step) / 4;
   begin_ = quarter;
@@ -185,7 +185,7 @@ ContactForces::Phase ContactForces::add(const Vec3& force, const ForceChange& ch
   return phase;
 }
 
-void ContactForces::tell(Section& s) const {
+void ContactForces::report(Section& s) const {
   const bool landed = landing_rows_ > 0, is_settled = has_settled();
   const auto rows = static_cast<double>(settled_rows_);
   s.metric("landings", "1",

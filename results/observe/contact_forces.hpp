@@ -114,10 +114,10 @@ class LastQuarterVibration {
 /// The steps by which the end of a run is evaluated. They end with the run and begin after the first quarter of the
 /// time between first touch and end. If the script repeats, they begin later, so that they contain whole periods
 /// only (if at least one whole period fits).
-class JudgedRows {
+class EvaluationWindow {
  public:
   /// The run has `steps` steps. `period`: period of the script [steps]; 0: it does not repeat.
-  JudgedRows(std::uint64_t steps, double period) : steps_(steps), period_(period) {}
+  EvaluationWindow(std::uint64_t steps, double period) : steps_(steps), period_(period) {}
   /// Reports contact in a step; only the first call has an effect.
   void touch(std::uint64_t step) noexcept;
   bool contain(std::uint64_t step) const noexcept { return begin_ && step >= *begin_; }
@@ -166,7 +166,7 @@ class ContactForces {
   void begin() noexcept;
   /// Adds the next step and returns its phase. `force`: rendered force [N].
   Phase add(const Vec3& force, const ForceChange& change, bool in_contact) noexcept;
-  void tell(Section& section) const;
+  void report(Section& section) const;
 
   /// Returns true if settled contact lasted for at least kMinSettledTime.
   bool has_settled() const noexcept { return settled() >= kMinSettledTime; }

@@ -34,7 +34,7 @@ class ContactAgeObserver final : public MetricObserver {
     oldest_ = std::max(oldest_, age);
     ++rows_of_age_[std::min(age, static_cast<std::uint64_t>(rows_of_age_.size() - 1))];
   }
-  void tell(Section& s) const override {
+  void report(Section& s) const override {
     s.metric(
         "age_p50_s", "s",
         "median age of the contacts in use, from the contact query to the step that uses its result; no value if no "
@@ -50,7 +50,7 @@ class ContactAgeObserver final : public MetricObserver {
         "largest age of the contacts in use, from the contact query to the step that uses its result; no value if no "
         "step used contacts",
         if_any(rows_ > 0, dt_ * static_cast<double>(oldest_)));
-    s.metric("asked", "1", "number of contact queries, including queries whose result was lost", requested_);
+    s.metric("queries", "1", "number of contact queries, including queries whose result was lost", requested_);
     s.metric("lost_share", "1",
              "fraction of the contact queries (contacts.asked) whose result was lost; no value without a query",
              per(lost_, requested_));
@@ -89,7 +89,7 @@ class LostTorqueObserver final : public MetricObserver {
     ++rows_in_contact_;
     sum_ += std::sqrt(squared);
   }
-  void tell(Section& s) const override {
+  void report(Section& s) const override {
     s.metric(
         "lost_mean_Nm", "Nm",
         "mean norm of the lost torque over the steps in contact, mean ||tau|| with tau = sum r_i x f_i about the "
@@ -124,7 +124,7 @@ class FrictionObserver final : public MetricObserver {
     slips_ += now == Friction::slides && last_ == Friction::sticks;
     last_ = now;
   }
-  void tell(Section& s) const override {
+  void report(Section& s) const override {
     const std::uint64_t with_load = sticking_ + sliding_;
     s.metric(
         "stick_share", "1",
@@ -154,10 +154,10 @@ class ForceStageObserver final : public MetricObserver {
     ++rows_;
     work_ = algorithm_->work();
   }
-  void tell(Section& s) const override {
+  void report(Section& s) const override {
     s.metric("changed_share", "1", "fraction of the steps in which the force stage changes the force",
              per(work_.steps_staged, rows_));
-    s.metric("taken_J", "J",
+    s.metric("removed_J", "J",
              "energy that the force stage removed: force change of the stage, integrated along the tool's path",
              if_any(rows_ > 0, work_.energy_staged));
   }

@@ -124,7 +124,7 @@ void EnergyLedger::add_event(const StepRecord& now, double created) noexcept {
   }
 }
 
-void EnergyLedger::tell(Section& s) const {
+void EnergyLedger::report(Section& s) const {
   const EnergyBalance& b = balance_;
   s.metric(
       "created_sum_J", "J",
@@ -202,7 +202,7 @@ PassivityObserver::Extremes PassivityObserver::worst() const noexcept {
   return !before.rows || (is_worse && !std::isnan(before.energy_min)) ? now : before;
 }
 
-void PassivityObserver::tell(Section& s) const {
+void PassivityObserver::report(Section& s) const {
   const Extremes e = worst();
   s.metric(
       "energy_min_J", "J",

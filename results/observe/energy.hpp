@@ -73,7 +73,7 @@ class EnergyLedger final : public MetricObserver {
   bool wants_energy() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
 
-  void tell(Section& section) const override;
+  void report(Section& section) const override;
   /// Adds "events": events() as a list of objects.
   void add_members(nlohmann::ordered_json& section) const override;
 
@@ -122,7 +122,7 @@ class PassivityObserver final : public MetricObserver {
   void begin(const TrialParts& trial) override;
   bool wants_springs() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
-  void tell(Section& section) const override;
+  void report(Section& section) const override;
 
   /// Returns the energy that the rendering created in the current trial, max(0, -E_min) [J]; NaN if any rendered
   /// force was NaN.

@@ -157,7 +157,7 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   }
 }
 
-void ForceFidelityObserver::tell(Section& s) const {
+void ForceFidelityObserver::report(Section& s) const {
   const auto rms = [this](double squares) { return std::sqrt(per(squares, rows_)); };
   s.metric("rows", "1",
            "number of steps that have a reference force f_m (measured with the stroke, or given by reference_force)",
@@ -190,7 +190,7 @@ void ForceFidelityObserver::tell(Section& s) const {
            "mean angle between f and f_m over the steps in which both are above 0.1 N; no value without such a step",
            per(direction_error_, direction_rows_), Better::less);
   const double interval = dt_ * static_cast<double>(every_);  // time between kept samples
-  const auto lag = lag_between(kept_reference_, kept_rendered_, interval, kMostLag);
+  const auto lag = lag_between(kept_reference_, kept_rendered_, interval, kMaxLag);
   s.metric(
        "force_lag_s", "s",
        "delay of f behind f_m: time shift with the largest correlation (Pearson, all components) within +-0.1 s; of "

@@ -38,7 +38,7 @@ class ReferenceForce {
 /// Directions of two forces are compared if both exceed this value [N]; weaker forces have no meaningful direction.
 inline constexpr double kMinForce = 0.1;
 /// Largest lag that is searched, positive or negative [s].
-inline constexpr double kMostLag = 0.1;
+inline constexpr double kMaxLag = 0.1;
 
 /// Time lag of a signal behind another signal.
 struct Lag {
@@ -67,7 +67,7 @@ class ForceFidelityObserver final : public MetricObserver {
   /// Precondition: the trial has a reference.
   void begin(const TrialParts& trial) override;
   void on_step(const StepRecord& record) noexcept override;
-  void tell(Section& section) const override;
+  void report(Section& section) const override;
 
   /// f_m in the last step [N]; empty if none was measured.
   const std::optional<Vec3>& reference() const noexcept { return at_row_; }

@@ -141,7 +141,7 @@ double interpenetration(const BlockWithHole& block, const Cylinder& tool, const 
   return largest;
 }
 
-std::optional<TipPosition> ideal_place(const BlockWithHole& block, double tool_radius, double tilt) {
+std::optional<TipPosition> ideal_tip_position(const BlockWithHole& block, double tool_radius, double tilt) {
   if (!(tilt > 0.0 && tilt < std::numbers::pi / 2)) return std::nullopt;
   const double R = block.hole_diameter / 2, r = tool_radius;
   const double cosine = math::cos(tilt), sine = math::sin(tilt);
@@ -167,7 +167,7 @@ void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
   const ToolPose& pose = record.tool.pose;
   const Vec3 lean{-pose.axis.x(), -pose.axis.y(), 0.0};
   const double sine = lean.norm(), tilt = math::atan2(sine, -pose.axis.z());
-  const auto ideal = ideal_place(block_, tool_.radius(), tilt);
+  const auto ideal = ideal_tip_position(block_, tool_.radius(), tilt);
   if (!ideal) {
     ++rows_without_ideal_;
     return;
@@ -181,7 +181,7 @@ void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
   (error.hand_force < kGentleForce ? gentle_ : firm_).add(error);
 }
 
-void IdealTrajectoryObserver::Errors::tell(Section s) const {
+void IdealTrajectoryObserver::Errors::report(Section s) const {
   const auto rms = [this](const Spread& of) { return std::sqrt(per(of.squares, rows)); };
   s.metric(
       "rows", "1",
@@ -216,9 +216,9 @@ void IdealTrajectoryObserver::Errors::tell(Section s) const {
       interpenetration.max, Better::less);
 }
 
-void IdealTrajectoryObserver::tell(Section& s) const {
-  gentle_.tell(s.part("gentle"));
-  firm_.tell(s.part("firm"));
+void IdealTrajectoryObserver::report(Section& s) const {
+  gentle_.report(s.part("gentle"));
+  firm_.report(s.part("firm"));
   s.metric("rows_without_ideal", "1", "number of recorded steps at whose tilt the ideal trajectory does not exist",
            rows_without_ideal_);
 }

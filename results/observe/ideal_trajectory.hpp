@@ -39,7 +39,7 @@ struct TipPosition {
 ///
 /// Returns nothing if this contact does not exist: the tip's lower edge is above the mouth, the tip reaches below
 /// the hole's bottom, or the tilt is outside (0, pi / 2).
-std::optional<TipPosition> ideal_place(const BlockWithHole& block, double tool_radius, double tilt);
+std::optional<TipPosition> ideal_tip_position(const BlockWithHole& block, double tool_radius, double tilt);
 
 /// Hand forces below this value count as gentle, all others as firm [N]. The thesis divides its figure 7 at this
 /// force.
@@ -68,7 +68,7 @@ class IdealTrajectoryObserver final : public MetricObserver {
   /// Deviation in the last step; empty if the ideal trajectory does not exist at its tilt, or if the step is not
   /// compared.
   const std::optional<TrajectoryError>& error() const noexcept { return error_; }
-  void tell(Section& section) const override;
+  void report(Section& section) const override;
 
  private:
   /// Sums [m, m^2] and extremes [m] of a length over the compared steps; without steps, the extremes are not
@@ -96,7 +96,7 @@ class IdealTrajectoryObserver final : public MetricObserver {
       interpenetration.add(error.interpenetration);
       ++rows;
     }
-    void tell(Section section) const;
+    void report(Section section) const;
   };
 
   BlockWithHole block_;

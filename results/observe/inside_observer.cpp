@@ -67,7 +67,7 @@ std::optional<double> InsideDepths::settled_median() const {
   return 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
 }
 
-void InsideDepths::tell(Section& s, bool has_settled) const {
+void InsideDepths::report(Section& s, bool has_settled) const {
   s.metric(
        "inside_max_m", "m",
        "largest distance of the tool's deepest point below the environment's surface over all steps (with "
@@ -90,7 +90,7 @@ void InsideDepths::tell(Section& s, bool has_settled) const {
       per(centre_inside, rows), Better::less);
 }
 
-double way_to_core(const ToolShape& tool) {
+double core_offset(const ToolShape& tool) {
   ContactBuffer tip(1);
   tip.push(0, Vec3::Zero(), Vec3::UnitZ());
   tool.surface_constraints(ToolPose{}, Vec3::Zero(), 0.0, tip);
@@ -99,7 +99,7 @@ double way_to_core(const ToolShape& tool) {
 
 CorePassage::CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> solid)
     : solid_(std::move(solid)), width_(tool.half_width()) {
-  const double back = way_to_core(tool);
+  const double back = core_offset(tool);
   shallow_start_ = -kDeepContact * back;
   far_end_ = 0.0;
   for (const ProfilePoint& p : tool.outline()) far_end_ = std::min(far_end_, p.s);
@@ -126,7 +126,7 @@ CorePassage::CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> sol
 }
 
 Vec3 CorePassage::normal_at(const Vec3& point) const noexcept {
-  return solid_->gradient(point, kNormalsOver * width_);
+  return solid_->gradient(point, kGradientStep * width_);
 }
 
 /// Follows the core from the pose of the step before, in steps in which it cannot meet the surface.
@@ -242,7 +242,7 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) n
 PoseSamples::Sample PoseSamples::joined(const Sample& a, const Sample& b) const noexcept {
   const auto& [kept, other] = b.key > a.key ? std::tie(b, a) : std::tie(a, b);
   return {kept.pose, kept.key,
-          std::max(kept.max_motion, other.max_motion + tool_.moved_at_most(kept.pose, other.pose))};
+          std::max(kept.max_motion, other.max_motion + tool_.displacement_bound(kept.pose, other.pose))};
 }
 
 void PoseSamples::begin_block(const ToolPose& pose, double key) noexcept {
@@ -262,7 +262,7 @@ InsideObserver::InsideObserver(std::shared_ptr<const ToolShape> tool, std::share
       settled_by_(metrics),
       every_(every),
       search_(*tool_, *solid_),
-      back_(way_to_core(*tool_)),
+      back_(core_offset(*tool_)),
       core_passage_(*tool_, solid_),
       deepest_(kMaxBlocks, *tool_),
       settled_(kSettledSamples, *tool_) {
@@ -338,7 +338,7 @@ void InsideObserver::march(const Vec3& point, double length, double time) noexce
 }
 
 void InsideObserver::update_side(const Vec3& point, const SurfaceDistance& phi, double time) noexcept {
-  const double step = kNormalsOver * tool_->half_width();
+  const double step = kGradientStep * tool_->half_width();
   const SolidSide before = std::exchange(side_, side_of(phi));
   // Record the side in the first and in the last step.
   if (!began_) passage_.began_inside = side_ == SolidSide::inside;
@@ -401,13 +401,13 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
       const PoseSamples::Sample& sample = parts[i];
       displacement = std::max(displacement, sample.max_motion + (sample.pose.position - pose.position).norm());
       axis_change = std::max(axis_change, sample.max_motion / tool_->reach() + (sample.pose.axis - pose.axis).norm());
-      s.max_motion = std::max(s.max_motion, sample.max_motion + tool_->moved_at_most(pose, sample.pose));
+      s.max_motion = std::max(s.max_motion, sample.max_motion + tool_->displacement_bound(pose, sample.pose));
     }
     const bool last = end - first == 1;
     s.bound =
         last || (displacement < kSharedBound * width && axis_change < kSharedBound)
             ? bound.at(pose, displacement, axis_change, depth_threshold(), last && s.max_motion > kSamePose * width)
-            : bound.roughly_at(pose, displacement, axis_change);
+            : bound.coarse_bound_at(pose, displacement, axis_change);
     return s;
   };
   const std::size_t max_evaluations = solid_->bytes() > 0 ? kMaxEvaluations : kMaxClosedFormEvaluations;

@@ -30,7 +30,7 @@ struct InsideDepths {
   /// Merges the depths of another trial into these.
   void add(const InsideDepths& trial);
   /// Reports the metrics. `has_settled`: settled contact was long enough for its metrics.
-  void tell(Section& section, bool has_settled) const;
+  void report(Section& section, bool has_settled) const;
 };
 
 /// Passage of the tool through the surface in a run, detected by two points: the tip centre, and the core's front
@@ -55,7 +55,7 @@ struct Passage {
 
 /// Returns the distance from the tip centre back to the front point of the core, half the tool's width within the
 /// body [m]; 0 for a ball.
-double way_to_core(const ToolShape& tool);
+double core_offset(const ToolShape& tool);
 
 /// Side of the surface on which a point lies; unknown beyond the border of an open surface.
 enum class SolidSide { unknown, outside, inside };
@@ -143,7 +143,7 @@ class PoseSamples {
     if (rows_left_ == 0) return begin_block(pose, key);
     --rows_left_;
     Sample& block = samples_.back();
-    const double moved = tool_.moved_at_most(block.pose, pose);
+    const double moved = tool_.displacement_bound(block.pose, pose);
     if (key > block.key) {
       block = {pose, key, block.max_motion + moved};
     } else if (moved > block.max_motion) {

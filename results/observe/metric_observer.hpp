@@ -59,7 +59,7 @@ class MetricObserver : public Observer {
   /// other observer starts anew.
   virtual void begin(const TrialParts& trial) = 0;
   /// Reports all metrics. Called after the run, or without any run for documentation.
-  virtual void tell(Section& section) const = 0;
+  virtual void report(Section& section) const = 0;
   /// Adds those members of the observer's section in summary.json that are not metrics.
   virtual void add_members(nlohmann::ordered_json&) const {}
 };

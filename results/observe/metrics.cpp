@@ -57,7 +57,7 @@ MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config)
       friction_limit_(config.friction_limit),
       contact_forces_(dt, config.settling) {
   assert(dt > 0.0);
-  if (config.most_reduced) reduction_.emplace(*config.most_reduced);
+  if (config.reduction_capacity) reduction_.emplace(*config.reduction_capacity);
 }
 
 void MetricsObserver::begin() noexcept {
@@ -131,7 +131,7 @@ std::uint64_t MetricsObserver::state_hash() const noexcept {
   return hashes.value();
 }
 
-void MetricsObserver::tell(Section& s) const {
+void MetricsObserver::report(Section& s) const {
   report_motion_and_force(s);
   report_contacts(s);
   s.metric("speed_max_m_per_s", "m/s", "largest speed of the tip's centre", std::sqrt(speed_max_squared_));
@@ -147,7 +147,7 @@ void MetricsObserver::tell(Section& s) const {
       "explicit_friction_first_step", "1",
       "number of the first step with ||f_spring|| above explicit_friction_limit_N; no value if no step is above it",
       first_beyond_friction_);
-  contact_forces_.tell(s);
+  contact_forces_.report(s);
   s.metric("reduction_changes", "1",
            "number of steps in contact whose set of points kept by rendering.reduction differs from the set of the "
            "previous step, also in contact; no value without rendering.reduction",
@@ -209,7 +209,7 @@ void MetricsObserver::report_contacts(Section& s) const {
   s.metric("last_contact_s", "s", "time of the last step with a colliding point; no value without contact", all.last);
 }
 
-void MetricsObserver::tell_end(Section& s) const {
+void MetricsObserver::report_end(Section& s) const {
   s.metric(
       "vibration_last_quarter_m_per_s", "m/s",
       "vibration of the handle: root mean square of its velocity after a 30 Hz high-pass over the last quarter of the "

@@ -70,8 +70,8 @@ struct MetricsConfig {
   std::optional<double> friction_limit = {};  ///< explicit_friction_limit [N]; empty: no limit
   SettlingRule settling = {};
   std::uint64_t steps = 0;  ///< number of counted steps; 0: unknown, no vibration of the last quarter
-  std::optional<std::size_t> most_reduced = {};  ///< largest number of contacts in a step; empty: no reduction
-  std::uint64_t stride = 1;                      ///< only every `stride`-th step counts; the others are ignored
+  std::optional<std::size_t> reduction_capacity = {};  ///< largest number of contacts in a step; empty: no reduction
+  std::uint64_t stride = 1;                            ///< only every `stride`-th step counts; the others are ignored
 };
 
 /// Measures the metrics that every run has. Constant memory; about 20 ns a step, 24 ns with a reduction, for which
@@ -85,10 +85,10 @@ class MetricsObserver final : public MetricObserver {
   void begin() noexcept;
   bool wants_ratio() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
-  /// Reports all metrics except those of `tell_end`.
-  void tell(Section& section) const override;
+  /// Reports all metrics except those of `report_end`.
+  void report(Section& section) const override;
   /// Reports the metrics that follow the metrics of an InsideObserver.
-  void tell_end(Section& section) const;
+  void report_end(Section& section) const;
 
   /// Returns true if the last step was in settled contact.
   bool in_settled_contact() const noexcept { return settled_; }

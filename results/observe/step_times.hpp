@@ -41,15 +41,15 @@ class StepTimes {
 /// Samples the time of steps without observers: from after the last observer of one step to before the first
 /// observer of the next. This covers the integrator's part of one step, and hand, contact search, force law and
 /// device of the next. Attach it twice, before and after all other observers. Samples every step of a short run,
-/// and at most kMostSamples evenly spread steps of a long run, which is enough for a 99th percentile. A sample
+/// and at most kMaxSamples evenly spread steps of a long run, which is enough for a 99th percentile. A sample
 /// takes two clock readings. Allocates only in the constructor.
 class StepSampler final : public Observer {
  public:
-  static constexpr std::uint64_t kMostSamples = 1 << 13;
+  static constexpr std::uint64_t kMaxSamples = 1 << 13;
 
   /// `steps`: largest number of steps of the run.
   explicit StepSampler(std::uint64_t steps)
-      : every_(steps / kMostSamples + 1), times_(static_cast<std::size_t>(steps / every_) + 1) {}
+      : every_(steps / kMaxSamples + 1), times_(static_cast<std::size_t>(steps / every_) + 1) {}
   void on_step(const StepRecord& record) noexcept override;
 
   /// Sampled times in order [ns], without the time of the clock reading.

@@ -97,7 +97,7 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
   return metrics;
 }
 
-void TargetMetricsObserver::tell(Section& s) const {
+void TargetMetricsObserver::report(Section& s) const {
   std::vector<PlaceMetrics> places = place_metrics(rows_);
   if (order_.empty()) {
     places.resize(places_);

@@ -30,7 +30,7 @@ class TargetMetricsObserver final : public MetricObserver {
   void begin(const TrialParts& trial) override;
   /// Precondition: record.task is not null.
   void on_step(const StepRecord& record) noexcept override;
-  void tell(Section& section) const override;
+  void report(Section& section) const override;
 
   /// Marks the current trial as failed: its targets that have not ended count as not removed, with the time limit.
   void fail_rest();

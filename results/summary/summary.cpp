@@ -105,7 +105,7 @@ ordered_json tool_json(const ToolShape& tool) {
 
 ordered_json summary_json(const Result& run) {
   ordered_json warnings = ordered_json::array();
-  for (const Warning& warning : run.warnings) warnings.push_back(warning.told());
+  for (const Warning& warning : run.warnings) warnings.push_back(warning.located_text());
   ordered_json json = {{"name", run.name},
                        {"algorithm", run.algorithm},
                        {"outcome", outcome_name(run.end.outcome)},

@@ -39,7 +39,7 @@ struct Warning {
   std::string text;     ///< one sentence
 
   /// Returns the warning as stored in results. Does not depend on the location of the files.
-  std::string told() const { return pointer.empty() ? text : pointer + ": " + text; }
+  std::string located_text() const { return pointer.empty() ? text : pointer + ": " + text; }
 
   bool operator==(const Warning&) const = default;
 };

@@ -54,8 +54,8 @@ void read_range(std::string_view text, bool sampled, Axis& axis) {
   if (sampled) return;
   // Parse the number of values of a grid.
   axis.steps = whole_number(parts[2]).value_or(0);
-  if (axis.steps < 2 || axis.steps > kMostRuns)
-    refuse_axis(fmt::format("got \"{}\" values", parts[2]), fmt::format("an integer 2 ... {}", kMostRuns));
+  if (axis.steps < 2 || axis.steps > kMaxRuns)
+    refuse_axis(fmt::format("got \"{}\" values", parts[2]), fmt::format("an integer 2 ... {}", kMaxRuns));
 }
 
 bool begins_json(std::string_view text) {
@@ -73,8 +73,8 @@ std::vector<std::string> split_list(std::string_view list) {
       values.back().append(",").append(part);
     is_whole = !begins_json(values.back()) || Json::accept(values.back());
   }
-  if (values.size() > kMostRuns)
-    refuse_axis(fmt::format("got {} values", values.size()), fmt::format("at most {}", kMostRuns));
+  if (values.size() > kMaxRuns)
+    refuse_axis(fmt::format("got {} values", values.size()), fmt::format("at most {}", kMaxRuns));
   return values;
 }
 
@@ -136,8 +136,8 @@ Axis parse_axis(const std::string& text, bool sampled) {
     fail_in({.about_options = {"--vary"}}, fmt::format("--vary \"{}\": {}", shown, error.problem()));
   }
   // The schema of the field decides about integers and about "all".
-  const std::vector<PlacedField> fields = placed_fields();
-  const auto field = std::ranges::find(fields, axis.path, &PlacedField::path);
+  const std::vector<ScenarioField> fields = scenario_fields();
+  const auto field = std::ranges::find(fields, axis.path, &ScenarioField::path);
   if (field == fields.end()) return axis;
   const Json& schema = field->field->value.schema;
   axis.whole = axis.range && schema.value("type", Json()) == "integer";

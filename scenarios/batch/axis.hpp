@@ -11,7 +11,7 @@
 namespace hapbench {
 
 /// Maximum number of cases of a batch, and of values of an axis.
-inline constexpr std::size_t kMostRuns = 1'000'000;
+inline constexpr std::size_t kMaxRuns = 1'000'000;
 
 /// An interval of values. A sample draws from it; a grid divides it into equal steps or equal ratios.
 struct Range {

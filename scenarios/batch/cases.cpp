@@ -32,8 +32,8 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, st
   } else {
     double size = 1.0;  // double, because the product may overflow an integer
     for (const Axis& axis : axes_) size *= static_cast<double>(axis.size());
-    if (size > static_cast<double>(kMostRuns))
-      fail_in_option("--vary", fmt::format("got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
+    if (size > static_cast<double>(kMaxRuns))
+      fail_in_option("--vary", fmt::format("got a grid of {:.7g} runs; allowed: at most {}", size, kMaxRuns));
     for (std::size_t a = axes_.size(); a-- > 0; size_ *= axes_[a].size()) strides_[a] = size_;
   }
   sort_runs();

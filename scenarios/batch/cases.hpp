@@ -22,7 +22,7 @@ class Cases {
  public:
   /// `scenes` contains one scene, or one for each value of the axis kSceneAxis. `sets` are overrides for all
   /// cases, as in --set. Precondition: without a sampling, every axis has values. Throws InputError if two axes
-  /// have the same path, or for more than kMostRuns combinations.
+  /// have the same path, or for more than kMaxRuns combinations.
   Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
         std::optional<Sampling> sampling = {});
 

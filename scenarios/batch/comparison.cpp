@@ -75,9 +75,9 @@ Comparison planned(const ComparisonQuestion& question) {
   const auto names = names_of_scenarios(question.scenarios);
   Comparison comparison{{}, names, question.algorithms, question.seeds};
   const std::size_t scenes = question.scenarios.size(), size = scenes * comparison.each();
-  if (size > kMostRuns) {
+  if (size > kMaxRuns) {
     throw InputError(fmt::format("got {} scenarios x {} algorithms x {} seeds = {} runs; allowed: at most {}", scenes,
-                                 question.algorithms.size(), question.seeds, size, kMostRuns));
+                                 question.algorithms.size(), question.seeds, size, kMaxRuns));
   }
   for (const fs::path& file : question.scenarios)
     comparison.scenes.push_back(cases_of(question, file, comparison.warnings));
@@ -86,7 +86,7 @@ Comparison planned(const ComparisonQuestion& question) {
 
 void remove_earlier_comparison(const fs::path& folder, const Comparison& comparison) {
   std::error_code ignored;
-  fs::remove(folder / "league.csv", ignored);
+  fs::remove(folder / "ranking.csv", ignored);
   for (std::size_t scene = 0; scene < comparison.scenes.size(); ++scene) {
     const fs::path scene_folder = folder / comparison.scene_folder(scene);
     fs::remove(scene_folder / "comparison.csv", ignored);

@@ -28,7 +28,7 @@ std::size_t shards_in(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     std::size_t index = 0, of = 0;
     if (std::sscanf(entry.path().filename().c_str(), "sweep.%zu_of_%zu.csv", &index, &of) != 2) continue;
-    if (entry.path().filename() != table_name(Shard{index, of}) || of > kMostRuns) continue;
+    if (entry.path().filename() != table_name(Shard{index, of}) || of > kMaxRuns) continue;
     if (count != 0 && of != count) {
       fail_in_file(entry.path(),
                    fmt::format("is one of {} shards, another one of {}; allowed: shards of one division", of, count));
@@ -69,7 +69,7 @@ bool join_shards(const fs::path& folder) {
     }
   }
   // Join the rows, sorted by case.
-  title.cases = std::min(title.about.value("runs", std::size_t{0}), kMostRuns);
+  title.cases = std::min(title.about.value("runs", std::size_t{0}), kMaxRuns);
   title.about["shard"] = shard_text({});
   TableLines first(shards[0], 0);
   first.next();

@@ -7,7 +7,8 @@ namespace hapbench {
 
 bool is_less(const NumberWithError& a, const NumberWithError& b) {
   const double difference = *b.value - *a.value;
-  return difference > *a.error + *b.error && difference > kSameRank * std::max(std::abs(*a.value), std::abs(*b.value));
+  return difference > *a.error + *b.error &&
+         difference > kRankResolution * std::max(std::abs(*a.value), std::abs(*b.value));
 }
 
 }  // namespace hapbench

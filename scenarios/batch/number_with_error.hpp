@@ -7,13 +7,13 @@ namespace hapbench {
 
 /// Relative difference below which two numbers count as equal. It is the resolution of a table of ratios with
 /// three digits, and far above the rounding errors by which mathematically equivalent algorithms differ.
-inline constexpr double kSameRank = 1e-3;
+inline constexpr double kRankResolution = 1e-3;
 
 /// A number of a table and its error, in the same unit. Each is empty if it is not known.
 struct NumberWithError {
   std::optional<double> value = {}, error = {};
 };
-/// Returns true if `a` is smaller than `b` by more than the sum of both errors, and by more than kSameRank
+/// Returns true if `a` is smaller than `b` by more than the sum of both errors, and by more than kRankResolution
 /// times the larger magnitude. Precondition: both have a value and an error.
 bool is_less(const NumberWithError& a, const NumberWithError& b);
 

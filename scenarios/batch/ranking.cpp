@@ -14,7 +14,7 @@ namespace {
 
 /// Returns the seeds for which no algorithm fails. Algorithms with more than `max_failures` failures are
 /// ignored.
-std::vector<std::size_t> seeds_without_failure(const League& ranking, std::size_t scenario, std::size_t max_failures) {
+std::vector<std::size_t> seeds_without_failure(const Ranking& ranking, std::size_t scenario, std::size_t max_failures) {
   std::vector<std::size_t> seeds;
   for (std::size_t k = 0; k < ranking.seeds; ++k) {
     bool failed = false;
@@ -39,11 +39,11 @@ std::string outcomes_text(std::span<const Result> runs) {
 }
 
 /// Returns the result of algorithm a in scenario s for metric m, without its rank.
-Standing ranking_entry(const League& ranking, std::size_t s, std::size_t a, std::size_t m) {
+RankingEntry ranking_entry(const Ranking& ranking, std::size_t s, std::size_t a, std::size_t m) {
   const std::size_t first = ranking.first_run(s, a);
-  Standing entry{ranking.scenarios[s],   ranking.algorithms[a],
-                 ranking.metrics[m],     ranking.seeds,
-                 ranking.failures(s, a), outcomes_text(ranking.runs.subspan(first, ranking.seeds))};
+  RankingEntry entry{ranking.scenarios[s],   ranking.algorithms[a],
+                     ranking.metrics[m],     ranking.seeds,
+                     ranking.failures(s, a), outcomes_text(ranking.runs.subspan(first, ranking.seeds))};
   entry.common_seeds = ranking.common[s].size();
   entry.better = ranking.better[m];
   std::vector<double> numbers, tolerances;  // values of successful runs with common seeds
@@ -55,21 +55,21 @@ Standing ranking_entry(const League& ranking, std::size_t s, std::size_t a, std:
   }
   if (!numbers.empty()) entry.mean = mean_of(numbers);
   if (!tolerances.empty()) entry.tolerance = mean_of(tolerances);
-  if (numbers.size() >= 2 && ranking.seeds_matter[s]) entry.spread = standard_deviation(numbers);
+  if (numbers.size() >= 2 && ranking.depends_on_seed[s]) entry.spread = standard_deviation(numbers);
   return entry;
 }
 
-/// Returns true if `a` ranks before `b` (Standing::rank).
-bool is_better(const Standing& a, const Standing& b) {
+/// Returns true if `a` ranks before `b` (RankingEntry::rank).
+bool is_better(const RankingEntry& a, const RankingEntry& b) {
   if (a.failed != b.failed) return a.failed < b.failed;
   if (a.failed > 0 || !a.mean) return false;
   if (!b.mean) return true;
   return a.better == Better::more ? is_less(b.number(), a.number()) : is_less(a.number(), b.number());
 }
 
-/// Returns Standing::rank of algorithm a in scenario s for metric m. Precondition: the entries of all
+/// Returns RankingEntry::rank of algorithm a in scenario s for metric m. Precondition: the entries of all
 /// algorithms exist.
-std::optional<std::uint64_t> rank_of(const League& ranking, std::size_t s, std::size_t a, std::size_t m) {
+std::optional<std::uint64_t> rank_of(const Ranking& ranking, std::size_t s, std::size_t a, std::size_t m) {
   std::uint64_t rank = 1;
   bool has_mean = false;
   for (std::size_t other = 0; other < ranking.algorithms.size(); ++other) {
@@ -80,8 +80,8 @@ std::optional<std::uint64_t> rank_of(const League& ranking, std::size_t s, std::
 }
 
 /// Returns the result of algorithm a over all scenarios and metrics.
-LawStanding law_ranking_entry(const League& ranking, std::size_t a) {
-  LawStanding law{ranking.algorithms[a], {}, {}};
+LawRankingEntry law_ranking_entry(const Ranking& ranking, std::size_t a) {
+  LawRankingEntry law{ranking.algorithms[a], {}, {}};
   std::vector<double> ranks;
   for (std::size_t s = 0; s < ranking.scenarios.size(); ++s) {
     for (std::size_t m = 0; m < ranking.metrics.size(); ++m)
@@ -94,19 +94,19 @@ LawStanding law_ranking_entry(const League& ranking, std::size_t a) {
 
 }  // namespace
 
-std::size_t League::failures(std::size_t scenario, std::size_t algorithm) const {
+std::size_t Ranking::failures(std::size_t scenario, std::size_t algorithm) const {
   const auto first = failed.begin() + static_cast<std::ptrdiff_t>(first_run(scenario, algorithm));
   return static_cast<std::size_t>(std::count(first, first + static_cast<std::ptrdiff_t>(seeds), true));
 }
 
-void League::rank() {
+void Ranking::rank() {
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
     // Does the seed change any run?
     bool matter = false;
     for (std::size_t a = 0; a < algorithms.size(); ++a)
       for (const Result& run : runs.subspan(first_run(s, a), seeds))
         matter |= run.state_hash != runs[first_run(s, a)].state_hash;
-    seeds_matter.push_back(matter);
+    depends_on_seed.push_back(matter);
     // Choose the seeds over which means are computed.
     common.push_back(seeds_without_failure(*this, s, seeds - 1));
     if (common.back().empty()) common.back() = seeds_without_failure(*this, s, 0);
@@ -120,7 +120,7 @@ void League::rank() {
   }
   // Rank the algorithms over all scenarios.
   for (std::size_t a = 0; a < algorithms.size(); ++a) laws.push_back(law_ranking_entry(*this, a));
-  std::ranges::stable_sort(laws, [](const LawStanding& a, const LawStanding& b) {
+  std::ranges::stable_sort(laws, [](const LawRankingEntry& a, const LawRankingEntry& b) {
     return a.mean_rank && (!b.mean_rank || *a.mean_rank < *b.mean_rank);
   });
 }
@@ -134,11 +134,11 @@ bool have_reference(std::span<const Result> runs) {
   return std::ranges::all_of(runs, [](const Result& run) { return run.sections.contains("fidelity"); });
 }
 
-League league_of(const Comparison& comparison, std::span<const Result> reports,
-                 const std::vector<std::string>& metrics) {
+Ranking rank_comparison(const Comparison& comparison, std::span<const Result> reports,
+                        const std::vector<std::string>& metrics) {
   const std::span<const std::string_view> defaults =
       have_reference(reports) ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
-  League ranking{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, reports, {}};
+  Ranking ranking{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, reports, {}};
   if (metrics.empty()) ranking.metrics.assign(defaults.begin(), defaults.end());
   // For which metrics are smaller or larger values better?
   for (const std::string& name : ranking.metrics) {

@@ -15,8 +15,8 @@
 /// Ranks the force laws of a comparison by their metrics, in each scene and over all scenes.
 namespace hapbench {
 
-/// Result of one algorithm in one scenario for one metric, over the scenario's common seeds (League::common).
-struct Standing {
+/// Result of one algorithm in one scenario for one metric, over the scenario's common seeds (Ranking::common).
+struct RankingEntry {
   std::string scenario, algorithm, metric;
   std::uint64_t seeds = 1, failed = 0;
   std::string outcome;              ///< outcome of its runs: "completes", or with counts "completes 3; diverges 2"
@@ -37,27 +37,27 @@ struct Standing {
 };
 
 /// Result of one algorithm over all scenarios and metrics.
-struct LawStanding {
+struct LawRankingEntry {
   std::string algorithm;
   std::optional<double> mean_rank;  ///< mean of its ranks, including ranks for failures; empty if it has no rank
   std::vector<std::string> fails;   ///< scenarios in which it failed for at least one seed
 };
 
-/// The runs of a comparison and their ranking. rank() computes all members from `seeds_matter` on.
-struct League {
+/// The runs of a comparison and their ranking. rank() computes all members from `depends_on_seed` on.
+struct Ranking {
   std::vector<std::string> scenarios, algorithms, metrics;
   std::vector<Better> better;  ///< by metric: whether smaller or larger values are better
   std::size_t seeds = 1;
   std::span<const Result> runs;  ///< ordered by scenario, then algorithm, then seed; must outlive this object
   std::vector<bool> failed;      ///< for each run: true if it failed, so that its metrics do not count
 
-  std::vector<bool> seeds_matter = {};  ///< for each scenario: true if runs with different seeds differ
+  std::vector<bool> depends_on_seed = {};  ///< for each scenario: true if runs with different seeds differ
   /// For each scenario, the seeds over which means are computed. These are the seeds for which all algorithms
   /// succeeded, not counting algorithms that failed for every seed. If there is no such seed, all seeds are used;
   /// failed runs do not count.
   std::vector<std::vector<std::size_t>> common = {};
-  std::vector<Standing> standings = {};  ///< ordered by scenario, then algorithm, then metric
-  std::vector<LawStanding> laws = {};    ///< ordered by mean rank, best first
+  std::vector<RankingEntry> standings = {};  ///< ordered by scenario, then algorithm, then metric
+  std::vector<LawRankingEntry> laws = {};    ///< ordered by mean rank, best first
 
   /// Computes the ranks. Precondition: `runs` has a run for each scenario, algorithm and seed.
   void rank();
@@ -66,7 +66,7 @@ struct League {
   std::size_t first_run(std::size_t scenario, std::size_t algorithm) const {
     return (scenario * algorithms.size() + algorithm) * seeds;
   }
-  const Standing& at(std::size_t scenario, std::size_t algorithm, std::size_t metric) const {
+  const RankingEntry& at(std::size_t scenario, std::size_t algorithm, std::size_t metric) const {
     return standings[(scenario * algorithms.size() + algorithm) * metrics.size() + metric];
   }
   /// Returns the number of seeds for which an algorithm failed in a scenario.
@@ -91,7 +91,7 @@ bool have_reference(std::span<const Result> runs);
 /// Ranks the algorithms of a finished comparison by `metrics`, which are names of summary.json. Without
 /// metrics, uses kFidelityMetrics if every run has a reference force, else kDefaultMetrics. A run has failed if
 /// its outcome is a failure, or is not among the outcomes that its scenario expects.
-League league_of(const Comparison& comparison, std::span<const Result> reports,
-                 const std::vector<std::string>& metrics);
+Ranking rank_comparison(const Comparison& comparison, std::span<const Result> reports,
+                        const std::vector<std::string>& metrics);
 
 }  // namespace hapbench

@@ -24,9 +24,8 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
                    "program");
   }
   const auto count = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
-  if ((name != kLatinHypercube && name != kRandomPoints) || !count || *count < 1 || *count > kMostRuns) {
-    fail_in_option("--sample",
-                   fmt::format("got \"{}\"; allowed: lhs:N or random:N with 1 <= N <= {}", text, kMostRuns));
+  if ((name != kLatinHypercube && name != kRandomPoints) || !count || *count < 1 || *count > kMaxRuns) {
+    fail_in_option("--sample", fmt::format("got \"{}\"; allowed: lhs:N or random:N with 1 <= N <= {}", text, kMaxRuns));
   }
   return {name == kLatinHypercube ? kLatinHypercube : kRandomPoints, *count, seed, {}};
 }
@@ -60,10 +59,10 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
   // Collect the different values of each field. A coordinate is first the index of the value.
   while (const auto line = lines.next()) {
     const std::vector<std::string> cells = csv_cells(*line);
-    if (cells.size() != axes.size() || sampling.count == kMostRuns) {
+    if (cells.size() != axes.size() || sampling.count == kMaxRuns) {
       fail_in_line(file, lines.line(),
                    fmt::format("got {} values in row {}; allowed: {}, one of each field, in at most {} rows",
-                               cells.size(), sampling.count + 1, axes.size(), kMostRuns));
+                               cells.size(), sampling.count + 1, axes.size(), kMaxRuns));
     }
     ++sampling.count;
     try {

@@ -28,7 +28,7 @@ struct Sampling {
   std::vector<std::vector<double>> of_file = {};  ///< coordinates of points from a file, by axis, then by point
 };
 
-/// Parses "lhs:N" or "random:N" with 1 <= N <= kMostRuns. Throws InputError.
+/// Parses "lhs:N" or "random:N" with 1 <= N <= kMaxRuns. Throws InputError.
 Sampling parse_sampling(const std::string& text, std::uint64_t seed);
 
 /// Returns the coordinates in [0, 1) of all points along an axis. Each axis has its own stream of random

@@ -130,8 +130,8 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 
 std::vector<std::size_t> runs_to_check(const Cases& cases) {
   // All runs of a small batch, or the first runs of a sample.
-  if (cases.size() <= kMostChecked || cases.sampling()) {
-    std::vector<std::size_t> runs(std::min(cases.size(), kMostChecked));
+  if (cases.size() <= kMaxChecked || cases.sampling()) {
+    std::vector<std::size_t> runs(std::min(cases.size(), kMaxChecked));
     std::iota(runs.begin(), runs.end(), std::size_t{0});
     return runs;
   }
@@ -139,7 +139,7 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
   std::set<std::size_t> runs;
   std::size_t stride = 1;
   for (std::size_t a = cases.axes().size(); a-- > 0;) {
-    const std::size_t size = cases.axes()[a].size(), count = std::min(size, kMostChecked);
+    const std::size_t size = cases.axes()[a].size(), count = std::min(size, kMaxChecked);
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t place = count == 1 ? 0 : i * (size - 1) / (count - 1);
       runs.insert(place * stride);
@@ -171,7 +171,7 @@ SweepPlan plan_sweep(Cases cases, const JobOptions& jobs) {
   // Read each combination of files once.
   const Json hashes = check_files(plan, runs_with_files, metrics);
   // List the metrics in the order of all metrics.
-  for (const Metric& metric : metrics_without_values(TrackingHandFields::kMostPlaces)) {
+  for (const Metric& metric : metrics_without_values(TrackingHandFields::kMaxTargetPositions)) {
     if (!metrics.contains(metric.name)) continue;
     plan.metrics.push_back(metric.name);
     if (metric.bounded) plan.bounded.push_back(metric.name);

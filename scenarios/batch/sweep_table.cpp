@@ -84,9 +84,9 @@ SweepTable read_sweep(const fs::path& file, const std::vector<std::string>& cond
     table.counts.add(run, row[outcome], is_expected);
     if (!is_kept(row)) return;
     table.kept.add(run, row[outcome], is_expected);
-    if (table.kept.runs <= SweepTable::kMostRows) table.rows.push_back(std::move(row));
+    if (table.kept.runs <= SweepTable::kMaxRows) table.rows.push_back(std::move(row));
   });
-  if (table.kept.runs > SweepTable::kMostRows) table.rows.clear();
+  if (table.kept.runs > SweepTable::kMaxRows) table.rows.clear();
   return table;
 }
 

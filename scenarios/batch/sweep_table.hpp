@@ -38,12 +38,12 @@ struct SweepCounts {
 /// The table of a sweep. Columns: number of the run, varied fields, outcome, expected, steps, all metrics,
 /// tolerances of metrics with an error bound, state_hash.
 struct SweepTable {
-  static constexpr std::size_t kMostRows = 10'000;  ///< maximum number of rows that are kept in memory
+  static constexpr std::size_t kMaxRows = 10'000;  ///< maximum number of rows that are kept in memory
 
   std::filesystem::path file;
   Json about;  ///< content of sweep.json
   std::vector<std::string> columns;
-  std::vector<SweepRow> rows;  ///< rows that satisfy the conditions; empty if there are more than kMostRows
+  std::vector<SweepRow> rows;  ///< rows that satisfy the conditions; empty if there are more than kMaxRows
   SweepCounts counts;          ///< counts of all rows
   SweepCounts kept;            ///< counts of the rows that satisfy the conditions
 

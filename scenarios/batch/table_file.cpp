@@ -34,7 +34,7 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
       has_(title_.cases) {
   std::error_code error;
   // Continue the unfinished table, or refuse to overwrite it.
-  const std::size_t rows = rows_under_way(title_.file);
+  const std::size_t rows = rows_in_progress(title_.file);
   if (keep) {
     resume(keep);
   } else if (rows > 0 && has_same_definition()) {
@@ -93,7 +93,7 @@ void TableFile::resume(const Keep& keep) {
   if (error) throw IoError("write", part_, error);
 }
 
-std::size_t TableFile::rows_under_way(const fs::path& file) {
+std::size_t TableFile::rows_in_progress(const fs::path& file) {
   std::size_t lines = 0;
   for (TableLines table(part_of(file), 0); table.next();) ++lines;
   return lines - std::min<std::size_t>(lines, 1);

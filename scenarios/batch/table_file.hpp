@@ -43,7 +43,7 @@ class TableFile {
   explicit TableFile(TableTitle title, const Keep& keep = {});
 
   /// Returns the number of rows of an unfinished table.
-  static std::size_t rows_under_way(const std::filesystem::path& file);
+  static std::size_t rows_in_progress(const std::filesystem::path& file);
 
   /// For each case: true if it has a row.
   const std::vector<bool>& rows() const { return has_; }

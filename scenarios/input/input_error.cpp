@@ -50,7 +50,7 @@ InputError InputError::all(const std::vector<InputError>& errors) {
   }
   // Put faults of kind `shape` first, and limit the number of faults.
   std::stable_partition(faults.begin(), faults.end(), [](const InputError& e) { return e.kind() == Kind::shape; });
-  if (faults.size() > kMostFaults) faults.erase(faults.begin() + kMostFaults, faults.end());
+  if (faults.size() > kMaxFaults) faults.erase(faults.begin() + kMaxFaults, faults.end());
   // The first fault gives the message and holds the other faults.
   InputError first = std::move(faults.front());
   first.more_.assign(faults.begin() + 1, faults.end());

@@ -13,7 +13,7 @@ namespace hapbench {
 std::string one_line(std::string text);
 
 /// Maximum number of errors reported per file.
-inline constexpr std::size_t kMostFaults = 20;
+inline constexpr std::size_t kMaxFaults = 20;
 
 /// Location of a fault. Members that do not apply are empty or 0.
 struct ErrorLocation {
@@ -48,7 +48,7 @@ class InputError : public std::runtime_error {
   /// An error of kind `relation` that is not about a particular field.
   explicit InputError(const std::string& problem);
   /// Combines the faults of several errors into one error. Faults of kind `shape` come first; faults beyond
-  /// kMostFaults are dropped. Precondition: `errors` is not empty.
+  /// kMaxFaults are dropped. Precondition: `errors` is not empty.
   static InputError all(const std::vector<InputError>& errors);
 
   Kind kind() const { return kind_; }

@@ -113,7 +113,7 @@ Json parse_json(const std::string& text) {
 }
 
 Json read_json(const std::filesystem::path& file) {
-  return parse_json(read_text_file(file, kLargestJsonFile));
+  return parse_json(read_text_file(file, kMaxJsonFileBytes));
 }
 
 std::string shown(const Json& json) {

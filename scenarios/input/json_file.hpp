@@ -14,7 +14,7 @@ namespace hapbench {
 using Json = nlohmann::ordered_json;
 
 /// Maximum size of a JSON file [bytes]. Larger files are rejected.
-inline constexpr std::uintmax_t kLargestJsonFile = 64 << 20;
+inline constexpr std::uintmax_t kMaxJsonFileBytes = 64 << 20;
 
 /// Parses JSON from an untrusted source. Throws InputError for syntax errors (with line, column and the expected
 /// token), for nesting deeper than 64 levels, for objects with more than 10 000 keys, for duplicate keys and for
@@ -22,7 +22,7 @@ inline constexpr std::uintmax_t kLargestJsonFile = 64 << 20;
 Json parse_json(const std::string& text);
 
 /// Reads and parses a file. Throws InputError, without the file's name, if the file cannot be read, is larger
-/// than kLargestJsonFile or is not valid for parse_json.
+/// than kMaxJsonFileBytes or is not valid for parse_json.
 Json read_json(const std::filesystem::path& file);
 
 /// Returns the value as an error message shows it: JSON on one line, truncated if it is long.

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/largest_sizes.hpp"
 #include "scenarios/input/mesh_sampling.hpp"
 #include "scenarios/input/read_obj.hpp"
 #include "scenarios/input/read_off.hpp"
 #include "scenarios/input/read_ply.hpp"
 #include "scenarios/input/read_stl.hpp"
+#include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/mesh/half_edge_mesh.hpp"
 
@@ -66,7 +66,7 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
 
 /// Maximum number of faces after refinement. A closed triangle mesh has about half as many vertices as faces, so
 /// that this bounds the number of points.
-constexpr double kMaxFaces = 2.0 * kMostPoints;
+constexpr double kMaxFaces = 2.0 * kMaxSurfacePoints;
 
 /// Parses the contents of a mesh file and makes all checks.
 CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
@@ -86,13 +86,13 @@ CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const Mes
   if (sampling.flip && surface.findings.open_edges.empty())
     fail_in_file(file, "is closed, so that its outside is known; allowed: flip_normals of an open surface only");
   const std::size_t vertices = surface.mesh.n_vertices();
-  if (static_cast<double>(vertices) > kMostPoints)
-    fail_in_file(file, fmt::format("has {} vertices; allowed: at most {:.0g}", vertices, kMostPoints));
+  if (static_cast<double>(vertices) > kMaxSurfacePoints)
+    fail_in_file(file, fmt::format("has {} vertices; allowed: at most {:.0g}", vertices, kMaxSurfacePoints));
   if (vertices_with_normals(surface.mesh).empty())
     fail_in_file(file, "has no faces with an area; allowed: at least one");
   if (sampling.spacing && refined_face_count(surface.mesh, *sampling.spacing, kMaxFaces) > kMaxFaces) {
     fail_in_file(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing",
-                                   *sampling.spacing, kMostPoints));
+                                   *sampling.spacing, kMaxSurfacePoints));
   }
   return surface;
 }
@@ -129,17 +129,17 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
         found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z()));
   }
   // Edges with more than two faces.
-  if (!found.crowded_edges.empty()) {
-    const Vec3 p = 1e3 * found.crowded_edges[0];
+  if (!found.non_manifold_edges.empty()) {
+    const Vec3 p = 1e3 * found.non_manifold_edges[0];
     warn(fmt::format(
         "the surface is cut along edges with more than two faces: {}, the first at ({:.3g}, {:.3g}, {:.3g}) mm",
-        found.crowded_edges.size(), p.x(), p.y(), p.z()));
+        found.non_manifold_edges.size(), p.x(), p.y(), p.z()));
   }
   // Repairs of faces.
   for (const auto& [count, text] :
        {std::pair{found.degenerate_triangles, "faces left out, two of their corners being the same"},
-        {found.rewound_triangles, "faces turned, which were wound against their neighbours"},
-        {found.inside_out_parts, "closed parts turned, which were inside out"}})
+        {found.flipped_triangles, "faces turned, which were wound against their neighbours"},
+        {found.inverted_parts, "closed parts turned, which were inside out"}})
     if (count > 0) warn(fmt::format("{}: {}", text, count));
   return warnings;
 }
@@ -149,7 +149,7 @@ const std::vector<Vec3>& MeshFile::open_edges() const {
 }
 
 bool MeshFile::is_closed() const {
-  return surface_->findings.open_edges.empty() && surface_->findings.crowded_edges.empty();
+  return surface_->findings.open_edges.empty() && surface_->findings.non_manifold_edges.empty();
 }
 
 TriangleSoup MeshFile::triangles() const {

@@ -43,8 +43,8 @@ bool CsvReader::next() {
   return true;
 }
 
-NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
-                            std::initializer_list<std::string_view> headers, std::size_t max_rows) {
+NumberTable parse_number_table(std::string_view text, const std::filesystem::path& file,
+                               std::initializer_list<std::string_view> headers, std::size_t max_rows) {
   // Check the header.
   const auto allowed = [headers] { return fmt::format("\"{}\"", fmt::join(headers, "\" or \"")); };
   if (text.empty()) fail_in_line(file, 1, fmt::format("the file is empty; allowed: header {} and rows", allowed()));

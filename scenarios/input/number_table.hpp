@@ -51,7 +51,7 @@ struct NumberTable {
 /// Parses the contents of a CSV file of numbers. The first line must be equal to one of `headers`. Skips blank
 /// lines. Throws InputError with file and line if the header is different, if a row has the wrong number of
 /// cells, if a cell is not a finite number, or if there are more than `max_rows` rows.
-NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
-                            std::initializer_list<std::string_view> headers, std::size_t max_rows);
+NumberTable parse_number_table(std::string_view text, const std::filesystem::path& file,
+                               std::initializer_list<std::string_view> headers, std::size_t max_rows);
 
 }  // namespace hapbench

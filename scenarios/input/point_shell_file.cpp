@@ -7,9 +7,9 @@
 #include <iterator>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/largest_sizes.hpp"
 #include "scenarios/input/number_table.hpp"
 #include "scenarios/input/read_ply.hpp"
+#include "scenarios/input/size_limits.hpp"
 
 namespace hapbench {
 namespace {
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr const char* kCsvHeader = "x_m,y_m,z_m,nx,ny,nz";
 
 std::vector<SurfacePoint> parse_csv_points(std::string_view text, const fs::path& file) {
-  const NumberTable table = number_table_in(text, file, {kCsvHeader}, static_cast<std::size_t>(kMostPoints));
+  const NumberTable table = parse_number_table(text, file, {kCsvHeader}, static_cast<std::size_t>(kMaxSurfacePoints));
   std::vector<SurfacePoint> points;
   points.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
@@ -32,8 +32,8 @@ std::vector<SurfacePoint> parse_csv_points(std::string_view text, const fs::path
 /// Checks the points and normalises their normals. Throws InputError that names the file and the point.
 void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file) {
   if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");
-  if (static_cast<double>(points.size()) > kMostPoints)
-    fail_in_file(file, fmt::format("has {} points; allowed: at most {:.0g}", points.size(), kMostPoints));
+  if (static_cast<double>(points.size()) > kMaxSurfacePoints)
+    fail_in_file(file, fmt::format("has {} points; allowed: at most {:.0g}", points.size(), kMaxSurfacePoints));
   for (std::size_t i = 0; i < points.size(); ++i) {
     SurfacePoint& point = points[i];
     const double largest = point.position.cwiseAbs().maxCoeff();
@@ -77,13 +77,13 @@ std::string shell_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file) {
-  auto points = shell_extension(file) == ".csv" ? parse_csv_points(text, file) : ply_points_in(text, file);
+std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::filesystem::path& file) {
+  auto points = shell_extension(file) == ".csv" ? parse_csv_points(text, file) : parse_ply_points(text, file);
   check_and_normalise(points, file);
   return points;
 }
 
-std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file) {
+std::string format_point_shell(const std::vector<SurfacePoint>& points, const std::filesystem::path& file) {
   return shell_extension(file) == ".csv" ? csv_text(points) : ply_text(points);
 }
 

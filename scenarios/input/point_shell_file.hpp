@@ -17,11 +17,11 @@ std::string shell_extension(const std::filesystem::path& file);
 /// normals. Coordinates must be finite and at most 1 km. Normals must have length 1 within 1e-3. They are
 /// normalised, unless their length is 1 within 1e-12. Throws InputError that names the file and the line or
 /// point.
-std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file);
+std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::filesystem::path& file);
 
 /// Returns the contents of a file with these points. The extension of `file` selects the format. CSV has the
 /// shortest numbers that read back exactly. PLY has single precision, for viewers. Throws InputError for every
 /// other extension.
-std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file);
+std::string format_point_shell(const std::vector<SurfacePoint>& points, const std::filesystem::path& file);
 
 }  // namespace hapbench

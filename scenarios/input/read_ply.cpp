@@ -300,7 +300,7 @@ TriangleSoup read_ply(std::string_view text, const fs::path& file) {
   return contents_of(text, Wanted::faces, file).soup;
 }
 
-std::vector<SurfacePoint> ply_points_in(std::string_view text, const fs::path& file) {
+std::vector<SurfacePoint> parse_ply_points(std::string_view text, const fs::path& file) {
   return contents_of(text, Wanted::points, file).points;
 }
 

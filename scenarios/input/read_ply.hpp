@@ -18,6 +18,6 @@ TriangleSoup read_ply(std::string_view text, const std::filesystem::path& file);
 
 /// Parses the vertices of a PLY file as points with normals, from the properties x, y, z [m], nx, ny and nz of
 /// any numeric type. Throws InputError that names the file and, for a text, the line.
-std::vector<SurfacePoint> ply_points_in(std::string_view text, const std::filesystem::path& file);
+std::vector<SurfacePoint> parse_ply_points(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace hapbench

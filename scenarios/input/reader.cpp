@@ -57,7 +57,7 @@ class Reader final : public Fields {
   }
 
   void text(std::string& value, std::size_t max_length) override {
-    if (!json_.is_string() || characters_of(json_.get_ref<const std::string&>()) > max_length) refuse();
+    if (!json_.is_string() || count_characters(json_.get_ref<const std::string&>()) > max_length) refuse();
     value = json_.get<std::string>();
   }
 
@@ -171,7 +171,7 @@ class Reader final : public Fields {
       read();
     } catch (const InputError& error) {
       errors_.push_back(error);
-      if (errors_.size() == kMostFaults) throw_errors();
+      if (errors_.size() == kMaxFaults) throw_errors();
     }
   }
   void throw_errors() const {

@@ -49,12 +49,12 @@ std::string quoted_token(std::string_view word);
 std::string lower_case(std::string_view text);
 
 /// Returns true if `byte` is the first byte of a character (code point) in UTF-8.
-inline bool begins_character(char byte) {
+inline bool starts_character(char byte) {
   return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
 }
 /// Returns the number of characters (code points) in a UTF-8 text.
-inline std::size_t characters_of(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+inline std::size_t count_characters(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, starts_character));
 }
 
 /// Returns the name of each entry of a table. `name` is a pointer to a member of the entry or a function of the

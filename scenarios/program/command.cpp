@@ -19,14 +19,14 @@ void Command::add(const std::string& name, Variable variable, const std::string&
   option->required(rules.required);
   if (rules.several) option->allow_extra_args(false)->take_all();
   if (rules.comma_separated)
-    option->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
+    option->delimiter(',')->transform([](const std::string& value) { return CLI::detail::trim_copy(value); });
   // The checks of CLI11 word their errors differently and add text to the help.
-  const auto problem = [range = rules.range, words = rules.one_of](const std::string& word) -> std::string {
+  const auto problem = [range = rules.range, values = rules.one_of](const std::string& value) -> std::string {
     std::int64_t number = 0;
-    if (range && !(CLI::detail::lexical_cast(word, number) && number >= range->first && number <= range->second))
-      return fmt::format("got {}; allowed: {} ... {}", word, range->first, range->second);
-    if (words.empty() || std::ranges::find(words, word) != words.end()) return "";
-    return fmt::format("got \"{}\"{}; allowed: {}", word, nearest_name_hint(word, words), quoted_list(words));
+    if (range && !(CLI::detail::lexical_cast(value, number) && number >= range->first && number <= range->second))
+      return fmt::format("got {}; allowed: {} ... {}", value, range->first, range->second);
+    if (values.empty() || std::ranges::find(values, value) != values.end()) return "";
+    return fmt::format("got \"{}\"{}; allowed: {}", value, nearest_name_hint(value, values), quoted_list(values));
   };
   option->check(CLI::Validator(problem, ""));
 }

@@ -51,7 +51,7 @@ const CLI::App* command_named(const CLI::App& program, const std::string& name) 
 
 /// Returns true if an option takes a value. Returns true for an unknown option too, because it may take a
 /// value.
-bool takes_next_word(const CLI::App& command, const std::string& option) {
+bool takes_next_argument(const CLI::App& command, const std::string& option) {
   const CLI::Option* found = command.get_option_no_throw(option);
   return found == nullptr || found->get_items_expected_min() > 0;
 }
@@ -103,46 +103,46 @@ Command CommandLine::add(const std::string& name, const std::string& summary, Ou
   return Command(app);
 }
 
-std::vector<std::size_t> CommandLine::argument_places(const ProgramWords& words) const {
-  std::vector<std::size_t> places;
-  const CLI::App* command = words.empty() ? nullptr : command_named(*app_, words[0]);
-  if (command == nullptr) return places;
+std::vector<std::size_t> CommandLine::argument_indices(const ProgramArguments& arguments) const {
+  std::vector<std::size_t> indices;
+  const CLI::App* command = arguments.empty() ? nullptr : command_named(*app_, arguments[0]);
+  if (command == nullptr) return indices;
   // Skip options and their values; after "--" all arguments are positional.
   bool are_options_over = false;  // true after "--"
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    const std::string& word = words[i];
-    if (are_options_over || !word.starts_with("-")) {
-      places.push_back(i);
-    } else if (word == "--") {
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const std::string& argument = arguments[i];
+    if (are_options_over || !argument.starts_with("-")) {
+      indices.push_back(i);
+    } else if (argument == "--") {
       are_options_over = true;
-    } else if (word.find('=') == std::string::npos && takes_next_word(*command, word)) {
+    } else if (argument.find('=') == std::string::npos && takes_next_argument(*command, argument)) {
       ++i;
     }
   }
-  return places;
+  return indices;
 }
 
-int CommandLine::run(const ProgramWords& words) {
-  const std::optional<StudyWords> study = StudyWords::in(words, argument_places(words));
-  if (!study) return parse_and_run(words);
+int CommandLine::run(const ProgramArguments& arguments) {
+  const std::optional<StudyArguments> study = StudyArguments::in(arguments, argument_indices(arguments));
+  if (!study) return parse_and_run(arguments);
   try {
-    return parse_and_run(study->words);
+    return parse_and_run(study->arguments);
   } catch (const InputError& error) {
     throw study->located(error);
   }
 }
 
-int CommandLine::parse_and_run(ProgramWords words) {
-  if (words.empty()) {
+int CommandLine::parse_and_run(ProgramArguments arguments) {
+  if (arguments.empty()) {
     fmt::print("{}", front_text(context_.layout()));
     return kSuccess;
   }
   // Commands of Python packages parse their own arguments.
-  const auto guide = std::ranges::find(command_guides(), words[0], &CommandGuide::name);
-  if (guide != command_guides().end() && guide->add == nullptr) return run_python_command(words, context_);
+  const auto guide = std::ranges::find(command_guides(), arguments[0], &CommandGuide::name);
+  if (guide != command_guides().end() && guide->add == nullptr) return run_python_command(arguments, context_);
   try {
-    std::reverse(words.begin(), words.end());  // CLI11 expects the arguments in reverse order
-    app_->parse(std::move(words));
+    std::reverse(arguments.begin(), arguments.end());  // CLI11 expects the arguments in reverse order
+    app_->parse(std::move(arguments));
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
     const Layout layout = context_.layout();

@@ -10,9 +10,9 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/options.hpp"
+#include "scenarios/program/override_locations.hpp"
+#include "scenarios/program/program_arguments.hpp"
 #include "scenarios/program/program_context.hpp"
-#include "scenarios/program/program_words.hpp"
-#include "scenarios/program/typed_places.hpp"
 
 namespace hapbench {
 
@@ -36,7 +36,7 @@ class CommandLine {
       try {
         return action(*options, context);
       } catch (const InputError& error) {
-        if constexpr (requires { options->overrides; }) throw with_typed_places(error, options->overrides);
+        if constexpr (requires { options->overrides; }) throw with_override_locations(error, options->overrides);
         throw;
       }
     };
@@ -46,18 +46,18 @@ class CommandLine {
   /// HAPBENCH_MODULE_PATH name, and runs the command. Returns the exit status of the command, but
   /// kUnexpectedOutcome if the command succeeded while a loaded module failed. Throws InputError for wrong
   /// usage and for modules that cannot be loaded, and every exception of the command.
-  int run(const ProgramWords& words);
+  int run(const ProgramArguments& arguments);
   const std::string& when_stopped() const { return when_stopped_; }
 
  private:
   Command add(const std::string& name, const std::string& summary, OutputOptions& output, std::function<int()> action,
               const std::string& when_stopped);
   void add_module_option(CLI::App& app);
-  /// Returns the indices of the positional arguments in `words`, which begins with the command's name. They are
+  /// Returns the indices of the positional arguments in `arguments`, which begins with the command's name. They are
   /// neither options nor values of options. An argument that follows an unknown option may be its value and is
   /// left out. Returns no indices without a command.
-  std::vector<std::size_t> argument_places(const ProgramWords& words) const;
-  int parse_and_run(ProgramWords words);
+  std::vector<std::size_t> argument_indices(const ProgramArguments& arguments) const;
+  int parse_and_run(ProgramArguments arguments);
 
   ProgramContext& context_;
   std::shared_ptr<CLI::App> app_;

@@ -70,7 +70,8 @@ struct ConvergeStudy : Convergence {
 };
 
 /// Evaluates the convergence of a metric over the runs of all levels.
-ConvergeStudy studied(const LevelSweep& levels, const std::vector<LevelRun>& runs, const std::string& metric) {
+ConvergeStudy convergence_study(const LevelSweep& levels, const std::vector<LevelRun>& runs,
+                                const std::string& metric) {
   std::vector<LevelResult> results;
   for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i].result, metric));
   ConvergeStudy study{convergence_of(levels, results), metric, levels.axis.path, levels.formal_order, {}};
@@ -186,32 +187,32 @@ std::string verdict_text(const ConvergeStudy& study) {
                      number_text(high, high - low));
 }
 
-/// Names the coarsest level from which on the relative errors of all levels are below `most`, and its cost.
-std::string enough_text(const ConvergeStudy& study, double most) {
+/// Names the coarsest level from which on the relative errors of all levels are below `max_error`, and its cost.
+std::string sufficient_level_text(const ConvergeStudy& study, double max_error) {
   // Find the first level from which on all errors are below the bound.
   const std::vector<LevelRow>& levels = study.levels;
   std::size_t first = levels.size();
-  while (first > 0 && levels[first - 1].share && *levels[first - 1].share < most) --first;
-  const std::string below = fmt::format("error below {:g} %: ", 100.0 * most);
+  while (first > 0 && levels[first - 1].share && *levels[first - 1].share < max_error) --first;
+  const std::string below = fmt::format("error below {:g} %: ", 100.0 * max_error);
   if (first < levels.size()) {
-    const LevelRow& enough = levels[first];
-    const std::string cost = fmt::format(", {:.2g} s per run, {:.2g} times the time of the first level", enough.seconds,
-                                         enough.seconds / levels.front().seconds);
-    return below + fmt::format("{} = {} ({:.2g} %{}){}", study.field, enough.value, 100.0 * *enough.share,
+    const LevelRow& sufficient = levels[first];
+    const std::string cost = fmt::format(", {:.2g} s per run, {:.2g} times the time of the first level",
+                                         sufficient.seconds, sufficient.seconds / levels.front().seconds);
+    return below + fmt::format("{} = {} ({:.2g} %{}){}", study.field, sufficient.value, 100.0 * *sufficient.share,
                                study.order ? "" : ", estimated from the differences of the levels",
                                first == 0 ? ", already at the coarsest level" : cost);
   }
   // Otherwise extrapolate the required value of the field by the observed order.
   const LevelRow& finest = levels.back();
   if (!study.asymptotic || !finest.share) return below + "not known for any level";
-  const double finer = math::pow(*finest.share / most, 1.0 / *study.order);
+  const double finer = math::pow(*finest.share / max_error, 1.0 / *study.order);
   return below + fmt::format("not reached by any level; extrapolated: {} = {:.2g}", study.field,
                              *finite_number(finest.value) / finer);
 }
 
 /// Returns the relative error of a text such as "1%" or "0.01". Throws InputError unless it lies between 0 and
 /// 1.
-double share_of(const std::string& text) {
+double parse_relative_error(const std::string& text) {
   const bool percent = text.ends_with('%');
   const auto number = finite_number(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
   const double share = number.value_or(0.0) * (percent ? 0.01 : 1.0);
@@ -256,7 +257,7 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   // Check all input before anything runs or is written.
   if (!(options.ratio > 1.0 && options.ratio <= kLargestRatio))
     fail_in_option("--ratio", fmt::format("got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
-  const auto most = options.to.empty() ? std::nullopt : std::optional(share_of(options.to));
+  const auto max_error = options.to.empty() ? std::nullopt : std::optional(parse_relative_error(options.to));
   const std::filesystem::path file = find_scenario(options.scenario);
   const ScenarioText scenario = read_scenario_text(file);
   const LevelSweep levels = levels_of(options, scenario);
@@ -276,10 +277,10 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   std::vector<ConvergeStudy> studies;
   std::vector<LevelRow> rows;
   for (const std::string& metric : metrics) {
-    const ConvergeStudy& study = studies.emplace_back(studied(levels, runs, metric));
+    const ConvergeStudy& study = studies.emplace_back(convergence_study(levels, runs, metric));
     rows.insert(rows.end(), study.levels.begin(), study.levels.end());
     report.say(level_columns(study).text(study.levels, layout) + "\n" + layout.wrapped(verdict_text(study), 0));
-    if (most) report.say(layout.wrapped(enough_text(study, *most), 0));
+    if (max_error) report.say(layout.wrapped(sufficient_level_text(study, *max_error), 0));
     report.say("\n");
     report.json().push_back(study_json(study));
   }

@@ -13,10 +13,10 @@ std::string significant(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
 }
 
-int deserved_digits(double value, const std::optional<double>& tolerance, int most) {
-  if (!tolerance || !(*tolerance > 0.0) || value == 0.0 || !std::isfinite(value)) return most;
+int deserved_digits(double value, const std::optional<double>& tolerance, int max_digits) {
+  if (!tolerance || !(*tolerance > 0.0) || value == 0.0 || !std::isfinite(value)) return max_digits;
   const double digits = std::floor(math::log10(std::abs(value))) - std::floor(math::log10(*tolerance)) + 1.0;
-  return static_cast<int>(std::clamp(digits, 1.0, static_cast<double>(most)));
+  return static_cast<int>(std::clamp(digits, 1.0, static_cast<double>(max_digits)));
 }
 
 std::string deserved(double value, const std::optional<double>& tolerance, int digits) {

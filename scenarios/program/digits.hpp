@@ -10,8 +10,8 @@ namespace hapbench {
 /// Returns a number with `digits` significant digits; "-" for NaN and infinities.
 std::string significant(double value, int digits = 4);
 /// Returns the number of digits of `value` from its leading digit down to the leading digit of the tolerance,
-/// from 1 to `most`. Returns `most` without a tolerance above 0, and for a value that is 0 or not finite.
-int deserved_digits(double value, const std::optional<double>& tolerance, int most);
+/// from 1 to `max_digits`. Returns `max_digits` without a tolerance above 0, and for a value that is 0 or not finite.
+int deserved_digits(double value, const std::optional<double>& tolerance, int max_digits);
 /// Returns a number rounded to the decimal place of the leading digit of its tolerance, without an exponent for
 /// values of at least 1e-4. Returns `digits` significant digits if the tolerance is unknown, not above 0, or at
 /// least as large as the number.

@@ -98,7 +98,7 @@ std::string program_help(const Layout& layout) {
   std::string text = front_text(layout) + "\n" + bold(stdout, "Options without a command:") + "\n";
   text += layout.entry("--help", "print this text", 2, 14);
   text += layout.entry("--version", "print the version; with --json also commit, compiler and guarantees", 2, 14);
-  // Indented by more: scripts/completion offers the options of a help that are indented by two.
+  // Indented by more than two spaces: scripts/completion offers each option indented by two.
   text += "\n" + bold(stdout, "Options that commands share, written after the command's name:") + "\n";
   for (const auto& [name, placeholder, help] : shared_options())
     text += layout.entry(placeholder.empty() ? std::string(name) : fmt::format("{} {}", name, placeholder), help, 4,

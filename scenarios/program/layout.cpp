@@ -13,17 +13,17 @@ namespace hapbench {
 namespace {
 
 /// Smallest width [characters] in which a name and its meaning fit beside each other.
-constexpr std::size_t kNarrowest = 40;
+constexpr std::size_t kMinWidth = 40;
 
 /// Returns COLUMNS, or the width of the terminal; npos if standard output is not a terminal.
 std::size_t output_width() {
   const char* columns = std::getenv("COLUMNS");
   if (const long given = columns == nullptr ? 0 : std::atol(columns); given > 0)
-    return std::max(kNarrowest, static_cast<std::size_t>(given));
+    return std::max(kMinWidth, static_cast<std::size_t>(given));
   winsize size{};
   if (isatty(STDOUT_FILENO) != 1 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
     return std::string::npos;
-  return std::max<std::size_t>(kNarrowest, size.ws_col);
+  return std::max<std::size_t>(kMinWidth, size.ws_col);
 }
 
 }  // namespace

@@ -22,9 +22,9 @@ namespace {
 
 /// Terminate handler: reports the uncaught exception and exits. oneTBB throws in its own threads if it cannot
 /// start further threads.
-[[noreturn]] void end_with_a_reason() {
-  static std::atomic_flag said;
-  while (said.test_and_set()) ::pause();  // only the first thread reports; it ends the process
+[[noreturn]] void report_uncaught_exception() {
+  static std::atomic_flag is_reporting;
+  while (is_reporting.test_and_set()) ::pause();  // only the first thread reports; it ends the process
   std::string what = "an exception of no known type";
   try {
     if (const auto uncaught = std::current_exception()) std::rethrow_exception(uncaught);
@@ -51,10 +51,10 @@ void refuse_exit() {
 /// Never raises a limit that the system or the user has set.
 void limit_memory() {
 #ifndef HAPBENCH_SANITIZED  // the sanitizers map terabytes of addresses, which would count
-  const auto most = static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+  const auto memory = static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
   rlimit limit = {};
-  if (::getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur < most / 4 * 3) return;
-  limit.rlim_cur = most / 4 * 3;
+  if (::getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur < memory / 4 * 3) return;
+  limit.rlim_cur = memory / 4 * 3;
   ::setrlimit(RLIMIT_DATA, &limit);
 #endif
 }
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
   // error.
   std::signal(SIGXFSZ, SIG_IGN);
   std::atexit(refuse_exit);
-  std::set_terminate(end_with_a_reason);
+  std::set_terminate(report_uncaught_exception);
   limit_memory();
   keep_freed_memory();
   const hapbench::StopSignal signals;

@@ -15,10 +15,10 @@
 
 namespace hapbench {
 
-std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for) {
-  if (!asked_for.empty()) {
-    require_valid_option("--metric", asked_for, metrics, "hapbench describe metrics");
-    return asked_for;
+std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& requested) {
+  if (!requested.empty()) {
+    require_valid_option("--metric", requested, metrics, "hapbench describe metrics");
+    return requested;
   }
   const auto has = [&](std::string_view name) { return std::ranges::find(metrics, name) != metrics.end(); };
   return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
@@ -48,10 +48,10 @@ std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given
   return chosen_names("--algorithms", given, algorithm_names(), "hapbench describe algorithms");
 }
 
-std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most) {
-  if (texts.size() <= most) return texts;
-  const std::string rest = std::to_string(texts.size() - most) + " more like these";
-  texts.resize(most);
+std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t max_count) {
+  if (texts.size() <= max_count) return texts;
+  const std::string rest = std::to_string(texts.size() - max_count) + " more like these";
+  texts.resize(max_count);
   texts.push_back(rest);
   return texts;
 }

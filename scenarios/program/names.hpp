@@ -21,9 +21,9 @@ std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given
 
 /// Returns the requested metric. Without a request, returns the first of kDefaultMetrics that `metrics` has, or
 /// its last entry. Throws InputError if the requested metric is not among `metrics`.
-std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for);
+std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& requested);
 
-/// Returns the first `most` texts; if there are more, adds a text with the number of omitted texts.
-std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most);
+/// Returns the first `max_count` texts; if there are more, adds a text with the number of omitted texts.
+std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t max_count);
 
 }  // namespace hapbench

@@ -9,13 +9,13 @@
 
 namespace hapbench {
 
-double number_between(const char* option, const std::string& text, double least, double most) {
+double parse_bounded_number(const char* option, const std::string& text, double min, double max) {
   const auto number = finite_number(text);
-  if (number && *number >= least && *number <= most) return *number;
-  fail_in_option(option, fmt::format("got \"{}\"; allowed: {} ... {}", text, least, most));
+  if (number && *number >= min && *number <= max) return *number;
+  fail_in_option(option, fmt::format("got \"{}\"; allowed: {} ... {}", text, min, max));
 }
 
-std::optional<Range> range_of(const char* option, const std::string& text) {
+std::optional<Range> parse_range(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;
   const Words ends = parts_of(text, ':');
   const auto from = finite_number(ends.front()), to = finite_number(ends.back());
@@ -31,11 +31,11 @@ void add_bound(const std::string& text, std::map<std::string, MetricBound>& boun
                          "hapbench describe metrics");
     // A single number is the maximum; min:max gives both bounds.
     const Words ends = parts_of(parts[1], ':');
-    const auto least = finite_number(ends.front()), most = finite_number(ends.back());
-    if (ends.size() <= 2 && least && most && *least <= *most) {
+    const auto min = finite_number(ends.front()), max = finite_number(ends.back());
+    if (ends.size() <= 2 && min && max && *min <= *max) {
       MetricBound& bound = bounds[std::string(parts[0])];
-      bound.max = *most;
-      if (ends.size() == 2) bound.min = *least;
+      bound.max = *max;
+      if (ends.size() == 2) bound.min = *min;
       return;
     }
   }

@@ -11,11 +11,11 @@ namespace hapbench {
 
 /// Returns the range of a text "a:b" with numbers a < b; empty for an empty text. Throws InputError with the
 /// option's name.
-std::optional<Range> range_of(const char* option, const std::string& text);
+std::optional<Range> parse_range(const char* option, const std::string& text);
 /// Adds the bound of a --bound value, "metric=max" or "metric=min:max", to `bounds`. Throws InputError.
 void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds);
 /// Returns the number in the text. Throws InputError with the option's name unless the number is at least
-/// `least` and at most `most`.
-double number_between(const char* option, const std::string& text, double least, double most);
+/// `min` and at most `max`.
+double parse_bounded_number(const char* option, const std::string& text, double min, double max);
 
 }  // namespace hapbench

@@ -22,8 +22,8 @@ std::string error_head() {
 }
 
 /// Prints a line on standard error, or appends the text to the captured list `kind` of a host.
-void tell(const ProgramContext& context, std::vector<std::string> CapturedOutput::*kind, std::string_view head,
-          std::string_view text) {
+void report(const ProgramContext& context, std::vector<std::string> CapturedOutput::*kind, std::string_view head,
+            std::string_view text) {
   if (context.captured != nullptr) {
     (context.captured->*kind).emplace_back(text);
     return;
@@ -44,7 +44,7 @@ void print(const ProgramContext& context, const OutputOptions& options, const st
 }
 
 void print_warnings(const ProgramContext& context, const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) tell(context, &CapturedOutput::warnings, "hapbench: warning:", warning);
+  for (const std::string& warning : warnings) report(context, &CapturedOutput::warnings, "hapbench: warning:", warning);
 }
 
 void print_warnings(const ProgramContext& context, const CheckedScenario& checked) {
@@ -53,11 +53,11 @@ void print_warnings(const ProgramContext& context, const CheckedScenario& checke
 }
 
 void print_note(const ProgramContext& context, std::string_view text) {
-  tell(context, &CapturedOutput::warnings, "hapbench:", text);
+  report(context, &CapturedOutput::warnings, "hapbench:", text);
 }
 
 void print_error(const ProgramContext& context, std::string_view text) {
-  tell(context, &CapturedOutput::errors, error_head(), text);
+  report(context, &CapturedOutput::errors, error_head(), text);
 }
 
 void write_error(std::string_view text) {
@@ -67,8 +67,7 @@ void write_error(std::string_view text) {
 void print_errors(const ProgramContext& context, const InputError& error) {
   const std::vector<InputError> faults = error.faults();
   for (const InputError& fault : faults) print_error(context, fault.what());
-  if (faults.size() == kMostFaults)
-    print_error(context, fmt::format("only the first {} errors are shown", kMostFaults));
+  if (faults.size() == kMaxFaults) print_error(context, fmt::format("only the first {} errors are shown", kMaxFaults));
 }
 
 }  // namespace hapbench

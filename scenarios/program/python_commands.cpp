@@ -37,13 +37,13 @@ const ImportKind kImportKinds[] = {
 
 /// Returns a shell command that replaces the shell with the launcher of Python packages. `package`: the
 /// package's name and its first arguments.
-std::string launch_line(const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
-  ProgramWords words = {"exec", (installed_folder("scripts/python") / "launch").string()};
-  words.insert(words.end(), package.begin(), package.end());
-  words.insert(words.end(), given.begin(), given.end());
+std::string launch_line(const ProgramArguments& package, const ProgramArguments& given, ProgramContext& context) {
+  ProgramArguments arguments = {"exec", (installed_folder("scripts/python") / "launch").string()};
+  arguments.insert(arguments.end(), package.begin(), package.end());
+  arguments.insert(arguments.end(), given.begin(), given.end());
   // The packages call this executable for the points of a scene.
   setenv("HAPBENCH_PROGRAM", context.program.c_str(), 1);
-  return shell_line(words);
+  return shell_line(arguments);
 }
 
 [[noreturn]] void fail_to_launch() {
@@ -52,7 +52,7 @@ std::string launch_line(const ProgramWords& package, const ProgramWords& given, 
 }
 
 /// Runs the shell command in a child process. Returns its exit status and its standard output.
-std::pair<int, std::string> run_beside(const std::string& line) {
+std::pair<int, std::string> run_subprocess(const std::string& line) {
   std::fflush(stdout);
   std::FILE* pipe = ::popen(line.c_str(), "r");
   if (pipe == nullptr) fail_to_launch();
@@ -64,8 +64,8 @@ std::pair<int, std::string> run_beside(const std::string& line) {
 
 /// Runs the shell command in a child process and stores its text and messages in `host`. Returns its exit
 /// status. Throws InputError for faults that it reports with the status of bad input.
-int run_for(CapturedOutput& host, const std::string& line) {
-  const auto [status, text] = run_beside(line + " 2>&1");
+int run_captured(CapturedOutput& host, const std::string& line) {
+  const auto [status, text] = run_subprocess(line + " 2>&1");
   constexpr std::string_view kError = "hapbench: error: ", kWarning = "hapbench: warning: ";
   // Sort the lines by their prefixes into errors, warnings and text.
   std::vector<InputError> faults;
@@ -75,7 +75,7 @@ int run_for(CapturedOutput& host, const std::string& line) {
       faults.emplace_back(std::string(said->substr(kError.size())));
     } else if (said->starts_with(kWarning)) {
       host.warnings.emplace_back(said->substr(kWarning.size()));
-    } else if (!said->starts_with("hapbench: ")) {  // how long it takes is for people
+    } else if (!said->starts_with("hapbench: ")) {  // skips notes on progress, which are for people
       host.text.append(*said).append("\n");
     }
   }
@@ -115,7 +115,7 @@ int simulate_log_for_pipe() {
 /// per line.
 constexpr const char* kRunsWhere = "--runs-where";
 
-int print_runs_where(const ProgramWords& given, ProgramContext& context) {
+int print_runs_where(const ProgramArguments& given, ProgramContext& context) {
   if (given.size() < 2) throw InputError("plot: --runs-where: got no folder; allowed: the folder of a sweep");
   const std::filesystem::path folder = given[1];
   const auto runs = runs_that_meet(folder / "sweep.csv", {given.begin() + 2, given.end()});
@@ -124,18 +124,18 @@ int print_runs_where(const ProgramWords& given, ProgramContext& context) {
 }
 
 /// Runs a package. Unless a host captures the output, this process becomes the launcher.
-int run(const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
+int run(const ProgramArguments& package, const ProgramArguments& given, ProgramContext& context) {
   const std::string line = launch_line(package, given, context);
-  if (context.captured != nullptr) return run_for(*context.captured, line);
+  if (context.captured != nullptr) return run_captured(*context.captured, line);
   ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
   fail_to_launch();
 }
 
-int run_import(const ProgramWords& given, ProgramContext& context) {
+int run_import(const ProgramArguments& given, ProgramContext& context) {
   const Layout layout = context.layout();
   const std::string kind = given.empty() ? "" : given[0];
   std::string kinds;
-  if (given == ProgramWords{"device", kSimulateLog}) return simulate_log_for_pipe();
+  if (given == ProgramArguments{"device", kSimulateLog}) return simulate_log_for_pipe();
   for (const auto& [name, sentence, package] : kImportKinds) {
     if (name == kind) return run({package}, {given.begin() + 1, given.end()}, context);
     kinds += layout.entry(fmt::format("hapbench import {} --help", name), sentence, 2, 34);
@@ -161,21 +161,21 @@ int run_import(const ProgramWords& given, ProgramContext& context) {
 
 }  // namespace
 
-void write_way(ProgramContext& context, const std::filesystem::path& folder, const std::filesystem::path& file,
-               bool quiet) {
+void draw_run(ProgramContext& context, const std::filesystem::path& folder, const std::filesystem::path& file,
+              bool quiet) {
   const std::string line = launch_line(
       {"hapbench_pictures", "plot"}, {"--quiet", "--y=path", "--out=" + file.string(), "--", folder.string()}, context);
   const WaitNotice notice("drawing", !quiet);
-  const int status = run_beside(line).first;
+  const int status = run_subprocess(line).first;
   throw_if_stopped();
   if (status != 0) throw IoError("draw what is in", folder, std::make_error_code(std::errc::io_error));
 }
 
-int run_python_command(const ProgramWords& words, ProgramContext& context) {
-  const ProgramWords given(words.begin() + 1, words.end());
-  if (words[0] == "import") return run_import(given, context);
-  if (words[0] == "plot" && !given.empty() && given[0] == kRunsWhere) return print_runs_where(given, context);
-  return run({"hapbench_pictures", words[0]}, given, context);
+int run_python_command(const ProgramArguments& arguments, ProgramContext& context) {
+  const ProgramArguments given(arguments.begin() + 1, arguments.end());
+  if (arguments[0] == "import") return run_import(given, context);
+  if (arguments[0] == "plot" && !given.empty() && given[0] == kRunsWhere) return print_runs_where(given, context);
+  return run({"hapbench_pictures", arguments[0]}, given, context);
 }
 
 }  // namespace hapbench

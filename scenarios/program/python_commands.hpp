@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "scenarios/program/program_arguments.hpp"
 #include "scenarios/program/program_context.hpp"
-#include "scenarios/program/program_words.hpp"
 
 /// Commands that Python packages implement.
 namespace hapbench {
@@ -11,10 +11,10 @@ namespace hapbench {
 /// Runs a command of a Python package and returns its exit status. The package receives all arguments after the
 /// command's name, including --help. Unless a host captures the output, this process becomes the Python process
 /// and the call does not return.
-int run_python_command(const ProgramWords& words, ProgramContext& context);
+int run_python_command(const ProgramArguments& arguments, ProgramContext& context);
 /// Draws the path of the tool of the run in `folder` into the SVG picture `file`. Throws IoError if the drawing
 /// tool fails; the tool then has printed the reason on standard error.
-void write_way(ProgramContext& context, const std::filesystem::path& folder, const std::filesystem::path& file,
-               bool quiet);
+void draw_run(ProgramContext& context, const std::filesystem::path& folder, const std::filesystem::path& file,
+              bool quiet);
 
 }  // namespace hapbench

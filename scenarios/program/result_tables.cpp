@@ -35,7 +35,7 @@ std::vector<DescribedTable> result_tables() {
   };
   for (const ResultTable& table : record_tables()) add(table);
   add(kTargetTable);
-  for (auto* tables_of : {run_tables, single_run_tables, league_tables, limit_tables, converge_tables, tune_tables,
+  for (auto* tables_of : {run_tables, single_run_tables, ranking_tables, limit_tables, converge_tables, tune_tables,
                           claim_tables, sweep_tables, stress_tables})
     std::ranges::move(tables_of(), std::back_inserter(tables));
   add({"shell.csv", "written by validate --points: one line per point of the environment", kShellColumns});

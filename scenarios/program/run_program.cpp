@@ -27,7 +27,7 @@ int fail(std::string_view what, ProgramContext& context) {
 
 }  // namespace
 
-int run_program(const ProgramWords& words, ProgramContext& context) {
+int run_program(const ProgramArguments& arguments, ProgramContext& context) {
   // Use the C locale while the command runs. The locale of a host such as Python may have a decimal comma.
   const locale_t plain = ::newlocale(LC_ALL_MASK, "C", nullptr), before = ::uselocale(plain);
   const std::shared_ptr<void> restored(nullptr, [=](void*) {
@@ -36,16 +36,16 @@ int run_program(const ProgramWords& words, ProgramContext& context) {
   });
   CommandLine line(context);
   try {
-    return line.run(words);
+    return line.run(arguments);
   } catch (const Stopped& stop) {
     print_note(context, fmt::format("stopped; {}", line.when_stopped()));
     return kStopped + stop.signal;
   }
 }
 
-int run_program_to_exit(const ProgramWords& words, ProgramContext& context) {
+int run_program_to_exit(const ProgramArguments& arguments, ProgramContext& context) {
   try {
-    const int status = run_program(words, context);
+    const int status = run_program(arguments, context);
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
     return fail(fmt::format("cannot write standard output: {}", std::strerror(errno)), context);
   } catch (const InputError& error) {

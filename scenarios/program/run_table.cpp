@@ -53,13 +53,13 @@ void add_metrics(Columns<Result>& columns, std::span<const RunHeading> headings)
 }
 
 Columns<Result> run_columns(bool of_scenes) {
-  const auto shaking = [](const Result& r) {
+  const auto vibration = [](const Result& r) {
     const auto power = number_of(r.metrics, kToolVibrationPower);
     return power ? short_text(std::sqrt(*power), std::nullopt, 1e3) : "-";
   };
   const auto ratios = [](const Result& r) {
-    const auto least = number_of(r.metrics, "ratio_min"), most = number_of(r.metrics, "ratio_max");
-    return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
+    const auto smallest = number_of(r.metrics, "ratio_min"), largest = number_of(r.metrics, "ratio_max");
+    return smallest && largest ? fmt::format("{}..{}", cell(smallest, 2), cell(largest, 2)) : "-";
   };
   const auto step_time = [](const Result& r) { return short_text(r.timing.step_p50, std::nullopt, 1e6); };
   Columns<Result> columns = {{of_scenes ? "scenario" : "", "", "", &Result::name, only_printed()},
@@ -70,7 +70,7 @@ Columns<Result> run_columns(bool of_scenes) {
   columns.add(
       {{"tool vibration\n[mm/s rms]", "1",
         "root of vibration_power_above_30Hz_m2_per_s2: rms of the tool's velocity above 30 Hz, over all time steps",
-        shaking, only_printed(of_scenes)},
+        vibration, only_printed(of_scenes)},
        {"stiffness\nratio", "1", "ratio_min", ratios, only_printed(true)},
        {"median step\ntime [us]", "1", "step_p50_s", step_time, only_printed(true)}});
   return columns;
@@ -117,9 +117,9 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
       if (known == std::ssize(kinds)) {
         kinds.push_back(kind);
         texts.push_back(report.name + ": " + text + (reports.size() > 1 ? " (" + report.algorithm + ")" : ""));
-      } else if (std::string& told = texts[static_cast<std::size_t>(known)];
-                 reports.size() > 1 && told.substr(told.find_last_of("( ") + 1) != report.algorithm + ")") {
-        told.replace(told.size() - 1, 1, fmt::format(", {})", report.algorithm));
+      } else if (std::string& merged = texts[static_cast<std::size_t>(known)];
+                 reports.size() > 1 && merged.substr(merged.find_last_of("( ") + 1) != report.algorithm + ")") {
+        merged.replace(merged.size() - 1, 1, fmt::format(", {})", report.algorithm));
       }
     }
   }

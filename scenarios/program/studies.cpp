@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* kAsk = "ask";
 /// Members of a study that are not options of its command.
-constexpr const char* kNoOptions[] = {kAsk, "scenarios", "summary", "source", "alone", "$schema"};
+constexpr const char* kDescriptiveMembers[] = {kAsk, "scenarios", "summary", "source", "alone", "$schema"};
 
 fs::path studies_folder() {
   return installed_folder("scenarios/library") / "studies";
@@ -31,13 +31,13 @@ fs::path studies_folder() {
 
 /// Returns the file and the text of the study that an argument names. Returns empty for other arguments and for
 /// files that cannot be read.
-std::optional<std::pair<fs::path, std::string>> find_study(const std::string& word) {
+std::optional<std::pair<fs::path, std::string>> find_study(const std::string& argument) {
   std::error_code error;
   try {
-    const bool is_file = word.ends_with(".json") && fs::is_regular_file(word, error);
-    if (!is_file && (word.find('/') != std::string::npos || fs::exists(word, error))) return std::nullopt;
-    const fs::path file = is_file ? fs::path(word) : studies_folder() / (word + ".json");
-    const std::string text = read_text_file(file, kLargestJsonFile);
+    const bool is_file = argument.ends_with(".json") && fs::is_regular_file(argument, error);
+    if (!is_file && (argument.find('/') != std::string::npos || fs::exists(argument, error))) return std::nullopt;
+    const fs::path file = is_file ? fs::path(argument) : studies_folder() / (argument + ".json");
+    const std::string text = read_text_file(file, kMaxJsonFileBytes);
     if (text.find("\"ask\"") != std::string::npos) return std::pair(file, text);
   } catch (const InputError&) {  // no such file
   }
@@ -63,10 +63,10 @@ std::string values_text(const Json& values) {
 }
 
 /// Returns the arguments that give an option with this value. An object gives one option for each member.
-ProgramWords option_words(const std::string& option, const Json& value) {
-  if (value.is_boolean()) return ProgramWords(value.get<bool>() ? 1 : 0, option);
-  ProgramWords words;
-  const auto add = [&](const std::string& text) { words.insert(words.end(), {option, text}); };
+ProgramArguments option_arguments(const std::string& option, const Json& value) {
+  if (value.is_boolean()) return ProgramArguments(value.get<bool>() ? 1 : 0, option);
+  ProgramArguments arguments;
+  const auto add = [&](const std::string& text) { arguments.insert(arguments.end(), {option, text}); };
   if (value.is_object()) {
     for (const auto& [path, values] : value.items())
       add(path + "=" + (option == "--set" ? text_of(values) : values_text(values)));
@@ -77,7 +77,7 @@ ProgramWords option_words(const std::string& option, const Json& value) {
   } else {
     add(values_text(value));
   }
-  return words;
+  return arguments;
 }
 
 /// Returns a scenario file next to the study if it exists. Otherwise returns the name, which the command
@@ -115,7 +115,7 @@ std::vector<BundledStudy> bundled_studies() {
   std::vector<BundledStudy> found;
   for (const auto& entry : fs::directory_iterator(studies_folder())) {
     if (entry.path().extension() != ".json") continue;
-    const Json study = study_json(entry.path(), read_text_file(entry.path(), kLargestJsonFile));
+    const Json study = study_json(entry.path(), read_text_file(entry.path(), kMaxJsonFileBytes));
     found.push_back(
         {entry.path().stem().string(), study.at(kAsk).get<std::string>(), study.value("summary", ""), entry.path()});
   }
@@ -123,40 +123,44 @@ std::vector<BundledStudy> bundled_studies() {
   return found;
 }
 
-std::optional<StudyWords> StudyWords::in(const ProgramWords& words, std::span<const std::size_t> arguments) {
-  if (words.empty() || words[0] == "describe") return std::nullopt;
+std::optional<StudyArguments> StudyArguments::in(const ProgramArguments& arguments,
+                                                 std::span<const std::size_t> positions) {
+  if (arguments.empty() || arguments[0] == "describe") return std::nullopt;
   // Find the first argument that names a study.
-  std::optional<std::pair<fs::path, std::string>> named;
-  std::size_t place = 0;
-  for (std::size_t i = 0; i < arguments.size() && !named; ++i) {
-    place = arguments[i];
-    named = find_study(words[place]);
+  std::optional<std::pair<fs::path, std::string>> found_study;
+  std::size_t study_index = 0;
+  for (std::size_t i = 0; i < positions.size() && !found_study; ++i) {
+    study_index = positions[i];
+    found_study = find_study(arguments[study_index]);
   }
-  if (!named) return std::nullopt;
-  const auto& [file, text] = *named;
+  if (!found_study) return std::nullopt;
+  const auto& [file, text] = *found_study;
   const Json study = study_json(file, text);
-  if (study[kAsk] != words[0])
-    fail_in_line(file, line_of(text, kAsk),
-                 fmt::format("is a question for \"hapbench {} {}\"", study[kAsk].get<std::string>(), words[place]));
+  if (study[kAsk] != arguments[0])
+    fail_in_line(
+        file, line_of(text, kAsk),
+        fmt::format("is a question for \"hapbench {} {}\"", study[kAsk].get<std::string>(), arguments[study_index]));
   // Scenarios first, then the options of the study, then the other arguments of the command line.
-  StudyWords found{file, {words[0]}, {}};
-  for (const Json& scenario : study["scenarios"]) found.words.push_back(scenario_beside(file, text_of(scenario)));
+  StudyArguments found{file, {arguments[0]}, {}};
+  for (const Json& scenario : study["scenarios"]) found.arguments.push_back(scenario_beside(file, text_of(scenario)));
   for (const auto& [key, value] : study.items()) {
-    if (std::ranges::find(kNoOptions, key) != std::end(kNoOptions)) continue;
+    if (std::ranges::find(kDescriptiveMembers, key) != std::end(kDescriptiveMembers)) continue;
     const std::string option = "--" + key;
-    const auto is_given = [&](const std::string& word) { return word == option || word.starts_with(option + "="); };
+    const auto is_given = [&](const std::string& argument) {
+      return argument == option || argument.starts_with(option + "=");
+    };
     // An option of the command line replaces the study's option. Options with an object may be repeated and are
     // combined.
-    if (!value.is_object() && std::ranges::any_of(words, is_given)) continue;
+    if (!value.is_object() && std::ranges::any_of(arguments, is_given)) continue;
     found.lines[option] = line_of(text, key);
-    std::ranges::move(option_words(option, value), std::back_inserter(found.words));
+    std::ranges::move(option_arguments(option, value), std::back_inserter(found.arguments));
   }
-  for (std::size_t i = 1; i < words.size(); ++i)
-    if (i != place) found.words.push_back(words[i]);
+  for (std::size_t i = 1; i < arguments.size(); ++i)
+    if (i != study_index) found.arguments.push_back(arguments[i]);
   return found;
 }
 
-InputError StudyWords::located(const InputError& error) const {
+InputError StudyArguments::located(const InputError& error) const {
   for (const std::string& option : error.location().about_options) {
     const auto line = lines.find(option);
     if (line == lines.end()) continue;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/program/program_words.hpp"
+#include "scenarios/program/program_arguments.hpp"
 
 /// Studies: command lines stored as JSON files. A study names a command, scenarios and the command's options.
 /// The user gives the study to the command instead of scenarios.
@@ -35,12 +35,12 @@ std::vector<BundledStudy> bundled_studies();
 
 /// The arguments of a command line after a study was replaced by its content, and the lines of the study's file
 /// that they come from.
-struct StudyWords {
+struct StudyArguments {
   /// Replaces the first study on a command line by its scenarios and options. An option of the command line
   /// takes precedence over the same option of the study; options with an object in the study add up with it.
-  /// `words`: the command line without the program's name. `arguments`: indices of the positional arguments,
+  /// `arguments`: the command line without the program's name. `positions`: indices of the positional arguments,
   /// which may name a study. Returns empty without a study. Throws InputError for a study of another command.
-  static std::optional<StudyWords> in(const ProgramWords& words, std::span<const std::size_t> arguments);
+  static std::optional<StudyArguments> in(const ProgramArguments& arguments, std::span<const std::size_t> positions);
 
   /// Returns the error with the study's file and line in front. The line is where the study gives the first of
   /// ErrorLocation::about_options that it has. Returns the error unchanged if the study has none of these
@@ -48,7 +48,7 @@ struct StudyWords {
   InputError located(const InputError& error) const;
 
   std::filesystem::path file;
-  ProgramWords words;
+  ProgramArguments arguments;
   std::map<std::string, std::size_t> lines;  ///< line of each option in `file`; the keys are like "--over"
 };
 

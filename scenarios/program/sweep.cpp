@@ -20,15 +20,15 @@
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/largest_sizes.hpp"
+#include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/columns.hpp"
 #include "scenarios/program/digits.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
+#include "scenarios/program/program_arguments.hpp"
 #include "scenarios/program/program_context.hpp"
-#include "scenarios/program/program_words.hpp"
 #include "scenarios/program/results_folder.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/load_module.hpp"
@@ -84,10 +84,10 @@ Columns<OutcomeCount> count_columns() {
 /// Returns the table of the runs, followed by the counts of outcomes. With several fields, the runs are in
 /// ascending order of the metric, failures last.
 std::string summary_text(const SweepTable& table, const std::string& metric, const Layout& layout) {
-  constexpr std::size_t kMostShown = 100, kMostListed = 20;
+  constexpr std::size_t kMaxShown = 100, kMaxListed = 20;
   std::vector<SweepRow> rows = table.rows;
   const bool single = table.fields() == 1;
-  const std::size_t shown = std::min(rows.size(), single ? kMostShown : kMostListed);
+  const std::size_t shown = std::min(rows.size(), single ? kMaxShown : kMaxListed);
   std::string text;
   if (!single) {
     std::ranges::stable_sort(rows, {}, [&](const SweepRow& row) {
@@ -114,7 +114,7 @@ Json summary_json(const SweepTable& table) {
   for (const auto& [outcome, count] : counts.outcomes) outcomes[outcome] = count.runs;
   Json json = {{"definition", table.about["definition"]}, {"runs", counts.runs},     {"outcomes", std::move(outcomes)},
                {"unexpected", counts.unexpected},         {"failed", counts.failed}, {"file", table.file.string()}};
-  if (counts.runs > SweepTable::kMostRows) return json;
+  if (counts.runs > SweepTable::kMaxRows) return json;
   Json& rows = json["rows"] = Json::array();
   for (const SweepRow& row : table.rows) {
     Json& added = rows.emplace_back(Json::object());
@@ -189,10 +189,11 @@ int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& c
     fail_in_option("--row", fmt::format("got {}; allowed: 0 ... {}", command.row, cases.size() - 1));
   cases.load(command.row);  // throws if the scenario of this row is invalid
   const fs::path scene = fs::absolute(cases.scene(command.row).file).lexically_normal();
-  std::vector<std::string> words = {context.program.string(), "run", scene.string()};
-  for (const std::string& override : cases.overrides(command.row)) words.insert(words.end(), {"--set", override});
-  for (const LoadedLaw& law : loaded_laws()) words.insert(words.end(), {"--module", law.file.string()});
-  print(context, command.output, shell_line(words) + "\n", Json{{"row", command.row}, {"command", words}});
+  std::vector<std::string> arguments = {context.program.string(), "run", scene.string()};
+  for (const std::string& override : cases.overrides(command.row))
+    arguments.insert(arguments.end(), {"--set", override});
+  for (const LoadedLaw& law : loaded_laws()) arguments.insert(arguments.end(), {"--module", law.file.string()});
+  print(context, command.output, shell_line(arguments) + "\n", Json{{"row", command.row}, {"command", arguments}});
   return kSuccess;
 }
 

@@ -37,10 +37,10 @@ std::vector<std::size_t> widths_of(const Table& table) {
 /// Returns the columns with these indices side by side, under their header. Wraps the last column if it is
 /// wider than its width.
 std::string block_text(const Table& table, const std::vector<std::size_t>& widths,
-                       const std::vector<std::size_t>& places) {
+                       const std::vector<std::size_t>& indices) {
   const auto line = [&](auto cell_of) {
     std::string text;
-    for (const std::size_t c : places) {
+    for (const std::size_t c : indices) {
       const std::string cell = cell_of(c);
       text += table.columns[c].number ? fmt::format("{:>{}}", cell, widths[c]) : fmt::format("{:<{}}", cell, widths[c]);
       text.append(kGap, ' ');
@@ -54,7 +54,7 @@ std::string block_text(const Table& table, const std::vector<std::size_t>& width
   text += line([&](std::size_t c) { return std::string(widths[c], '-'); });
   // Write the rows, each with as many lines as its wrapped last cell.
   for (const auto& row : table.rows) {
-    const std::size_t last = places.back();
+    const std::size_t last = indices.back();
     std::istringstream prose(wrapped(row[last], 0, widths[last]));
     bool first = true;
     for (std::string part; std::getline(prose, part); first = false) {
@@ -69,31 +69,31 @@ std::string block_text(const Table& table, const std::vector<std::size_t>& width
 
 }  // namespace
 
-std::string Table::text(std::size_t most_width) const {
-  constexpr std::size_t kNarrowestProse = 24;
+std::string Table::text(std::size_t max_width) const {
+  constexpr std::size_t kMinProseWidth = 24;
   std::vector<std::size_t> widths = widths_of(*this);
   const std::size_t others = std::accumulate(widths.begin(), widths.end() - 1, kGap * (widths.size() - 1));
-  if (others + widths.back() > most_width && columns.size() > 1 && !columns.back().number) {
+  if (others + widths.back() > max_width && columns.size() > 1 && !columns.back().number) {
     // If the last column does not fit beside the others, it stands beside the first column in a block of its
     // own.
-    const std::size_t beside = others + kNarrowestProse <= most_width ? others : widths[0] + kGap;
-    const std::size_t rest = std::max(kNarrowestProse, most_width - std::min(most_width, beside));
+    const std::size_t beside = others + kMinProseWidth <= max_width ? others : widths[0] + kGap;
+    const std::size_t rest = std::max(kMinProseWidth, max_width - std::min(max_width, beside));
     widths.back() = std::min(widths.back(), rest);
   }
   std::string text;
   // Fill blocks with columns, each block beginning with the first column.
-  std::vector<std::size_t> places = {0};
+  std::vector<std::size_t> indices = {0};
   std::size_t width = widths[0];
   for (std::size_t c = 1; c < columns.size(); ++c) {
-    if (places.size() > 1 && width + kGap + widths[c] > most_width) {
-      text += block_text(*this, widths, places) + "\n";
-      places = {0};
+    if (indices.size() > 1 && width + kGap + widths[c] > max_width) {
+      text += block_text(*this, widths, indices) + "\n";
+      indices = {0};
       width = widths[0];
     }
-    places.push_back(c);
+    indices.push_back(c);
     width += kGap + widths[c];
   }
-  return text + block_text(*this, widths, places);
+  return text + block_text(*this, widths, indices);
 }
 
 }  // namespace hapbench

@@ -17,9 +17,9 @@ struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<std::string>> rows = {};  ///< each row has a cell for each column
 
-  /// Returns the table with lines of at most `most_width` characters. A last column of text is wrapped. Other
+  /// Returns the table with lines of at most `max_width` characters. A last column of text is wrapped. Other
   /// columns that do not fit follow in blocks below, which each begin with the first column.
-  std::string text(std::size_t most_width) const;
+  std::string text(std::size_t max_width) const;
 };
 
 }  // namespace hapbench

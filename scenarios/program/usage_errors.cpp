@@ -12,7 +12,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/program_words.hpp"
+#include "scenarios/program/program_arguments.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 
 namespace hapbench {
@@ -49,17 +49,17 @@ std::string field_hint(const std::string& option, const std::vector<std::string>
 }
 
 /// Explains an argument that no option or positional argument takes.
-std::string problem_of(const std::string& word, const CLI::App& program, const CLI::App* command) {
-  if (word.starts_with("-") && word != "-") {
-    const std::string name = word.substr(0, word.find('='));
+std::string problem_of(const std::string& argument, const CLI::App& program, const CLI::App* command) {
+  if (argument.starts_with("-") && argument != "-") {
+    const std::string name = argument.substr(0, argument.find('='));
     const std::vector<std::string> known = option_names(command ? *command : program);
     const std::string hint = nearest_name_hint(name, known);
     return fmt::format("unknown option \"{}\"{}", name, hint.empty() ? field_hint(name, known) : hint);
   }
-  if (command != nullptr) return fmt::format("unexpected argument \"{}\"", word);
+  if (command != nullptr) return fmt::format("unexpected argument \"{}\"", argument);
   std::vector<std::string> names = names_of(program.get_subcommands({}), &CLI::App::get_name);
   std::ranges::copy(option_names(program), std::back_inserter(names));
-  return fmt::format("unknown command \"{}\"{}", word, nearest_name_hint(word, names));
+  return fmt::format("unknown command \"{}\"{}", argument, nearest_name_hint(argument, names));
 }
 
 }  // namespace
@@ -67,19 +67,20 @@ std::string problem_of(const std::string& word, const CLI::App& program, const C
 InputError usage_error(const CLI::ParseError& error, const CLI::App& program) {
   const std::vector<CLI::App*> chosen = program.get_subcommands();
   const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
-  const std::string name = command ? command->get_name() + ": " : "", words = command ? command->get_name() + " " : "";
-  const std::string help = fmt::format("; \"hapbench {}--help\" explains", words);
+  const std::string name = command ? command->get_name() + ": " : "", prefix = command ? command->get_name() + " " : "";
+  const std::string help = fmt::format("; \"hapbench {}--help\" explains", prefix);
   // An extra argument is the mistake, if there is one; otherwise CLI11's text explains it.
-  ProgramWords extra = program.remaining(true);
+  ProgramArguments extra = program.remaining(true);
   std::erase(extra, "--");
   // An unknown option leaves its value as an extra argument. Report the option, which is the mistake.
-  std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
+  std::stable_partition(extra.begin(), extra.end(),
+                        [](const std::string& argument) { return argument.starts_with("-"); });
   const auto error_about = [](std::vector<std::string> options, const std::string& problem) {
     return InputError(InputError::Kind::relation, ErrorLocation{.about_options = std::move(options)}, problem);
   };
   if (!extra.empty()) {
-    const std::string& word = extra.front();
-    return error_about({word.substr(0, word.find('='))}, name + problem_of(word, program, command) + help);
+    const std::string& argument = extra.front();
+    return error_about({argument.substr(0, argument.find('='))}, name + problem_of(argument, program, command) + help);
   }
   if (command == nullptr && error.get_name() == "RequiredError") return InputError("a command is missing" + help);
   return error_about(options_named(error.what(), command ? *command : program), one_line(name + error.what()) + help);

@@ -16,7 +16,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/output.hpp"
-#include "scenarios/program/program_words.hpp"
+#include "scenarios/program/program_arguments.hpp"
 #include "scenarios/program/results_folder.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -48,7 +48,7 @@ std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool>
                                                        touching, length_text(std::abs(gap)))
                                          : fmt::format("starts {} from the surface", length_text(gap));
   return fmt::format("  environment  {} ({}), {} points{}\n  start        {}\n", size_text(surface.box),
-                     place_text(surface.box), surface.points, closed, start);
+                     bounds_text(surface.box), surface.points, closed, start);
 }
 
 const MeshTool* mesh_of(const SceneFacts& facts) {
@@ -68,7 +68,7 @@ std::string tool_text(const LoadedScenario& loaded, const SceneFacts& facts) {
     text += fmt::format(
         "\n               relative to its tip centre {}\n               {} triangles, closed; grid {}, depth error at "
         "most {}",
-        place_text(mesh->grid().box()), triangles_of_tool(loaded), length_text(mesh->grid().nodes().spacing),
+        bounds_text(mesh->grid().box()), triangles_of_tool(loaded), length_text(mesh->grid().nodes().spacing),
         length_text(mesh->grid().error_bound()));
   }
   return text + "\n";
@@ -107,7 +107,7 @@ Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
                   {"convex", facts.tool->convex()}};
   if (const MeshTool* mesh = mesh_of(facts)) {
     json["tool"]["triangles"] = triangles_of_tool(loaded);
-    json["tool"]["closed"] = true;  // others are refused
+    json["tool"]["closed"] = true;  // open meshes are rejected
     json["tool"]["box_m"] = box_json(mesh->grid().box());
     json["tool"]["grid_m"] = mesh->grid().nodes().spacing;
     json["tool"]["error_bound_m"] = mesh->grid().error_bound();
@@ -132,7 +132,7 @@ void write_points(const LoadedScenario& loaded, const std::filesystem::path& fil
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
   const auto shell = make_shell(loaded.scenario, loaded.files);
   throw_if_stopped();  // making the shell may have taken seconds
-  const std::string text = point_shell_text(shell->points(), file);
+  const std::string text = format_point_shell(shell->points(), file);
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
     fail_in({.about_options = {"--points"}}, fmt::format("--points {}: is a directory", file.string()));
@@ -152,7 +152,7 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
       const WaitNotice notice(argument, !options.output.quiet);
       const std::filesystem::path file = find_scenario(argument);
       if (options.points.empty() && is_device_file(file)) {
-        device_of_file(file);  // throws what is wrong with it
+        device_of_file(file);  // throws if the device is invalid
         text += fmt::format("{}: valid, but a device and not a scenario; use it with: {}\n", argument,
                             shell_line({"hapbench", "limit", "tap_wall", "--device", argument}));
         verdict["kind"] = "device";

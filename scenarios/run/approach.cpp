@@ -44,7 +44,7 @@ Approach::Closest Approach::closest_to_surface(const ToolShape& tool) const {
     const double gap = gap_between(tool, candidate.pose, *shell_).distance;
     if (gap < closest.distance) closest = {gap, candidate.time};
     for (std::size_t i = 0; i < candidates_.size(); ++i)
-      lower_bounds[i] = std::max(lower_bounds[i], gap - tool.moved_at_most(candidate.pose, candidates_[i].pose));
+      lower_bounds[i] = std::max(lower_bounds[i], gap - tool.displacement_bound(candidate.pose, candidates_[i].pose));
     // This candidate is finished.
     *next = std::numeric_limits<double>::infinity();
   }

@@ -12,7 +12,7 @@
 #include "scenarios/scene/trials.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/multi_rate_contacts.hpp"
 #include "sim/contact/spring_source.hpp"
 #include "sim/contact/trace_source.hpp"
 
@@ -100,7 +100,7 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
     parts.source = std::make_unique<SpringSource>(parts.springs);
   } else if (rendering.contact_source == kTrace) {
     parts.source = std::make_unique<TraceSource>(files.at(kContactFile).trace(), scenario.time.step);
-  } else if (rendering.contact_source != kOwnContacts) {
+  } else if (rendering.contact_source != kComputedContacts) {
     parts.source = make_module_contacts(scenario, files);
   } else {
     auto search = make_contact_query(*parts.shell, *parts.tool, rendering.skips);
@@ -109,9 +109,9 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
   }
   // Multi-rate contacts wrap the source and evaluate it only at some steps.
   if (rendering.late && rendering.late->any()) {
-    parts.source = std::make_unique<LateContacts>(std::move(parts.source), *rendering.late,
-                                                  parts.springs && parts.springs->bilateral,
-                                                  derived_seed(scenario, trial, RandomUse::lost_queries));
+    parts.source = std::make_unique<MultiRateContacts>(std::move(parts.source), *rendering.late,
+                                                       parts.springs && parts.springs->bilateral,
+                                                       derived_seed(scenario, trial, RandomUse::lost_queries));
   }
   // Add the force law, hand, motion and device.
   parts.algorithm = make_algorithm(rendering);

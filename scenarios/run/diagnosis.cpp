@@ -48,7 +48,7 @@ struct DiagnosedRun {
   /// Returns a metric divided by the mean force in settled contact; empty if there was no settled contact.
   Number of_mean_force(const char* name) const { return quotient(metric(name), metric("force_mean_in_contact_N")); }
   Number half_width() const { return has_springs() ? std::nullopt : Number(tool->half_width()); }
-  bool vibrates() const { return metric("vibration_last_quarter_m_per_s").value_or(0.0) > kMostVibration; }
+  bool vibrates() const { return metric("vibration_last_quarter_m_per_s").value_or(0.0) > kMaxVibration; }
   bool is_free() const { return position_is_free(scenario().motion); }
   bool has_springs() const { return std::holds_alternative<SpringsEnvironment>(scenario().environment); }
   /// Returns `number` if it is meaningful for this run, else an empty value. Numbers are not meaningful if the
@@ -97,12 +97,12 @@ Number ratio_to_stability_limit(const DiagnosedRun& run) {
   const Number lambda = run.metric("ratio_max");
   const double K = run.scenario().rendering.stiffness;
   if (!lambda || !(*lambda > 0.0) || !(K > 0.0) || !run.is_free()) return std::nullopt;
-  if (contact_step(run.scenario(), *lambda).size() == 0) return std::nullopt;
+  if (contact_step_matrix(run.scenario(), *lambda).size() == 0) return std::nullopt;
   constexpr double kMin = 1e-9, kMax = 2.0;  // search range, in units of K; above it, K is far below the limit
   Scenario at = run.scenario();
-  const double limit = first_edge(kMin * K, kMax * K, [&](double stiffness) {
+  const double limit = first_stability_limit(kMin * K, kMax * K, [&](double stiffness) {
     at.rendering.stiffness = stiffness;
-    return contact_step(at, *lambda);
+    return contact_step_matrix(at, *lambda);
   });
   return rounded_to_digits(K / std::max(kMin * K, limit), 6);
 }
@@ -155,7 +155,7 @@ Number damping(const DiagnosedRun& run) {
 Number drift(const DiagnosedRun& run) {
   const RunObservations& rows = run.observations;
   const RunObservations::Quarter& last = rows.last_quarter;
-  if (last.rows < kMinQuarterSteps || !last.always_in_contact || is_moved(run.scenario()) || !run.is_free())
+  if (last.rows < kMinQuarterSteps || !last.always_in_contact || has_scripted_motion(run.scenario()) || !run.is_free())
     return std::nullopt;
   // Remove the component along the force.
   const Vec3 push = rows.last_force.normalized(), motion = rows.tip - last.start;
@@ -360,7 +360,7 @@ std::vector<Diagnosed> diagnosis_findings(const LoadedScenario& loaded, const Re
   return diagnosed({loaded, result, observations, &tool}, nullptr, /*beyond_threshold=*/true);
 }
 
-std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result) {
+std::vector<Diagnosed> low_vibration_numbers(const LoadedScenario& loaded, const Result& result) {
   return diagnosed({loaded, result, {}, nullptr}, &Rule::low_vibration, /*beyond_threshold=*/false);
 }
 

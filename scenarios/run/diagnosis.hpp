@@ -19,7 +19,7 @@ std::vector<Diagnosed> diagnosis_rules(bool low_vibration = false);
 
 /// Returns the values of the diagnosis_rules(true) for this result, also values below their thresholds. A rule
 /// whose number has no value is left out.
-std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result);
+std::vector<Diagnosed> low_vibration_numbers(const LoadedScenario& loaded, const Result& result);
 
 /// Returns the rules whose threshold this run exceeds, in the order of diagnosis_rules(). `observations` and
 /// `tool` belong to the run that gave `result`. Cost: a few ms if the eigenvalues of a linear loop are

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "scenarios/run/approach.hpp"
-#include "scenarios/run/drag_course.hpp"
+#include "scenarios/run/drag_progress.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_distances.hpp"
@@ -248,7 +248,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
 
   std::string environment_text() const {
     const Box& box = approach_->environment();
-    return fmt::format("{}: {}", size_text(box), place_text(box));
+    return fmt::format("{}: {}", size_text(box), bounds_text(box));
   }
 
   const Scenario& scenario_;

@@ -33,7 +33,7 @@ std::string size_text(const Box& box) {
   return fmt::format("{:.3g} x {:.3g} x {:.3g} {}", n.x(), n.y(), n.z(), unit.name);
 }
 
-std::string place_text(const Box& box) {
+std::string bounds_text(const Box& box) {
   const Unit unit = unit_for(std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
   const Vec3 a = box.min * unit.per_metre, b = box.max * unit.per_metre;
   return fmt::format("x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} {}", a.x(), b.x(), a.y(), b.y(),

@@ -14,6 +14,6 @@ std::string length_text(double metres);
 std::string size_text(const Box& box);
 /// Returns the coordinate ranges of a box in one unit, such as "x -6.74 ... 6.76, y -7.3 ... 9.4, z -3.3 ...
 /// 3.3 mm".
-std::string place_text(const Box& box);
+std::string bounds_text(const Box& box);
 
 }  // namespace hapbench

@@ -33,7 +33,7 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
   const RenderingConfig& rendering = scenario.rendering;
   MetricsConfig config = {.settling = scenario.metrics,
                           .steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride),
-                          .most_reduced = if_any(rendering.reduction.has_value(), parts.source->capacity()),
+                          .reduction_capacity = if_any(rendering.reduction.has_value(), parts.source->capacity()),
                           .stride = static_cast<std::uint64_t>(scenario.time.stride)};
   // If the position is prescribed or a handle moves the tool, no integrator applies the friction, and there is
   // no limit.
@@ -129,7 +129,7 @@ class Run {
     result.name = scenario_.name;
     result.algorithm = scenario_.rendering.algorithm;
     result.duration = static_cast<double>(result.end.rows) * scenario_.time.step;
-    sections_.tell(*metrics_, inside_ ? &*inside_ : nullptr, result);
+    sections_.report(*metrics_, inside_ ? &*inside_ : nullptr, result);
     result.state_hash = metrics_->state_hash();
     result.warnings = checked_.file_warnings();
     // With several trials, name the first trial that has warnings.
@@ -165,9 +165,9 @@ class Run {
     if (times_) times_->start();
     SimulationResult result = run_to_end(simulation, [&] {
       bar.show(simulation.next_row());
-      if (!times_) return simulation.advance(kAskEvery);
+      if (!times_) return simulation.advance(kStepsPerStopCheck);
       bool more = true;
-      for (std::uint64_t i = 0; i < kAskEvery && (more = simulation.step()); ++i) times_->lap();
+      for (std::uint64_t i = 0; i < kStepsPerStopCheck && (more = simulation.step()); ++i) times_->lap();
       return more;
     });
     result_.timing.loop += std::chrono::duration<double>(Clock::now() - start).count();

@@ -103,7 +103,7 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
 /// Returns a warning if the support point of the tool's core lies behind the nearest surface point, on the side
 /// opposite to its normal.
 std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const ToolPose& pose) {
-  const Vec3 core = pose.position - way_to_core(tool) * pose.axis;
+  const Vec3 core = pose.position - core_offset(tool) * pose.axis;
   // Find the nearest point of the surface.
   std::size_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();

@@ -110,7 +110,7 @@ constexpr std::string_view kKnownToTheory[] = {"/handle_mass_kg",
 
 }  // namespace
 
-bool springs_stay(const Scenario& scenario) {
+bool has_permanent_springs(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
   const RenderingConfig& r = scenario.rendering;
   return springs != nullptr && springs->bilateral && springs->signed_depths && !r.has_friction() && !r.hunt_crossley &&
@@ -139,7 +139,7 @@ double delay_of(const Scenario& scenario) {
   return admittance != nullptr ? static_cast<double>(admittance->servo.delay) : 0.0;
 }
 
-std::string unknown_to_theory(const Scenario& scenario) {
+std::string unmodelled_fields(const Scenario& scenario) {
   // Compare with a device that has default values but the same optional parts (filters, transmission).
   DeviceFields plain = AdmittanceDeviceConfig{};
   if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
@@ -165,31 +165,31 @@ DeviceLoop device_loop(const Scenario& scenario, double lambda) {
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
   DeviceLoop result = impedance != nullptr ? impedance_loop(scenario, *impedance, lambda)
                                            : admittance_loop(scenario, *admittance, lambda);
-  if (delay_of(scenario) > kLongestLoopDelay)
+  if (delay_of(scenario) > kMaxLoopDelay)
     result.no_theory = "the delay is longer than 200 samples, too long for the eigenvalue computation";
-  if (const std::string unknown = unknown_to_theory(scenario); !unknown.empty())
+  if (const std::string unknown = unmodelled_fields(scenario); !unknown.empty())
     result.no_theory = unknown + ": not part of the linear theory";
   return result;
 }
 
-Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda) {
+Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda) {
   if (!has_device(scenario)) return tool_on_spring(scenario, lambda).step_matrix();
-  if (delay_of(scenario) > kLongestLoopDelay || !unknown_to_theory(scenario).empty()) return {};
+  if (delay_of(scenario) > kMaxLoopDelay || !unmodelled_fields(scenario).empty()) return {};
   return device_loop(scenario, lambda).state_matrix();
 }
 
-std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
-                                                                   bool over_hands) {
-  std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step(scenario, lambda)}};
+std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_step_matrices(const Scenario& scenario, double lambda,
+                                                                           bool over_hands) {
+  std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step_matrix(scenario, lambda)}};
   if (all[0].second.size() == 0) return {};
   // Add the tool that friction holds.
   if (scenario.rendering.dry_friction)
-    all.emplace_back("the tool held by friction", contact_step(stuck_scene(scenario), 1.0));
+    all.emplace_back("the tool held by friction", contact_step_matrix(stuck_scene(scenario), 1.0));
   // Add the loops with other hands.
   const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
   if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
   SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);
-  for (const AttachedHand& hand : hand_family()) {
+  for (const AttachedHand& hand : typical_hands()) {
     loop.hand = hand;
     all.emplace_back(
         hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness),

@@ -19,7 +19,7 @@ namespace hapbench {
 /// Returns true if the springs never lose contact and respond linearly, so that their loop is the same at every
 /// step. This holds for bilateral springs without friction, Hunt-Crossley damping, limits, force stages and multi-rate
 /// contacts, on a tool that is free to move.
-bool springs_stay(const Scenario& scenario);
+bool has_permanent_springs(const Scenario& scenario);
 
 /// Returns true if the scenario has a device other than the ideal device. Only such a device is part of the
 /// loop.
@@ -28,7 +28,7 @@ inline bool has_device(const Scenario& scenario) {
 }
 
 /// Returns the eigenvalues of the stiffness tensor S under the scenario's algorithm, in units of K, in
-/// ascending order. Precondition: springs_stay(scenario).
+/// ascending order. Precondition: has_permanent_springs(scenario).
 Vec3 stiffness_eigenvalues(Scenario scenario);
 
 /// Returns the tool on a spring of stiffness lambda K and damping lambda B, without a device.
@@ -41,7 +41,7 @@ DeviceLoop device_loop(const Scenario& scenario, double lambda);
 /// Returns the paths of the device fields that differ from their defaults and that the linear model does not
 /// include, such as "device.viscous_N_s_per_m", separated by commas. Empty if there are none. Precondition:
 /// has_device(scenario).
-std::string unknown_to_theory(const Scenario& scenario);
+std::string unmodelled_fields(const Scenario& scenario);
 
 /// Returns the delay of the device's force, or of the servo of an admittance device [samples]. 0 for an ideal device.
 double delay_of(const Scenario& scenario);
@@ -53,16 +53,16 @@ inline const char* delay_path(const Scenario& scenario) {
 
 /// Returns the state matrix of one step of the tool in contact with a wall of stiffness lambda K and damping
 /// lambda B. With an ideal device, this is the step matrix of the integrator; with another device, of
-/// device_loop(). Empty if the delay makes the loop too large to solve, or if unknown_to_theory() is not empty.
-Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda);
+/// device_loop(). Empty if the delay makes the loop too large to solve, or if unmodelled_fields() is not empty.
+Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda);
 
-/// Returns the state matrices (contact_step()) of several variants of the scenario's loop at a wall of
+/// Returns the state matrices (contact_step_matrix()) of several variants of the scenario's loop at a wall of
 /// stiffness lambda K, each with its name:
 /// - the scenario's own loop, with an empty name;
 /// - with dry friction, a tool that friction holds;
-/// - with `over_hands`, if a hand holds an impedance device, the hands of hand_family().
-/// Returns an empty list if contact_step() is empty.
-std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
-                                                                   bool over_hands);
+/// - with `over_hands`, if a hand holds an impedance device, the hands of typical_hands().
+/// Returns an empty list if contact_step_matrix() is empty.
+std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_step_matrices(const Scenario& scenario, double lambda,
+                                                                           bool over_hands);
 
 }  // namespace hapbench

@@ -44,7 +44,7 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
   return size_question(scenario.environment);
 }
 
-std::string odd_frame(const Box& tool) {
+std::string frame_problem(const Box& tool) {
   constexpr double kSuspectRatio = 2.0;  // ratio of lengths from which the frame is probably wrong
   const Vec3 size = tool.size();
   const double gap = distance_to(tool, Vec3::Zero());
@@ -65,13 +65,13 @@ std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolS
   }
   if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) {
     const Box& box = mesh->grid().box();
-    if (const std::string odd = odd_frame(box); !odd.empty()) {
+    if (const std::string odd = frame_problem(box); !odd.empty()) {
       warnings.push_back(
           {"tool_frame", "",
            fmt::format(
                "the mesh of the tool {} (relative to the tip centre it spans {}): are tool.tip_m and tool.tip_axis "
                "right?",
-               odd, place_text(box))});
+               odd, bounds_text(box))});
     }
   }
   return warnings;

@@ -39,7 +39,7 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
 
 /// Returns what is unusual about a tool whose bounding box in its own frame is `tool`, such as "lies across its
 /// axis"; empty if nothing is. In this frame, the tip centre is the origin and the tip points along -z.
-std::string odd_frame(const Box& tool);
+std::string frame_problem(const Box& tool);
 
 /// Returns warnings about a tool. The proxy algorithm keeps points out of convex tools only, and a mesh may
 /// have a wrong position or orientation in its frame.

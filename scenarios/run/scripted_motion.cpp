@@ -52,7 +52,7 @@ double script_period(const Scenario& scenario) {
   return largest(scenario, period_of);
 }
 
-bool is_moved(const Scenario& scenario) {
+bool has_scripted_motion(const Scenario& scenario) {
   const ImpedanceHandFields* hand = spring_of(scenario.hand);
   return script_moves_until(scenario) > 0.0 || (hand != nullptr && hand->tremor);
 }

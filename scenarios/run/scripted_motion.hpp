@@ -13,6 +13,6 @@ double script_period(const Scenario& scenario);
 /// Returns true if a script or the hand's tremor moves the tool, which therefore may never come to rest. Then
 /// only velocity above 30 Hz that exceeds 1 mm/s counts as motion. After the end of the script, any velocity
 /// above 1 mm/s counts.
-bool is_moved(const Scenario& scenario);
+bool has_scripted_motion(const Scenario& scenario);
 
 }  // namespace hapbench

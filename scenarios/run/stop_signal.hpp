@@ -45,9 +45,9 @@ void stop_work(int signal) noexcept;
 void throw_if_stopped();
 
 /// Number of steps between two checks for a signal. This takes a few milliseconds in the slowest simulations.
-inline constexpr std::uint64_t kAskEvery = 512;
+inline constexpr std::uint64_t kStepsPerStopCheck = 512;
 
-/// Runs a simulation to its end by calls of `advance()`. Each call must do at most kAskEvery steps and return
+/// Runs a simulation to its end by calls of `advance()`. Each call must do at most kStepsPerStopCheck steps and return
 /// false once the run has ended. Throws Stopped if a signal has been received.
 template <class Advance>
 SimulationResult run_to_end(Simulation& simulation, Advance advance) {
@@ -60,7 +60,7 @@ SimulationResult run_to_end(Simulation& simulation, Advance advance) {
 /// Runs a simulation to its end with Simulation::advance(). Throws Stopped if a signal has been received.
 /// Allocates nothing.
 inline SimulationResult run_to_end(Simulation& simulation) {
-  return run_to_end(simulation, [&simulation] { return simulation.advance(kAskEvery); });
+  return run_to_end(simulation, [&simulation] { return simulation.advance(kStepsPerStopCheck); });
 }
 
 }  // namespace hapbench

@@ -7,6 +7,6 @@ namespace hapbench {
 /// 2012). The value is our choice, like the limits of the motion classes. A hand that holds a cylinder detects
 /// less than a hundredth of it at 150 to 200 Hz (Brisben, Hsiao and Johnson, Journal of Neurophysiology 81,
 /// 1999).
-inline constexpr double kMostVibration = 1e-3;
+inline constexpr double kMaxVibration = 1e-3;
 
 }  // namespace hapbench

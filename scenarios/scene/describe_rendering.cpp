@@ -42,10 +42,10 @@ void if_not_null(Fields& f, std::string_view name, std::optional<T>& value, cons
 }
 
 /// Describes the parameters that belong to one algorithm only.
-void own_parameters(Fields& f, RenderingConfig& rendering, const AlgorithmEntry& entry) {
-  const std::vector<double> values = own_values(rendering, entry);
+void algorithm_parameters(Fields& f, RenderingConfig& rendering, const AlgorithmEntry& entry) {
+  const std::vector<double> values = parameter_values(rendering, entry);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const OwnParameter& parameter = entry.own_parameters[i];
+    const AlgorithmParameter& parameter = entry.algorithm_parameters[i];
     double value = values[i];
     f.number(parameter.name, value, parameter.range, parameter.meaning);
     if (f.reads() && f.given(parameter.name)) rendering.parameters[entry.info->name][parameter.name] = value;
@@ -55,9 +55,9 @@ void own_parameters(Fields& f, RenderingConfig& rendering, const AlgorithmEntry&
 /// Describes the field `parameters`, which holds an object for each algorithm that has parameters of its own.
 /// Only the objects of the scenario's algorithm and of algorithms whose parameters were given are written.
 /// Otherwise a written scenario would change whenever an algorithm is added.
-void own_parameters(Fields& f, RenderingConfig& rendering) {
+void algorithm_parameters(Fields& f, RenderingConfig& rendering) {
   const auto presence = [&rendering](const AlgorithmEntry& entry) {
-    const bool written = !entry.own_parameters.empty() &&
+    const bool written = !entry.algorithm_parameters.empty() &&
                          (entry.info->name == rendering.algorithm || rendering.parameters.contains(entry.info->name));
     return written ? Presence::no_default : Presence::omitted;
   };
@@ -65,9 +65,9 @@ void own_parameters(Fields& f, RenderingConfig& rendering) {
   f.group("parameters", "parameters that belong to one algorithm: an object for each algorithm",
           any ? Presence::no_default : Presence::omitted, [&](Fields& all) {
             for (const AlgorithmEntry& entry : algorithms()) {
-              if (entry.own_parameters.empty()) continue;
+              if (entry.algorithm_parameters.empty()) continue;
               all.group(entry.info->name, "parameters of this algorithm", presence(entry),
-                        [&](Fields& own) { own_parameters(own, rendering, entry); });
+                        [&](Fields& own) { algorithm_parameters(own, rendering, entry); });
             }
           });
 }
@@ -127,7 +127,7 @@ static void describe_hunt_crossley(Fields& f, double& chi) {
   });
 }
 
-static void describe(Fields& f, Lateness& late) {
+static void describe(Fields& f, MultiRateSchedule& late) {
   number(f, parameter::kEvery, late.every, "contacts are computed in every n-th time step, starting with the first");
   number(f, parameter::kDelay, late.delay, "delay, in time steps, from computing the contacts to using them");
   f.choice("between", late.linear, {"hold", "linear"}, "kind of contacts between queries",
@@ -144,7 +144,8 @@ static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
   std::string& source = rendering.contact_source;
   const bool is_plugin = source == kContactPlugin;
   f.plain_or_object(
-      is_plugin || source == kTrace, [&](Fields& plain) { plain.choice(source, {kOwnContacts}, "source of contacts"); },
+      is_plugin || source == kTrace,
+      [&](Fields& plain) { plain.choice(source, {kComputedContacts}, "source of contacts"); },
       [&](Fields& object) {
         object.alternatives(
             "source of contacts", kTypes, Untyped::refused, is_plugin ? 1 : 0, [&](Fields& fields, std::size_t type) {
@@ -197,7 +198,7 @@ void describe(Fields& f, RenderingConfig& rendering) {
   if_not_null(
       f, "contacts", rendering.late,
       "multi-rate rendering: a slower loop computes the contacts; null: contacts are computed in every time step",
-      [](Fields& late, Lateness& value) { late.object(value); });
+      [](Fields& late, MultiRateSchedule& value) { late.object(value); });
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
             "merge colliding points that share a grid cell of the shell");
   f.object(
@@ -235,7 +236,7 @@ void describe(Fields& f, RenderingConfig& rendering) {
       [](Fields& held, ForceStageConfig& value) { describe(held, value); });
   f.boolean(key(parameter::kPassivityController), rendering.passivity_controller,
             "adaptive damping that prevents the algorithm from creating energy");
-  own_parameters(f, rendering);
+  algorithm_parameters(f, rendering);
 }
 
 }  // namespace hapbench

@@ -12,7 +12,7 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/largest_sizes.hpp"
+#include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/scene/describe_rendering.hpp"
 #include "scenarios/scene/devices.hpp"
@@ -29,7 +29,7 @@
 namespace hapbench {
 namespace {
 
-constexpr auto kMaxStepsOrRows = static_cast<std::int64_t>(kMostSteps);
+constexpr auto kMaxStepsOrRows = static_cast<std::int64_t>(kMaxSteps);
 
 /// Describes the field `time`. Returns the number of time steps, which may exceed the allowed number and the
 /// range of integers.

@@ -79,7 +79,7 @@ static void describe(Fields& f, LowPassFilter& filter) {
       "cutoff_Hz", filter.cutoff, {0.0, 1e9, "Hz", true},
       "cutoff (half-power) frequency of a continuous Butterworth low-pass whose input is held during a time step; of "
       "first order, y_k = y_(k-1) + (1 - exp(-2 pi cutoff_Hz step_s)) (x_k - y_(k-1)) (our assumption)");
-  f.integer("order", filter.order, {1, LowPassFilter::kHighest}, "order of the low-pass (our assumption)");
+  f.integer("order", filter.order, {1, LowPassFilter::kMaxOrder}, "order of the low-pass (our assumption)");
 }
 
 static void describe(Fields& f, AdaptiveWindowFilter& filter) {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/largest_sizes.hpp"
 #include "scenarios/input/shared_cache.hpp"
+#include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/scene/field_checks.hpp"
 #include "sim/contact/grid_index.hpp"
@@ -29,7 +29,7 @@ constexpr IntegerRange kSpringCount = {0, 20'000'000};
 template <class Shell>
 void check_point_count(Fields& f, const Shell& shell) {
   if (f.reads())
-    require_at_most(kMostPoints, point_count(shell), f.at(), "shell points (from the lengths and spacing_m)");
+    require_at_most(kMaxSurfacePoints, point_count(shell), f.at(), "shell points (from the lengths and spacing_m)");
 }
 
 /// Throws InputError if the fields of springs contradict each other.
@@ -39,7 +39,7 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
     count += static_cast<double>(springs.groups[i].count);
     require_direction(springs.groups[i].direction, fmt::format("{}/groups/{}/direction", at, i));
   }
-  require_at_most(kMostPoints, count, at, "springs");
+  require_at_most(kMaxSurfacePoints, count, at, "springs");
   if (springs.bilateral || springs.signed_depths) return;
   fail_at(at + "/signed", "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
 }
@@ -56,7 +56,8 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
   const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
   const double copies = environment.per_cell ? 4.0 : 1.0;  // each vertex lies on a grid edge that four cells share
-  require_at_most(kMostPoints, copies * area / (grid * grid), at, "shell points (from size_m, grid_m and vertices)");
+  require_at_most(kMaxSurfacePoints, copies * area / (grid * grid), at,
+                  "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
     fail("hole_diameter_m",
          fmt::format("got {}; allowed: at least 3 grid_m, leaving walls of 3 grid_m", block.hole_diameter));

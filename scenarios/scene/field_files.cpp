@@ -19,7 +19,7 @@ constexpr std::string_view kUnknownField = "unknown field";
 
 /// Returns a hint for an unknown field whose name resembles no field of its object: the paths of the fields with
 /// the nearest name in other objects. Empty if there are none.
-std::string hint_elsewhere(const std::string& pointer) {
+std::string hint_from_other_objects(const std::string& pointer) {
   const std::vector<std::string> paths = scenario_field_paths();
   const auto own_name = [](const std::string& path) { return parts_of(path, '.').back(); };
   const std::string nearest = nearest_name(parts_of(pointer, '/').back(), names_of(paths, own_name));
@@ -34,7 +34,8 @@ std::string hint_elsewhere(const std::string& pointer) {
 /// Returns the hint for an unknown field whose name resembles no field of its object. May be empty.
 std::string hint_for(const InputError& fault) {
   const bool is_of_law = fault.location().pointer.starts_with("/rendering/parameters/");
-  return is_of_law ? "; a law from outside brings its own with --module" : hint_elsewhere(fault.location().pointer);
+  return is_of_law ? "; a law from outside brings its own with --module"
+                   : hint_from_other_objects(fault.location().pointer);
 }
 
 /// Returns the fault with the file's name in its location, and with hints for unknown names.
@@ -83,7 +84,7 @@ fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
 std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings) {
   std::vector<std::string> texts;
   for (const Warning& warning : warnings)
-    texts.push_back(file_of(loaded, warning.pointer).string() + ": " + warning.told());
+    texts.push_back(file_of(loaded, warning.pointer).string() + ": " + warning.located_text());
   return texts;
 }
 

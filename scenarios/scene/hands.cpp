@@ -94,17 +94,17 @@ static void describe(Fields& f, Gauge& gauge) {
            "cutoff frequency of the low-pass of the displayed spring force");
   f.number(
       "grace_s", gauge.grace, {0.0, 1000.0, "s"},
-      "longest time for which the displayed force may be below least_press_N without interrupting the hold; no effect "
+      "longest time for which the displayed force may be below min_press_N without interrupting the hold; no effect "
       "if threshold is given");
 }
 
 static void describe(Fields& f, Threshold& threshold) {
   f.choice("force", threshold.force, {"rendered", "spring"}, "force",
-           "force whose component along +z is compared with least_press_N");
+           "force whose component along +z is compared with min_press_N");
   f.number("cutoff_Hz", threshold.cutoff, {0.0, 1e6, "Hz", true},
            "cutoff frequency of a first-order low-pass of this force; null: unfiltered");
   f.number("grace_s", threshold.grace, {0.0, 1000.0, "s"},
-           "longest time for which the force may be below least_press_N without interrupting the hold");
+           "longest time for which the force may be below min_press_N without interrupting the hold");
   f.choice(
       "low", threshold.low, {"restarts", "pauses", "closes", "nothing"}, "effect",
       "effect of a longer interruption: the hold restarts, the hold pauses, the target closes, or nothing happens");
@@ -116,20 +116,19 @@ static void describe(Fields& f, TargetRules& task) {
       "panel: the target has x and y, and the orientation is scripted; height: the target has z, and the hand turns "
       "the tool");
   f.list(
-      "places_m", task.places, {1, TrackingHandFields::kMostPlaces}, "positions at which targets appear",
+      "places_m", task.places, {1, TrackingHandFields::kMaxTargetPositions}, "positions at which targets appear",
       [](Fields& p, Vec3& position) { p.vector3(position, kCoordinate); }, Presence::required);
   f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "number of targets per position in one trial");
   f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "distance within which the tip is on the target");
   f.number("logged_m", task.logged, {0.0, 1.0, "m", true},
            "distance within which steps count for the mean model force and speed at a target; null: tolerance_m");
-  f.number("least_press_N", task.least_press, {0.0, 1000.0, "N"},
+  f.number("min_press_N", task.min_press_force, {0.0, 1000.0, "N"},
            "force along +z that activates the task and is required during the hold");
   f.object("gauge", task.gauge,
            "filtered display of the spring force to the subject; null: the unfiltered rendered force is displayed");
-  f.object(
-      "threshold", task.threshold,
-      "force that the task compares with least_press_N, if it differs from the displayed force; null: the displayed "
-      "force");
+  f.object("threshold", task.threshold,
+           "force that the task compares with min_press_N, if it differs from the displayed force; null: the displayed "
+           "force");
   f.number("hold_s", task.hold, {0.0, 1000.0, "s", true}, "uninterrupted time on the target after which it is removed");
   f.number("time_limit_s", task.time_limit, {0.0, 1000.0, "s", true},
            "time from activation after which the target disappears");

@@ -10,14 +10,14 @@ namespace hapbench {
 namespace {
 
 /// Pairs of a field and the field that it excludes. Each pair is listed in both orders.
-constexpr std::pair<std::string_view, const char*> kEitherOr[] = {
+constexpr std::pair<std::string_view, const char*> kExclusiveFields[] = {
     {"steps", "duration_s"}, {"duration_s", "steps"},      {"path_m", "direction"},
     {"direction", "path_m"}, {"delay_s", "delay_samples"}, {"delay_samples", "delay_s"}};
 
 }  // namespace
 
 void drop_alternative(Json& object, std::string_view field) {
-  for (const auto& [given, other] : kEitherOr)
+  for (const auto& [given, other] : kExclusiveFields)
     if (given == field) object.erase(other);
 }
 

@@ -63,9 +63,9 @@ const SectionKind kSections[] = {
 /// Adds the metrics that every run has. `inside` is null if the environment has no solid.
 void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
   Section section(list, "");
-  metrics.tell(section);
-  (inside != nullptr ? *inside : InsideDepths()).tell(section, metrics.has_settled());
-  metrics.tell_end(section);
+  metrics.report(section);
+  (inside != nullptr ? *inside : InsideDepths()).report(section, metrics.has_settled());
+  metrics.report_end(section);
 }
 
 /// Returns the common metrics and the metrics of the sections, without values. `parts(kind)` is the number of
@@ -78,7 +78,7 @@ MetricList list_without_values(const Parts& parts) {
     const std::size_t count = parts(kind);
     if (count == 0) continue;
     Section section(metrics, kind.name);
-    kind.observe(nullptr, count)->tell(section);
+    kind.observe(nullptr, count)->report(section);
   }
   for (Metric& metric : metrics) metric.value = {};
   return metrics;
@@ -116,14 +116,14 @@ void SectionObservers::begin(const TrialParts& trial) {
   for (const auto& observer : observers_) observer->begin(trial);
 }
 
-void SectionObservers::tell(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const {
+void SectionObservers::report(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const {
   report_common_metrics(metrics, inside, result.metrics);
   for (std::size_t i = 0; i < observers_.size(); ++i) {
     const SectionKind& kind = kSections[kinds_[i]];
     if (trials_ > 1 && !kind.merges) continue;
     // Add the section's metrics, and its members that are not metrics.
     Section section(result.metrics, kind.name);
-    observers_[i]->tell(section);
+    observers_[i]->report(section);
     observers_[i]->add_members(result.sections[kind.name] = nlohmann::ordered_json::object());
   }
 }

@@ -47,7 +47,7 @@ class SectionObservers {
   /// Adds to `result` the metrics that every run has, then the metrics of each section. After several trials,
   /// sections that cannot be computed over several trials are skipped. `inside` is null if the environment has no
   /// solid.
-  void tell(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const;
+  void report(const MetricsObserver& metrics, const InsideDepths* inside, Result& result) const;
 
  private:
   std::vector<std::unique_ptr<MetricObserver>> observers_;

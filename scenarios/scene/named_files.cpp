@@ -61,13 +61,13 @@ const NamedFile::Read& NamedFile::read() {
 NamedFile::Contents NamedFile::parsed(std::string_view bytes) const {
   switch (content_.kind) {
     case FileContent::Kind::point_shell:
-      return point_shell_in(bytes, path_);
+      return parse_point_shell(bytes, path_);
     case FileContent::Kind::mesh:
       return MeshFile(bytes, path_, content_.sampling);
     case FileContent::Kind::stroke:
-      return stroke_in(bytes, path_);
+      return parse_stroke(bytes, path_);
     case FileContent::Kind::trace:
-      return trace_in(bytes, path_);
+      return parse_contact_trace(bytes, path_);
     case FileContent::Kind::library:
       break;
   }

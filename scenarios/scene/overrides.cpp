@@ -33,9 +33,9 @@ void apply_override(Json& json, const std::string& text) {
     fail_in_option("--set", "got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
   const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
   const Words keys = parts_of(path, '.');
-  constexpr std::size_t kDeepestPath = 64;  // functions that walk through JSON recurse once per level
-  if (keys.size() > kDeepestPath)
-    fail_in_option("--set", fmt::format("got a path of more than {0} keys; allowed: at most {0}", kDeepestPath));
+  constexpr std::size_t kMaxPathDepth = 64;  // functions that walk through JSON recurse once per level
+  if (keys.size() > kMaxPathDepth)
+    fail_in_option("--set", fmt::format("got a path of more than {0} keys; allowed: at most {0}", kMaxPathDepth));
   // Follow the path, creating objects where they are missing.
   Json* node = &json;
   for (const std::string_view& key : keys) {
@@ -51,7 +51,7 @@ void apply_override(Json& json, const std::string& text) {
   if (path == "time" || path == "time.step_s") drop_derived_samples(json);
 }
 
-bool leaves_run_alone(std::string_view override) {
+bool keeps_run_unchanged(std::string_view override) {
   constexpr std::string_view kSections[] = {"expect", "record", "name", "description", "source"};
   // These fields add or remove metrics. `record.every` also selects the steps that the ideal-trajectory metrics
   // use.
@@ -61,7 +61,7 @@ bool leaves_run_alone(std::string_view override) {
   return std::ranges::count(kSections, section) > 0 && std::ranges::count(kMeasured, path) == 0;
 }
 
-void expect_less(Json& expect) {
+void relax_expectations(Json& expect) {
   if (!expect.is_object()) return;  // the reader reports this error
   expect.erase("metrics");
   Json outcomes = Json::array();

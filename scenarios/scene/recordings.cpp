@@ -51,14 +51,14 @@ constexpr std::string_view kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m";
 
 }  // namespace
 
-Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
+Stroke parse_stroke(std::string_view text, const std::filesystem::path& file) {
   // Parse the table. The header says whether the pose has an axis or a quaternion, and whether there is a force.
   const NumberTable table =
-      number_table_in(text, file,
-                      {"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z", "time_s,px_m,py_m,pz_m,qw,qx,qy,qz",
-                       "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
-                       "time_s,px_m,py_m,pz_m,qw,qx,qy,qz,mfx_N,mfy_N,mfz_N"},
-                      kMaxSamples);
+      parse_number_table(text, file,
+                         {"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z", "time_s,px_m,py_m,pz_m,qw,qx,qy,qz",
+                          "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
+                          "time_s,px_m,py_m,pz_m,qw,qx,qy,qz,mfx_N,mfy_N,mfz_N"},
+                         kMaxSamples);
   if (table.rows() == 0) fail(file, 0, "no samples; allowed: at least one");
   const bool has_force = table.columns >= kAxisPose + kForceColumns;
   const std::size_t pose = table.columns - (has_force ? kForceColumns : 0);
@@ -86,8 +86,8 @@ Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
   return stroke;
 }
 
-ContactTrace trace_in(std::string_view text, const std::filesystem::path& file) {
-  const NumberTable table = number_table_in(text, file, {kTraceHeader}, kMaxContacts);
+ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::path& file) {
+  const NumberTable table = parse_number_table(text, file, {kTraceHeader}, kMaxContacts);
   ContactTrace trace;
   trace.contacts.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {

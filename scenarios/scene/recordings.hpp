@@ -25,13 +25,13 @@ struct Stroke {
 /// Times must increase strictly. Axes must not be zero, and quaternions must have norm 1 within 0.001; both are
 /// normalised. A quaternion rotates vectors from the tool frame, in which the tool's axis is -z, to the world
 /// frame. Throws InputError that names the sample.
-Stroke stroke_in(std::string_view text, const std::filesystem::path& file);
+Stroke parse_stroke(std::string_view text, const std::filesystem::path& file);
 
 /// Parses contacts over time from the contents of a CSV file with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m.
 /// The columns are time, position, depth gradient (ux,uy,uz) and penetration depth. Times must not decrease,
 /// depths must be >= 0, and gradients must have norm 1 within 0.001. Gradients are normalised, unless their norm
 /// is 1 within 1e-12. At most 20 million contacts, and 100 000 contacts at one time, are allowed. Throws
 /// InputError that names the contact.
-ContactTrace trace_in(std::string_view text, const std::filesystem::path& file);
+ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace hapbench

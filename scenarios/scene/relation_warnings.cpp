@@ -103,7 +103,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
       readers[pointer].emplace_back(other.info->name);
     }
     if (&other == &own) continue;
-    for (const OwnParameter& parameter : other.own_parameters)
+    for (const AlgorithmParameter& parameter : other.algorithm_parameters)
       readers[fmt::format("/rendering/parameters/{}/{}", other.info->name, parameter.name)] = {other.info->name};
   }
   // Warn about the parameters that the file sets.

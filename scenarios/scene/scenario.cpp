@@ -36,7 +36,7 @@ std::optional<double> input_force_limit(const DeviceFields& device) {
 }
 
 bool has_external_contacts(const Scenario& scenario) {
-  return scenario.rendering.contact_source != kOwnContacts;
+  return scenario.rendering.contact_source != kComputedContacts;
 }
 
 Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {

@@ -178,7 +178,7 @@ double drag_length(const DragHandFields& hand, double duration);
 /// A simulated subject in a target-tracking experiment. Every subject does every trial, starting from the initial
 /// state.
 struct TrackingHandFields {
-  static constexpr std::size_t kMostPlaces = 100;  ///< maximum number of target positions
+  static constexpr std::size_t kMaxTargetPositions = 100;  ///< maximum number of target positions
   TargetRules task;
   std::vector<Subject> subjects = {Subject{}};
   std::int64_t trials = 1;  ///< trials of each subject

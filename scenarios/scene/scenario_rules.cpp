@@ -10,7 +10,7 @@
 #include "device_model/hands/drag_hand.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/largest_sizes.hpp"
+#include "scenarios/input/size_limits.hpp"
 #include "scenarios/scene/field_checks.hpp"
 #include "sim/loop/integrators/table.hpp"
 
@@ -22,18 +22,18 @@ constexpr double kMaxPathEntries = 1e6;   ///< maximum number of samples of a dr
 
 /// Throws InputError if the run has too many steps, recorded rows or timed steps.
 void check_sizes(const Scenario& scenario, double steps) {
-  if (!(steps >= 1.0 && steps <= kMostSteps)) {
+  if (!(steps >= 1.0 && steps <= kMaxSteps)) {
     fail_at("/time/duration_s",
-            fmt::format("got {:.3g} steps (duration_s / step_s); allowed: 1 ... {:.0g}", steps, kMostSteps));
+            fmt::format("got {:.3g} steps (duration_s / step_s); allowed: 1 ... {:.0g}", steps, kMaxSteps));
   }
   const double rows = steps / static_cast<double>(scenario.record.every);
-  if (records_rows(scenario.record) && rows > kMostRows) {
+  if (records_rows(scenario.record) && rows > kMaxRows) {
     fail_at("/record/every", fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less",
-                                         rows, kMostRows));
+                                         rows, kMaxRows));
   }
   // The measured times of all steps of all trials are kept in memory.
   if (scenario.record.timing)
-    require_at_most(kMostRows, steps * trial_count(scenario.hand), "/record/timing", "timed steps");
+    require_at_most(kMaxRows, steps * trial_count(scenario.hand), "/record/timing", "timed steps");
 }
 
 /// Throws InputError unless `up` and `lean` are perpendicular and not zero.
@@ -165,7 +165,7 @@ void check_tracking_hand(const Scenario& scenario, double steps) {
   for (std::size_t i = 0; i < hand->subjects.size(); ++i)
     require_at_most(kMaxDelaySamples, hand->subjects[i].reaction_delay / scenario.time.step,
                     fmt::format("/hand/subjects/{}/reaction_delay_s", i), "time steps");
-  require_at_most(kMostSteps, trial_count(scenario.hand) * steps, "/hand/trials", "steps in all trials");
+  require_at_most(kMaxSteps, trial_count(scenario.hand) * steps, "/hand/trials", "steps in all trials");
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ Json partial_schema(const ValueGuide& full, const std::string& at) {
 /// Appends the fields of an object and, recursively, the fields of the objects in it. `at` is the object's dotted
 /// path, with a dot at the end unless it is empty. `types` is the condition on types under which the object
 /// exists.
-void add_fields(std::vector<PlacedField>& all, const ValueGuide& object, const std::string& at,
+void add_fields(std::vector<ScenarioField>& all, const ValueGuide& object, const std::string& at,
                 const std::string& types) {
   for (const ValueGuide& choice : object.choices) add_fields(all, choice, at, types);
   const std::string type = object.type.empty() ? "" : fmt::format("{}type \"{}\"", at, object.type);
@@ -82,8 +82,8 @@ const ValueGuide& scenario_guide() {
   return built.back();
 }
 
-std::vector<PlacedField> placed_fields() {
-  std::vector<PlacedField> all;
+std::vector<ScenarioField> scenario_fields() {
+  std::vector<ScenarioField> all;
   add_fields(all, scenario_guide(), "", "");
   return all;
 }
@@ -93,7 +93,7 @@ std::vector<std::string> scenario_field_paths() {
   const auto add = [&paths](const std::string& path) {
     if (std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
   };
-  for (const PlacedField& placed : placed_fields()) {
+  for (const ScenarioField& placed : scenario_fields()) {
     add(placed.path);
     if (!placed.field->value.choices.empty()) add(placed.path + "." + kTypeField);
   }

@@ -17,13 +17,13 @@ Json scenario_schema();
 const ValueGuide& scenario_guide();
 
 /// A field of a scenario, with its path. Fields of list entries are not included.
-struct PlacedField {
+struct ScenarioField {
   std::string path;   ///< dotted path, such as "rendering.limits.max_force_N"
   std::string types;  ///< condition on types, such as `hand.type "drag"`; empty if all types have the field
   const FieldGuide* field = nullptr;
 };
 /// Returns all fields of scenarios. A field that several types have is listed once for each type.
-std::vector<PlacedField> placed_fields();
+std::vector<ScenarioField> scenario_fields();
 
 /// Returns the paths of all fields, including the fields "type". Each path is listed once.
 std::vector<std::string> scenario_field_paths();

@@ -17,14 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Prepends `directory` to each relative path in a field "file".
-void keep_files(Json& json, const fs::path& directory) {
+void rebase_relative_paths(Json& json, const fs::path& directory) {
   if (!json.is_structured()) return;
   for (auto& entry : json.items()) {
     Json& value = entry.value();
     if (entry.key() == kFileField && value.is_string()) {
       value = (directory / value.get<std::string>()).string();
     } else {
-      keep_files(value, directory);
+      rebase_relative_paths(value, directory);
     }
   }
 }
@@ -71,7 +71,7 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
   if (base.empty()) return json;
   // Read the base, and drop what is not inherited.
   Json merged = read_extended(base, layers);
-  if (base.parent_path() != file.parent_path()) keep_files(merged, fs::current_path() / base.parent_path());
+  if (base.parent_path() != file.parent_path()) rebase_relative_paths(merged, fs::current_path() / base.parent_path());
   for (const char* own : {"name", "expect"}) merged.erase(own);
   // Merge this file over the base.
   json.erase(kExtends);

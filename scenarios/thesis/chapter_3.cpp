@@ -220,7 +220,7 @@ MeasuredValues measure_end_of_contact(const Evidence& e) {
   double touches = 0.6, leaves = 0.5 * std::numbers::pi;
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (touches + leaves);
-    (ideal_place(block, radius, middle) ? touches : leaves) = middle;
+    (ideal_tip_position(block, radius, middle) ? touches : leaves) = middle;
   }
   return {{"tilt", {touches}}};
 }

@@ -41,10 +41,10 @@ Verdict verdict_of(const Json& claim) {
 
 /// Returns the text, cut at a word boundary to at most `most` characters and an ellipsis if it is longer.
 std::string shortened(const std::string& text, std::size_t most) {
-  if (characters_of(text) <= most) return text;
+  if (count_characters(text) <= most) return text;
   std::size_t end = 0;
   for (std::size_t i = 0, seen = 0; i < text.size() && seen < most; ++i) {
-    if (begins_character(text[i])) ++seen;
+    if (starts_character(text[i])) ++seen;
     if (text[i] == ' ') end = i;
   }
   return text.substr(0, text.find_last_not_of(" ,;:", end) + 1) + " …";
@@ -104,7 +104,7 @@ std::string row_of(const Json& claim) {
       fmt::format("| {} | {} | {} | ", text_at(claim, "id"), shortened(text_at(claim, "claim"), kClaim),
                   shortened(text_at(claim, "published"), kPublished));
   const std::string after = last_cells(claim);
-  const std::size_t ellipsis = 2, room = kLongestRow - characters_of(before + after) - ellipsis;
+  const std::size_t ellipsis = 2, room = kLongestRow - count_characters(before + after) - ellipsis;
   return before + shortened(text_at(claim, "measured"), room) + after + "\n";
 }
 

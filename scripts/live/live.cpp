@@ -64,7 +64,7 @@ class Session final : public Observer {
   /// Otherwise the scenario's hand and motion act, and the run begins at once.
   Session(LoadedScenario loaded, bool is_led) : scene_(checked(std::move(loaded))) {
     if (is_led)
-      put_on_pointer();
+      attach_pointer();
     else
       begin();
   }
@@ -163,7 +163,7 @@ class Session final : public Observer {
  private:
   /// Gives hand and wrist to the pointer. Throws InputError if the scenario has another hand or a scripted
   /// position.
-  void put_on_pointer() {
+  void attach_pointer() {
     const Scenario& scenario = scene_.scenario();
     if (!std::holds_alternative<ImpedanceHandFields>(scenario.hand))
       throw InputError("/hand/type: allowed: \"impedance\", whose target the pointer leads");

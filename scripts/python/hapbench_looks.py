@@ -60,7 +60,7 @@ SERIES = (
 # Class of a run -> its name, colour and hatching; light to dark, so that they can be told apart in grey.
 CLASSES = {
     "stable": ("stable", "#CFE6F5", ""),
-    "dying_out": ("decaying", "#E9F3FA", "/////"),
+    "decaying": ("decaying", "#E9F3FA", "/////"),
     "vibrating": ("vibrating", "#E0A030", ""),
     "thrown_out": ("thrown out", "#B05A1E", ""),
     "diverged": ("diverged", "#7A2E00", ""),

@@ -8,7 +8,7 @@ namespace hapbench {
 
 /// Timing of multi-rate contacts: a slow loop finds the contacts while the fast loop renders the force in every
 /// step.
-struct Lateness {
+struct MultiRateSchedule {
   std::int64_t every = 1;  ///< contacts are searched in steps 0, every, 2 every, …
   std::int64_t delay = 0;  ///< steps from a query until its contacts are used
   bool linear = false;     ///< true: depths follow the tool's motion until the next result; false: depths are held
@@ -27,7 +27,7 @@ struct ContactSchedule {
     std::uint64_t row = 0;
   };
 
-  Lateness timing;
+  MultiRateSchedule timing;
   bool has_result = false;  ///< true once a query has returned contacts
   Query latest;             ///< query whose contacts are used; undefined while no query has returned
   std::uint64_t asked = 0;  ///< queries sent so far, including lost queries

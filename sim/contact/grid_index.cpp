@@ -121,7 +121,7 @@ std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points,
   return ordered;
 }
 
-std::size_t most_points_in(const PointShell& shell, const ToolShape::Cover& cover) {
+std::size_t max_points_in(const PointShell& shell, const ToolShape::Cover& cover) {
   if (shell.size() == 0) return 0;
   // Count the points in cells slightly larger than the balls' radius, so that an interval of one diameter meets
   // at most three cells.

@@ -99,6 +99,6 @@ std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points,
 /// the balls are. Used as the capacity of buffers. The bound is the number of balls times the number of points
 /// in the fullest cube of grid cells that can hold such a ball. For the thesis's drill it is a sixth of the
 /// block's points. O(shell size).
-std::size_t most_points_in(const PointShell& shell, const ToolShape::Cover& cover);
+std::size_t max_points_in(const PointShell& shell, const ToolShape::Cover& cover);
 
 }  // namespace hapbench

@@ -46,7 +46,7 @@ std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, do
   evaluations_ += 8;  // about 8 evaluations: the tip centre and its improvement
   tolerance_ = tolerance;
   const SurfaceDistance tip = solid_.at(pose.position);
-  const LookedUp known_distance{pose.position, tip.value};
+  const KnownDistance known_distance{pose.position, tip.value};
   beyond_border_ = !tip.known;
   cells_.clear();
   improve(pose, pose.position);  // also finds depths smaller than the tolerance
@@ -83,7 +83,7 @@ void InsideSearch::halve(const ToolPose& pose, const Cell* parents, std::size_t 
       Cell& half = halves[points_.size()] = parents[i];
       half.centre[axis] += side * half.half[axis];
       half.half[axis] *= 0.5;
-      half.bound = solid_.deepest_in({half.centre - half.half, half.centre + half.half});
+      half.bound = solid_.max_depth_in({half.centre - half.half, half.centre + half.half});
       points_.push(0, half.centre, Vec3::UnitZ());
     }
   }
@@ -140,8 +140,8 @@ bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
 /// Moves from a point of the tool to deeper points of the tool and updates the largest depth.
 void InsideSearch::improve(const ToolPose& pose, Vec3 point) noexcept {
   constexpr int kMoves = 8, kHalvings = 6;
-  const PlaceArrays answer{x_.data(), y_.data(), z_.data()};
-  LookedUp last{point, solid_.at(point).value};
+  const MutablePointArrays answer{x_.data(), y_.data(), z_.data()};
+  KnownDistance last{point, solid_.at(point).value};
   const auto try_point = [&](Vec3 q) {
     if (!into_tool(pose, q)) return false;
     const SurfaceDistance phi = solid_.at(q, &last);
@@ -155,8 +155,8 @@ void InsideSearch::improve(const ToolPose& pose, Vec3 point) noexcept {
   // Move towards the support point along -grad phi; halve the move until the depth increases.
   for (int move = 0; move < kMoves; ++move) {
     one_.clear();
-    one_.push(0, point, solid_.gradient(point, kNormalsOver * tool_.half_width()));
-    tool_.foremost_places(pose, one_, answer);
+    one_.push(0, point, solid_.gradient(point, kGradientStep * tool_.half_width()));
+    tool_.support_points(pose, one_, answer);
     const Vec3 displacement = Vec3(x_[0], y_[0], z_[0]) - point;
     bool moved = false;
     double fraction = 1.0;
@@ -229,7 +229,7 @@ InsideBound::Evaluation InsideBound::evaluate(Ball& ball, const BoundRequest& q)
   ++evaluations_;
   const SurfaceDistance phi = solid_.at(centre, ball.near ? &*ball.near : nullptr);
   ball.near.reset();
-  if (phi.known) ball.near = LookedUp{centre, phi.value};
+  if (phi.known) ball.near = KnownDistance{centre, phi.value};
   return {beyond - phi.value, phi.known};
 }
 
@@ -263,11 +263,11 @@ double InsideBound::bound_of_segment(std::size_t k, const BoundRequest& request)
 double InsideBound::at(const ToolPose& pose, double moved, double turned, double enough, bool best) {
   const Box box = tool_.box_near(pose, moved + turned * tool_.reach(), solid_.region());
   if ((box.min.array() > box.max.array()).any()) return 0.0;
-  const double in_box = solid_.deepest_in(box);
+  const double in_box = solid_.max_depth_in(box);
   return in_box <= enough ? in_box : std::min(in_box, bound_of_segment(0, {pose, moved, turned, enough, best}));
 }
 
-double InsideBound::roughly_at(const ToolPose& pose, double moved, double turned) {
+double InsideBound::coarse_bound_at(const ToolPose& pose, double moved, double turned) {
   if (segments_[0].balls.empty()) segments_[0].balls = balls_of(segments_[0]);
   return evaluate(segments_[0].balls.front(), {pose, moved, turned, 0.0, true}).bound;
 }

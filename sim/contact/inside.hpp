@@ -10,7 +10,7 @@
 namespace hapbench {
 
 /// Step for differences of phi (surface normals), relative to the tool's half width.
-inline constexpr double kNormalsOver = 1e-3;
+inline constexpr double kGradientStep = 1e-3;
 
 /// Computes how deep a tool is inside a solid: max(0, -phi) over the tool's body, where phi is the signed
 /// distance to the solid's surface, negative inside. This is not the depth of a contact, which saturates at the
@@ -46,8 +46,8 @@ class InsideSearch {
   /// A box of the search and the upper bound of the depth in it.
   struct Cell {
     Vec3 centre, half;
-    double bound;             ///< upper bound of the depth in the cell [m]
-    LookedUp known_distance;  ///< a known distance, in this cell or in a cell that contains it
+    double bound;                  ///< upper bound of the depth in the cell [m]
+    KnownDistance known_distance;  ///< a known distance, in this cell or in a cell that contains it
   };
   void halve(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept;
   bool may_be_deepest(double bound) const noexcept {
@@ -91,7 +91,7 @@ class InsideBound {
   /// unknown count as outside. Allocates when it uses a segment of the tool for the first time.
   double at(const ToolPose& pose, double moved, double turned, double enough, bool best);
   /// Returns a coarser bound with the same meaning, from one ball around the whole tool.
-  double roughly_at(const ToolPose& pose, double moved, double turned);
+  double coarse_bound_at(const ToolPose& pose, double moved, double turned);
 
   /// Number of distances evaluated so far.
   std::size_t looks() const noexcept { return evaluations_; }
@@ -99,8 +99,8 @@ class InsideBound {
  private:
   /// A ball around a segment of the tool.
   struct Ball {
-    double position, radius;       ///< position of the centre on the axis, from the tip centre [m]; radius [m]
-    std::optional<LookedUp> near;  ///< last centre with a known distance; empty if unknown
+    double position, radius;            ///< position of the centre on the axis, from the tip centre [m]; radius [m]
+    std::optional<KnownDistance> near;  ///< last centre with a known distance; empty if unknown
   };
   /// A segment of the tool along its axis.
   struct Segment {

@@ -30,7 +30,7 @@ double largest_scale(const PointShell& shell, const ToolShape& tool) {
 /// tool, taken from a uniform grid, and uses the list until the tool has moved or turned farther than the skin.
 /// Its contacts are bitwise identical to ShellQuery's.
 ///
-/// No point is missed: a point of the tool moves by at most ToolShape::moved_at_most since the list was built.
+/// No point is missed: a point of the tool moves by at most ToolShape::displacement_bound since the list was built.
 /// While this distance is at most the skin, every shell point that touches the tool is in the list. Beyond, the
 /// list is rebuilt. The slow loop of thesis 2.2 therefore only saves work here.
 ///
@@ -43,7 +43,7 @@ class NeighbourListQuery final : public ContactQuery {
       : shell_(&shell),
         tool_(&tool),
         normal_skin_(kSkinPerHalfWidth * tool.half_width()),
-        capacity_(most_points_in(shell, tool.cover(margin_of(normal_skin_, largest_scale(shell, tool))))),
+        capacity_(max_points_in(shell, tool.cover(margin_of(normal_skin_, largest_scale(shell, tool))))),
         grid_(shell),
         // A contiguous range of n points meets at most n / 8 + 2 packs.
         marks_(shell.size() / simd::lanes + 2 * grid_.columns()),
@@ -57,7 +57,7 @@ class NeighbourListQuery final : public ContactQuery {
 
     // Rebuild the list if the tool may have moved out of the skin. The comparison is false for a pose that is
     // not finite.
-    const bool list_holds = has_list_ && tool_->moved_at_most(list_pose_, pose) * (1.0 + kSlack) <= skin_;
+    const bool list_holds = has_list_ && tool_->displacement_bound(list_pose_, pose) * (1.0 + kSlack) <= skin_;
     if (!list_holds) rebuild(pose);
 
     // Test the listed points. An empty list that is still valid proves that there are no contacts.

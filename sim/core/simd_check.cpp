@@ -4,7 +4,7 @@
 #include <cstdio>
 
 int main() {
-  const std::string wrong = hapbench::simd::wrong_operation(hapbench::simd::kOperations);
+  const std::string wrong = hapbench::simd::first_wrong_operation(hapbench::simd::kOperations);
   if (wrong.empty()) return 0;
   std::fprintf(stderr,
                "hapbench: compiled by this compiler, \"%s\" of eight doubles at a time is wrong; use another one or "

@@ -119,7 +119,7 @@ inline bool selection_is_right(unsigned mask, const AlignedDoubles& from) {
 
 /// Evaluates all operations on random and special numbers. Returns the name of the first wrong operation, or an
 /// empty string if all are correct.
-inline std::string wrong_operation(std::span<const Operation> operations) {
+inline std::string first_wrong_operation(std::span<const Operation> operations) {
   Random random(1);
   for (unsigned i = 0; i < 10'000; ++i) {
     const AlignedDoubles a = random_numbers(random), b = random_numbers(random);

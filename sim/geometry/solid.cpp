@@ -19,14 +19,14 @@ template <class Shape>
 class ShapeSolid final : public Solid {
  public:
   ShapeSolid(const Shape& shape, const Box& region) : Solid(region), shape_(shape) {}
-  SurfaceDistance at(const Vec3& q, const LookedUp*) const noexcept override {
+  SurfaceDistance at(const Vec3& q, const KnownDistance*) const noexcept override {
     return {signed_distance(shape_, q), is_known(q)};
   }
-  double deepest_in(const Box& box) const noexcept override {
+  double max_depth_in(const Box& box) const noexcept override {
     if constexpr (std::is_same_v<Shape, Slot>)
       return std::max(-box.min.x(), box.max.x()) - shape_.gap / 2;
     else if constexpr (std::is_same_v<Shape, ConicalHole>)
-      return Solid::deepest_in(box);
+      return Solid::max_depth_in(box);
     else  // below the flat top
       return -(std::is_same_v<Shape, Hole2d> ? box.min.y() : box.min.z());
   }
@@ -58,7 +58,7 @@ class MeshSolid final : public Solid {
     find_borders(sides);
   }
 
-  SurfaceDistance at(const Vec3& q, const LookedUp* near) const noexcept override {
+  SurfaceDistance at(const Vec3& q, const KnownDistance* near) const noexcept override {
     const auto nearest = nearest_triangle(q, near);
     if (!nearest) return {kFar, false};  // only if q is not finite
     const double distance = std::sqrt(nearest->distance2);
@@ -90,7 +90,7 @@ class MeshSolid final : public Solid {
   Vec3 normal(std::size_t t) const {
     return (vertex(t, 1) - vertex(t, 0)).cross(vertex(t, 2) - vertex(t, 0)).stableNormalized();
   }
-  std::optional<TriangleTree::Nearest> nearest_triangle(const Vec3& q, const LookedUp* near) const {
+  std::optional<TriangleTree::Nearest> nearest_triangle(const Vec3& q, const KnownDistance* near) const {
     return tree_.nearest(q, near == nullptr ? kFar : (1.0 + 1e-9) * (std::abs(near->value) + (q - near->place).norm()));
   }
   bool beyond(const Vec3& q) const {
@@ -160,7 +160,7 @@ class PointSolid final : public Solid {
         tree_(tree_of(points)),
         spacing_(2.0 * median_spacing()) {}
 
-  SurfaceDistance at(const Vec3& q, const LookedUp*) const noexcept override {
+  SurfaceDistance at(const Vec3& q, const KnownDistance*) const noexcept override {
     const auto nearest = tree_.nearest(q, kFar);
     if (!nearest) return {kFar, false};  // only if q is not finite
     // Split q - p into the height h along the normal and the tangential part.

@@ -23,7 +23,7 @@ struct SurfaceDistance {
 /// Signed distance computed earlier at a nearby point, used to shorten the next search. The distance from another
 /// point to the surface is at most |value| plus the distance between the two points. A point closer to `place` than
 /// |value| lies on the same side of the surface as `place`.
-struct LookedUp {
+struct KnownDistance {
   /// Point at which the distance was computed [m].
   Vec3 place;
   /// Signed distance at `place` [m].
@@ -38,7 +38,7 @@ class Solid {
   virtual ~Solid() = default;
   /// Returns the signed distance at a point. `near`: a distance known at a nearby point, which shortens the search,
   /// or null. Allocates nothing.
-  virtual SurfaceDistance at(const Vec3& point, const LookedUp* near = nullptr) const noexcept = 0;
+  virtual SurfaceDistance at(const Vec3& point, const KnownDistance* near = nullptr) const noexcept = 0;
   /// Box that contains every point known to be inside the body [m].
   const Box& region() const noexcept { return region_; }
   /// Upper bound of the error of a distance [m].
@@ -47,7 +47,7 @@ class Solid {
   virtual std::size_t bytes() const noexcept { return 0; }
   /// Upper bound of the depth of all points in the box [m], without evaluating the distance; infinity if none is
   /// known.
-  virtual double deepest_in(const Box&) const noexcept { return std::numeric_limits<double>::infinity(); }
+  virtual double max_depth_in(const Box&) const noexcept { return std::numeric_limits<double>::infinity(); }
   /// Returns the unit gradient of phi: it points away from the surface outside of the body and towards the surface
   /// inside. The default computes it by central differences over `step` [m] and returns +z if they vanish.
   virtual Vec3 gradient(const Vec3& point, double step) const noexcept;

@@ -228,7 +228,7 @@ std::vector<Hinge> hinges_of(const std::vector<Triangle>& triangles, const std::
     const TriangleSide &a = edge.front(), &b = edge.back();
     const Vec3 middle = 0.5 * (vertices[a.low] + vertices[a.high]);
     if (edge.size() == 1) found.open_edges.push_back(middle);
-    if (edge.size() > 2) found.crowded_edges.push_back(middle);
+    if (edge.size() > 2) found.non_manifold_edges.push_back(middle);
     if (edge.size() == 2) hinges.push_back({{a.triangle, b.triangle}, {a.corner, b.corner}, a.forward != b.forward});
   });
   return hinges;
@@ -440,8 +440,8 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
     throw MeshError("is not orientable: no winding fits all faces around " + text(soup.vertices[t[hinge->corners[0]]]) +
                     "; allowed: a surface with two sides");
   }
-  result.findings.rewound_triangles = parts.follow_majority();
-  result.findings.inside_out_parts = parts.orient_outwards(soup.vertices, triangles);
+  result.findings.flipped_triangles = parts.follow_majority();
+  result.findings.inverted_parts = parts.orient_outwards(soup.vertices, triangles);
 
   // Build the half-edge mesh with one vertex for each triangle fan.
   Fans fans(triangles.size());

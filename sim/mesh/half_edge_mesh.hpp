@@ -42,10 +42,10 @@ std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, doubl
 /// Repairs made by mesh_from_triangles() and irregularities that it found.
 struct MeshFindings {
   std::size_t degenerate_triangles = 0;  ///< triangles with two equal corners; omitted
-  std::size_t rewound_triangles = 0;     ///< triangles wound against the majority of their part; reversed
-  std::size_t inside_out_parts = 0;      ///< closed parts whose normals pointed inwards; reversed
+  std::size_t flipped_triangles = 0;     ///< triangles wound against the majority of their part; reversed
+  std::size_t inverted_parts = 0;        ///< closed parts whose normals pointed inwards; reversed
   /// Midpoints [m] of the edges with more than two triangles (non-manifold edges). The surface is cut along them.
-  std::vector<Vec3> crowded_edges = {};
+  std::vector<Vec3> non_manifold_edges = {};
   /// Midpoints [m] of the edges with one triangle only, where the surface is open.
   std::vector<Vec3> open_edges = {};
 };

@@ -71,10 +71,10 @@ void TargetTask::advance(const Vec3& tip, double spring, double rendered, double
   }
 }
 
-/// Returns true if the checked force is at least least_press. For an active target, also returns true if the
+/// Returns true if the checked force is at least min_press_force. For an active target, also returns true if the
 /// force has been lower for no longer than the grace time.
 bool TargetTask::is_pressed(double dt) noexcept {
-  if (checked_ >= rules_.least_press) {
+  if (checked_ >= rules_.min_press_force) {
     low_for_ = 0.0;
     return true;
   }

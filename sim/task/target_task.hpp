@@ -17,13 +17,13 @@ enum class TargetDisplay { panel, height };
 /// through a first-order low-pass filter. The task also checks this reading, unless the rules have a Threshold.
 struct Gauge {
   double cutoff = 30.0;  ///< cut-off frequency of the low-pass [Hz]
-  double grace = 0.1;    ///< time for which the reading may stay below least_press without interrupting the hold [s]
+  double grace = 0.1;  ///< time for which the reading may stay below min_press_force without interrupting the hold [s]
 };
 
 /// The force that the task checks: f_render, the model reaction force, or f_spring.
 enum class PressForce { rendered, spring };
 
-/// Effect on the time on the target when the force stays below least_press for longer than the grace time.
+/// Effect on the time on the target when the force stays below min_press_force for longer than the grace time.
 enum class LowForce {
   restarts,  ///< the time restarts from 0
   pauses,    ///< the time is held
@@ -31,12 +31,12 @@ enum class LowForce {
   nothing    ///< the time continues
 };
 
-/// The force along +z that the task compares with least_press: single samples, or filtered by a first-order
+/// The force along +z that the task compares with min_press_force: single samples, or filtered by a first-order
 /// low-pass. The gauge that the subject sees may show a different force.
 struct Threshold {
   PressForce force = PressForce::rendered;
   std::optional<double> cutoff = {};  ///< cut-off frequency of the low-pass [Hz]; nullopt: single samples
-  double grace = 0.0;                 ///< time below least_press that does not interrupt the hold [s]
+  double grace = 0.0;                 ///< time below min_press_force that does not interrupt the hold [s]
   LowForce low = LowForce::restarts;
 };
 
@@ -49,7 +49,7 @@ struct TargetRules {
   double tolerance = 0.0002;            ///< largest distance at which the tip is on the target [m]
   /// Largest distance at which force and speed are logged [m]; nullopt: tolerance.
   std::optional<double> logged = {};
-  double least_press = 1.0;                 ///< smallest force along +z that activates the task and keeps it active [N]
+  double min_press_force = 1.0;             ///< smallest force along +z that activates the task and keeps it active [N]
   std::optional<Gauge> gauge = {};          ///< nullopt: the subject sees every sample of the rendered force
   std::optional<Threshold> threshold = {};  ///< nullopt: the task checks the force that the subject sees
   double hold = 1.0;                        ///< uninterrupted time on the target after which it is removed [s]
@@ -113,8 +113,8 @@ class TargetTask {
   double shown_ = 0.0;    ///< time since the target appeared or, once active, since its activation [s]
   double held_ = 0.0;     ///< uninterrupted time on the target [s]
   double reading_ = 0.0;  ///< reading of the gauge [N]
-  double checked_ = 0.0;  ///< force compared with least_press [N]
-  double low_for_ = 0.0;  ///< time since `checked_` was last at least least_press [s]
+  double checked_ = 0.0;  ///< force compared with min_press_force [N]
+  double low_for_ = 0.0;  ///< time since `checked_` was last at least min_press_force [s]
 };
 
 }  // namespace hapbench

@@ -125,14 +125,15 @@ void push(const ToolPose pose, const PointColumns points, std::size_t packs, Con
 }
 
 /// Interval low <= s <= high of the tool's axis, measured from the tip centre [m]. Empty if low > high.
-struct AxisPart {
+struct AxisInterval {
   double low, high;
 };
 
 /// Restricts an interval of the axis to the part of the body that may be near `bounds`; the body lies within
 /// `radius` [m] of its axis. A point of the axis whose disc meets `bounds` lies in `bounds` grown by the radius on
 /// all sides. Comparisons with NaN leave the interval unchanged.
-inline AxisPart part_near(AxisPart part, const ToolPose& pose, double radius, const Box& bounds) noexcept {
+inline AxisInterval axis_interval_near(AxisInterval part, const ToolPose& pose, double radius,
+                                       const Box& bounds) noexcept {
   for (int k = 0; k < 3; ++k) {
     const double a = pose.axis[k];
     const double from = bounds.min[k] - radius - pose.position[k], to = bounds.max[k] + radius - pose.position[k];
@@ -148,7 +149,7 @@ inline AxisPart part_near(AxisPart part, const ToolPose& pose, double radius, co
 
 /// Returns the bounding box of all discs of this radius perpendicular to an interval of the axis [m]; an empty box
 /// if the interval is empty.
-inline Box box_around(const AxisPart& part, const ToolPose& pose, double radius) noexcept {
+inline Box box_around(const AxisInterval& part, const ToolPose& pose, double radius) noexcept {
   if (part.low > part.high) return {Vec3::Ones(), -Vec3::Ones()};
   const Vec3 tip = pose.position + part.high * pose.axis;
   const Vec3 bottom = pose.position + part.low * pose.axis;

@@ -87,7 +87,7 @@ double exit_distance(const Cylinder& tool, const ToolPose& pose, const Vec3& poi
   if (slope < 0.0) d = std::min(d, if_positive(-(tool.length() + s) / slope));
   // An exit farther away than the longest line through the body lies on the continuation of a surface beyond the
   // body: the point is on another surface, and the ray is almost tangential to it. Such depths would have no bound.
-  return d > tool.longest_exit() ? 0.0 : d;
+  return d > tool.max_exit_distance() ? 0.0 : d;
 }
 
 }  // namespace
@@ -129,8 +129,8 @@ void Cylinder::mark_near(const ToolPose& pose, double margin, const PointArrays&
 
 Box Cylinder::box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept {
   const double radius = radius_ + margin;
-  const AxisPart whole{-(length_ + margin), tip_ == Tip::round ? radius : margin};
-  const AxisPart part = part_near(whole, pose, radius, bounds);
+  const AxisInterval whole{-(length_ + margin), tip_ == Tip::round ? radius : margin};
+  const AxisInterval part = axis_interval_near(whole, pose, radius, bounds);
   return box_around(part, pose, radius);
 }
 
@@ -226,8 +226,8 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
   contacts.pad();
 }
 
-void Cylinder::foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
-                               const PlaceArrays& places) const noexcept {
+void Cylinder::support_points(const ToolPose& pose, const ContactBuffer& contacts,
+                              const MutablePointArrays& places) const noexcept {
   const Pack radius(radius_), length(length_), zero(0.0), one(1.0), along_side(kAlongSide);
   // For a flat tip the condition forward > 2 is never true.
   const Pack ball_from(tip_ == Tip::round ? kAlongSide : 2.0);

@@ -25,7 +25,7 @@ class Cylinder final : public ToolShape {
   double length() const noexcept { return length_; }
   Tip tip() const noexcept { return tip_; }
   /// Upper bound of exit_distances() [m].
-  double longest_exit() const noexcept { return length_ + 3.0 * radius_; }
+  double max_exit_distance() const noexcept { return length_ + 3.0 * radius_; }
 
   bool convex() const noexcept override { return true; }
   bool is_axisymmetric() const noexcept override { return true; }
@@ -49,8 +49,8 @@ class Cylinder final : public ToolShape {
   /// If several surfaces are equally near, prefers the side, then the tip, then the bottom.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
-  void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
-                       const PlaceArrays& places) const noexcept override;
+  void support_points(const ToolPose& pose, const ContactBuffer& contacts,
+                      const MutablePointArrays& places) const noexcept override;
   /// The grown cylinder extends beyond a flat tip, so its tip centre lies `margin` ahead along the axis.
   Grown grown(double margin) const override;
 

@@ -374,7 +374,7 @@ ToolShape::Cover MeshTool::cover(double margin) const {
   return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * 0.5 * math::hypot(across, length / balls)};
 }
 
-double MeshTool::moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept {
+double MeshTool::displacement_bound(const ToolPose& from, const ToolPose& to) const noexcept {
   const double moved = (to.position - from.position).norm();
   // In most steps the tool does not rotate.
   if (to.axis == from.axis && to.roll == from.roll) return moved;
@@ -500,8 +500,8 @@ void MeshTool::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
   contacts.pad();
 }
 
-void MeshTool::foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
-                               const PlaceArrays& places) const noexcept {
+void MeshTool::support_points(const ToolPose& pose, const ContactBuffer& contacts,
+                              const MutablePointArrays& places) const noexcept {
   const Mat3 rotation = pose.rotation();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vec3 point = rotation.transpose() * (contacts.point(i) - pose.position);

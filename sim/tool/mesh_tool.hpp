@@ -45,7 +45,7 @@ class MeshTool final : public ToolShape {
   Cover cover(double margin) const override;
   /// A rotation by an angle b moves a point by at most 2 sin(b/2) times its distance from the tip centre. The
   /// Frobenius norm of the difference of the rotation matrices is 2 sqrt(2) sin(b/2), from which the bound follows.
-  double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept override;
+  double displacement_bound(const ToolPose& from, const ToolPose& to) const noexcept override;
   void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   /// Marches along the ray and refines the last step by regula falsi. Steps are too short to cross the surface (the
@@ -57,8 +57,8 @@ class MeshTool final : public ToolShape {
                            ContactBuffer& contacts) const noexcept override;
   /// Returns points of the mesh's convex hull. Costs about 100 dot products for each contact of a smooth mesh; see
   /// SupportTable.
-  void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
-                       const PlaceArrays& places) const noexcept override;
+  void support_points(const ToolPose& pose, const ContactBuffer& contacts,
+                      const MutablePointArrays& places) const noexcept override;
   /// Returns a cylinder around the body.
   Grown grown(double margin) const override;
 

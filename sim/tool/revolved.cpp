@@ -262,8 +262,8 @@ void Revolved::mark_near(const ToolPose& pose, double margin, const PointArrays&
 }
 
 Box Revolved::box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept {
-  const AxisPart whole{meridian_.low - margin, std::max(meridian_.high, meridian_.ball) + margin};
-  const AxisPart part = part_near(whole, pose, meridian_.widest + margin, bounds);
+  const AxisInterval whole{meridian_.low - margin, std::max(meridian_.high, meridian_.ball) + margin};
+  const AxisInterval part = axis_interval_near(whole, pose, meridian_.widest + margin, bounds);
   // Points in `bounds` have their s in the interval, and points of the body near them have their s within the
   // margin of it.
   double widest = part.high + margin >= 0.0 ? meridian_.ball : 0.0;
@@ -390,8 +390,8 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
   contacts.pad();
 }
 
-void Revolved::foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
-                               const PlaceArrays& places) const noexcept {
+void Revolved::support_points(const ToolPose& pose, const ContactBuffer& contacts,
+                              const MutablePointArrays& places) const noexcept {
   const Meridian& m = meridian_;
   const Pack zero(0.0), one(1.0), along_line(kAlongLine), ball(m.ball);
   const PackVector position(pose.position), axis(pose.axis);

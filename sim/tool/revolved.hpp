@@ -61,8 +61,8 @@ class Revolved final : public ToolShape {
   /// face replaces an edge.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
-  void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
-                       const PlaceArrays& places) const noexcept override;
+  void support_points(const ToolPose& pose, const ContactBuffer& contacts,
+                      const MutablePointArrays& places) const noexcept override;
   /// Returns the convex hull of squares about the profile's points, whose corners are sqrt(2) margin away from the
   /// points. A round tip stays round if no part of the body is wider than the tip.
   Grown grown(double margin) const override;

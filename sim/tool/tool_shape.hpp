@@ -16,7 +16,7 @@ struct PointArrays {
   const double *x, *y, *z;
 };
 /// Output arrays for points in the layout of PointArrays.
-struct PlaceArrays {
+struct MutablePointArrays {
   double *x, *y, *z;
 };
 
@@ -89,7 +89,7 @@ class ToolShape {
   /// only the part of the body near `bounds`. Empty if no part is near.
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
   /// Number and radius [m] of balls whose union contains the body and everything that `mark_near` marks with this
-  /// margin. Used to bound the number of points that the body can touch (most_points_in, grid_index.hpp); many
+  /// margin. Used to bound the number of points that the body can touch (max_points_in, grid_index.hpp); many
   /// small balls give a tighter bound than one ball. The default is one ball, valid for a `mark_near` that reaches
   /// at most twice the margin.
   struct Cover {
@@ -100,7 +100,7 @@ class ToolShape {
   /// Returns an upper bound of the displacement of all points of the body between two poses [m]. The default is
   /// valid for a solid of revolution: the shortest rotation from axis a to axis a' moves a point by at most |a' -
   /// a| times its distance from the tip centre, and a rotation about the axis maps the body to itself.
-  virtual double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept {
+  virtual double displacement_bound(const ToolPose& from, const ToolPose& to) const noexcept {
     const double moved = (to.position - from.position).norm();
     // In most steps the tool does not rotate. Adding a zero rotation would not change the result.
     if (to.axis == from.axis) return moved;
@@ -143,8 +143,8 @@ class ToolShape {
                                    ContactBuffer& contacts) const noexcept = 0;
   /// Writes the support point of the body in the direction -n_i for each contact normal n_i: argmin <q, n_i> over
   /// the points q of the body. If the support point is not unique, writes the support point beside the contact.
-  virtual void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
-                               const PlaceArrays& places) const noexcept = 0;
+  virtual void support_points(const ToolPose& pose, const ContactBuffer& contacts,
+                              const MutablePointArrays& places) const noexcept = 0;
 
   /// Shape that encloses the body with a margin. Its tip centre lies `forward` [m] ahead of the body's along the
   /// axis.

@@ -61,7 +61,7 @@ struct Stages {
   bool local_average;
   std::optional<ReductionConfig> reduction;
   bool controlled = false;
-  std::optional<Lateness> late = {};
+  std::optional<MultiRateSchedule> late = {};
   std::optional<ForceStageConfig> stage = {};
 };
 const Stages kStages[] = {
@@ -71,8 +71,8 @@ const Stages kStages[] = {
     {"averaged", true, {}},
     {"averaged_and_reduced", true, ReductionConfig{}},
     {"controlled", false, ReductionConfig{}, true},
-    {"held", false, {}, false, Lateness{.every = 3, .delay = 0, .dropout = 0.3}},
-    {"late_and_linear", false, ReductionConfig{}, true, Lateness{.every = 3, .delay = 7, .linear = true}},
+    {"held", false, {}, false, MultiRateSchedule{.every = 3, .delay = 0, .dropout = 0.3}},
+    {"late_and_linear", false, ReductionConfig{}, true, MultiRateSchedule{.every = 3, .delay = 7, .linear = true}},
     {"with_energy_tank", false, {}, true, {}, EnergyTankConfig{}},
     {"actuator_limited", false, {}, false, {}, ActuatorLimitedPassivityConfig{}},
 };

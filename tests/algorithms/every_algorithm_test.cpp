@@ -284,9 +284,9 @@ TEST_P(RigidMotion, OfTheWholeSceneTurnsForceAndTorque) {
 
 /// Scales the algorithm's own parameters in newtons, such as a force at which it saturates.
 RenderingConfig with_forces_scaled(RenderingConfig config, double s) {
-  for (const OwnParameter& own : find_algorithm(config.algorithm)->own_parameters) {
+  for (const AlgorithmParameter& own : find_algorithm(config.algorithm)->algorithm_parameters) {
     if (std::string_view(own.range.unit) == "N")
-      config.parameters[config.algorithm][own.name] = s * own_value(config, config.algorithm.c_str(), own);
+      config.parameters[config.algorithm][own.name] = s * parameter_value(config, config.algorithm.c_str(), own);
   }
   return config;
 }

@@ -191,7 +191,7 @@ void step_benchmark(benchmark::State& state, const std::string& name) {
     if (!run.at_end()) return refute(state, "ended early");
   }
   const SearchWork& work = run.simulation().source().work();
-  state.counters["contacts"] = told(run.metrics(), "colliding_mean").value_or(0.0);
+  state.counters["contacts"] = reported(run.metrics(), "colliding_mean").value_or(0.0);
   state.counters["points_tested"] = static_cast<double>(work.points_tested) / static_cast<double>(work.queries);
 }
 
@@ -269,13 +269,13 @@ std::unique_ptr<WatchedRun> filled_hole(std::size_t n, Skips skips) {
 void step(benchmark::State& state, std::size_t n) {
   const auto wrong = [n]() -> std::string {
     const auto run = filled_hole(n, Skips::on), reference = filled_hole(n, Skips::off);
-    if (told(run->metrics, "colliding_mean") != static_cast<double>(n)) return "not every point is a contact";
+    if (reported(run->metrics, "colliding_mean") != static_cast<double>(n)) return "not every point is a contact";
     return run->metrics.state_hash() == reference->metrics.state_hash() ? "" : "not the run without skips";
   };
   if (!proved(state, fmt::format("growth/step/{}", n), wrong)) return;
   const auto run = filled_hole(n, Skips::on);
   while (state.KeepRunningBatch(kStepsAtATime)) run->simulation.advance(kStepsAtATime);
-  state.counters["contacts"] = told(run->metrics, "colliding_mean").value_or(0.0);
+  state.counters["contacts"] = reported(run->metrics, "colliding_mean").value_or(0.0);
 }
 
 void add_growth() {

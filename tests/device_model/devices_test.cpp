@@ -24,7 +24,7 @@ TEST(ForcePath, ChangesNothingByDefault) {
   ForcePath path({}, kT);
   const Vec3 force(1.0 / 3.0, -200.0, 1e-9);
   EXPECT_EQ(path.hold(force).after, force);
-  EXPECT_EQ(path.switch_part(), 0.0);
+  EXPECT_EQ(path.switch_fraction(), 0.0);
 }
 
 TEST(ForcePath, RoundsToTheStepHalvesAwayFromZero) {
@@ -52,7 +52,7 @@ TEST(ForcePath, LimitsTheChangeOfTheForce) {
 TEST(ForcePath, DelaysByWholeAndFractionalPeriods) {
   for (const double delay : {0.0, 0.25, 1.0, 2.5, 3.0}) {
     ForcePath path({.delay_samples = delay}, kT);
-    EXPECT_EQ(path.switch_part(), delay - std::floor(delay));
+    EXPECT_EQ(path.switch_fraction(), delay - std::floor(delay));
     for (int round = 0; round < 2; ++round) {
       for (int k = 0; k < 10; ++k) {
         // Force k + 1 acts from k + delay on. Before the first one the force is zero.
@@ -92,7 +92,7 @@ TEST(VelocityFilter, LowPassesAnswerAStepLikeTheContinuousOnes) {
 /// Of a slow sine the sampled filter makes what |H|^2 = 1 / (1 + (f / f_c)^(2 n)) says, but for the share of the sine
 /// that holding it over a period loses, below (pi f T)^2.
 TEST(SampledLowPass, HasHalfThePowerAtItsCutOffWhateverItsOrder) {
-  for (std::size_t order = 1; order <= LowPassFilter::kHighest; ++order) {
+  for (std::size_t order = 1; order <= LowPassFilter::kMaxOrder; ++order) {
     for (const double f : {2.0, 4.0, 6.0}) {
       std::complex<double> response = 0.0;
       for (const LowPassMode& mode : low_pass_modes({4.0, order}, kT))
@@ -180,7 +180,8 @@ TEST(DevicePresets, HaveNamesOfTheirOwnAndPossibleNumbers) {
     EXPECT_GT(preset.max_stiffness.value, 0.0);
     EXPECT_EQ(preset.max_stiffness.source, kFromChai3d);
     EXPECT_GT(preset.max_damping.value, 0.0);
-    const ImpedanceDeviceConfig soft = config_of(preset, PresetEnd::soft), stiff = config_of(preset, PresetEnd::stiff);
+    const ImpedanceDeviceConfig soft = config_of(preset, PresetVariant::soft),
+                                stiff = config_of(preset, PresetVariant::stiff);
     EXPECT_EQ(soft.coulomb, 0.0) << "no friction of these devices is published";
     EXPECT_EQ(stiff.coulomb, 2.0 * config.coulomb);
     EXPECT_LE(soft.handle_mass, config.handle_mass);

@@ -57,7 +57,7 @@ TEST(ElasticMotion, StickingMotorsBreakLooseWhereTheClosedFormSays) {
   for (const double after : {-1e-9, 1e-9, 1e-4}) {
     ElasticMotion motion = motion_of(config);
     motion.reset({});
-    motion.take_hand({kPush, 0, 0});
+    motion.set_hand_force({kPush, 0, 0});
     const double time = loose + after;
     motion.advance(Vec3::Zero(), motion.stretch(time));
     const double swung = kPush / k * (1.0 - std::cos(w * loose)), speed = kPush * w / k * std::sin(w * loose);
@@ -126,7 +126,7 @@ TEST(ElasticMotion, WithDryFrictionFollowsAnIndependentIntegrator) {
     for (int k = 0; k < 150; ++k) {
       const double motors = 1.2 * random.normal(), push = 0.5 * random.normal();
       const double at_rest = push + hand.damping * motion.handle().velocity.x();
-      motion.take_hand({push, 0, 0});
+      motion.set_hand_force({push, 0, 0});
       motion.advance({motors, 0, 0}, stretch);
       fine.advance(motors, at_rest, fine.x_h, static_cast<int>(std::lround(kT / h)));
       worst = std::max(
@@ -154,7 +154,7 @@ TEST(ElasticMotion, KeepsItsEnergyBalance) {
     Random random(2);
     double turned = 0.0;
     for (int k = 0; k < 2000; ++k) {
-      motion.take_hand({random.normal(), random.normal(), random.normal()});
+      motion.set_hand_force({random.normal(), random.normal(), random.normal()});
       motion.advance({2.0 * random.normal(), 0, random.normal()}, first);
       motion.advance({random.normal(), 0, random.normal()}, second);
       const DeviceEnergy e = motion.energy();
@@ -258,7 +258,7 @@ TEST(TimeOfRest, IsWhereTheVelocityIsZeroForTheFirstTime) {
   laws.insert(laws.end(), {{}, {1e-7, 0.0}, {20.0, 0.0}, {20.0, 100.0}});  // the last one critical
   for (const MotionLaw& law : laws) {
     for (const auto& [v, g] : {std::pair{0.1, -3.0}, {-0.1, 3.0}, {1e-9, -3.0}, {0.1, 3.0}, {-2.0, 0.3}}) {
-      const double t = time_of_rest(law, v, g);
+      const double t = time_to_stop(law, v, g);
       ASSERT_GT(t, 0.0);
       const double scale = std::abs(v) + std::abs(g) * 0.01;
       if (std::isfinite(t)) {
@@ -272,8 +272,8 @@ TEST(TimeOfRest, IsWhereTheVelocityIsZeroForTheFirstTime) {
       }
     }
   }
-  EXPECT_EQ(time_of_rest({20.0, 0.0}, 0.1, 3.0), std::numeric_limits<double>::infinity()) << "it accelerates";
-  EXPECT_NEAR(time_of_rest({0.0, 100.0}, 0.0, 1.0), 0.31415926535897931, 1e-15) << "half a swing";
+  EXPECT_EQ(time_to_stop({20.0, 0.0}, 0.1, 3.0), std::numeric_limits<double>::infinity()) << "it accelerates";
+  EXPECT_NEAR(time_to_stop({0.0, 100.0}, 0.0, 1.0), 0.31415926535897931, 1e-15) << "half a swing";
 }
 
 constexpr double kMass = 0.2, kCoulomb = 0.5, kSpeed = 0.3;
@@ -328,7 +328,7 @@ TEST(HandleMotion, SwingsOutUnderAHandWithASpring) {
   constexpr double k = 100.0, kStart = 0.0987;
   HandleMotion motion(handle_of(0.0, kCoulomb), {0.1, k, 0.0});
   motion.reset({Vec3(kStart, 0, -kStart), Vec3::Zero()});
-  motion.take_hand({-k * kStart, 0, k * kStart});  // towards the origin
+  motion.set_hand_force({-k * kStart, 0, k * kStart});  // towards the origin
   advance(motion, Vec3::Zero(), 100.0);
   double amplitude = kStart;
   int swings = 0;
@@ -347,7 +347,7 @@ TEST(HandleMotion, DoesNotChatter) {
   bool stuck = false;
   for (int i = 0; i < 1000; ++i) {
     const Vec3 before = motion.handle().position;
-    motion.take_hand(-300.0 * motion.handle().position - 6.0 * motion.handle().velocity);
+    motion.set_hand_force(-300.0 * motion.handle().position - 6.0 * motion.handle().velocity);
     advance(motion, Vec3::Zero(), 0.001);
     if (stuck) {
       EXPECT_EQ(motion.handle().position, before);
@@ -366,7 +366,7 @@ TEST(HandleMotion, KeepsItsEnergyBalanceToRounding) {
       HandleMotion motion = started(handle_of(1.5, coulomb), {kSpeed, 0, 0}, hand);
       double turnover = 0.5 * kMass * kSpeed * kSpeed;
       for (int i = 0; i < 2000; ++i) {
-        motion.take_hand({random.normal(), random.normal(), random.normal()});
+        motion.set_hand_force({random.normal(), random.normal(), random.normal()});
         advance(motion, {2.0 * random.normal(), random.normal(), 0.0}, 0.001 * random.uniform());
         const DeviceEnergy e = motion.energy();
         turnover += std::abs(e.stored);

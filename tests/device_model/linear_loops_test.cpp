@@ -48,7 +48,7 @@ TEST(SampledLoop, RendersAtMostTheseStiffnessesOnAnUndampedHandle) {
   // Rounded to these digits. Half a sample more or less of delay would give other numbers.
   const double published[] = {0.6863, 0.1445, 0.0624, 0.0348};
   for (const int d : {0, 1, 2, 3}) {
-    const double largest = best_over_damping([d](double beta) { return eigenvalue_edge(unit_loop(d, beta)); });
+    const double largest = best_over_damping([d](double beta) { return linear_stability_limit(unit_loop(d, beta)); });
     EXPECT_NEAR(largest, published[d], 0.00005) << d;
   }
 }
@@ -56,10 +56,10 @@ TEST(SampledLoop, RendersAtMostTheseStiffnessesOnAnUndampedHandle) {
 TEST(SampledLoop, HasTheEdgeOfTheClosedFormWithoutDelay) {
   for (const double beta : {0.01, 0.1, 0.5, 2.0 * std::numbers::sqrt2 - 2.0, 1.2, 1.9}) {
     const double closed = 2.0 * beta * (2.0 - beta) / (2.0 + beta);
-    EXPECT_NEAR(eigenvalue_edge(unit_loop(0.0, beta)), closed, 1e-10 * closed) << beta;
+    EXPECT_NEAR(linear_stability_limit(unit_loop(0.0, beta)), closed, 1e-10 * closed) << beta;
   }
-  EXPECT_EQ(eigenvalue_edge(unit_loop(0.0, 2.1)), 0.0);
-  EXPECT_EQ(eigenvalue_edge(unit_loop(0.0, 0.0)), 0.0) << "nothing damps";
+  EXPECT_EQ(linear_stability_limit(unit_loop(0.0, 2.1)), 0.0);
+  EXPECT_EQ(linear_stability_limit(unit_loop(0.0, 0.0)), 0.0) << "nothing damps";
 }
 
 TEST(SampledLoop, OfAHandWithASpringMovesAsTheClosedFormHasIt) {
@@ -117,7 +117,7 @@ TEST(SampledLoop, HasNoCrossingBelowItsEdge) {
     loop.hand = {2.0 * random.uniform(), i % 2 == 0 ? 0.0 : 0.01 * random.uniform(), 0.0};
     if (i % 3 == 0) loop.device.velocity_filter = LowPassFilter{0.1, static_cast<std::size_t>(1 + i) % 4 + 1};
     if (i % 4 == 1) loop.device.position_filter = LowPassFilter{0.3, 2};
-    const double edge = eigenvalue_edge(loop);
+    const double edge = linear_stability_limit(loop);
     ASSERT_GT(edge, 0.0);
     // The sweep cannot see a crossing at pi, but none of these loops has its first crossing there.
     EXPECT_NEAR(first_crossing(loop), edge, 1e-8 * edge) << i;
@@ -201,12 +201,12 @@ TEST(SampledLoop, ATransmissionThatIsStiffIsNone) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 2.0;
   loop.wall_damping = 5.0;
-  const double rigid = eigenvalue_edge(loop);
+  const double rigid = linear_stability_limit(loop);
   loop.device.transmission = Transmission{0.5, 1e9, 1000.0};
   // The edge is near 2e4 N/m, so what gives way is 2e-5 of it.
-  EXPECT_NEAR(eigenvalue_edge(loop), rigid, 1e-4 * rigid);
+  EXPECT_NEAR(linear_stability_limit(loop), rigid, 1e-4 * rigid);
   loop.device.transmission = Transmission{0.5, 1e5, 0.1};
-  EXPECT_LT(eigenvalue_edge(loop), 0.7 * rigid);
+  EXPECT_LT(linear_stability_limit(loop), 0.7 * rigid);
   EXPECT_FALSE(limit("stable_gil_hulin", loop)) << "counts on one mass";
   EXPECT_TRUE(limit("passive_with_delay", loop)) << "the transmission is the hand's";
 }
@@ -215,11 +215,11 @@ TEST(HandFamily, NeedsLessStiffnessThanAnyOfItsHands) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 0.5;
   loop.wall_damping = 5.0;
-  const double worst = worst_hand_edge(loop);
+  const double worst = worst_hand_stability_limit(loop);
   bool met = false;
-  for (const AttachedHand& hand : hand_family()) {
+  for (const AttachedHand& hand : typical_hands()) {
     loop.hand = hand;
-    const double edge = eigenvalue_edge(loop);
+    const double edge = linear_stability_limit(loop);
     EXPECT_GE(edge, worst);
     met = met || edge == worst;
   }
@@ -279,7 +279,8 @@ TEST(StiffnessLimits, WhatIsPassiveIsStableWithEveryHand) {
       loop.device.delay_samples = delay;
       loop.wall_damping = B;
       // Both edges are exact to 1e-9; at B = 0 without a hand they differ by a thousandth.
-      EXPECT_LE(*limit("passive_with_delay", loop), worst_hand_edge(loop) * (1.0 + 1e-9)) << delay << " " << B;
+      EXPECT_LE(*limit("passive_with_delay", loop), worst_hand_stability_limit(loop) * (1.0 + 1e-9))
+          << delay << " " << B;
     }
   }
 }
@@ -290,10 +291,10 @@ TEST(StiffnessLimits, TheLinearConditionComesCloseToTheExactEdgeAtLowDamping) {
     loop.device.delay_samples = delay;
     loop.device.viscous = 0.5;
     loop.wall_damping = 1.0;
-    EXPECT_NEAR(eigenvalue_edge(loop) / *limit("stable_gil_hulin", loop), 1.0, 0.02) << delay;
+    EXPECT_NEAR(linear_stability_limit(loop) / *limit("stable_gil_hulin", loop), 1.0, 0.02) << delay;
     const double most = 0.15 * 100.0 / (1.0 + delay);
     loop.wall_damping = 0.999 * most - loop.device.viscous;
-    const double ratio = eigenvalue_edge(loop) / *limit("stable_gil_hulin", loop);
+    const double ratio = linear_stability_limit(loop) / *limit("stable_gil_hulin", loop);
     EXPECT_LT(ratio, 1.0) << delay;
     EXPECT_GT(ratio, 0.86) << delay;
     loop.wall_damping = 1.001 * most - loop.device.viscous;
@@ -387,7 +388,7 @@ TEST(AdmittanceLoop, HasItsEdgeWhereRunsGrow) {
     loop.servo.delay = delay;
     loop.servo.max_force = 1e9;
     loop.hand_damping = 6.0;
-    const double edge = first_edge(1.0, 1e9, [loop](double k) mutable {
+    const double edge = first_stability_limit(1.0, 1e9, [loop](double k) mutable {
       loop.hand_stiffness = k;
       return loop.state_matrix();
     });

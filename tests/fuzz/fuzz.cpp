@@ -21,9 +21,9 @@
 #include "scenarios/batch/table_file.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/largest_sizes.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/point_shell_file.hpp"
+#include "scenarios/input/size_limits.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
@@ -87,11 +87,11 @@ void run_scenario_text(std::string_view text) {
     environment["spacing_m"] = 4.0 * environment["spacing_m"].get<double>();
   LoadedScenario loaded = read_scenario(json, kBundled);
   // Larger ones are only slower.
-  constexpr double kMostPoints = 1e5;
-  constexpr std::int64_t kMostSteps = 20;
+  constexpr double kMaxSurfacePoints = 1e5;
+  constexpr std::int64_t kMaxSteps = 20;
   const auto* tool = std::get_if<MeshToolFields>(&loaded.scenario.tool);
-  if (points_of(loaded.scenario.environment) > kMostPoints || (tool != nullptr && tool->grid)) return;
-  loaded.scenario.time.steps = std::min(loaded.scenario.time.steps, kMostSteps);
+  if (points_of(loaded.scenario.environment) > kMaxSurfacePoints || (tool != nullptr && tool->grid)) return;
+  loaded.scenario.time.steps = std::min(loaded.scenario.time.steps, kMaxSteps);
   run_scenario(checked(loaded), std::nullopt, false);
 }
 
@@ -110,16 +110,16 @@ void read_mesh(std::string_view bytes) {
 
 template <const char* name>
 void read_shell(std::string_view bytes) {
-  require_points(point_shell_in(bytes, name));
+  require_points(parse_point_shell(bytes, name));
 }
 
 void read_stroke(std::string_view text) {
-  const auto [motion, force] = stroke_in(text, "stroke.csv");
+  const auto [motion, force] = parse_stroke(text, "stroke.csv");
   require(std::abs(motion.axis_at(1e9).norm() - 1.0) <= 1e-12, "an axis that is not unit");
 }
 
 void read_trace(std::string_view text) {
-  const ContactTrace trace = trace_in(text, "trace.csv");
+  const ContactTrace trace = parse_contact_trace(text, "trace.csv");
   for (const ContactTrace::Contact& contact : trace.contacts)
     require(std::abs(contact.gradient.norm() - 1.0) <= 2e-12 && contact.depth >= 0.0, "a contact that cannot be used");
   require(trace.most() <= trace.contacts.size(), "more contacts at a time than there are");

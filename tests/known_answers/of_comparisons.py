@@ -56,7 +56,7 @@ def league(bench):
         for law in LAWS
         for k in range(SEEDS)
     }
-    table = Table(out / "league.csv")
+    table = Table(out / "ranking.csv")
     known, naive, ranks = [], [], {law: [] for law in LAWS}
     number = lambda x: math.nan if x is None else float(x)
     outcomes = {
@@ -133,7 +133,7 @@ def league(bench):
             else ("in another order", column[::-1])
         )
         bench.add(
-            f"league.csv:{name}",
+            f"ranking.csv:{name}",
             table[name],
             column,
             how,

@@ -131,8 +131,7 @@ def devices(bench):
             [1.0, limits[1] / limits[0]],
         ),
         ("runs", [len(v) for v in tried], EXACT, "of the scan", [17.0, 17.0]),
-        ("inconsistent_runs", [0.0] * 2, EXACT, "beyond", [1.0] * 2),
-        ("astray", [0.0] * 2, EXACT, "beyond", [1.0] * 2),
+        ("non_monotonic_runs", [0.0] * 2, EXACT, "beyond", [1.0] * 2),
     ]
     for name, known, within, naive, value in exact:
         bench.add(
@@ -156,8 +155,8 @@ def devices(bench):
     limits_of_both_ends(bench, fine, how, most, resolution, vibration)
     classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
     bench.add(
-        "limit.csv:class_beyond",
-        [cell[key]["class_beyond"] for key in keys],
+        "limit.csv:first_unstable_class",
+        [cell[key]["first_unstable_class"] for key in keys],
         classes,
         how,
         EXACT,
@@ -188,8 +187,8 @@ def linear_limit_of_device(bench, B, T, b, cell, m, number, printed, theory):
     linear = edge_of(lambda K: held_loop(m + 0.2, b + 2, T, K, B, spring=300), 100.0, 1e6)
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
     bench.add(
-        "limit.csv:linear",
-        number(cell[pushed], "linear"),
+        "limit.csv:linear_limit",
+        number(cell[pushed], "linear_limit"),
         linear,
         "eigenvalues of the held loop with the hand",
         close,

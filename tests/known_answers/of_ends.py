@@ -226,7 +226,7 @@ def classes(bench):
     )
     bench.add(
         "went_through (class of motion, of limit and stability)",
-        row["class_beyond"],
+        row["first_unstable_class"],
         "went_through",
         "K r < 3 N",
         EXACT,
@@ -414,7 +414,7 @@ def limit_of_spring(bench):
         EXACT,
         ("both ends twice", len(values) - 1),
     )
-    for word in ("stable", "dying_out", "vibrating", "diverged"):
+    for word in ("stable", "decaying", "vibrating", "diverged"):
         at = [i for i, name in enumerate(classes) if name == word]
         bench.add(
             f"{word} (class of motion, of limit and stability)",
@@ -426,8 +426,8 @@ def limit_of_spring(bench):
         )
     # A motion dies out when it loses a tenth from quarter to quarter: the edge of that lies below
     # theory.
-    rests = lambda K: judged(K) in ("stable", "dying_out")
-    stable = [K for K, name in zip(values, classes) if name in ("stable", "dying_out")]
+    rests = lambda K: judged(K) in ("stable", "decaying")
+    stable = [K for K, name in zip(values, classes) if name in ("stable", "decaying")]
     limit, beyond, edge = (
         max(stable),
         min(K for K in values if K > max(stable)),
@@ -443,19 +443,18 @@ def limit_of_spring(bench):
         ("side", "largest", EXACT, "smallest"),
         ("limit", edge, strip, 4 * M / dt**2),
         ("beyond", beyond, EXACT, limit),
-        ("class_beyond", classes[list(values).index(beyond)], EXACT, "vibrating"),
+        ("first_unstable_class", classes[list(values).index(beyond)], EXACT, "vibrating"),
         ("low", slowest, strip, 1000.0),
         ("below", below, EXACT, 1000.0),
-        ("class_below", "vibrating", EXACT, "stable"),
+        ("unstable_below_class", "vibrating", EXACT, "stable"),
         ("high", limit, EXACT, beyond),
         ("above", beyond, EXACT, limit),
-        ("class_above", classes[list(values).index(beyond)], EXACT, "vibrating"),
-        ("theory", theory, Within("bisected to 1e-12", relative=3e-12), 4 * M / dt**2),
-        ("linear", math.nan, EXACT, theory),
-        ("undecided", 0, EXACT, sum(name == "vibrating" for name in classes)),
+        ("unstable_above_class", classes[list(values).index(beyond)], EXACT, "vibrating"),
+        ("theoretical_limit", theory, Within("bisected to 1e-12", relative=3e-12), 4 * M / dt**2),
+        ("linear_limit", math.nan, EXACT, theory),
+        ("undecided_runs", 0, EXACT, sum(name == "vibrating" for name in classes)),
         ("runs", len(values), EXACT, 17),
-        ("inconsistent_runs", 0, EXACT, 1),
-        ("astray", 0, EXACT, 1),
+        ("non_monotonic_runs", 0, EXACT, 1),
         ("tried_between", 48, EXACT, 56),
         ("may_fail_share", 1 - 0.05 ** (1 / 48), ROUNDING, 0.05),
     ]
@@ -514,7 +513,7 @@ def limit_under_bound(bench, base, field, strip):
     )
     bench.add(
         "beyond_bound (class of motion, of limit and stability)",
-        row["class_beyond"],
+        row["first_unstable_class"],
         "beyond_bound",
         "K 1 mm > 30 N",
         EXACT,
@@ -530,7 +529,7 @@ def words_of_limit(bench, base, printed, resolution, row):
         ("resolution", resolution, 1e-3),
         ("has_effect", True, False),
         ("unstable_without_contact", False, True),
-        ("scattered", False, True),
+        ("no_contiguous_interval", False, True),
     ):
         bench.add(
             f"limit --json: {key}",

@@ -50,7 +50,7 @@ def limits_of_springs(bench):
     fine = Within("bisected to 1e-12, of eigenvalues near a double one to rounding", relative=1e-9)
     runs = Within("bisection ends at 1e-4; growth of 2e-6 a step is seen", relative=1.1e-4)
     wrong = ("of a single spring", [2 * value[0], 433731.0, 2 * value[2], 2 * value[3]])
-    for column, within in (("closed_form", fine), ("theory", fine), ("limit", runs)):
+    for column, within in (("closed_form_limit", fine), ("theoretical_limit", fine), ("limit", runs)):
         bench.add(
             f"limit.csv:{column}",
             np.concatenate([table[column] for table in tables]),
@@ -79,8 +79,8 @@ def limits_of_springs(bench):
         ),
     )
     bench.add(
-        "limit.csv:theory",
-        np.concatenate([table["theory"] for table in of_rk4]),
+        "limit.csv:theoretical_limit",
+        np.concatenate([table["theoretical_limit"] for table in of_rk4]),
         [8 * M / (lam * dt**2), real * M / (lam * dt)],
         "polynomial of Runge and Kutta's method",
         fine,
@@ -109,9 +109,9 @@ def smallest_mass(bench):
     fine = Within("bisected to 1e-12, of eigenvalues near a double one to rounding", relative=1e-9)
     runs = Within("bisection ends at 1e-4; growth of 2e-6 a step is seen", relative=1.1e-4)
     how = "4 - 2 B dt / M - K dt^2 / M = 0"
-    bench.add("limit.csv:theory", row["theory"], known, how, fine, undamped)
+    bench.add("limit.csv:theoretical_limit", row["theoretical_limit"], known, how, fine, undamped)
     bench.add("limit.csv:limit", row["limit"], known, how, runs, undamped)
-    bench.add("limit.csv:low", row["low"], known, how, runs, ("the low end of the range", 1e-4))
+    bench.add("limit.csv:stable_low", row["stable_low"], known, how, runs, ("the low end of the range", 1e-4))
 
 
 @scene
@@ -139,10 +139,10 @@ def smallest_stiffness(bench):
     row = bench.json(*ask, *bound)["limits"][0]
     within = Within("bisection ends at 1e-4; the motion has died out to e^-300", relative=1.1e-4)
     bench.add("limit.csv:limit", row["limit"], F / x, "F / x", within, ("half of it", F / x / 2))
-    bench.add("limit.csv:low", row["low"], F / x, "F / x", within, ("the range's", 1e3))
+    bench.add("limit.csv:stable_low", row["stable_low"], F / x, "F / x", within, ("the range's", 1e3))
     bench.add(
-        "limit.csv:class_below",
-        row["class_below"],
+        "limit.csv:unstable_below_class",
+        row["unstable_below_class"],
         "beyond_bound",
         "F / K > x below",
         EXACT,
@@ -216,7 +216,7 @@ def over_another_field(bench):
     ]
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
     bench.add(
-        "limit.csv:theory", edges["theory"], theory, how, close, ("passive, 2 b / T", [1000.0] * 5)
+        "limit.csv:theoretical_limit", edges["theoretical_limit"], theory, how, close, ("passive, 2 b / T", [1000.0] * 5)
     )
     bench.add(
         "limit.csv:limit",
@@ -227,8 +227,8 @@ def over_another_field(bench):
         ("passive, 2 b / T", [1000.0] * 5),
     )
     bench.add(
-        "limit.csv:no_theory",
-        sorted({row["no_theory"] for row in edges.rows}),
+        "limit.csv:no_theory_reason",
+        sorted({row["no_theory_reason"] for row in edges.rows}),
         [""],
         "the loop is linear",
         EXACT,
@@ -280,8 +280,8 @@ def limits_over_delay_and_hand(bench, ask, close, given, handle):
         )
         table = Table(bench.folder / name / "limit.csv")
         bench.add(
-            "limit.csv:theory",
-            table["theory"],
+            "limit.csv:theoretical_limit",
+            table["theoretical_limit"],
             [edge_of(lambda K: loop(x, K), 1.0, 1e6) for x in values],
             "eigenvalues, delays of whole and broken samples",
             close,
@@ -322,12 +322,12 @@ def limits_over_encoder(bench, ask, damping, given):
         ("2 b / T alone", np.full(4, 1000.0)),
     )
     bench.add(
-        "limit.csv:no_theory",
-        [bool(text) for text in table["no_theory"]],
+        "limit.csv:no_theory_reason",
+        [bool(text) for text in table["no_theory_reason"]],
         [True] * 4,
         "dry friction is not linear",
         EXACT,
-        ("linear", [False] * 4),
+        ("linear_limit", [False] * 4),
     )
 
 
@@ -349,7 +349,7 @@ def limits_of_walls(bench, table, bare, xs, handle):
         ("passive_with_delay", passive, ROUNDING, [2 * b / T] * 5),
         ("stable_gil_hulin", gil, ROUNDING, [(b + B) * 2 / T for B in xs]),
         (
-            "worst_hand",
+            "worst_hand_limit",
             worst,
             Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8),
             [1.0] * 5,

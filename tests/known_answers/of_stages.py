@@ -119,7 +119,7 @@ def tank(bench):
         [
             ("force_stage.changed_share", changed / n, formula, EXACT, "rows in contact", 1.0),
             (
-                "force_stage.taken_J",
+                "force_stage.removed_J",
                 taken,
                 formula,
                 STEPPED,
@@ -188,7 +188,7 @@ def late(bench):
             ),
             ("contacts.age_max_s", age.max(), how, ROUNDING, "without losses", 6 * dt),
             (
-                "contacts.asked",
+                "contacts.queries",
                 len(asked),
                 "every fourth row",
                 EXACT,

@@ -144,7 +144,7 @@ def class_of(matrix, x, n=8000):
     if amplitude[3] < 0.01 * amplitude[0]:
         return "stable"
     return (
-        "dying_out"
+        "decaying"
         if amplitude[2] < 0.9 * amplitude[1] and amplitude[3] < 0.9 * amplitude[2]
         else "vibrating"
     )

@@ -38,16 +38,16 @@ inline ContactBuffer contacts_along(const std::vector<Vec3>& gradients) {
 namespace hapbench {
 
 /// The metrics of an observer, named without a section.
-inline MetricList told(const MetricObserver& observer) {
+inline MetricList reported(const MetricObserver& observer) {
   MetricList list;
   Section section(list, "");
-  observer.tell(section);
+  observer.report(section);
   return list;
 }
 
 /// One number of it; none when the metric has no value.
-inline std::optional<double> told(const MetricObserver& observer, std::string_view name) {
-  return number_of(told(observer), name);
+inline std::optional<double> reported(const MetricObserver& observer, std::string_view name) {
+  return number_of(reported(observer), name);
 }
 
 }  // namespace hapbench

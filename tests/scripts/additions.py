@@ -277,7 +277,7 @@ class StillnessObserver final : public MetricObserver {
  public:
   void begin(const TrialParts&) override { *this = {}; }
   void on_step(const StepRecord& record) noexcept override { still_ += record.tool.velocity.isZero(0.0) ? 1.0 : 0.0; }
-  void tell(Section& s) const override { s.metric("still", "1", "rows in which the tool did not move", still_); }
+  void report(Section& s) const override { s.metric("still", "1", "rows in which the tool did not move", still_); }
 
  private:
   double still_ = 0.0;

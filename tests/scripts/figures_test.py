@@ -122,7 +122,7 @@ def make_accuracy(directory):
             "mean",
             "mean + angular_damping",
         ],
-        "late_contacts": [
+        "multi_rate_contacts": [
             f"shaped_stiffness {between} {every}"
             for between in ("hold", "linear")
             for every in (2, 8)

@@ -337,7 +337,7 @@ class Program(Scratch):
             "locale.setlocale(locale.LC_ALL, sys.argv[1])\n"
             "assert locale.str(0.5) == sys.argv[2]\n"
             f"report = hapbench.compare({WEDGE!r}, ['mean', 'proxy'], {SHORT}, seeds=2, jitter=1.5e-4)\n"
-            "print(*[report.league[name].tolist() for name in report.league])\n"
+            "print(*[report.ranking[name].tolist() for name in report.ranking])\n"
             "hapbench.main(['new', 'bur', '--out', sys.argv[3], '--quiet'])\n"
             "print(open(sys.argv[3], encoding='utf-8').read())\n"
         )

@@ -201,7 +201,7 @@ Gradients mixture(Random& random, std::size_t n) {
   return gradients;
 }
 
-constexpr GradientFamily kDistributions[] = {
+constexpr GradientDistribution kDistributions[] = {
     {"uniform", false, uniform},
     {"planar", true, planar},
     {"parallel", false, parallel},
@@ -227,7 +227,7 @@ constexpr GradientFamily kDistributions[] = {
 
 }  // namespace
 
-std::span<const GradientFamily> gradient_families() {
+std::span<const GradientDistribution> gradient_distributions() {
   return kDistributions;
 }
 

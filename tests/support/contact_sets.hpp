@@ -24,7 +24,7 @@ std::size_t random_size(Random& random, std::size_t largest);
 Mat3 random_rotation(Random& random);
 
 /// A random distribution of n unit gradients that is difficult for force laws in a particular respect.
-struct GradientFamily {
+struct GradientDistribution {
   const char* name;
   bool planar;  ///< true if every gradient lies in the plane z = 0
   std::vector<Vec3> (*draw)(Random& random, std::size_t n);
@@ -33,14 +33,14 @@ struct GradientFamily {
 /// Returns the distributions: random, parallel, opposite, nearly parallel (angles down to 1e-12), duplicated,
 /// planar, coplanar, axis-aligned and clustered gradients, and gradients at the boundary of the cone of
 /// exact_shaping.
-std::span<const GradientFamily> gradient_families();
+std::span<const GradientDistribution> gradient_distributions();
 
-/// Calls f(contacts, name of the distribution) for random sets of all gradient_families(), with at most 300
+/// Calls f(contacts, name of the distribution) for random sets of all gradient_distributions(), with at most 300
 /// contacts each. Every call uses the same sets.
 template <class F>
 void for_random_contacts(F f) {
   Random random(1);
-  for (const auto& family : gradient_families()) {
+  for (const auto& family : gradient_distributions()) {
     for (int i = 0; i < 10; ++i) {
       const auto gradients = family.draw(random, random_size(random, 300));
       f(contacts_of(gradients, random_depths(random, gradients.size())), family.name);

@@ -18,16 +18,16 @@
 namespace hapbench::test {
 
 /// Returns true if tests run all of their random cases, as under scripts/test --all.
-inline bool soaks() {
+inline bool runs_all_cases() {
   static const bool soak = std::getenv("HAPBENCH_SOAK") != nullptr;
   return soak;
 }
 
-/// Returns the number of repetitions of a loop over random cases: n if soaks(), else a tenth of n. With
+/// Returns the number of repetitions of a loop over random cases: n if runs_all_cases(), else a tenth of n. With
 /// AddressSanitizer, which is about thirty times slower, it is a thirtieth of n, because fewer cases suffice to
 /// find errors of memory and arithmetic.
 inline std::size_t cases(std::size_t n) {
-  const std::size_t part = HAPBENCH_TEST_SANITIZED != 0 ? 30 : soaks() ? 1 : 10;
+  const std::size_t part = HAPBENCH_TEST_SANITIZED != 0 ? 30 : runs_all_cases() ? 1 : 10;
   return (n + part - 1) / part;
 }
 

@@ -10,7 +10,7 @@
 #include "device_model/hands/scripted_hands.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/multi_rate_contacts.hpp"
 #include "sim/contact/spring_source.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
@@ -83,7 +83,7 @@ SimulationParts free_run(const Setting& setting, const RenderingConfig& config) 
   parts.source = source_of(parts.shell.get(), parts.springs, *parts.tool, config);
   if (config.late)
     parts.source =
-        std::make_unique<LateContacts>(std::move(parts.source), *config.late, setting.springs.has_value(), 1);
+        std::make_unique<MultiRateContacts>(std::move(parts.source), *config.late, setting.springs.has_value(), 1);
   parts.algorithm = make_algorithm(config);
   parts.motion = constant_axis(setting.pose.axis);
   parts.hand = std::make_unique<ForceHand>();

@@ -84,7 +84,7 @@ std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& devic
   std::vector<ComparedDevice> ends;
   const DevicePreset* preset = find_device_preset(device.json.value("preset", ""));
   if (preset == nullptr) return ends;
-  for (const auto& [end, mark] : {std::pair(PresetEnd::soft, "[soft]"), {PresetEnd::stiff, "[stiff]"}}) {
+  for (const auto& [end, mark] : {std::pair(PresetVariant::soft, "[soft]"), {PresetVariant::stiff, "[stiff]"}}) {
     ends.push_back(device);
     ends.back().json = written(DeviceFields(config_of(*preset, end)));
     ends.back().name += mark;

@@ -34,7 +34,7 @@ ComparedDevice device_of_file(const std::filesystem::path& file);
 /// device without dry friction.
 std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double factor);
 
-/// Returns a preset twice, at both ends of the ranges of its unpublished parameters (PresetEnd), with names such as
+/// Returns a preset twice, at both ends of the ranges of its unpublished parameters (PresetVariant), with names such as
 /// touch[soft] and touch[stiff]. Empty for other devices.
 std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& device);
 

@@ -70,26 +70,27 @@ class RunCache {
 
 /// Evaluates the given parameters (middles of the intervals that are stable in theory) and the end points of a scan.
 EvaluatedParameters evaluate_first(RunCache& runs, std::vector<double> parameters) {
-  for (int i = 0; i <= kEdgeIntervals; ++i) parameters.push_back(static_cast<double>(i) / kEdgeIntervals);
+  for (int i = 0; i <= kScanIntervals; ++i) parameters.push_back(static_cast<double>(i) / kScanIntervals);
   runs.run_ahead(parameters);
   EvaluatedParameters evaluated;
   for (const double t : parameters) evaluated[t] = runs.is_stable_at(t);
   return evaluated;
 }
 
-FoundEdge find_interval(const LimitQuestion& question, RunCache& runs, EvaluatedParameters evaluated, bool near) {
+StableInterval find_interval(const LimitQuestion& question, RunCache& runs, EvaluatedParameters evaluated, bool near) {
   const auto is_stable = [&](double t) { return runs.is_stable_at(t); };
   const auto run_ahead = [&](std::span<const double> parameters) { runs.run_ahead(parameters); };
-  return question.between ? find_tried_edge(question.search, evaluated, is_stable, near, run_ahead)
-                          : find_edge(question.search, evaluated, is_stable, true);
+  return question.between ? find_verified_interval(question.search, evaluated, is_stable, near, run_ahead)
+                          : find_stable_interval(question.search, evaluated, is_stable, true);
 }
 
 /// Writes the interval that was found into the limit.
-void add_interval(const LimitQuestion& question, const FoundEdge& interval, const RunCache& runs, FieldLimit& limit) {
-  const SearchWay& search = question.search;
+void add_interval(const LimitQuestion& question, const StableInterval& interval, const RunCache& runs,
+                  FieldLimit& limit) {
+  const IntervalSearchOptions& search = question.search;
   limit.scattered = interval.scattered;
   if (interval.stable) {
-    limit.tried_between = question.between ? kTriedBetween : 0;
+    limit.tried_between = question.between ? kVerificationSamples : 0;
     limit.end.value = search.value_at(*interval.stable);
     limit.settled = runs.of(*limit.end.value).settled;
   }
@@ -119,7 +120,7 @@ void add_runs(const LimitQuestion& question, const std::map<double, RunStability
 void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   const JudgedValue suspect = limit.end.beyond ? *limit.end.beyond : limit.runs.front();
   limit.unstable_alone = !question.rule.holds(suspect.verdict) &&
-                         unstable_without_contact(checked(question.at(suspect.value)), question.rule.most_vibration);
+                         unstable_without_contact(checked(question.at(suspect.value)), question.rule.max_vibration);
 }
 
 /// Writes the limits by closed forms, and the linear limit in contact.
@@ -145,7 +146,7 @@ bool FieldLimit::is_beyond_linear(double resolution) const {
 }
 
 FieldLimit field_limit(const LimitQuestion& question) {
-  if (question.rule.most_vibration) check_sampling(load_scenario(*question.scene, question.overrides));
+  if (question.rule.max_vibration) check_sampling(load_scenario(*question.scene, question.overrides));
   FieldLimit limit;
   // Find the linear limit, where the theory applies.
   TheoreticalLimit theory = eigenvalue_limit(question);
@@ -155,7 +156,7 @@ FieldLimit field_limit(const LimitQuestion& question) {
   RunCache runs(question);
   EvaluatedParameters evaluated = evaluate_first(runs, std::move(theory.islands));
   const bool near = !limit.theory;
-  const FoundEdge interval = find_interval(question, runs, std::move(evaluated), near);
+  const StableInterval interval = find_interval(question, runs, std::move(evaluated), near);
   add_interval(question, interval, runs, limit);
   add_runs(question, runs.by_value(), limit);
   add_cause(question, limit);

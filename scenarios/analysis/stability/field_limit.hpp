@@ -53,8 +53,8 @@ struct FieldLimit {
   bool unstable_alone = false;
   bool has_effect = true;         ///< false if the handle's motion is bitwise equal in all runs
   std::size_t tried_between = 0;  ///< number of verification samples in the interval, all stable
-  bool scattered = false;         ///< true if stable values exist, but no contiguous stable interval as long as kNear
-  std::vector<JudgedValue> runs;  ///< all runs, by increasing value
+  bool scattered = false;  ///< true if stable values exist, but no contiguous stable interval as long as kNearLimit
+  std::vector<JudgedValue> runs;          ///< all runs, by increasing value
   std::vector<JudgedValue> inconsistent;  ///< unstable runs inside the interval and stable runs outside of it
   std::size_t undecided = 0;              ///< number of runs that were too short to judge (RunStability::undecided)
 
@@ -66,9 +66,9 @@ struct FieldLimit {
 };
 
 /// Finds a stability limit. Evaluates 17 equidistant parameters, the scenario's value and the middles of intervals that
-/// are stable in theory, then searches the interval: with find_edge (`beside`), or with find_tried_edge if
-/// LimitQuestion::between. Makes 35 to 120 runs; each failed verification costs up to 56 more. Throws InputError, with
-/// the file, if the rule limits vibration and the sampling rate is 60 Hz or less.
+/// are stable in theory, then searches the interval: with find_stable_interval (`beside`), or with
+/// find_verified_interval if LimitQuestion::between. Makes 35 to 120 runs; each failed verification costs up to 56
+/// more. Throws InputError, with the file, if the rule limits vibration and the sampling rate is 60 Hz or less.
 FieldLimit field_limit(const LimitQuestion& question);
 
 }  // namespace hapbench

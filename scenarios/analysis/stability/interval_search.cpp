@@ -19,24 +19,24 @@ bool is_unstable_entry(const EvaluatedParameters::value_type& evaluated) {
   return !evaluated.second;
 }
 
-/// The search of find_edge.
+/// The search of find_stable_interval.
 class TransitionSearch {
  public:
-  TransitionSearch(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable)
+  TransitionSearch(const IntervalSearchOptions& options, EvaluatedParameters& evaluated, const IsStable& stable)
       : options_(options), evaluated_(evaluated), stable_(stable) {}
 
   /// Returns the first transition without samples beside it: only `stable` and `beyond`.
-  FoundEdge first() {
+  StableInterval first() {
     start();
     const std::optional<Transition> transition = next_transition();
-    return transition ? bisected_transition(*transition) : FoundEdge{};
+    return transition ? bisected_transition(*transition) : StableInterval{};
   }
 
   /// Returns the first transition that samples on either side confirm, with the other end of its interval.
-  FoundEdge confirmed() {
+  StableInterval confirmed() {
     constexpr int kMaxRounds = 6;  // bisections, each at the transition that the previous samples revealed
     start();
-    FoundEdge interval;
+    StableInterval interval;
     for (int round = 0; round < kMaxRounds; ++round) {
       const std::optional<Transition> transition = next_transition();
       if (!transition) return {};
@@ -80,7 +80,7 @@ class TransitionSearch {
     return transition;
   }
 
-  FoundEdge bisected_transition(const Transition& transition) {
+  StableInterval bisected_transition(const Transition& transition) {
     if (!transition.high) return {.stable = transition.low};
     const auto [stable, unstable] = bisected(transition.low, *transition.high);
     return {.stable = stable, .beyond = unstable};
@@ -100,9 +100,9 @@ class TransitionSearch {
   }
 
   /// Evaluates three parameters on either side of a transition, within one interval of the scan.
-  void evaluate_beside(double first_stable, const FoundEdge& interval) {
+  void evaluate_beside(double first_stable, const StableInterval& interval) {
     constexpr int kBeside = 3;  // samples on either side
-    constexpr double kInterval = 1.0 / kEdgeIntervals;
+    constexpr double kInterval = 1.0 / kScanIntervals;
     const double before = std::max(first_stable, *interval.stable - kInterval);
     const double behind = std::min(1.0, *interval.beyond + kInterval);
     for (int i = 1; i <= kBeside; ++i) {
@@ -113,7 +113,7 @@ class TransitionSearch {
   }
 
   /// Bisects the lower end of the interval of stable parameters.
-  void add_other_end(FoundEdge& interval) {
+  void add_other_end(StableInterval& interval) {
     auto first = evaluated_.find(*interval.stable);
     while (first != evaluated_.begin() && std::prev(first)->second) --first;
     interval.first = first->first;
@@ -123,7 +123,7 @@ class TransitionSearch {
     interval.before = unstable;
   }
 
-  const SearchWay& options_;
+  const IntervalSearchOptions& options_;
   EvaluatedParameters& evaluated_;
   const IsStable& stable_;
   double start_ = 0.0;
@@ -131,26 +131,26 @@ class TransitionSearch {
 
 }  // namespace
 
-double SearchWay::value_at(double t) const {
+double IntervalSearchOptions::value_at(double t) const {
   const double value = range.value_at(smallest ? 1.0 - t : t);
   return whole ? std::round(value) : value;
 }
 
-std::optional<double> SearchWay::current_parameter() const {
+std::optional<double> IntervalSearchOptions::current_parameter() const {
   if (!current) return std::nullopt;
   const auto [from, to, logarithmic] = range;
   const double t = logarithmic ? math::log(*current / from) / math::log(to / from) : (*current - from) / (to - from);
   return smallest ? 1.0 - t : t;
 }
 
-bool SearchWay::needs_bisection(double a, double b) const {
+bool IntervalSearchOptions::needs_bisection(double a, double b) const {
   const auto [low, high] = std::minmax({value_at(a), value_at(b)});
   if (whole) return high - low > 1.0;
   if (range.logarithmic) return high > (1.0 + resolution) * low;
   return high - low > resolution * (range.to - range.from);
 }
 
-EvaluatedParameters scanned(int intervals, const IsStable& stable) {
+EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable) {
   EvaluatedParameters evaluated;
   for (int i = 0; i <= intervals; ++i) {
     const double t = static_cast<double>(i) / intervals;
@@ -159,7 +159,8 @@ EvaluatedParameters scanned(int intervals, const IsStable& stable) {
   return evaluated;
 }
 
-FoundEdge find_edge(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable, bool beside) {
+StableInterval find_stable_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,
+                                    const IsStable& stable, bool beside) {
   TransitionSearch search(options, evaluated, stable);
   return beside ? search.confirmed() : search.first();
 }
@@ -180,15 +181,17 @@ std::vector<double> parameters_between(double from, double to, std::size_t count
   return parameters;
 }
 
-std::vector<double> parameters_below(const SearchWay& options, double t) {
+std::vector<double> parameters_below(const IntervalSearchOptions& options, double t) {
   const auto [from, to, logarithmic] = options.range;
-  const double near = logarithmic ? math::log(1.0 + kNear) / math::log(to / from)
-                                  : kNear * std::max(std::abs(options.value_at(t)) / (to - from), options.resolution);
-  return parameters_between(t, std::max(0.0, t - near), kTriedNear);
+  const double near = logarithmic
+                          ? math::log(1.0 + kNearLimit) / math::log(to / from)
+                          : kNearLimit * std::max(std::abs(options.value_at(t)) / (to - from), options.resolution);
+  return parameters_between(t, std::max(0.0, t - near), kSamplesNearLimit);
 }
 
-FoundEdge find_tried_edge(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable, bool near,
-                          const std::function<void(std::span<const double>)>& ahead) {
+StableInterval find_verified_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,
+                                      const IsStable& stable, bool near,
+                                      const std::function<void(std::span<const double>)>& ahead) {
   bool scattered = false;
   // Stable parameters up to this value are isolated samples. They count as unstable.
   double scattered_up_to = -1.0;
@@ -203,16 +206,16 @@ FoundEdge find_tried_edge(const SearchWay& options, EvaluatedParameters& evaluat
     return std::nullopt;
   };
   while (true) {
-    const FoundEdge interval = find_edge(options, evaluated, counts_as_stable, true);
+    const StableInterval interval = find_stable_interval(options, evaluated, counts_as_stable, true);
     if (!interval.stable) return {.scattered = scattered};
     const double first = interval.first.value_or(*interval.stable);
     // Verify the whole interval, then the neighbourhood of its limit.
-    if (first_failing(parameters_between(first, *interval.stable, kTriedBetween))) continue;
+    if (first_failing(parameters_between(first, *interval.stable, kVerificationSamples))) continue;
     if (!near || options.whole || !interval.beyond) return interval;
     const std::optional<double> failing = first_failing(parameters_below(options, *interval.stable));
     if (!failing) return interval;
     if (*failing > first) continue;
-    // The unstable sample lies below the interval: the interval is shorter than kNear. Search above the interval,
+    // The unstable sample lies below the interval: the interval is shorter than kNearLimit. Search above the interval,
     // except if the interval has the current value.
     scattered = true;
     const std::optional<double> current = options.current_parameter();

@@ -15,11 +15,11 @@
 /// other end. The result is the interval of stable parameters around the current value, found by a scan and bisection.
 namespace hapbench {
 
-inline constexpr int kEdgeIntervals = 16;        ///< number of equal intervals of the scan before bisection
-inline constexpr double kEdgeResolution = 1e-3;  ///< default relative width at which bisection stops
+inline constexpr int kScanIntervals = 16;             ///< number of equal intervals of the scan before bisection
+inline constexpr double kBisectionResolution = 1e-3;  ///< default relative width at which bisection stops
 
 /// The range of a search and its settings.
-struct SearchWay {
+struct IntervalSearchOptions {
   Range range;  ///< from < to; both ends are evaluated
   /// Scenario's value, where the search starts; empty if it is outside of the range.
   std::optional<double> current = {};
@@ -27,7 +27,7 @@ struct SearchWay {
   bool smallest = false;  ///< true: t = 0 is the high end, and the result is the smallest stable value
   /// Width at which bisection stops: relative to the value in a logarithmic range, relative to the range in a linear
   /// range.
-  double resolution = kEdgeResolution;
+  double resolution = kBisectionResolution;
 
   /// Returns the value at the parameter `t`, rounded if `whole`.
   double value_at(double t) const;
@@ -38,12 +38,12 @@ struct SearchWay {
 };
 
 /// The interval of stable parameters that a search found, from `first` to `stable`, and its unstable neighbours.
-struct FoundEdge {
+struct StableInterval {
   std::optional<double> stable = {};  ///< largest stable parameter of the interval; empty without an interval
   std::optional<double> beyond = {};  ///< unstable parameter just above `stable`; empty if t = 1 is stable
   std::optional<double> first = {};   ///< smallest stable parameter of the interval; empty without the other end
   std::optional<double> before = {};  ///< unstable parameter just below `first`; empty if t = 0 is stable
-  bool scattered = false;  ///< there are stable parameters, but no contiguous stable interval as long as kNear
+  bool scattered = false;  ///< there are stable parameters, but no contiguous stable interval as long as kNearLimit
 };
 
 /// Evaluated parameters, each with true if it is stable.
@@ -52,7 +52,7 @@ using EvaluatedParameters = std::map<double, bool>;
 using IsStable = std::function<bool(double t)>;
 
 /// Evaluates the `intervals` + 1 end points of equal intervals of [0, 1], from t = 0 to t = 1.
-EvaluatedParameters scanned(int intervals, const IsStable& stable);
+EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable);
 
 /// Bisects the first stable-to-unstable transition above the current value, or above the first stable parameter if the
 /// current value is unstable. Returns an empty interval if no parameter is stable. On input `evaluated` has at least
@@ -61,14 +61,15 @@ EvaluatedParameters scanned(int intervals, const IsStable& stable);
 /// Without `beside`, only `stable` and `beyond` are found. With `beside`, also evaluates three parameters on either
 /// side of the transition. If they show an earlier transition, bisects the earlier transition instead, up to five
 /// times. Finally bisects the other end of the interval.
-FoundEdge find_edge(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable, bool beside);
+StableInterval find_stable_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,
+                                    const IsStable& stable, bool beside);
 
 // Bisection can miss unstable values inside an interval: feedback loops in contact have islands of unstable values as
 // narrow as 1 % of a range. Further samples therefore verify an interval.
-inline constexpr std::size_t kTriedBetween = 48;  ///< verification samples between the ends of the interval
-inline constexpr std::size_t kTriedNear = 8;      ///< further samples just below the limit
-/// Largest distance of the kTriedNear samples from the limit, relative to the limit.
-inline constexpr double kNear = 0.02;
+inline constexpr std::size_t kVerificationSamples = 48;  ///< verification samples between the ends of the interval
+inline constexpr std::size_t kSamplesNearLimit = 8;      ///< further samples just below the limit
+/// Largest distance of the kSamplesNearLimit samples from the limit, relative to the limit.
+inline constexpr double kNearLimit = 0.02;
 
 /// Returns the upper 95 % confidence bound on the unstable fraction of an interval if `samples` samples in it are all
 /// stable: 1 - 0.05^(1 / samples).
@@ -78,14 +79,15 @@ double may_fail_share(std::size_t samples);
 /// interval evenly for every n.
 std::vector<double> parameters_between(double from, double to, std::size_t count);
 
-/// Returns kTriedNear parameters below `t` whose values are within kNear of its value.
-std::vector<double> parameters_below(const SearchWay& options, double t);
+/// Returns kSamplesNearLimit parameters below `t` whose values are within kNearLimit of its value.
+std::vector<double> parameters_below(const IntervalSearchOptions& options, double t);
 
-/// Finds an interval as find_edge does with `beside`, and verifies it: by kTriedBetween samples between its ends and,
-/// with `near`, by kTriedNear samples just below the limit. If a sample is unstable, searches again with this sample as
-/// an unstable parameter. Calls `ahead` with parameters before it evaluates them, so that the caller can evaluate them
-/// in parallel.
-FoundEdge find_tried_edge(const SearchWay& options, EvaluatedParameters& evaluated, const IsStable& stable, bool near,
-                          const std::function<void(std::span<const double>)>& ahead);
+/// Finds an interval as find_stable_interval does with `beside`, and verifies it: by kVerificationSamples samples
+/// between its ends and, with `near`, by kSamplesNearLimit samples just below the limit. If a sample is unstable,
+/// searches again with this sample as an unstable parameter. Calls `ahead` with parameters before it evaluates them, so
+/// that the caller can evaluate them in parallel.
+StableInterval find_verified_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,
+                                      const IsStable& stable, bool near,
+                                      const std::function<void(std::span<const double>)>& ahead);
 
 }  // namespace hapbench

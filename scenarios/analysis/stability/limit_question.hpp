@@ -20,10 +20,10 @@ struct LimitQuestion {
   const ScenarioText* scene = nullptr;  ///< not owned; must outlive this object
   std::vector<std::string> overrides = {};
   std::string path = {};  ///< path of the field, dotted as in --set
-  SearchWay search = {};
+  IntervalSearchOptions search = {};
   StabilityRule rule = {};
   std::vector<std::string> warnings = {};  ///< warnings of the scenario at the end of the range
-  bool between = true;                     ///< verify the interval by further samples (find_tried_edge)
+  bool between = true;                     ///< verify the interval by further samples (find_verified_interval)
   unsigned threads = 1;                    ///< number of parallel runs; does not change the result
 
   const char* side() const { return search.smallest ? "smallest" : "largest"; }

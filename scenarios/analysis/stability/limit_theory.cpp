@@ -21,7 +21,7 @@ constexpr double kTheoryResolution = 1e-12;
 /// Returns true for springs in permanent contact with a tool without hand and device, or with a device whose loop is
 /// linear.
 bool has_eigenvalues(const Scenario& scenario) {
-  if (!springs_stay(scenario)) return false;
+  if (!has_permanent_springs(scenario)) return false;
   if (has_device(scenario)) return device_loop(scenario, 1.0).no_theory.empty();
   return std::holds_alternative<NoHandFields>(scenario.hand);
 }
@@ -75,12 +75,12 @@ TheoreticalLimit limit_by(const LimitQuestion& question, const IsTrueOf& applies
   const auto holds = [&](double t) { return stable(scenario_at(t)); };
   TheoreticalLimit limit;
   if (!applies(scenario_at(0.0)) || !applies(scenario_at(1.0))) return limit;
-  EvaluatedParameters evaluated = scanned(intervals, holds);
+  EvaluatedParameters evaluated = evaluate_scan(intervals, holds);
   limit.islands = stable_intervals(evaluated);
   limit.has_none = limit.islands.empty();
-  SearchWay options = question.search;
+  IntervalSearchOptions options = question.search;
   options.resolution = kTheoryResolution;
-  const FoundEdge interval = find_edge(options, evaluated, holds, false);
+  const StableInterval interval = find_stable_interval(options, evaluated, holds, false);
   if (interval.stable) limit.value = options.smallest ? 0.0 : std::numeric_limits<double>::infinity();
   if (interval.beyond) limit.value = options.value_at(*interval.stable);
   return limit;
@@ -93,24 +93,24 @@ TheoreticalLimit eigenvalue_limit(const LimitQuestion& question) {
 }
 
 TheoreticalLimit inequality_limit(const LimitQuestion& question) {
-  return limit_by(question, has_inequality, keeps_inequality, kEdgeIntervals);
+  return limit_by(question, has_inequality, keeps_inequality, kScanIntervals);
 }
 
 std::optional<double> contact_limit(const LimitQuestion& question, double lambda) {
   const auto applies = [lambda](const Scenario& scenario) {
-    return has_device(scenario) && contact_step(scenario, lambda).size() != 0;
+    return has_device(scenario) && contact_step_matrix(scenario, lambda).size() != 0;
   };
   const auto stable = [lambda](const Scenario& scenario) {
-    return std::ranges::all_of(contact_loops(scenario, lambda, false),
+    return std::ranges::all_of(contact_step_matrices(scenario, lambda, false),
                                [](const auto& loop) { return is_stable_step(loop.second); });
   };
-  return limit_by(question, applies, stable, 2 * kEdgeIntervals).value;
+  return limit_by(question, applies, stable, 2 * kScanIntervals).value;
 }
 
 WallLimits wall_limits(const LimitQuestion& question) {
   WallLimits limits;
   const Scenario scenario = question.at(question.search.value_at(0.0)).scenario;
-  if (question.path != kStiffnessPath || question.search.smallest || !springs_stay(scenario) ||
+  if (question.path != kStiffnessPath || question.search.smallest || !has_permanent_springs(scenario) ||
       !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device))
     return limits;
   // The closed forms assume a damping B that does not depend on K. A damping ratio makes B depend on K.
@@ -119,8 +119,8 @@ WallLimits wall_limits(const LimitQuestion& question) {
   const DeviceLoop start = device_loop(scenario, lambda);
   const auto& sampled = std::get<SampledLoop>(start.loop);
   limits.no_theory = start.no_theory;
-  if (start.no_theory.empty()) limits.worst_hand = worst_hand_edge(sampled) / lambda;
-  const bool is_known = unknown_to_theory(scenario).empty();
+  if (start.no_theory.empty()) limits.worst_hand = worst_hand_stability_limit(sampled) / lambda;
+  const bool is_known = unmodelled_fields(scenario).empty();
   for (const StiffnessLimit& known : stiffness_limits()) {
     const std::optional<double> K = is_known ? known.largest(sampled) : std::nullopt;
     limits.closed_forms.push_back(K ? std::optional(*K / lambda) : std::nullopt);

@@ -38,7 +38,7 @@ struct WallLimits {
   /// Limits by the closed forms of stiffness_limits(), in their order; an entry is empty if its form does not apply.
   /// Empty if the question does not concern K on such a wall.
   std::vector<std::optional<double>> closed_forms = {};
-  std::optional<double> worst_hand = {};  ///< smallest limit over the hands of hand_family()
+  std::optional<double> worst_hand = {};  ///< smallest limit over the hands of typical_hands()
   std::string no_theory = {};             ///< why the eigenvalues of the loop give no limit; empty if they do
 };
 /// Returns the limits of K if the question varies K on a two-sided wall with an impedance device; otherwise empty

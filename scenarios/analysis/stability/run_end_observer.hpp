@@ -15,8 +15,8 @@ namespace hapbench {
 
 /// The settled state of a run: `contacts` and `lambda_max` are over the steps of its last quarter.
 struct SettledState {
-  /// Vibration of the handle above 30 Hz over the judged steps (JudgedRows) [m/s rms]; empty at sampling rates of 60 Hz
-  /// or less.
+  /// Vibration of the handle above 30 Hz over the judged steps (EvaluationWindow) [m/s rms]; empty at sampling rates of
+  /// 60 Hz or less.
   std::optional<double> vibration;
   double contacts = 0.0;    ///< mean number of rendered contacts, over the steps in contact
   double lambda_max = 0.0;  ///< largest eigenvalue of the mean stiffness tensor S in contact, in units of K
@@ -48,7 +48,7 @@ class RunEndObserver final : public Observer {
   Vec3 tip_ = Vec3::Zero();  ///< centre of the tip [m]
   Hash64 motion_;
   std::uint64_t steps_;  ///< number of steps of the run
-  JudgedRows judged_;
+  EvaluationWindow judged_;
   Vibration vibration_;
   SlowBounces bounces_;
   std::uint64_t quarter_ = 0;  ///< current quarter of the run, from 0; the members below are over this quarter

@@ -21,7 +21,7 @@ namespace {
 MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) {
   const SimulationResult result = run_to_end(simulation, [&] {
     bool more = true;
-    for (std::uint64_t i = 0; i < kAskEvery && more; ++i) more = !classifier.at_rest() && simulation.step();
+    for (std::uint64_t i = 0; i < kStepsPerStopCheck && more; ++i) more = !classifier.at_rest() && simulation.step();
     return more;
   });
   return classifier.motion_class(result.ending);
@@ -30,14 +30,14 @@ MotionClass classify(Simulation& simulation, const MotionClassifier& classifier)
 /// Returns the classifier for the scenario. It depends on whether a script moves the tool.
 MotionClassifier classifier_of(const Scenario& scenario) {
   const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
-  if (!is_moved(scenario)) return MotionClassifier(steps);
+  if (!has_scripted_motion(scenario)) return MotionClassifier(steps);
   return MotionClassifier::of_moved_tool(steps, scenario.time.step, script_moves_until(scenario) / scenario.time.step);
 }
 
-/// Returns the verdict by the vibration if `most_vibration` has a value [m/s rms]; otherwise the class of the motion.
-RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> most_vibration) {
-  if (!most_vibration || motion == MotionClass::diverged) return motion;
-  return settled.vibration && *settled.vibration <= *most_vibration ? RunVerdict::stable : RunVerdict::vibrating;
+/// Returns the verdict by the vibration if `max_vibration` has a value [m/s rms]; otherwise the class of the motion.
+RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> max_vibration) {
+  if (!max_vibration || motion == MotionClass::diverged) return motion;
+  return settled.vibration && *settled.vibration <= *max_vibration ? RunVerdict::stable : RunVerdict::vibrating;
 }
 
 /// Returns the verdict with the same name as the outcome; empty if the outcome has no verdict of its own.
@@ -69,9 +69,9 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
     if (outcome == Outcome::leaves_hole || (shell && run_end.has_left(*shell, tool->reach())))
       return RunVerdict::thrown_out;
     if (const auto known = verdict_of(outcome)) return *known;
-    const bool only_fast = rule.most_vibration || is_moved(scenario);
+    const bool only_fast = rule.max_vibration || has_scripted_motion(scenario);
     if (only_fast && run_end.keeps_bouncing()) return RunVerdict::vibrating;
-    return verdict_of(motion, settled, rule.most_vibration);
+    return verdict_of(motion, settled, rule.max_vibration);
   };
   RunStability run{verdict(), settled, run_end.motion_hash()};
   run.undecided = is_stable(run.verdict) && classifier.is_undecided();
@@ -101,7 +101,7 @@ RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const 
   return run;
 }
 
-bool unstable_without_contact(const CheckedScenario& checked, std::optional<double> most_vibration) {
+bool unstable_without_contact(const CheckedScenario& checked, std::optional<double> max_vibration) {
   Scenario scenario = checked.scenario();
   if (spring_of(scenario.hand) == nullptr || std::holds_alternative<SpringsEnvironment>(scenario.environment))
     return false;
@@ -114,7 +114,7 @@ bool unstable_without_contact(const CheckedScenario& checked, std::optional<doub
   Simulation simulation(simulation_config(scenario), assemble(scenario, checked.files(), nothing, {}),
                         {&classifier, &run_end});
   const MotionClass motion = classify(simulation, classifier);
-  return !is_stable(verdict_of(motion, run_end.state(classifier.at_rest()), most_vibration));
+  return !is_stable(verdict_of(motion, run_end.state(classifier.at_rest()), max_vibration));
 }
 
 }  // namespace hapbench

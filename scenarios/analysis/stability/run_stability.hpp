@@ -31,7 +31,7 @@ RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const 
 
 /// Returns true if the tool vibrates or diverges without any environment: then hand and device, not the contact, are
 /// the cause of the instability. Returns false for hands whose force does not depend on the handle, and for an
-/// environment of springs. `most_vibration`: see StabilityRule.
-bool unstable_without_contact(const CheckedScenario& checked, std::optional<double> most_vibration = {});
+/// environment of springs. `max_vibration`: see StabilityRule.
+bool unstable_without_contact(const CheckedScenario& checked, std::optional<double> max_vibration = {});
 
 }  // namespace hapbench

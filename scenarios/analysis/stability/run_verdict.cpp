@@ -18,7 +18,7 @@ std::span<const RunVerdictText> run_verdict_texts() noexcept {
   static const RunVerdictText kTexts[] = {
       {"stable", "at rest, decayed to rest, or creeping slowly",
        "none of the other classes: at rest, decayed to rest, or creeping slowly"},
-      {"dying_out", "decaying: still oscillates at the end, but comes to rest if the run goes on",
+      {"decaying", "decaying: still oscillates at the end, but comes to rest if the run goes on",
        "decaying: oscillates like \"vibrating\", but the amplitude falls by at least a tenth from the second quarter "
        "to the third and again to the last"},
       {"vibrating", "oscillates without decay",

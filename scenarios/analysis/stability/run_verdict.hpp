@@ -27,7 +27,7 @@ inline constexpr std::size_t kMotionClasses = 4;
 
 /// Name and description of a verdict.
 struct RunVerdictText {
-  std::string_view name;  ///< as in result files: "stable", "dying_out", …
+  std::string_view name;  ///< as in result files: "stable", "decaying", …
   const char* meaning;    ///< for the user
   const char* rule = "";  ///< criterion of a class of motion; empty for other verdicts
 };

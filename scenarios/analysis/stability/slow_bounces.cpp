@@ -5,7 +5,7 @@
 
 namespace hapbench {
 
-void SlowBounces::add(const StepRecord& record, const JudgedRows& judged) noexcept {
+void SlowBounces::add(const StepRecord& record, const EvaluationWindow& judged) noexcept {
   if (record.colliding == 0) {
     leave(record);
     return;
@@ -29,7 +29,7 @@ void SlowBounces::leave(const StepRecord& record) noexcept {
   is_pressed_ = record.hand.measured.dot(up_) < 0.0;
 }
 
-void SlowBounces::land(std::uint64_t step, const JudgedRows& judged) noexcept {
+void SlowBounces::land(std::uint64_t step, const EvaluationWindow& judged) noexcept {
   const std::uint64_t in_contact = std::exchange(steps_in_contact_, 0);
   // Count the bounce only if it is slow, longer than the contact before it, and against a hand that presses.
   const bool slow = static_cast<double>(in_contact + steps_away_) > longest_vibration_;

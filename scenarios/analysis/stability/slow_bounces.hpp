@@ -18,7 +18,7 @@ class SlowBounces {
   explicit SlowBounces(double dt) : longest_vibration_(1.0 / (kVibrationCutoff * dt)) {}
 
   /// Adds one time step. `judged`: the steps over which bounces are counted.
-  void add(const StepRecord& record, const JudgedRows& judged) noexcept;
+  void add(const StepRecord& record, const EvaluationWindow& judged) noexcept;
 
   /// Returns true if each half of the judged steps has at least two bounces, and the highest bounce of the second half
   /// is less than 1 % lower than that of the first half.
@@ -27,7 +27,7 @@ class SlowBounces {
  private:
   void touch(const StepRecord& record) noexcept;
   void leave(const StepRecord& record) noexcept;
-  void land(std::uint64_t step, const JudgedRows& judged) noexcept;
+  void land(std::uint64_t step, const EvaluationWindow& judged) noexcept;
 
   double longest_vibration_;            ///< number of steps of a period of kVibrationCutoff
   std::uint64_t steps_in_contact_ = 0;  ///< duration of the last contact [steps]

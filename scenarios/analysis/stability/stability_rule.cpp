@@ -13,7 +13,7 @@ bool StabilityRule::holds(RunVerdict verdict) const noexcept {
 
 StabilityRule rule_of(const Scenario& scenario) {
   StabilityRule rule;
-  if (vibration_filter(scenario.time.step) && is_moved(scenario)) rule.most_vibration = kMostVibration;
+  if (vibration_filter(scenario.time.step) && has_scripted_motion(scenario)) rule.max_vibration = kMaxVibration;
   return rule;
 }
 

@@ -15,7 +15,7 @@ struct StabilityRule {
   /// Largest allowed vibration of the handle over the judged steps [m/s rms]. If set, the vibration decides instead of
   /// the class of motion: a smaller vibration is stable, a larger vibration is not, even if it decays. A run without a
   /// measured vibration is not stable. A tool with persistent slow bounces (SlowBounces) is vibrating.
-  std::optional<double> most_vibration = {};
+  std::optional<double> max_vibration = {};
   /// Bounds on metrics of summary.json, by name. A metric without a value violates its bound.
   std::map<std::string, MetricBound> bounds = {};
   bool bounded = false;  ///< true: a vibrating run, which does not grow, is also stable
@@ -25,7 +25,7 @@ struct StabilityRule {
 };
 
 /// Returns the default rule of a scenario. The class of motion decides; if a script moves the tool, the vibration
-/// decides (limit: kMostVibration). At sampling rates of 60 Hz or less, the class of motion always decides.
+/// decides (limit: kMaxVibration). At sampling rates of 60 Hz or less, the class of motion always decides.
 StabilityRule rule_of(const Scenario& scenario);
 
 }  // namespace hapbench

@@ -67,7 +67,7 @@ bool all_in_bound(const ContactSet& set, const StressedForce& stressed) {
   constexpr double kMaxRatio = 1.0 + kForceRounding;
   const RenderedForce& force = stressed.force;
   if (stressed.bound && !(force.spring.norm() <= kMaxRatio * *stressed.bound)) return false;
-  if (!(force.depth_max >= 0.0 && force.depth_max <= kMaxRatio * set.tool.longest_exit())) return false;
+  if (!(force.depth_max >= 0.0 && force.depth_max <= kMaxRatio * set.tool.max_exit_distance())) return false;
   return damping_in_bound(set, force);
 }
 

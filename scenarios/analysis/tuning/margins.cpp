@@ -19,11 +19,11 @@
 namespace hapbench {
 namespace {
 
-/// Returns verification parameters between 0 and `last`. Logarithmic range: kTriedBetween parameters. Delays: also
-/// every quarter of a sample. Integers: every integer.
-std::vector<double> parameters_up_to(const SearchWay& options, double last) {
+/// Returns verification parameters between 0 and `last`. Logarithmic range: kVerificationSamples parameters. Delays:
+/// also every quarter of a sample. Integers: every integer.
+std::vector<double> parameters_up_to(const IntervalSearchOptions& options, double last) {
   std::vector<double> parameters;
-  if (!options.whole) parameters = parameters_between(0.0, last, kTriedBetween);
+  if (!options.whole) parameters = parameters_between(0.0, last, kVerificationSamples);
   if (options.range.logarithmic) return parameters;
   const double samples = options.whole ? 1.0 : 0.25;
   const double step = samples / (options.range.to - options.range.from);
@@ -33,7 +33,7 @@ std::vector<double> parameters_up_to(const SearchWay& options, double last) {
 
 /// Returns the largest value of a range up to which all variants of the trial are settled. `override_of`: override that
 /// sets a value. Verifies the interval by samples; a sample that fails shortens it.
-double last_settled(Trials& trials, const TuneTrial& trial, const SearchWay& options,
+double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearchOptions& options,
                     const std::function<std::string(double value)>& override_of) {
   const auto holds = [&](double t) {
     const auto override_at = [&](std::size_t) { return override_of(options.value_at(t)); };
@@ -45,9 +45,9 @@ double last_settled(Trials& trials, const TuneTrial& trial, const SearchWay& opt
     return so_far;
   };
   // Search the limit, verify the values below it, and repeat with each sample that fails.
-  EvaluatedParameters evaluated = scanned(kEdgeIntervals, holds_so_far);
+  EvaluatedParameters evaluated = evaluate_scan(kScanIntervals, holds_so_far);
   while (true) {
-    const double last = find_edge(options, evaluated, holds, false).stable.value_or(0.0);
+    const double last = find_stable_interval(options, evaluated, holds, false).stable.value_or(0.0);
     const std::vector<double> parameters = parameters_up_to(options, last);
     const auto override_at = [&](std::size_t i) { return override_of(options.value_at(parameters[i])); };
     const auto failing = trials.first_failing(trial, parameters.size(), override_at);
@@ -57,11 +57,11 @@ double last_settled(Trials& trials, const TuneTrial& trial, const SearchWay& opt
 }
 
 /// Returns the damping ratio of the least damped mode of the loop in contact; empty without contact. `lambda`:
-/// stiffness in contact, in units of K. `over_hands`: also over the hands of hand_family().
+/// stiffness in contact, in units of K. `over_hands`: also over the hands of typical_hands().
 std::optional<double> smallest_damping_ratio(const Scenario& scenario, double lambda, bool over_hands) {
   std::optional<double> smallest;
   if (!(lambda > 0.0)) return smallest;
-  for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands)) {
+  for (const auto& [hand, step] : contact_step_matrices(scenario, lambda, over_hands)) {
     for (const std::complex<double>& z : eigenvalues(step)) {
       const double magnitude = math::hypot(z.real(), z.imag());
       if (magnitude < 1e-9) continue;  // a state of a delay line, no mode
@@ -77,7 +77,8 @@ std::optional<double> gain_margin(Trials& trials, const TuneTrial& choice) {
   const double G = trials.question().margin, largest = trials.ranges().stiffness.to;
   const double largest_gain = std::min(largest, trials.smallest_unstable()) / choice.stiffness;
   if (largest_gain > G * (1.0 + kTuneResolution)) {
-    const SearchWay gains{.range = {G, std::min(kMostGain, largest_gain), true}, .resolution = kTuneResolution};
+    const IntervalSearchOptions gains{.range = {G, std::min(kMaxGainMargin, largest_gain), true},
+                                      .resolution = kTuneResolution};
     return last_settled(trials, choice, gains, [&](double gain) { return with_gain(choice, gain); });
   }
   return trials.smallest_unstable() < largest ? std::optional(G) : std::nullopt;
@@ -87,7 +88,8 @@ std::optional<double> gain_margin(Trials& trials, const TuneTrial& choice) {
 std::optional<double> delay_margin(Trials& trials, const TuneTrial& choice, const Scenario& scenario) {
   if (!has_device(scenario)) return std::nullopt;
   const bool whole = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
-  const SearchWay delays{.range = {0.0, kMostDelay}, .whole = whole, .resolution = 0.02 / kMostDelay};
+  const IntervalSearchOptions delays{
+      .range = {0.0, kMaxDelayMargin}, .whole = whole, .resolution = 0.02 / kMaxDelayMargin};
   return last_settled(trials, choice, delays, [&](double more) {
     return fmt::format("{}={}", delay_path(scenario), delay_of(scenario) + more);
   });

@@ -69,8 +69,8 @@ Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
   const LoadedScenario own = load({}, ranges_.stiffness.from);
   shell_ = make_shell(own.scenario, own.files);
   for (const std::string& set : question_.families)
-    for (SceneVariant& variant : family_of(own, set)) variants_.push_back(std::move(variant));
-  if (springs_stay(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
+    for (SceneVariant& variant : scene_variants(own, set)) variants_.push_back(std::move(variant));
+  if (has_permanent_springs(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
   // Without limits of the user, use the thresholds of the diagnosis.
   if (requires_low_vibration_)
     for (const Diagnosed& rule : diagnosis_rules(requires_low_vibration_)) limits_[rule.rule].max = rule.threshold;
@@ -177,7 +177,7 @@ TuneMetrics Trials::metrics_of(const Result& run) const {
 
 void Trials::judge(TuneTrial& trial) {
   if (springs_lambda_ && !judge_loop(trial, variants_[0], *springs_lambda_, "the device alone")) return;
-  if (runs_ >= kMostTuneRuns) {
+  if (runs_ >= kMaxTuneRuns) {
     trial.fail("runs", fmt::format("the search ended after {} runs", runs_));
     return;
   }
@@ -192,7 +192,7 @@ std::optional<std::string> Trials::unstable_loop(Scenario scenario, double lambd
   constexpr double kStiffnessStep = 1.1;
   for (double at = most; lambda > 0.0 && at * kStiffnessStep > K; at /= kStiffnessStep) {
     scenario.rendering.stiffness = at;
-    for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands_))
+    for (const auto& [hand, step] : contact_step_matrices(scenario, lambda, over_hands_))
       if (!is_stable_step(step)) return hand;
   }
   return std::nullopt;
@@ -241,7 +241,7 @@ void Trials::judge_limits(TuneTrial& trial) {
     const Result run = run_with_shell(scene, shell_);
     metrics[i] = metrics_of(run);
     if (!requires_low_vibration_) return;
-    for (const Diagnosed& number : quiet_numbers(scene.loaded(), run)) {
+    for (const Diagnosed& number : low_vibration_numbers(scene.loaded(), run)) {
       trial.worst[number.rule] = number.value;
       trial.worst_text[number.rule] = number.says;
     }

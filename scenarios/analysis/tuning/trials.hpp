@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/analysis/tuning/family.hpp"
+#include "scenarios/analysis/tuning/scene_variants.hpp"
 #include "scenarios/analysis/tuning/trial.hpp"
 #include "scenarios/analysis/tuning/tune_question.hpp"
 #include "scenarios/run/run_scenario.hpp"

@@ -12,8 +12,8 @@ namespace {
 /// Evaluates the choice's setting at stiffnesses from 1/30 to 30 times the choice's K, for plots.
 void evaluate_along_stiffness(Trials& trials, const TuneTrial& choice) {
   const Range around{choice.stiffness / 30.0, choice.stiffness * 30.0, true}, whole = trials.ranges().stiffness;
-  for (int i = 0; i <= kEdgeIntervals; ++i) {
-    const double K = around.value_at(static_cast<double>(i) / kEdgeIntervals);
+  for (int i = 0; i <= kScanIntervals; ++i) {
+    const double K = around.value_at(static_cast<double>(i) / kScanIntervals);
     if (K > whole.from && K < whole.to / trials.question().margin) trials.evaluate_and_measure(choice.setting, K);
   }
 }

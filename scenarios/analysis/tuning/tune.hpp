@@ -38,11 +38,12 @@ struct TunedLaw {
 ///
 /// A setting at K is feasible if
 /// - every variant of the scene, including the scene itself, is settled at K (rule_of) and keeps the limits on metrics.
-///   Without limits of the user, the run of the scene itself must have low vibration (quiet_numbers in diagnosis.hpp).
+///   Without limits of the user, the run of the scene itself must have low vibration (low_vibration_numbers in
+///   diagnosis.hpp).
 /// - every variant is settled at G K.
-/// - the loop in contact has stable eigenvalues from K to G K (contact_loops; for an impedance device that a hand
-/// holds,
-///   with every hand of hand_family()).
+/// - the loop in contact has stable eigenvalues from K to G K (contact_step_matrices; for an impedance device that a
+/// hand holds,
+///   with every hand of typical_hands()).
 ///
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified
 /// (verification.hpp). If the verification fails, the search is repeated with stricter bounds. Throws InputError for a

@@ -15,7 +15,7 @@ namespace hapbench {
 
 /// Largest number of simulations of the search for one law. Margins, error estimates and verification need a few
 /// hundred more.
-inline constexpr std::size_t kMostTuneRuns = 6000;
+inline constexpr std::size_t kMaxTuneRuns = 6000;
 
 /// Inputs of tuned_law().
 struct TuneQuestion {

@@ -68,7 +68,7 @@ Range TuneSearch::stiffnesses() const {
 /// Finds the largest feasible K of a setting if it exceeds the best K, and makes it the best trial. Returns true if so.
 bool TuneSearch::improve(const TuneSetting& setting) {
   // Search only above the best K.
-  SearchWay options{.range = stiffnesses(), .resolution = kTuneResolution};
+  IntervalSearchOptions options{.range = stiffnesses(), .resolution = kTuneResolution};
   if (best_) {
     options.range.from = best_->stiffness * (1.0 + kTuneResolution);
     if (!(options.range.from < options.range.to)) return false;
@@ -78,22 +78,22 @@ bool TuneSearch::improve(const TuneSetting& setting) {
     }
   }
   const auto holds = [&](double t) { return trials_.feasible(setting, options.value_at(t)); };
-  EvaluatedParameters scan = scanned(kEdgeIntervals, holds);
+  EvaluatedParameters scan = evaluate_scan(kScanIntervals, holds);
   if (const auto between = window(setting, options, scan)) scan[*between] = true;
-  const FoundEdge interval = find_edge(options, scan, holds, false);
+  const StableInterval interval = find_stable_interval(options, scan, holds, false);
   if (!interval.stable) return false;
   best_ = trials_.trial_at(setting, options.value_at(*interval.stable));
   beyond_ = interval.beyond ? trials_.beyond(setting, options.value_at(*interval.beyond)) : trials_.end();
   return true;
 }
 
-bool TuneSearch::is_too_soft(const TuneSetting& setting, const SearchWay& options, double t) {
+bool TuneSearch::is_too_soft(const TuneSetting& setting, const IntervalSearchOptions& options, double t) {
   return trials_.trial_at(setting, options.value_at(t)).too_soft;
 }
 
 /// Returns the parameter of a feasible value that lies between two values of the scan, the lower too soft and the upper
 /// too stiff; empty if there is none.
-std::optional<double> TuneSearch::window(const TuneSetting& setting, const SearchWay& options,
+std::optional<double> TuneSearch::window(const TuneSetting& setting, const IntervalSearchOptions& options,
                                          const EvaluatedParameters& scan) {
   for (auto at = scan.begin(); std::next(at) != scan.end(); ++at) {
     const auto next = std::next(at);
@@ -106,8 +106,8 @@ std::optional<double> TuneSearch::window(const TuneSetting& setting, const Searc
 
 /// Bisects between a parameter that is too soft and a parameter that is too stiff. Returns the first feasible
 /// parameter; empty if there is none.
-std::optional<double> TuneSearch::feasible_between(const TuneSetting& setting, const SearchWay& options, double soft,
-                                                   double stiff) {
+std::optional<double> TuneSearch::feasible_between(const TuneSetting& setting, const IntervalSearchOptions& options,
+                                                   double soft, double stiff) {
   while (options.needs_bisection(soft, stiff)) {
     const double middle = 0.5 * (soft + stiff);
     if (trials_.feasible(setting, options.value_at(middle))) return middle;

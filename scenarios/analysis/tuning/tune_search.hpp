@@ -30,10 +30,11 @@ class TuneSearch {
  private:
   Range stiffnesses() const;
   bool improve(const TuneSetting& setting);
-  std::optional<double> window(const TuneSetting& setting, const SearchWay& options, const EvaluatedParameters& scan);
-  std::optional<double> feasible_between(const TuneSetting& setting, const SearchWay& options, double soft,
+  std::optional<double> window(const TuneSetting& setting, const IntervalSearchOptions& options,
+                               const EvaluatedParameters& scan);
+  std::optional<double> feasible_between(const TuneSetting& setting, const IntervalSearchOptions& options, double soft,
                                          double stiff);
-  bool is_too_soft(const TuneSetting& setting, const SearchWay& options, double t);
+  bool is_too_soft(const TuneSetting& setting, const IntervalSearchOptions& options, double t);
   void refine();
   void approach();
   std::vector<TuneTrial> neighbours(const TuneTrial& trial, double ratio) const;

@@ -29,8 +29,8 @@ bool refute(Trials& trials, const TuneTrial& choice, double K, const std::string
 
 /// Returns true if a run at a gain between 1 and G, or just below G, is not settled.
 bool fails_between(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
-  const SearchWay gains{.range = {1.0, trials.question().margin, true}};
-  std::vector<double> parameters = parameters_between(0.0, 1.0, kTriedBetween);
+  const IntervalSearchOptions gains{.range = {1.0, trials.question().margin, true}};
+  std::vector<double> parameters = parameters_between(0.0, 1.0, kVerificationSamples);
   const std::vector<double> near = parameters_below(gains, 1.0);
   parameters.insert(parameters.end(), near.begin(), near.end());
   const auto override_at = [&](std::size_t i) { return with_gain(choice, gains.value_at(parameters[i])); };

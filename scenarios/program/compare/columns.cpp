@@ -28,11 +28,11 @@ constexpr std::string_view kComparedMetrics =
 
 /// Returns the error of the mean: the largest of the error of its numbers, the standard error over seeds, and a
 /// tenth of the difference up to which means share a rank. Without a spread, returns the error of its numbers.
-std::optional<double> error_of_mean(const Standing& standing) {
+std::optional<double> error_of_mean(const RankingEntry& standing) {
   if (!standing.spread) return standing.tolerance;
   const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));
   return std::max(
-      {standing.tolerance, std::optional(of_seeds), std::optional(0.1 * kSameRank * std::abs(*standing.mean))});
+      {standing.tolerance, std::optional(of_seeds), std::optional(0.1 * kRankResolution * std::abs(*standing.mean))});
 }
 
 }  // namespace
@@ -54,8 +54,8 @@ Columns<ComparedRun> comparison_columns(bool seeds) {
   return columns;
 }
 
-Columns<Standing> league_columns(bool seeds) {
-  using Row = Standing;
+Columns<RankingEntry> ranking_columns(bool seeds) {
+  using Row = RankingEntry;
   const auto better = [](const Row& r) {
     return r.better == Better::none ? Cell() : Cell(r.better == Better::less ? "less" : "more");
   };
@@ -89,24 +89,24 @@ Columns<Standing> league_columns(bool seeds) {
        better}};
 }
 
-Columns<LawStanding> law_columns() {
-  const auto fails = [](const LawStanding& l) {
+Columns<LawRankingEntry> law_ranking_columns() {
+  const auto fails = [](const LawRankingEntry& l) {
     return l.fails.empty() ? "-" : fmt::format("{}", fmt::join(l.fails, ", "));
   };
   return {
-      {"algorithm", "", "", &LawStanding::algorithm, under("algorithm")},
+      {"algorithm", "", "", &LawRankingEntry::algorithm, under("algorithm")},
       {"mean_rank", "1",
        "mean of the algorithm's ranks over all metrics and scenarios, including the ranks after failed runs; 1 is best",
-       &LawStanding::mean_rank, under("mean rank", 3)},
+       &LawRankingEntry::mean_rank, under("mean rank", 3)},
       {"fails in", "", "scenarios in which a run of the algorithm failed", fails, only_printed()}};
 }
 
-std::vector<DescribedTable> league_tables() {
+std::vector<DescribedTable> ranking_tables() {
   return {comparison_columns(false).described("comparison.csv", "written by compare: one line per algorithm"),
-          league_columns(true).described(
-              "league.csv",
+          ranking_columns(true).described(
+              "ranking.csv",
               "written by compare for several scenarios or seeds: one line per scenario, algorithm and metric"),
-          law_columns().described()};
+          law_ranking_columns().described()};
 }
 
 }  // namespace hapbench

@@ -19,12 +19,12 @@ struct ComparedRun {
 /// Returns the columns of comparison.csv, without times, so that equal comparisons give identical files.
 /// `seeds`: there are several seeds; the first column then has the seed.
 Columns<ComparedRun> comparison_columns(bool seeds);
-/// Returns the columns of league.csv, which has a row for each scenario, algorithm and metric. `seeds`: there
+/// Returns the columns of ranking.csv, which has a row for each scenario, algorithm and metric. `seeds`: there
 /// are several seeds; the printed table then has the spread.
-Columns<Standing> league_columns(bool seeds);
+Columns<RankingEntry> ranking_columns(bool seeds);
 /// Returns the columns of the table of the algorithms over all scenarios and metrics.
-Columns<LawStanding> law_columns();
+Columns<LawRankingEntry> law_ranking_columns();
 /// Returns the tables that this command writes and prints, for `describe`.
-std::vector<DescribedTable> league_tables();
+std::vector<DescribedTable> ranking_tables();
 
 }  // namespace hapbench

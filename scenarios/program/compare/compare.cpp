@@ -24,7 +24,7 @@
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/compare/columns.hpp"
 #include "scenarios/program/compare/errors.hpp"
-#include "scenarios/program/compare/league_text.hpp"
+#include "scenarios/program/compare/ranking_text.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -44,10 +44,10 @@ struct CompareOptions : CommonOptions {
 /// Checks the options and plans the comparison. Throws InputError.
 Comparison planned(const CompareOptions& options) {
   require_names("--by", options.metrics, names_of(all_metrics(), &Metric::name), "hapbench describe metrics");
-  constexpr double kMostJitter = 1.0;
+  constexpr double kMaxJitter = 1.0;
   ComparisonQuestion question = options.question;
-  if (!(question.jitter >= 0.0 && question.jitter <= kMostJitter))
-    fail_in_option("--jitter", fmt::format("got {}; allowed: 0 ... {} m", question.jitter, kMostJitter));
+  if (!(question.jitter >= 0.0 && question.jitter <= kMaxJitter))
+    fail_in_option("--jitter", fmt::format("got {}; allowed: 0 ... {} m", question.jitter, kMaxJitter));
   question.scenarios = find_scenarios(options.scenarios);
   question.overrides = options.overrides;
   question.algorithms = question.algorithms.empty() ? algorithm_names() : chosen_algorithms(question.algorithms);
@@ -75,7 +75,7 @@ Json summaries_json(const Comparison& comparison, const std::vector<Result>& rep
 
 /// Reports runs that diverge unexpectedly. Other expectations of a scenario need not hold for every algorithm.
 void judge(const Comparison& comparison, const std::vector<Result>& reports, Report& report) {
-  constexpr std::size_t kMostShown = 15;
+  constexpr std::size_t kMaxShown = 15;
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < reports.size(); ++i) {
     if (reports[i].end.outcome != Outcome::diverges) continue;
@@ -85,7 +85,7 @@ void judge(const Comparison& comparison, const std::vector<Result>& reports, Rep
     texts.push_back(fmt::format("{}: {} diverges at step {}{}", loaded.file.string(), reports[i].algorithm, d.step,
                                 d.fault.empty() ? "" : ": " + d.fault));
   }
-  for (const std::string& text : first_few(texts, kMostShown)) report.fault(text, kUnexpectedOutcome);
+  for (const std::string& text : first_few(texts, kMaxShown)) report.fault(text, kUnexpectedOutcome);
 }
 
 /// Writes comparison.csv of each scene, and prints the warnings about its runs.
@@ -100,18 +100,18 @@ void write_runs(const Comparison& comparison, const std::vector<Result>& reports
   }
 }
 
-/// Reports the ranking in league.csv, in the printed text and in the JSON.
-void report_league(const League& league, const Layout& layout, Report& report) {
-  report.write("league.csv", league_columns(false), league.standings);
-  report.say(league_text(league, layout));
-  report.json()["standings"] = league_columns(false).json_list(league.standings);
-  Json& laws = report.json()["laws"] = law_columns().json_list(league.laws);
+/// Reports the ranking in ranking.csv, in the printed text and in the JSON.
+void report_ranking(const Ranking& league, const Layout& layout, Report& report) {
+  report.write("ranking.csv", ranking_columns(false), league.standings);
+  report.say(ranking_text(league, layout));
+  report.json()["standings"] = ranking_columns(false).json_list(league.standings);
+  Json& laws = report.json()["laws"] = law_ranking_columns().json_list(league.laws);
   for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
 }
 
 /// Returns the table of the runs of one scene. `errors`: errors are reported, so that the sentence on vibration
 /// is omitted.
-std::string runs_text(const std::vector<Result>& reports, const League& league, bool errors, const Layout& layout) {
+std::string runs_text(const std::vector<Result>& reports, const Ranking& league, bool errors, const Layout& layout) {
   std::string text = reports.front().name + "\n\n" + run_table(reports, false, layout) + fidelity_text(reports, layout);
   if (!errors) text += vibration_text(league, layout);
   if (layout.in_full()) text += step_time_text(reports, layout);
@@ -142,12 +142,12 @@ int compare(const CompareOptions& options, ProgramContext& context) {
   const std::vector<Result> reports =
       run_all(comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); });
   // Rank the algorithms and write the results of all runs.
-  const League league = league_of(comparison, reports, ranks ? options.metrics : printed_metrics(reports));
+  const Ranking league = rank_comparison(comparison, reports, ranks ? options.metrics : printed_metrics(reports));
   write_runs(comparison, reports, context, report);
   report.json() = summaries_json(comparison, reports, ranks);
   if (ranks || options.errors) report.json() = {{"runs", std::move(report.json())}};
   if (ranks) {
-    report_league(league, layout, report);
+    report_ranking(league, layout, report);
   } else {
     report.say(runs_text(reports, league, options.errors, layout));
   }

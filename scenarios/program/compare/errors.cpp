@@ -8,14 +8,14 @@
 #include <optional>
 #include <vector>
 
-#include "scenarios/analysis/convergence/held_order.hpp"
+#include "scenarios/analysis/convergence/significant_order.hpp"
 #include "scenarios/program/run_table.hpp"
 
 namespace hapbench {
 namespace {
 
 /// Returns the mean of an algorithm's errors over the common seeds, which bounds the error of the mean value.
-KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t scenario, std::size_t algorithm,
+KnownError mean_error(const Ranking& league, const FinerRuns& finer, std::size_t scenario, std::size_t algorithm,
                       const std::string& metric) {
   const std::vector<std::size_t>& seeds = league.common[scenario];
   KnownError mean{.step = 0.0, .spacing = 0.0};
@@ -34,12 +34,12 @@ KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t 
 
 /// Returns the mean of a metric in a scenario for each algorithm, empty for algorithms with failures. Adds the
 /// means and the significant order of the algorithms to `json`.
-std::vector<NumberWithError> numbers_of(const League& league, const FinerRuns& finer, std::size_t scenario,
+std::vector<NumberWithError> numbers_of(const Ranking& league, const FinerRuns& finer, std::size_t scenario,
                                         std::size_t metric, Json& json) {
   std::vector<NumberWithError> numbers;
   Json rows = Json::array(), order = Json::array();
   for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-    const Standing& standing = league.at(scenario, a, metric);
+    const RankingEntry& standing = league.at(scenario, a, metric);
     const KnownError known = mean_error(league, finer, scenario, a, standing.metric);
     const auto& [value, error] =
         numbers.emplace_back(NumberWithError{standing.failed > 0 ? std::nullopt : standing.mean, known.sum()});
@@ -49,7 +49,7 @@ std::vector<NumberWithError> numbers_of(const League& league, const FinerRuns& f
                     {"error_of_step", cell_json(cell_of(known.step))},
                     {"error_of_spacing", cell_json(cell_of(known.spacing))}});
   }
-  for (const auto& group : held_order(numbers).groups) {
+  for (const auto& group : significant_order(numbers).groups) {
     Json& names = order.emplace_back(Json::array());
     for (const std::size_t a : group) names.push_back(league.algorithms[a]);
   }
@@ -60,7 +60,7 @@ std::vector<NumberWithError> numbers_of(const League& league, const FinerRuns& f
 
 }  // namespace
 
-void report_errors(const League& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report,
+void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report,
                    const Layout& layout) {
   Table table{{{"algorithm", false}}};
   for (const std::string& algorithm : league.algorithms) table.rows.push_back({algorithm});
@@ -72,7 +72,7 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
     Json& json =
         report.json()["errors"].emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
     const std::vector<NumberWithError> numbers = numbers_of(league, finer, scenario, m, json);
-    const std::string says = held_text(numbers, league.algorithms);
+    const std::string says = significant_order_text(numbers, league.algorithms);
     json["says"] = says;
     const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
     const bool known = heading != std::end(kRunHeadings);
@@ -91,10 +91,10 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
       layout.wrapped(fmt::format("+-: error estimated by refinement: {}", finer.refined(scenario)), 0)));
 }
 
-std::string vibration_text(const League& league, const Layout& layout) {
+std::string vibration_text(const Ranking& league, const Layout& layout) {
   struct VibrationMetric {
     const char *of, *metric;
-    double unfelt;  ///< vibration that a hand cannot feel [unit of the metric]
+    double threshold;  ///< vibration that a hand cannot feel [unit of the metric]
   };
   constexpr VibrationMetric kVibrations[] = {{"force", "force_rms_above_30Hz_N", 1e-4},
                                              {"tool", kToolVibrationPower, 1e-10}};
@@ -105,17 +105,18 @@ std::string vibration_text(const League& league, const Layout& layout) {
   for (std::size_t a = 0; a < league.algorithms.size(); ++a)
     if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
   // Compare the force; if a law without failures has no value of it, compare the tool.
-  for (const auto& [of, metric, unfelt] : kVibrations) {
-    const auto place = static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
+  for (const auto& [of, metric, threshold] : kVibrations) {
+    const auto metric_index =
+        static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
     std::vector<NumberWithError> numbers;
     std::size_t known = 0;
     for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-      const Standing& standing = league.at(0, a, place);
+      const RankingEntry& standing = league.at(0, a, metric_index);
       numbers.push_back(
-          {standing.failed > 0 ? std::nullopt : standing.mean, standing.tolerance.value_or(0.0) + unfelt});
+          {standing.failed > 0 ? std::nullopt : standing.mean, standing.tolerance.value_or(0.0) + threshold});
       known += numbers.back().value.has_value();
     }
-    says = fmt::format("vibration of the {}: {}", of, held_text(numbers, league.algorithms));
+    says = fmt::format("vibration of the {}: {}", of, significant_order_text(numbers, league.algorithms));
     if (known + failing.size() == league.algorithms.size()) break;
   }
   if (!failing.empty()) says += fmt::format("; failed: {}", fmt::join(failing, ", "));

@@ -20,7 +20,7 @@
 #include "scenarios/program/describe/glossary.hpp"
 #include "scenarios/program/describe/index.hpp"
 #include "scenarios/program/describe/lists.hpp"
-#include "scenarios/program/describe/places.hpp"
+#include "scenarios/program/describe/thesis_locations.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/output.hpp"
 
@@ -36,27 +36,27 @@ std::string plain(std::string_view text) {
 
 /// Returns true if `name` is the entry's heading, such as ">30Hz rms N", or the first line of it, ">30Hz".
 /// Ignores case and spaces.
-bool is_heading(const Named& thing, std::string_view name) {
-  const std::string_view title = thing.name;
-  return thing.kind == "heading" &&
+bool is_heading(const IndexEntry& item, std::string_view name) {
+  const std::string_view title = item.name;
+  return item.kind == "heading" &&
          (plain(name) == plain(title) || plain(name) == plain(title.substr(0, title.find('\n'))));
 }
 
-std::vector<Description> described(const Index& index, const std::function<bool(const Named&)>& is_meant) {
+std::vector<Description> described(const Index& index, const std::function<bool(const IndexEntry&)>& is_meant) {
   std::vector<Description> found;
-  for (const Named& thing : index)
-    if (is_meant(thing)) found.push_back(thing.describe());
+  for (const IndexEntry& item : index)
+    if (is_meant(item)) found.push_back(item.describe());
   return found;
 }
 
 std::vector<Description> described_by_name(const Index& index, std::string_view name) {
-  return described(index, [name](const Named& thing) { return thing.kind != "heading" && thing.name == name; });
+  return described(index, [name](const IndexEntry& item) { return item.kind != "heading" && item.name == name; });
 }
 
 /// Returns the meanings of the headings with this name, each meaning once.
 std::vector<Description> described_headings(const Index& index, const std::string& name) {
   std::vector<Description> found;
-  for (const Named& heading : index) {
+  for (const IndexEntry& heading : index) {
     if (!is_heading(heading, name)) continue;
     std::vector<Description> meanings = described_by_name(index, heading.summary);
     if (meanings.empty()) meanings.push_back(heading.describe());
@@ -70,8 +70,8 @@ std::vector<Description> described_headings(const Index& index, const std::strin
 [[noreturn]] void refuse(const std::string& name, const Index& index, const Index& in_folders) {
   std::vector<std::string> names = names_of(listed_kinds(), list_name);
   for (const Index* known : {&index, &in_folders})
-    for (const Named& thing : *known)
-      if (thing.kind != "heading") names.push_back(thing.name);
+    for (const IndexEntry& item : *known)
+      if (item.kind != "heading") names.push_back(item.name);
   throw InputError(
       fmt::format("nothing is called \"{}\"{}; \"hapbench describe\" shows the names, \"hapbench describe scenario\" "
                   "the fields of a scenario file, --grep searches",
@@ -80,15 +80,15 @@ std::vector<Description> described_headings(const Index& index, const std::strin
 
 /// Returns the meanings of a name that the program itself does not define. Throws InputError if there are none.
 std::vector<Description> other_meanings(const Index& index, const std::string& name, const Layout& layout) {
-  if (const std::optional<Description> place = describe_place(name, layout)) return {*place};
+  if (const std::optional<Description> place = describe_thesis_location(name, layout)) return {*place};
   // Find fields with this name in any object: "torque" finds record.torque.
   std::vector<Description> found =
-      described(index, [&](const Named& thing) { return thing.kind == "field" && thing.name.ends_with("." + name); });
+      described(index, [&](const IndexEntry& item) { return item.kind == "field" && item.name.ends_with("." + name); });
   if (!found.empty()) return found;
   // Find scenarios, studies, claims and choices of this name.
   const Index in_folders = folder_index(layout);
-  found = described(in_folders, [&](const Named& thing) {
-    return thing.name == name || (thing.kind == "claim" && lower_case(thing.name) == lower_case(name));
+  found = described(in_folders, [&](const IndexEntry& item) {
+    return item.name == name || (item.kind == "claim" && lower_case(item.name) == lower_case(name));
   });
   if (!found.empty()) return found;
   // Find a term of the glossary, then a scenario file.

@@ -28,9 +28,9 @@ std::string line_of(const Json& value) {
 constexpr std::string_view kProse[] = {"summary", "meaning", "holds", "claim", "what"};
 
 /// Returns the texts of an array of entries.
-std::string things_text(const Json& things, const Layout& layout, std::size_t indent) {
+std::string entries_text(const Json& items, const Layout& layout, std::size_t indent) {
   std::string text;
-  for (const Json& thing : things) text += thing_text(thing, layout, indent);
+  for (const Json& item : items) text += entry_text(item, layout, indent);
   return text;
 }
 
@@ -48,20 +48,20 @@ Description joined(const std::vector<Description>& meanings) {
   return all;
 }
 
-std::string thing_text(const Json& thing, const Layout& layout, std::size_t indent) {
-  std::string name = thing.value("name", "");
+std::string entry_text(const Json& item, const Layout& layout, std::size_t indent) {
+  std::string name = item.value("name", "");
   std::replace(name.begin(), name.end(), '\n', ' ');
-  const std::string kind = thing.value("kind", ""), unit = thing.value("unit", "");
+  const std::string kind = item.value("kind", ""), unit = item.value("unit", "");
   // Sort the members: prose, values of one line, lists of entries.
   std::string prose, facts, lists;
-  for (const auto& [key, value] : thing.items()) {
+  for (const auto& [key, value] : item.items()) {
     if (key == "kind" || key == "name" || key == "unit") continue;
     std::string title = key;
     std::replace(title.begin(), title.end(), '_', ' ');
     const bool is_list = value.is_array() && !value.empty() && value.front().is_object();
     const std::string line = is_list ? "" : line_of(value);
     if (is_list) {
-      lists += fmt::format("\n{:{}}{}\n{}", "", indent + 2, title, things_text(value, layout, indent + 4));
+      lists += fmt::format("\n{:{}}{}\n{}", "", indent + 2, title, entries_text(value, layout, indent + 4));
     } else if (line.empty()) {
       continue;
     } else if (std::ranges::find(kProse, key) != std::end(kProse)) {
@@ -79,8 +79,8 @@ std::string thing_text(const Json& thing, const Layout& layout, std::size_t inde
   return text + prose + (facts.empty() || indent > 0 ? "" : "\n") + facts + lists;
 }
 
-Description thing_description(const Json& thing, const Layout& layout) {
-  return {thing_text(thing, layout), thing};
+Description entry_description(const Json& item, const Layout& layout) {
+  return {entry_text(item, layout), item};
 }
 
 }  // namespace hapbench

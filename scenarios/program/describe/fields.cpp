@@ -17,8 +17,8 @@ namespace {
 /// Returns true for an object whose fields are described one by one. The bounds on metrics are excluded: they
 /// have more fields than all other objects together.
 bool shows_fields(const ValueGuide& value) {
-  constexpr std::size_t kMostShown = 50;
-  return value.choices.empty() && !value.fields.empty() && value.fields.size() <= kMostShown;
+  constexpr std::size_t kMaxShown = 50;
+  return value.choices.empty() && !value.fields.empty() && value.fields.size() <= kMaxShown;
 }
 
 bool is_object(const ValueGuide& value) {
@@ -88,18 +88,18 @@ Description describe_types(const std::string& path, const Layout& layout) {
 }  // namespace
 
 const FieldGuide* find_field(const std::string& path) {
-  const std::vector<PlacedField> all = placed_fields();
-  const auto found = std::ranges::find(all, path, &PlacedField::path);
+  const std::vector<ScenarioField> all = scenario_fields();
+  const auto found = std::ranges::find(all, path, &ScenarioField::path);
   return found == all.end() ? nullptr : found->field;
 }
 
 Description describe_field(const std::string& path, const Layout& layout) {
   if (Description types = describe_types(path, layout); !types.text.empty()) return types;
   // Group the types that share the schema of the field.
-  std::vector<PlacedField> found;
-  for (const PlacedField& placed : placed_fields()) {
+  std::vector<ScenarioField> found;
+  for (const ScenarioField& placed : scenario_fields()) {
     if (placed.path != path) continue;
-    const auto schema_of = [](const PlacedField& other) { return other.field->schema(); };
+    const auto schema_of = [](const ScenarioField& other) { return other.field->schema(); };
     const auto same = std::ranges::find(found, placed.field->schema(), schema_of);
     if (same == found.end())
       found.push_back(placed);
@@ -124,7 +124,7 @@ Description describe_algorithms(const Layout& layout) {
 }
 
 Description describe_profile(const Layout& layout) {
-  const FieldGuide& any = *find_field("motion.orientation.tilt_rad");  // whose value is a function of time
+  const FieldGuide& any = *find_field("motion.orientation.tilt_rad");  // its value is a function of time
   Json schema = any.schema();
   schema["description"] = "a function of time: a constant number, or an object";
   schema.erase("default");
@@ -139,7 +139,7 @@ Description describe_scenario_fields(const Layout& layout) {
 void add_types(Index& index, const Layout& layout) {
   std::vector<std::pair<std::string, const ValueGuide*>> types;
   const auto schema_of = [](const auto& known) -> const Json& { return known.second->schema; };
-  for (const PlacedField& placed : placed_fields())
+  for (const ScenarioField& placed : scenario_fields())
     for (const ValueGuide& choice : placed.field->value.choices)
       if (std::ranges::find(types, choice.schema, schema_of) == types.end()) types.emplace_back(placed.path, &choice);
   for (const auto& [field, type] : types) {

@@ -36,7 +36,7 @@ void add_assignments(std::string& text, const std::string& path, const Json& val
 }
 
 /// Returns the entry of a bundled scenario. If the file is invalid, the error is the entry's description.
-Named named_scenario(const BundledScenario& bundled, const Layout& layout) {
+IndexEntry named_scenario(const BundledScenario& bundled, const Layout& layout) {
   Json json;
   try {
     json = read_scenario_text(bundled.file).json;
@@ -51,7 +51,7 @@ Named named_scenario(const BundledScenario& bundled, const Layout& layout) {
 }
 
 Description describe_study(const BundledStudy& study, const Layout& layout) {
-  const std::string text = read_text_file(study.file, kLargestJsonFile);
+  const std::string text = read_text_file(study.file, kMaxJsonFileBytes);
   return {fmt::format("study {}\n{}\n{}\n{}\n  run it with: hapbench {} {}\n", bold(stdout, study.name),
                       layout.wrapped(study.summary), study.file.string(), text, study.ask, study.name),
           {{"kind", "study"}, {"name", study.name}, {"file", study.file.string()}, {"study", parse_json(text)}}};
@@ -63,21 +63,21 @@ Json list_on_record(const std::string& list) {
 }
 
 /// Returns the entry of a claim or choice of the reference results.
-Named on_record(const char* kind, const Json& thing, const Layout& layout) {
+IndexEntry on_record(const char* kind, const Json& item, const Layout& layout) {
   const auto describe = [=] {
-    Json titled = {{"kind", fmt::format("{}, as recorded in results/reference", kind)}, {"name", thing.at("id")}};
-    titled.update(thing);
-    if (const Json& counts = thing.value("robustness", Json()); !counts.is_null())
+    Json titled = {{"kind", fmt::format("{}, as recorded in results/reference", kind)}, {"name", item.at("id")}};
+    titled.update(item);
+    if (const Json& counts = item.value("robustness", Json()); !counts.is_null())
       titled["sureness"] =
-          fmt::format("{}: {} of {} tested assumption sets give this verdict", thing.at("sureness").get<std::string>(),
+          fmt::format("{}: {} of {} tested assumption sets give this verdict", item.at("sureness").get<std::string>(),
                       counts.at("holds").dump(), counts.at("judged").dump());
     // Omit the members that the text gives in another form, and data for programs.
     for (const char* member : {"id", "cases", "choices_reach_it", "ours", "robustness", "timing"}) titled.erase(member);
-    return Description{thing_text(titled, layout), thing};
+    return Description{entry_text(titled, layout), item};
   };
   Json more = Json::object();
-  if (thing.contains("claim")) more = {{"verdict", thing.at("verdict")}, {"source", thing.at("place")}};
-  return {kind, thing.at("id").get<std::string>(), thing.value("claim", ""), describe, more};
+  if (item.contains("claim")) more = {{"verdict", item.at("verdict")}, {"source", item.at("place")}};
+  return {kind, item.at("id").get<std::string>(), item.value("claim", ""), describe, more};
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ Description describe_scenario(const std::filesystem::path& file, const Layout& l
   const Scenario& scenario = loaded.scenario;
   std::string text = fmt::format("scenario {}\n", bold(stdout, scenario.name));
   if (!scenario.description.empty()) text += layout.wrapped(scenario.description);
-  text += fmt::format("\n  file    {}\n", file.string());  // whole, to be copied
+  text += fmt::format("\n  file    {}\n", file.string());  // never wrapped, so that it can be copied
   if (!scenario.source.empty()) text += layout.entry("source", scenario.source, 2, 10);
   text +=
       "\n  fields that the file sets (\"hapbench describe scenario\" explains them, --json prints all fields with "

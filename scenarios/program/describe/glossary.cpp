@@ -38,7 +38,7 @@ bool is_name_of(std::string_view title, std::string_view name) {
 }  // namespace
 
 Index glossary_index(const Layout& layout) {
-  const std::string text = read_text_file(installed_folder("scenarios") / "GLOSSARY.md", kLargestJsonFile);
+  const std::string text = read_text_file(installed_folder("scenarios") / "GLOSSARY.md", kMaxJsonFileBytes);
   Index index;
   // Each entry is a row "| term | meaning |" of the table. The first two rows of the table are its heading and
   // the rule below it.
@@ -49,14 +49,14 @@ Index glossary_index(const Layout& layout) {
     if (!is_in_table || cells.size() != 4 || line.starts_with("|---")) continue;
     const Json json = {{"kind", "term"}, {"name", trimmed(cells[1])}, {"meaning", trimmed(cells[2])}};
     index.push_back({"term", json["name"].get<std::string>(), json["meaning"].get<std::string>(),
-                     [json, layout] { return thing_description(json, layout); }});
+                     [json, layout] { return entry_description(json, layout); }});
   }
   return index;
 }
 
 std::optional<Description> find_term(std::string_view name, const Layout& layout) {
   std::vector<Description> found;
-  for (const Named& term : glossary_index(layout))
+  for (const IndexEntry& term : glossary_index(layout))
     if (is_name_of(term.name, name)) found.push_back(term.describe());
   if (found.empty()) return std::nullopt;
   return joined(found);

@@ -31,7 +31,7 @@ constexpr std::pair<const char*, Description (*)(const Layout&)> kSections[] = {
        return Description{"", scenario_schema()};
      }},
     {"stability", describe_stability},
-    {"words", describe_words}};
+    {"words", describe_printed_names}};
 
 }  // namespace
 
@@ -51,7 +51,7 @@ Index program_index(const Layout& layout) {
   for (const std::string& path : scenario_field_paths())
     index.push_back({"field", path, "", [path, layout] { return describe_field(path, layout); }});
   add_types(index, layout);
-  add_words(index, layout);
+  add_printed_names(index, layout);
   add_headings(index, tables, layout);
   return index;
 }

@@ -14,7 +14,7 @@
 namespace hapbench {
 
 /// A name with one of its meanings.
-struct Named {
+struct IndexEntry {
   std::string kind;  ///< such as "algorithm"; for a type of a field: the field, such as "environment"
   std::string name;
   std::string summary;  ///< description in lists; may be empty for kinds without a list
@@ -22,7 +22,7 @@ struct Named {
   Json more = Json::object();  ///< further members in a list's JSON: the group of a scenario, the verdict on a claim
 };
 /// Names with their meanings, in the order of the lists of `describe`.
-using Index = std::vector<Named>;
+using Index = std::vector<IndexEntry>;
 
 /// Returns the names that are defined in the program itself, without the files installed beside it: from models
 /// and presets to printed words and headings.

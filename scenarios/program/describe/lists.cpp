@@ -24,8 +24,8 @@ constexpr const char* kListed[] = {"algorithm", "depth model", "stage",  "integr
                                    "tool",      "hand",        "device", "preset",     "scenario",
                                    "study",     "metric",      "claim",  "term"};
 
-std::string group_of(const Named& thing) {
-  return thing.more.value("group", "");
+std::string group_of(const IndexEntry& item) {
+  return item.more.value("group", "");
 }
 
 constexpr std::size_t kColumn = 34;  // column of the summaries [characters]
@@ -44,25 +44,25 @@ std::string short_summary(const std::string& text, const Layout& layout) {
   return sentence.substr(0, sentence.rfind(' ', room - 4)) + " ...";
 }
 
-std::string list_text(const Index& all, bool names_alone, const Layout& layout) {
+std::string list_text(const Index& all, bool only_names, const Layout& layout) {
   std::vector<std::pair<std::string, std::string>> lists;  // title and entries of each list
-  for (const Named& thing : all) {
-    const std::string group = group_of(thing), title = list_name(thing.kind) + (group.empty() ? "" : " of " + group);
+  for (const IndexEntry& item : all) {
+    const std::string group = group_of(item), title = list_name(item.kind) + (group.empty() ? "" : " of " + group);
     // Begin a new list if the kind or group changes.
     if (lists.empty() || lists.back().first != title) lists.emplace_back(title, "");
     std::string& entries = lists.back().second;
-    const std::string verdict = thing.more.value("verdict", "");  // of a claim, which is told in full
-    if (names_alone)
-      entries += (entries.empty() ? "" : ", ") + thing.name;
+    const std::string verdict = item.more.value("verdict", "");  // of a claim, whose statement is listed in full
+    if (only_names)
+      entries += (entries.empty() ? "" : ", ") + item.name;
     else if (verdict.empty())
-      entries += entry(thing.name, short_summary(thing.summary, layout), 2, kColumn, layout.width());
+      entries += entry(item.name, short_summary(item.summary, layout), 2, kColumn, layout.width());
     else
-      entries += entry(fmt::format("{:<5}{}", thing.name, verdict), thing.summary, 2, kColumn, layout.width());
+      entries += entry(fmt::format("{:<5}{}", item.name, verdict), item.summary, 2, kColumn, layout.width());
   }
   // Join the lists below their titles.
   std::string text;
   for (const auto& [title, entries] : lists)
-    text += (text.empty() ? "" : "\n") + bold(stdout, title) + "\n" + (names_alone ? layout.wrapped(entries) : entries);
+    text += (text.empty() ? "" : "\n") + bold(stdout, title) + "\n" + (only_names ? layout.wrapped(entries) : entries);
   return text;
 }
 
@@ -86,23 +86,23 @@ int list(const DescribeOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   const bool of_everything = options.name.empty() && options.grep.empty();
   const std::string pattern = lower_case(options.grep);
-  const auto is_asked = [&](const Named& thing) {
-    if (of_everything) return thing.kind != "metric" && thing.kind != "claim" && thing.kind != "term";
-    const std::string text = thing.name + " " + thing.summary + " " + thing.more.value("source", "");
-    return (options.name.empty() || list_name(thing.kind) == options.name || group_of(thing) == options.name) &&
+  const auto is_requested = [&](const IndexEntry& item) {
+    if (of_everything) return item.kind != "metric" && item.kind != "claim" && item.kind != "term";
+    const std::string text = item.name + " " + item.summary + " " + item.more.value("source", "");
+    return (options.name.empty() || list_name(item.kind) == options.name || group_of(item) == options.name) &&
            lower_case(text).find(pattern) != std::string::npos;
   };
   // Collect the requested entries in the order of the kinds.
   Index index = program_index(layout), all;
   std::ranges::move(folder_index(layout), std::back_inserter(index));
   for (const std::string_view kind : kListed)
-    for (const Named& thing : index)
-      if (thing.kind == kind && is_asked(thing)) all.push_back(thing);
+    for (const IndexEntry& item : index)
+      if (item.kind == kind && is_requested(item)) all.push_back(item);
   if (all.empty()) throw InputError(fmt::format("--grep: no name or text contains \"{}\"", options.grep));
   Json json = Json::array();
-  for (const Named& thing : all) {
-    Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});
-    entry.update(thing.more);
+  for (const IndexEntry& item : all) {
+    Json& entry = json.emplace_back(Json{{"kind", item.kind}, {"name", item.name}, {"summary", item.summary}});
+    entry.update(item.more);
   }
   const char* more =
       of_everything

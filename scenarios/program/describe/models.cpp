@@ -19,7 +19,7 @@
 namespace hapbench {
 namespace {
 
-Json model_json(const char* kind, const ModelInfo& info, std::span<const OwnParameter> own,
+Json model_json(const char* kind, const ModelInfo& info, std::span<const AlgorithmParameter> own,
                 const AlgorithmOrigin& origin) {
   Json parameters = Json::array();
   const auto add = [&parameters](const std::string& path, const char* unit, const char* meaning) {
@@ -33,7 +33,7 @@ Json model_json(const char* kind, const ModelInfo& info, std::span<const OwnPara
                           {"meaning", meaning}});
   };
   for (const auto& [parameter, meaning] : info.parameters) add(parameter.field, parameter.range.unit, meaning);
-  for (const OwnParameter& p : own)
+  for (const AlgorithmParameter& p : own)
     add(fmt::format("rendering.parameters.{}.{}", info.name, p.name), p.range.unit, p.meaning);
   Json json = {{"kind", kind},
                {"name", info.name},
@@ -77,12 +77,13 @@ Description describe_preset(const DevicePreset& preset, const Layout& layout) {
 }  // namespace
 
 void add_models(Index& index, const Layout& layout) {
-  const auto add = [&index, &layout](const char* kind, const ModelInfo& info, std::span<const OwnParameter> own = {},
-                                     const AlgorithmOrigin& origin = {}) {
+  const auto add = [&index, &layout](const char* kind, const ModelInfo& info,
+                                     std::span<const AlgorithmParameter> own = {}, const AlgorithmOrigin& origin = {}) {
     index.push_back({kind, info.name, info.summary,
-                     [=, &info] { return thing_description(model_json(kind, info, own, origin), layout); }});
+                     [=, &info] { return entry_description(model_json(kind, info, own, origin), layout); }});
   };
-  for (const AlgorithmEntry& entry : algorithms()) add("algorithm", *entry.info, entry.own_parameters, entry.origin);
+  for (const AlgorithmEntry& entry : algorithms())
+    add("algorithm", *entry.info, entry.algorithm_parameters, entry.origin);
   for (const DepthModelEntry& entry : depth_models()) add("depth model", *entry.info);
   for (const ModelInfo* stage : stages()) add("stage", *stage);
   for (const IntegratorEntry* entry : kIntegrators) add("integrator", entry->info);
@@ -124,7 +125,7 @@ Description describe_stability(const Layout& layout) {
       "Symbols: b damping of the handle, c its Coulomb friction, q encoder step, m moving mass, T time step, t_d = d "
       "T delay, B damping of the wall. limit.csv has a column for each formula, with a value where the formula "
       "applies.");
-  for (const Json& limit : d.json["limits"]) d.text += thing_text(limit, layout, 2);
+  for (const Json& limit : d.json["limits"]) d.text += entry_text(limit, layout, 2);
   return d;
 }
 

@@ -14,7 +14,7 @@
 namespace hapbench {
 namespace {
 
-struct Word {
+struct PrintedName {
   const char *name, *kind, *meaning;
 };
 
@@ -22,7 +22,7 @@ constexpr const char* kTime = "number of timing.json";
 constexpr const char* kResultFile = "file of the results";
 
 /// Printed names that no enumeration defines.
-constexpr Word kWords[] = {
+constexpr PrintedName kPrintedNames[] = {
     {"step_p50_s", kTime, "median wall time of one step, without observers and recorders [s]"},
     {"step_p99_s", kTime, "99th percentile of the wall time of one step, without observers and recorders [s]"},
     {"scenario.effective.json", kResultFile,
@@ -50,12 +50,12 @@ constexpr Word kWords[] = {
      "resolution of a recording along an axis: smallest step between the recorded coordinates (quantum_m with "
      "--json); K times this step is the force step that the recording alone causes"}};
 
-Json all_words() {
+Json printed_names() {
   Json all = Json::array();
   const auto add = [&all](std::string_view name, const char* kind, const char* meaning) {
     all.push_back({{"kind", kind}, {"name", name}, {"meaning", meaning}});
   };
-  for (const auto& [name, kind, meaning] : kWords) add(name, kind, meaning);
+  for (const auto& [name, kind, meaning] : kPrintedNames) add(name, kind, meaning);
   for (const OutcomeInfo& outcome : outcome_infos()) add(outcome.name, "outcome of a run", outcome.meaning);
   for (const RunVerdictText& verdict : run_verdict_texts())
     add(verdict.name, "class of motion, of limit and stability", verdict.meaning);
@@ -66,7 +66,7 @@ Json all_words() {
 void add_term(Index& index, const Json& json, const Layout& layout) {
   const auto text = [&](const char* key) { return json.at(key).get<std::string>(); };
   index.push_back(
-      {text("kind"), text("name"), text("meaning"), [json, layout] { return thing_description(json, layout); }});
+      {text("kind"), text("name"), text("meaning"), [json, layout] { return entry_description(json, layout); }});
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ Description describe_metrics(const Layout& layout) {
   return {
       "metrics of summary.json; expect.metrics can bound each of them. f is f_render, the rendered force on the tool; "
       "a step is one time step of the run\n" +
-          thing_text(json, layout),
+          entry_text(json, layout),
       json};
 }
 
@@ -84,7 +84,7 @@ Description describe_table(const DescribedTable& table, const Layout& layout) {
   Json columns = Json::array();
   for (const auto& [name, unit, meaning] : table.columns)
     columns.push_back({{"name", name}, {"unit", unit}, {"meaning", meaning}});
-  return thing_description(
+  return entry_description(
       {{"kind", "file"}, {"name", table.file}, {"holds", table.holds}, {"columns", std::move(columns)}}, layout);
 }
 
@@ -95,9 +95,9 @@ Description describe_tables(const Layout& layout) {
   return joined(all);
 }
 
-Description describe_words(const Layout& layout) {
-  const Json json = {{"kind", "words"}, {"words", all_words()}};
-  return {"terms that the program prints\n" + thing_text(json, layout), json};
+Description describe_printed_names(const Layout& layout) {
+  const Json json = {{"kind", "words"}, {"words", printed_names()}};
+  return {"terms that the program prints\n" + entry_text(json, layout), json};
 }
 
 void add_metric_terms(Index& index, const Layout& layout) {
@@ -121,8 +121,8 @@ void add_columns(Index& index, const std::vector<DescribedTable>& tables, const 
   for (const Json& column : all) add_term(index, column, layout);
 }
 
-void add_words(Index& index, const Layout& layout) {
-  for (const Json& word : all_words()) add_term(index, word, layout);
+void add_printed_names(Index& index, const Layout& layout) {
+  for (const Json& word : printed_names()) add_term(index, word, layout);
 }
 
 void add_headings(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout) {

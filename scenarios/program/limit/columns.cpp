@@ -17,7 +17,7 @@ namespace {
 /// Returns the columns that distinguish the cases: device, scene, fields of --over, algorithm. Null: all
 /// columns, for `describe`.
 template <class Row>
-Columns<Row> place_columns(const LimitTable* table) {
+Columns<Row> case_columns(const LimitTable* table) {
   const bool devices = table == nullptr || !table->devices.empty();
   Columns<Row> columns = {
       {"device", "",
@@ -40,10 +40,10 @@ Columns<Row> place_columns(const LimitTable* table) {
 }
 
 const IntervalEnd& low_end(const LimitRow& row) {
-  return row.asked.search.smallest ? row.limit.end : row.limit.other;
+  return row.question.search.smallest ? row.limit.end : row.limit.other;
 }
 const IntervalEnd& high_end(const LimitRow& row) {
-  return row.asked.search.smallest ? row.limit.other : row.limit.end;
+  return row.question.search.smallest ? row.limit.other : row.limit.end;
 }
 
 Cell value_beyond(const IntervalEnd& end) {
@@ -60,7 +60,7 @@ Cell class_beyond_limit(const LimitRow& row) {
   return end.beyond ? class_beyond(end) : Cell("end of the range");
 }
 
-std::string linear_edge_text(const LimitRow& row) {
+std::string linear_limit_text(const LimitRow& row) {
   const auto& edge = row.limit.linear_edge();
   if (!edge) return "-";
   return std::isinf(*edge) || *edge == 0.0 ? "none" : significant(*edge, 6);
@@ -74,62 +74,62 @@ auto of(Part part, Get get) {
 
 /// Returns the columns of the stability limit, of the stable interval that it ends, and of the linear limit. A
 /// single case also prints the other end of the interval.
-Columns<LimitRow> edge_columns(const LimitTable* table) {
+Columns<LimitRow> limit_value_columns(const LimitTable* table) {
   const auto is_printed = [table](bool low) {
-    return table == nullptr || (!table->is_grid() && low != table->first().asked.search.smallest);
+    return table == nullptr || (!table->is_grid() && low != table->first().question.search.smallest);
   };
   const auto has_inequality = [](const LimitRow& row) { return row.limit.closed_form.has_value(); };
   const auto limit_end = [](const LimitRow& row) -> const IntervalEnd& { return row.limit.end; };
   const auto tolerance = [](const LimitRow& row) { return row.limit.end.tolerance(); };
   using Row = LimitRow;
   return {
-      {"field", "", "path of the field", of(&Row::asked, &LimitQuestion::path), kOnlyCsv},
-      {"side", "", "largest or smallest: which stable value was searched", of(&Row::asked, &LimitQuestion::side),
+      {"field", "", "path of the field", of(&Row::question, &LimitQuestion::path), kOnlyCsv},
+      {"side", "", "largest or smallest: which stable value was searched", of(&Row::question, &LimitQuestion::side),
        kOnlyCsv},
       {"linear\nlimit", "unit of the field",
        "of limit: theoretical limit, or, if there is none, the linear limit; \"none\" if no value of the range or "
        "every value is stable, \"-\" if neither limit applies",
-       linear_edge_text, only_printed()},
+       linear_limit_text, only_printed()},
       {"limit", "unit of the field",
        "simulated limit: last stable value before the first unstable one, by bisection on simulated runs; empty if no "
        "interval of values is stable",
        of(limit_end, &IntervalEnd::value), under("simulated\nlimit", 6), tolerance},
-      {"beyond", "unit of the field",
+      {"first_unstable", "unit of the field",
        "first unstable value beyond the limit; empty if the values are stable to the end of the range",
        of(limit_end, value_beyond)},
-      {"class_beyond", "",
+      {"first_unstable_class", "",
        "class of the run at the first unstable value (hapbench describe stability), or \"end of the range\" if there "
        "is no such value",
        class_beyond_limit, under("first\nunstable")},
-      {"low", "unit of the field",
+      {"stable_low", "unit of the field",
        "low end of the interval of stable values that contains the limit: smallest stable value, to the resolution",
        of(low_end, &IntervalEnd::value), under(is_printed(true) ? "stable\nfrom" : "", 6),
        [](const Row& r) { return low_end(r).tolerance(); }},
-      {"below", "unit of the field",
+      {"unstable_below", "unit of the field",
        "first unstable value below the stable interval; empty if the values are stable to the low end of the range",
        of(low_end, value_beyond)},
-      {"class_below", "", "class of the run at the first unstable value below the stable interval",
+      {"unstable_below_class", "", "class of the run at the first unstable value below the stable interval",
        of(low_end, class_beyond)},
-      {"high", "unit of the field",
+      {"stable_high", "unit of the field",
        "high end of the interval of stable values that contains the limit: largest stable value, to the resolution",
        of(high_end, &IntervalEnd::value), under(is_printed(false) ? "stable\nto" : "", 6),
        [](const Row& r) { return high_end(r).tolerance(); }},
-      {"above", "unit of the field",
+      {"unstable_above", "unit of the field",
        "first unstable value above the stable interval; empty if the values are stable to the high end of the range",
        of(high_end, value_beyond)},
-      {"class_above", "", "class of the run at the first unstable value above the stable interval",
+      {"unstable_above_class", "", "class of the run at the first unstable value above the stable interval",
        of(high_end, class_beyond)},
-      {"theory", "unit of the field",
+      {"theoretical_limit", "unit of the field",
        "theoretical limit for contact that cannot be lost (bilateral springs), from the eigenvalues of one time step, "
        "with or without a device; empty if the theory does not apply",
        of(&Row::limit, &FieldLimit::theory)},
-      {"closed_form", "unit of the field",
+      {"closed_form_limit", "unit of the field",
        "closed-form limit: theoretical limit from the integrator's inequality, for leapfrog 4 - 2 lambda B dt / M - "
        "lambda K dt^2 / M >= 0 with lambda = lambda_max(S) (thesis A.3); empty if the integrator has no such "
        "inequality",
        of(&Row::limit, &FieldLimit::closed_form),
        when(table == nullptr || std::ranges::any_of(table->rows, has_inequality))},
-      {"linear", "unit of the field",
+      {"linear_limit", "unit of the field",
        "linear limit of a device on a surface that can only push: largest value at which the contact loop of device, "
        "hand and surface is stable by its eigenvalues, while contact lasts and without dry friction and encoder "
        "steps; runs that are stable beyond it rely on bounces, dry friction or the end of the run; empty without a "
@@ -158,7 +158,7 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
       {"high_tolerance", "unit of the field",
        "uncertainty of the high end of the stable interval: distance to the first unstable value above",
        of(high_end, &IntervalEnd::tolerance), kOnlyJson},
-      {"undecided", "1",
+      {"undecided_runs", "1",
        "number of runs that were too short to distinguish slow motion from rest, even after they were extended",
        of(&Row::limit, &FieldLimit::undecided)},
       {"unstable_without_contact", "",
@@ -166,7 +166,7 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
        of(&Row::limit, &FieldLimit::unstable_alone), kOnlyJson},
       {"has_effect", "", "true if the field changes at least one run; false if it has no effect",
        of(&Row::limit, &FieldLimit::has_effect), kOnlyJson},
-      {"scattered", "",
+      {"no_contiguous_interval", "",
        "true if stable and unstable values alternate, so that there is no contiguous stable interval and no limit",
        of(&Row::limit, &FieldLimit::scattered), kOnlyJson},
       {"tried_between", "1",
@@ -200,8 +200,8 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
 
 Columns<LimitRow> limit_columns(const LimitTable* table) {
   using Row = LimitRow;
-  Columns<Row> columns = place_columns<Row>(table);
-  columns.add(edge_columns(table));
+  Columns<Row> columns = case_columns<Row>(table);
+  columns.add(limit_value_columns(table));
   columns.add(search_columns(table == nullptr || !table->devices.empty(), table == nullptr || table->is_grid()));
   const auto has_forms = [](const Row& r) { return !r.limit.closed_forms.empty(); };
   // Add the closed-form limits of a wall on an impedance device if a case has them.
@@ -217,23 +217,22 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
   }
   const auto inconsistent = [](const Row& r) { return r.limit.inconsistent.size(); };
   columns.add(
-      {{"no_theory", "", "reason why the linear theory does not apply to the contact loop; empty if it applies",
+      {{"no_theory_reason", "", "reason why the linear theory does not apply to the contact loop; empty if it applies",
         of(&Row::limit, &FieldLimit::no_theory), when(forms)},
-       {"worst_hand", "N/m",
+       {"worst_hand_limit", "N/m",
         "smallest linear limit over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and no hand; empty if the "
         "linear theory does not apply",
         of(&Row::limit, &FieldLimit::worst_hand), when(forms)},
        {"runs", "1", "number of simulated runs of the search", [](const Row& r) { return r.limit.runs.size(); }},
-       {kInconsistent, "1",
+       {kNonMonotonic, "1",
         "number of non-monotonic runs: unstable runs on the stable side of the limit, and stable runs beyond it",
-        inconsistent, under("non-\nmonotonic")},
-       {kAstray, "1", "same as inconsistent_runs (former name)", inconsistent}});
+        inconsistent, under("non-\nmonotonic")}});
   return columns;
 }
 
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table) {
-  Columns<LimitRunRow> columns = place_columns<LimitRunRow>(table);
-  columns.add({{table == nullptr ? "{field}" : table->first().asked.path, "unit of the field",
+  Columns<LimitRunRow> columns = case_columns<LimitRunRow>(table);
+  columns.add({{table == nullptr ? "{field}" : table->first().question.path, "unit of the field",
                 "value of the field in the run", [](const LimitRunRow& r) { return r.run.value; }},
                {"class", "", "class of the run (hapbench describe stability)",
                 [](const LimitRunRow& r) { return run_verdict_name(r.run.verdict); }}});

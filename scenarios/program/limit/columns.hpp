@@ -10,7 +10,7 @@ namespace hapbench {
 
 /// Name of the column with the runs that are unstable within the stable interval or stable outside of it, and
 /// the column's former name.
-inline constexpr const char *kInconsistent = "inconsistent_runs", *kAstray = "astray";
+inline constexpr const char* kNonMonotonic = "non_monotonic_runs";
 
 /// A row of limit_runs.csv: a run and the case that it belongs to.
 struct LimitRunRow {

@@ -17,10 +17,10 @@ namespace {
 /// one thread each.
 void find_limits(const LimitOptions& options, std::vector<LimitRow>& rows, const ProgramContext& context) {
   const bool alone = rows.size() == 1;
-  if (alone) rows[0].asked.threads = threads_of(options);
+  if (alone) rows[0].question.threads = threads_of(options);
   const WaitNotice notice("limit", !options.output.quiet && alone);
   for_each_job(rows.size(), job_options(options, alone ? "" : "limit", context),
-               [&](std::size_t i) { rows[i].limit = field_limit(rows[i].asked); });
+               [&](std::size_t i) { rows[i].limit = field_limit(rows[i].question); });
 }
 
 /// Computes the ratios of each limit to the limit of the first case in its block of rows.
@@ -36,8 +36,8 @@ void add_ratios(LimitTable& table) {
 }
 
 /// Reports the limits in the CSV files, the printed text and the JSON.
-void tell_limits(const LimitTable& table, const Layout& layout, Report& report) {
-  const LimitQuestion& question = table.first().asked;
+void report_limits(const LimitTable& table, const Layout& layout, Report& report) {
+  const LimitQuestion& question = table.first().question;
   const Columns<LimitRow> columns = limit_columns(&table);
   // Collect the runs of all cases, and the limits as JSON.
   std::vector<LimitRunRow> runs;
@@ -47,7 +47,7 @@ void tell_limits(const LimitTable& table, const Layout& layout, Report& report) 
     for (const JudgedValue& run : row.limit.inconsistent)
       inconsistent.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
     Json& limit = limits.emplace_back(columns.json(row));
-    limit[kInconsistent] = limit[kAstray] = inconsistent;
+    limit[kNonMonotonic] = limit[kAstray] = inconsistent;
     for (const JudgedValue& run : row.limit.runs) runs.push_back({row, run});
   }
   report.write("limit.csv", columns, table.rows);
@@ -64,14 +64,15 @@ void tell_limits(const LimitTable& table, const Layout& layout, Report& report) 
 
 int limit(const LimitOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
-  LimitTable table = asked_table(options);
+  LimitTable table = make_limit_table(options);
   std::vector<std::string> warnings;
-  for (std::size_t i = 0; i < table.cases.size(); ++i) table.rows.push_back(asked_row(options, table, i, warnings));
+  for (std::size_t i = 0; i < table.cases.size(); ++i)
+    table.rows.push_back(make_limit_row(options, table, i, warnings));
   print_warnings(context, warnings);
   Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene(), context);
   find_limits(options, table.rows, context);
   add_ratios(table);
-  tell_limits(table, layout, report);
+  report_limits(table, layout, report);
   report.say(fmt::format("\nresults in {}\n", report.folder().string()));
   return report.finish();
 }
@@ -108,9 +109,9 @@ void add_limit(CommandLine& line) {
       "settled: comes to rest or decays; bounded: may also vibrate; still: little vibration of the handle (default: "
       "settled; if a script moves the tool, still)",
       {.one_of = {"settled", "bounded", "still"}});
-  command.add("--vibration <m/s>", options.vibration,
-              fmt::format("for the rule still: largest vibration of the handle, rms above 30 Hz (default: {})",
-                          kMostVibration));
+  command.add(
+      "--vibration <m/s>", options.vibration,
+      fmt::format("for the rule still: largest vibration of the handle, rms above 30 Hz (default: {})", kMaxVibration));
   command.add("--bound <metric=range>", options.bounds,
               "a stable run must also keep METRIC=MAX or METRIC=MIN:MAX, such as inside_settled_m=3e-4; repeatable");
   command.add(

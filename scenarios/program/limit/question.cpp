@@ -50,7 +50,7 @@ bool are_devices_changed(const LimitOptions& options) {
 
 /// Returns the selected devices. Each device is followed by its variants: both ends of the range of unpublished
 /// parameters, or the friction factors of --friction. A device that --set changes has "*" behind its name.
-std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
+std::vector<ComparedDevice> device_variants(const LimitOptions& options) {
   const bool none_other = options.friction == std::vector<std::string>{kNoFriction};
   const bool is_changed = are_devices_changed(options);
   std::vector<ComparedDevice> devices;
@@ -64,7 +64,7 @@ std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
     // Add the variants of the device.
     if (none_other) continue;
     for (const std::string& factor : options.friction)
-      if (const auto other = with_friction_times(device, number_between("--friction", factor, 0.0, 1e3)))
+      if (const auto other = with_friction_times(device, parse_bounded_number("--friction", factor, 0.0, 1e3)))
         devices.push_back(*other);
     if (options.friction.empty() && !is_end)
       std::ranges::move(with_unpublished_numbers(device), std::back_inserter(devices));
@@ -94,10 +94,10 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
     fail_in_option("--vary",
                    fmt::format("got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
   // Set the search.
-  LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
+  LimitQuestion question = limit_question(scene, overrides, options.field, parse_range("--between", options.between));
   question.search.smallest = options.smallest;
   if (!options.resolution.empty())
-    question.search.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
+    question.search.resolution = parse_bounded_number("--resolution", options.resolution, 1e-6, 0.5);
   question.between = options.devices.empty() && options.over.empty();
   // Set the rule for stable runs.
   question.rule.bounded = options.stable == "bounded";
@@ -105,11 +105,11 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
     if (!options.stable.empty() && options.stable != "still")
       fail_in({.about_options = {"--vibration", "--stable"}},
               fmt::format("--vibration: cannot be combined with --stable {}; allowed: with still", options.stable));
-    question.rule.most_vibration = number_between("--vibration", options.vibration, 1e-9, 1e3);
+    question.rule.max_vibration = parse_bounded_number("--vibration", options.vibration, 1e-9, 1e3);
   } else if (options.stable.empty()) {
-    question.rule.most_vibration = rule_of(scenario).most_vibration;
+    question.rule.max_vibration = rule_of(scenario).max_vibration;
   } else if (options.stable == "still") {
-    question.rule.most_vibration = kMostVibration;
+    question.rule.max_vibration = kMaxVibration;
   }
   for (const std::string& bound : options.bounds) add_bound(bound, question.rule.bounds);
   return question;
@@ -117,7 +117,7 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
 
 }  // namespace
 
-LimitTable asked_table(const LimitOptions& options) {
+LimitTable make_limit_table(const LimitOptions& options) {
   if (options.devices.empty() && !options.friction.empty())
     fail_in_option("--friction", "got factors; allowed: with --device");
   const std::vector<std::filesystem::path> files = find_scenarios(options.scenarios);
@@ -128,7 +128,7 @@ LimitTable asked_table(const LimitOptions& options) {
   std::vector<ComparedDevice> devices;
   std::vector<Axis> axes = {{.path = "--device", .values = {""}, .named = true}};
   if (!options.devices.empty()) {
-    devices = asked_devices(options);
+    devices = device_variants(options);
     axes[0].values = names_of(devices, &ComparedDevice::name);
   }
   // Make the axes in the order of LimitTable::cases.
@@ -139,8 +139,8 @@ LimitTable asked_table(const LimitOptions& options) {
   return {std::move(devices), Cases(std::move(scenes), options.overrides, std::move(axes))};
 }
 
-LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
-                   std::vector<std::string>& warnings) {
+LimitRow make_limit_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
+                        std::vector<std::string>& warnings) {
   LimitRow row;
   row.axis_values = table.cases.values(i);
   if (!table.devices.empty()) row.device = &table.devices[table.cases.place(i, 0)];
@@ -150,8 +150,8 @@ LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::si
     if (row.device != nullptr) overrides = overrides_on(*row.device, scene, overrides);
     const LoadedScenario loaded = load_scenario(scene, overrides);
     row.scenario = loaded.scenario;
-    row.asked = question_of(options, scene, row.scenario, overrides);
-    append_new(warnings, row.asked.warnings);
+    row.question = question_of(options, scene, row.scenario, overrides);
+    append_new(warnings, row.question.warnings);
     append_new(warnings, with_files(loaded, checked(loaded).file_warnings()));
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;

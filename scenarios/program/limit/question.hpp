@@ -29,7 +29,7 @@ struct LimitRow {
   std::vector<std::string> axis_values = {};  ///< value of each axis of LimitTable::cases
   const ComparedDevice* device = nullptr;     ///< null: the scene's device
   Scenario scenario = {};  ///< the scenario with overrides, device and axis values, and its current value of the field
-  LimitQuestion asked = {};
+  LimitQuestion question = {};
   /// The limit divided by the limit of the reference case, which has the first scene and algorithm and is equal
   /// in all else; and the same ratio of K lambda_max(S), the rendered stiffness. S is the normalized stiffness
   /// tensor. Empty if one of the two cases has no limit.
@@ -58,9 +58,9 @@ struct LimitTable {
 
 /// Returns a table with all cases but without rows. The device axis has no field, so that --over may vary
 /// fields of the device. Throws InputError.
-LimitTable asked_table(const LimitOptions& options);
+LimitTable make_limit_table(const LimitOptions& options);
 /// Returns case i without its answer. Adds warnings to `warnings` that are not in it yet. Throws InputError.
-LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
-                   std::vector<std::string>& warnings);
+LimitRow make_limit_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
+                        std::vector<std::string>& warnings);
 
 }  // namespace hapbench

@@ -32,7 +32,7 @@ std::string damping_text(const RenderingConfig& rendering) {
 
 /// Returns the resolution of the bisection.
 std::string resolution_text(const LimitQuestion& question) {
-  const SearchWay& search = question.search;
+  const IntervalSearchOptions& search = question.search;
   if (search.whole) return "1";
   return fmt::format("{} %{}", 100.0 * search.resolution, search.range.logarithmic ? "" : " of the range");
 }
@@ -40,7 +40,7 @@ std::string resolution_text(const LimitQuestion& question) {
 /// States the question for one scene. `over`: other fields vary too, so that values which depend on them are
 /// omitted.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over, const Layout& layout) {
-  const SearchWay& search = question.search;
+  const IntervalSearchOptions& search = question.search;
   const std::string width = resolution_text(question);
   const auto end = [&search](double value) { return significant(search.whole ? std::round(value) : value); };
   std::string text = fmt::format("{}: {} stable {} between {} and {}, resolution {}", scenario.name, question.side(),
@@ -61,13 +61,13 @@ std::string none_text(const FieldLimit& limit) {
   if (!limit.scattered) return fmt::format("none {} is stable: {}", runs, fmt::join(texts, ", "));
   return fmt::format(
       "no limit, because stable and unstable values alternate and no interval of {:g} % is stable; {}: {}",
-      100.0 * kNear, runs, fmt::join(texts, ", "));
+      100.0 * kNearLimit, runs, fmt::join(texts, ", "));
 }
 
 /// Returns remarks on the answer of one row; may be empty.
 std::string remarks_text(const LimitRow& row, const Layout& layout) {
   const FieldLimit& limit = row.limit;
-  const LimitQuestion& question = row.asked;
+  const LimitQuestion& question = row.question;
   std::string text;
   const auto say = [&](const std::string& what) { text += layout.wrapped(row.algorithm() + ": " + what, 0); };
   if (limit.end.value && limit.own && !question.rule.holds(limit.own->verdict)) {
@@ -100,7 +100,7 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
     if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device))
       friction = std::max(friction, std::optional(device->coulomb));
   const auto is_beyond_linear = [](const LimitRow& row) {
-    return row.limit.is_beyond_linear(row.asked.search.resolution);
+    return row.limit.is_beyond_linear(row.question.search.resolution);
   };
   const auto is_published = [](const ComparedDevice& device) { return device.published_stiffness.has_value(); };
   std::string names;
@@ -122,7 +122,7 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
       {is_marked("[soft]"),
        fmt::format("[soft], [stiff]: the preset at the two ends of its unpublished parameters ({})", kPresetRanges)},
       {is_marked("[friction*"), "[friction*2]: the preset with its dry friction multiplied by this factor"},
-      {table.first().asked.path == kStiffnessPath && friction.has_value(),
+      {table.first().question.path == kStiffnessPath && friction.has_value(),
        "which of these stiffnesses to quote: see device_model/README.md, \"Which K to quote?\""},
       {friction > 0.0,
        "dry friction (our estimate in every preset) holds the tool if the hand presses slowly. Then the limit depends "
@@ -143,14 +143,14 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
 
 std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
   std::string text =
-      rule.most_vibration
+      rule.max_vibration
           ? fmt::format(
                 "criterion: a run is stable if the handle vibrates by at most {} m/s rms above {:.0f} Hz after the "
                 "first quarter of the contact time, and slower bounces do not persist",
-                *rule.most_vibration, kVibrationCutoff)
+                *rule.max_vibration, kVibrationCutoff)
           : fmt::format("criterion: a run is stable if it comes to rest or its oscillation decays{}",
                         rule.bounded ? ", or if it vibrates without growing" : "");
-  if (!rule.most_vibration && is_moved(scenario))
+  if (!rule.max_vibration && has_scripted_motion(scenario))
     text +=
         "; because a script moves the tool, only motion above 30 Hz and above 1 mm/s counts, and if the script ends "
         "in the first half of the run, all motion above 1 mm/s from then on";
@@ -184,15 +184,15 @@ std::string limits_text(const LimitTable& table, const Columns<LimitRow>& column
   for (std::size_t i = 0; i < table.columns(); ++i) {
     const LimitRow& row = table.rows[i];
     if (i == 0 || row.scene() != table.rows[i - 1].scene())
-      text += question_text(row.asked, row.scenario, table.over() > 0, layout);
+      text += question_text(row.question, row.scenario, table.over() > 0, layout);
     if (table.is_grid()) continue;
-    answers +=
-        layout.wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row.limit, row.asked.search.resolution)), 0);
+    answers += layout.wrapped(
+        fmt::format("{}: {}", row.algorithm(), limit_answer(row.limit, row.question.search.resolution)), 0);
     remarks += remarks_text(row, layout);
   }
   const LimitRow& first = table.first();
   return fmt::format("{}\n{}{}{}\n{}{}{}", text, answers, answers.empty() ? "" : "\n", columns.text(table.rows, layout),
-                     layout.wrapped(rule_text(first.asked.rule, first.scenario), 0), remarks,
+                     layout.wrapped(rule_text(first.question.rule, first.scenario), 0), remarks,
                      notes_text(table, layout));
 }
 

@@ -7,7 +7,7 @@
 
 namespace hapbench {
 
-Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
+Vec3 top_center(const std::vector<SurfacePoint>& points, double top, double tolerance) {
   std::vector<Vec3> high;
   for (const SurfacePoint& point : points)
     if (point.position.z() >= top - tolerance) high.push_back(point.position);
@@ -17,27 +17,27 @@ Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, doub
   return *std::ranges::min_element(high, {}, [&middle](const Vec3& position) { return (position - middle).norm(); });
 }
 
-Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside) {
+Vec3 highest_at_center(const std::vector<SurfacePoint>& points, const Box& box, double max_offset) {
   const Vec3 middle = 0.5 * (box.min + box.max);
   Vec3 top(middle.x(), middle.y(), box.min.z());
   for (const SurfacePoint& point : points)
-    if ((point.position - middle).head<2>().norm() <= aside && point.position.z() > top.z()) top = point.position;
+    if ((point.position - middle).head<2>().norm() <= max_offset && point.position.z() > top.z()) top = point.position;
   return top.z() > box.min.z() ? top : middle;
 }
 
-DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough) {
+DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double min_length) {
   // A later path must be this factor longer than the best path.
-  constexpr double kFurther = 1.1;
+  constexpr double kMinImprovement = 1.1;
   const double furthest = diagonal(shell.bounds());
   DragStart best{positions.front(), Vec3::UnitX(), smoothing, 0.0};
   for (const double radius : {smoothing, 2.0 * smoothing, 4.0 * smoothing}) {
     const SmoothedSurface surface(shell, radius);
     for (const Vec3& position : positions) {
       for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)}) {
-        const double room = SurfacePath::along(surface, position, direction, furthest).length();
-        if (room > kFurther * best.room) best = {position, direction, radius, room};
+        const double free_length = SurfacePath::along(surface, position, direction, furthest).length();
+        if (free_length > kMinImprovement * best.free_length) best = {position, direction, radius, free_length};
       }
-      if (best.room >= enough) return best;
+      if (best.free_length >= min_length) return best;
     }
   }
   return best;

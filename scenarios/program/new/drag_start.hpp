@@ -11,24 +11,24 @@ namespace hapbench {
 
 /// Among the points within `tolerance` [m] of the height `top` [m], returns the point nearest to their mean.
 /// Precondition: there is such a point.
-Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance);
-/// Returns the highest point within the horizontal distance `aside` [m] of the box's vertical centre line.
+Vec3 top_center(const std::vector<SurfacePoint>& points, double top, double tolerance);
+/// Returns the highest point within the horizontal distance `max_offset` [m] of the box's vertical centre line.
 /// Returns the box's centre if there is no such point, for example in a ring.
-Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside);
+Vec3 highest_at_center(const std::vector<SurfacePoint>& points, const Box& box, double max_offset);
 
 /// Path over a surface for a hand that drags the tool.
 struct DragStart {
   Vec3 position = Vec3::Zero();    ///< initial.position_m [m]
   Vec3 direction = Vec3::UnitX();  ///< hand.direction
   double smoothing = 0.0;          ///< hand.smoothing_m [m]
-  double room = 0.0;               ///< length of the path up to where the surface ends or turns back [m]
+  double free_length = 0.0;        ///< length of the path up to where the surface ends or turns back [m]
 };
 
 /// Chooses the start position and direction of a drag. Evaluates the directions +x, +y, -x and -y from each
 /// position, with once, twice and four times `smoothing` [m]. Stops with the smallest smoothing that gives a
-/// path of at least `enough` [m]; otherwise returns the longest path. A later path is preferred only if it is
+/// path of at least `min_length` [m]; otherwise returns the longest path. A later path is preferred only if it is
 /// 10 % longer, so that rounding does not decide. Cost: about 10 ms for each combination. Precondition: the
 /// shell has points and `positions` is not empty.
-DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough);
+DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double min_length);
 
 }  // namespace hapbench

@@ -37,7 +37,7 @@ void draw_preview(const std::filesystem::path& scenario, const std::filesystem::
   const std::filesystem::path run = results_directory("", scenario.stem().string());
   require_writable_directory(context, run);
   run_scenario(checked(load_scenario(scenario)), run, {!quiet, context.progress});
-  write_way(context, run, picture, quiet);
+  draw_run(context, run, picture, quiet);
 }
 
 int write_new(const NewOptions& options, ProgramContext& context) {
@@ -79,9 +79,9 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   for (const auto& [path, meaning] : fields.items()) text += layout.entry(path, meaning.get<std::string>(), 0, 34);
   text +=
       fmt::format("\n\"hapbench describe scenario\" explains all fields; next step: hapbench run {}\n", out.string());
-  Json said = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
-  if (options.preview) said["picture"] = picture.string();
-  print(context, options.output, text, said);
+  Json json = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
+  if (options.preview) json["picture"] = picture.string();
+  print(context, options.output, text, json);
   return kSuccess;
 }
 

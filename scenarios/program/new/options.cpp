@@ -12,7 +12,7 @@
 
 namespace hapbench {
 
-Vec3 place_in(const char* option, const std::string& text) {
+Vec3 parse_position(const char* option, const std::string& text) {
   std::vector<double> numbers;
   for (const std::string_view part : parts_of(text, ','))
     if (const auto number = finite_number(part)) numbers.push_back(*number);
@@ -21,7 +21,7 @@ Vec3 place_in(const char* option, const std::string& text) {
   return Vec3(numbers.data());
 }
 
-double length_in(const char* option, const std::string& text) {
+double parse_length(const char* option, const std::string& text) {
   constexpr std::pair<std::string_view, double> kUnits[] = {{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}};
   for (const auto& [unit, metres] : kUnits) {
     if (!text.ends_with(unit)) continue;

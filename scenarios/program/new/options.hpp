@@ -18,9 +18,9 @@ struct NewOptions {
 };
 
 /// Returns the point of a text such as "0.01,0,0" [m]. Throws InputError with the option's name.
-Vec3 place_in(const char* option, const std::string& text);
+Vec3 parse_position(const char* option, const std::string& text);
 /// Returns the length of a text such as "12mm" [m]. Throws InputError with the option's name.
-double length_in(const char* option, const std::string& text);
+double parse_length(const char* option, const std::string& text);
 /// Throws InputError if the kind requires an option that is missing, if an option does not apply to the kind,
 /// and if a file does not exist.
 void check_options(const NewOptions& options, const StartKind& kind);

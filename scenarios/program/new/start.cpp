@@ -27,9 +27,9 @@
 namespace hapbench {
 namespace {
 
-constexpr double kClearance = 0.001;      ///< distance of tool and surface at the start [m]
-constexpr double kDragSpeed = 5.0;        ///< speed of a drag [tool diameters per second]
-constexpr double kPressedBelow = 0.0035;  ///< depth of a pressing hand's target below the surface [m]; gives 1 N
+constexpr double kClearance = 0.001;    ///< distance of tool and surface at the start [m]
+constexpr double kDragSpeed = 5.0;      ///< speed of a drag [tool diameters per second]
+constexpr double kPressDepth = 0.0035;  ///< depth of a pressing hand's target below the surface [m]; gives 1 N
 
 /// Rounds to two significant digits, for lengths that people read.
 double rounded(double value) {
@@ -52,13 +52,13 @@ class Start {
  public:
   Start(const StartKind& kind, const NewOptions& options, const std::filesystem::path& directory)
       : scene_(kind.scene), options_(options), directory_(directory) {
-    if (!options.extent.empty()) extent_ = length_in("--extent", options.extent);
-    for (const std::string& point : options.path) named_.push_back(place_in("--path", point));
-    if (!options.at.empty()) named_.push_back(place_in("--at", options.at));
+    if (!options.extent.empty()) extent_ = parse_length("--extent", options.extent);
+    for (const std::string& point : options.path) requested_points_.push_back(parse_position("--path", point));
+    if (!options.at.empty()) requested_points_.push_back(parse_position("--at", options.at));
     const bool is_on_mesh =
         !options.on.empty() || (kind.source == "mesh" && kind.is_source_optional && !options.from.empty());
     if (is_on_mesh) scene_["environment"] = kind_named("mesh").scene.at("environment");
-    turn_to_side();
+    rotate_to_side();
     name_files();
     const bool is_placed = scene_.contains("initial") && scene_["initial"]["position_m"].is_null();
     if (is_placed) scene_["initial"]["position_m"] = {0, 0, 0};
@@ -86,14 +86,14 @@ class Start {
     for (const auto& [field, file] : {std::pair{"/environment/file", mesh_file()},
                                       {"/tool/file", options_.from},
                                       {"/motion/position/file", options_.from}}) {
-      const Json::json_pointer place(field);
-      if (scene_.contains(place))
-        scene_[place] = std::filesystem::proximate(file, directory_.empty() ? "." : directory_).generic_string();
+      const Json::json_pointer pointer(field);
+      if (scene_.contains(pointer))
+        scene_[pointer] = std::filesystem::proximate(file, directory_.empty() ? "." : directory_).generic_string();
     }
   }
 
   /// Rotates the side's frame into the world frame, and orients the tool along the side's axis.
-  void turn_to_side() {
+  void rotate_to_side() {
     const auto axis = static_cast<Eigen::Index>(options_.side.back() - 'x');
     const Vec3 up = side_sign() * Vec3::Unit(axis), lean = Vec3::Unit(axis == 0 ? 1 : 0);
     to_world_ << lean, up.cross(lean), up;
@@ -148,7 +148,7 @@ class Start {
     if (options_.on.empty()) choose_tool(box.size().maxCoeff() / 0.001 * scale);
     scene_["environment"]["spacing_m"] = rounded(diameter_ / 10.0);
     if (!options_.on.empty())
-      notes_.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
+      notes_.push_back(fmt::format("the mesh: {}", bounds_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
   }
 
   /// Sets the tool's diameter to a fiftieth of the object's length [m], but at least 1 mm.
@@ -160,11 +160,11 @@ class Start {
 
   /// Returns the points of the surface. Flips the normals of an open mesh if they point away from the side
   /// around its highest point. Throws InputError for point shells with such normals.
-  std::vector<SurfacePoint> facing_points() {
+  std::vector<SurfacePoint> points_facing_side() {
     std::vector<SurfacePoint> shell = points();
     const Box box = bounds_of(shell);
     choose_tool(box.size().maxCoeff());
-    const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
+    const Vec3 top = top_center(shell, box.max.z(), 0.1 * diameter_);
     const bool is_open =
         !has_type("environment", "mesh") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
     // Sum the normals around the top along the side's axis; a negative sum means that they point away.
@@ -189,27 +189,27 @@ class Start {
 
   /// Places the tool above the surface, and sets the motion of the hand.
   void place_tool() {
-    const std::vector<SurfacePoint> shell = facing_points();
+    const std::vector<SurfacePoint> shell = points_facing_side();
     const std::string count = has_type("environment", "mesh") ? "" : fmt::format("{} points", shell.size());
     const Box box = bounds_of(shell);
     const Vec3 top = top_of(shell, box);
-    pressed_ = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressedBelow));
+    press_target_ = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressDepth));
     if (has_type("hand", "drag")) {
       if (!count.empty()) notes_.push_back(count);
-      if (named_.size() > 1) return follow_path(top);
-      const Vec3 middle = named_.empty() ? top_of_the_middle(shell, box, diameter_) : top;
-      return choose_way(PointShell(shell, 0.0), {start_above(top), start_above(middle)});
+      if (requested_points_.size() > 1) return follow_path(top);
+      const Vec3 middle = requested_points_.empty() ? highest_at_center(shell, box, diameter_) : top;
+      return choose_drag_path(PointShell(shell, 0.0), {start_above(top), start_above(middle)});
     }
     start_at(start_above(top));
-    const bool is_on_top = options_.side == "z" && named_.empty();
+    const bool is_on_top = options_.side == "z" && requested_points_.empty();
     notes_.push_back(fmt::format("{}{}the tool starts 1 mm {} {}", count, count.empty() ? "" : "; ",
                                  is_on_top ? "above the highest point, at" : "off the surface at",
-                                 said(top, !is_on_top)));
+                                 position_text(top, !is_on_top)));
   }
 
   /// Returns a position as text [mm], in the world frame.
-  std::string said(const Vec3& place, bool with_height) const {
-    const Vec3 world = to_world_ * place;
+  std::string position_text(const Vec3& position, bool with_height) const {
+    const Vec3 world = to_world_ * position;
     return fmt::format("x = {:.4g}, y = {:.4g}{} mm", 1e3 * world.x(), 1e3 * world.y(),
                        with_height ? fmt::format(", z = {:.4g}", 1e3 * world.z()) : "");
   }
@@ -219,51 +219,52 @@ class Start {
   /// Returns the surface point above which the tool starts. With requested points, this is the point that faces
   /// the side and is nearest to the first of them. Otherwise it is the middle of the top.
   Vec3 top_of(const std::vector<SurfacePoint>& shell, const Box& box) const {
-    if (named_.empty()) return middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
-    const Vec3 named = to_world_.transpose() * named_.front();
+    if (requested_points_.empty()) return top_center(shell, box.max.z(), 0.1 * diameter_);
+    const Vec3 named = to_world_.transpose() * requested_points_.front();
     const auto facing = [&named](const SurfacePoint& point) {
       return point.normal.z() > 0.0 ? (point.position - named).squaredNorm() : std::numeric_limits<double>::infinity();
     };
     return std::ranges::min_element(shell, {}, facing)->position;
   }
 
-  /// Returns the start position from which a tool with a round tip lands at `place`.
-  Vec3 start_above(const Vec3& place) const {
-    return {to_micrometres(place.x()), to_micrometres(place.y()),
-            to_micrometres(place.z() + 0.5 * diameter_ + kClearance)};
+  /// Returns the start position from which a tool with a round tip lands at `position`.
+  Vec3 start_above(const Vec3& position) const {
+    return {to_micrometres(position.x()), to_micrometres(position.y()),
+            to_micrometres(position.z() + 0.5 * diameter_ + kClearance)};
   }
 
   /// Sets the initial position. A pressing hand moves its target along the side's axis below the surface.
-  void start_at(const Vec3& place) {
-    const Json world = list_of(to_world_ * place);
+  void start_at(const Vec3& position) {
+    const Json world = list_of(to_world_ * position);
     scene_["initial"]["position_m"] = world;
     if (!has_type("hand", "impedance")) return;
     Json& target = scene_["hand"]["target"];
     target = {{"x_m", world[0]}, {"y_m", world[1]}, {"z_m", world[2]}};
     Json& along = target[std::string(1, options_.side.back()) + "_m"];
     along = {{kTypeField, "waypoints"},
-             {"points", Json::array({Json::array({0, along}), Json::array({0.5, pressed_})})},
+             {"points", Json::array({Json::array({0, along}), Json::array({0.5, press_target_})})},
              {"interpolation", "cosine"}};
   }
 
   /// Drags the tool along the requested points.
   void follow_path(const Vec3& first) {
-    double way = 0.0;
+    double length = 0.0;
     Json& hand = scene_["hand"];
     hand.erase("direction");
-    for (const Vec3& point : named_) hand["path_m"].push_back(list_of(point));
-    for (std::size_t i = 1; i < named_.size(); ++i) way += (named_[i] - named_[i - 1]).norm();
+    for (const Vec3& point : requested_points_) hand["path_m"].push_back(list_of(point));
+    for (std::size_t i = 1; i < requested_points_.size(); ++i)
+      length += (requested_points_[i] - requested_points_[i - 1]).norm();
     start_at(start_above(first));
-    drag_for(way);
+    set_drag_duration(length);
     hand["smoothing_m"] = 0.5 * diameter_;
-    notes_.push_back(fmt::format("dragged along a path of {}", length_text(way)));
+    notes_.push_back(fmt::format("dragged along a path of {}", length_text(length)));
   }
 
   /// Sets the speed of a drag, and enough steps for a path of this length [m].
-  void drag_for(double way) {
+  void set_drag_duration(double length) {
     const double speed = kDragSpeed * diameter_;
     scene_["hand"]["speed_m_per_s"] = rounded(speed);
-    scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil(rounded(way / speed) / kStartStep));
+    scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil(rounded(length / speed) / kStartStep));
   }
 
   /// Places a mesh tool above the middle of the plane. The tip centre is the origin of the file, which is the
@@ -277,19 +278,19 @@ class Start {
     notes_.emplace_back(
         "assumed tip centre: the file's origin, with the tip pointing along -z; tool.tip_m and tool.tip_axis change "
         "this");
-    if (const std::string odd = odd_frame(box); !odd.empty())
+    if (const std::string odd = frame_problem(box); !odd.empty())
       warnings_.push_back(fmt::format("the tool {}: set tool.tip_m and tool.tip_axis", odd));
-    pressed_ = to_micrometres(-box.min.z() - kPressedBelow);
+    press_target_ = to_micrometres(-box.min.z() - kPressDepth);
     start_at({0.0, 0.0, to_micrometres(-box.min.z() + kClearance)});
   }
 
   /// Chooses the start and direction of a drag, over four fifths of the path up to the end of the surface.
-  void choose_way(const PointShell& shell, const std::vector<Vec3>& starts) {
+  void choose_drag_path(const PointShell& shell, const std::vector<Vec3>& starts) {
     // Search a path of at least a quarter of the surface's extent.
-    const double enough = 0.25 * shell.bounds().size().maxCoeff();
-    const DragStart drag = choose_drag(shell, starts, 0.5 * diameter_, enough);
-    const double way = 0.8 * drag.room;
-    const bool has_room = way >= diameter_;
+    const double min_length = 0.25 * shell.bounds().size().maxCoeff();
+    const DragStart drag = choose_drag(shell, starts, 0.5 * diameter_, min_length);
+    const double length = 0.8 * drag.free_length;
+    const bool has_room = length >= diameter_;
     start_at(drag.position);
     // Write the drag into the scene.
     const Vec3 direction = to_world_ * drag.direction;
@@ -297,17 +298,17 @@ class Start {
     for (const double part : direction) along.push_back(static_cast<int>(part));
     scene_["hand"]["direction"] = along;
     scene_["hand"]["smoothing_m"] = drag.smoothing;
-    drag_for(has_room ? way : enough);
+    set_drag_duration(has_room ? length : min_length);
     if (!has_room) {
       warnings_.push_back(fmt::format(
           "no path longer than {} was found over the surface along x or y, from its highest point or its middle: set "
           "hand.path_m to points on the surface, or initial.position_m and hand.direction",
-          length_text(drag.room)));
+          length_text(drag.free_length)));
       return;
     }
     notes_.push_back(fmt::format("dragged from {} along [{}, {}, {}] for {}; the surface ends or turns after {}",
-                                 said(drag.position, options_.side != "z"), along[0].dump(), along[1].dump(),
-                                 along[2].dump(), length_text(way), length_text(drag.room)));
+                                 position_text(drag.position, options_.side != "z"), along[0].dump(), along[1].dump(),
+                                 along[2].dump(), length_text(length), length_text(drag.free_length)));
   }
 
   /// Sets the number of steps to the duration of the stroke.
@@ -327,11 +328,11 @@ class Start {
   std::vector<std::string> notes_, warnings_;
   const NewOptions& options_;
   std::filesystem::path directory_;
-  std::optional<double> extent_;      ///< stated longest edge of the mesh's box [m]
-  std::vector<Vec3> named_;           ///< points of --path, or the point of --at [m]
-  Mat3 to_world_ = Mat3::Identity();  ///< rotates vectors of the side's frame into the world frame
-  double diameter_ = 0.001;           ///< [m]
-  double pressed_ = 0.0;              ///< final target of a pressing hand along the side's axis [m]
+  std::optional<double> extent_;        ///< stated longest edge of the mesh's box [m]
+  std::vector<Vec3> requested_points_;  ///< points of --path, or the point of --at [m]
+  Mat3 to_world_ = Mat3::Identity();    ///< rotates vectors of the side's frame into the world frame
+  double diameter_ = 0.001;             ///< [m]
+  double press_target_ = 0.0;           ///< final target of a pressing hand along the side's axis [m]
 };
 
 }  // namespace

@@ -27,17 +27,17 @@ std::vector<const TunedLaw*> ranking_of(const std::vector<TunedLaw>& laws);
 /// A stability margin of a choice: its column in tune.csv, its heading, its JSON key, its printed text, and the
 /// largest value that the search covers.
 struct Margin {
-  const char *column, *unit, *meaning, *heading, *key, *words;
+  const char *column, *unit, *meaning, *heading, *key, *text;
   std::optional<double> TuneMargins::*of;
-  double most;
+  double max;
 };
 inline constexpr Margin kMargins[] = {
     {"gain_margin", "1", "largest factor on K, up to 64, with which all runs settle and the contact loop is stable",
-     "gain", "gain", "gain margin {}", &TuneMargins::gain, 0.99 * kMostGain},
+     "gain", "gain", "gain margin {}", &TuneMargins::gain, 0.99 * kMaxGainMargin},
     {"delay_margin_samples", "time steps",
      "largest additional delay of the device, up to 64 time steps, with which all runs settle and the contact loop is "
      "stable; empty without a device",
-     "delay", "delay_samples", "delay margin {} samples", &TuneMargins::delay_samples, kMostDelay},
+     "delay", "delay_samples", "delay margin {} samples", &TuneMargins::delay_samples, kMaxDelayMargin},
     {"damping_margin", "1", "damping ratio of the least damped mode of the contact loop; empty without a contact loop",
      "", "damping_ratio", "damping ratio {} of the least damped mode", &TuneMargins::damping_ratio, 2.0}};
 

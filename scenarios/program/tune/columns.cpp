@@ -62,7 +62,9 @@ Columns<TunedLaw> tuned_columns() {
     columns.add({{margin.column, margin.unit, margin.meaning, [of = margin.of](const Row& r) { return r.margins.*of; },
                   under(margin.heading, 3, kOnlyCsv)}});
   }
-  const auto may_fail = [](const Row& r) { return r.verified > 0 ? Cell(may_fail_share(kTriedBetween)) : Cell(); };
+  const auto may_fail = [](const Row& r) {
+    return r.verified > 0 ? Cell(may_fail_share(kVerificationSamples)) : Cell();
+  };
   const auto metric = [](const char* heading, const char* name, double factor) {
     const auto text = [=](const Row& r) {
       const auto value = r.choice ? value_in(r.choice->metrics, name, factor) : std::nullopt;
@@ -75,7 +77,7 @@ Columns<TunedLaw> tuned_columns() {
         fmt::format(
             "number of verification samples: full-length runs between K and G K (G is the margin), all settled, {} of "
             "them just below G K",
-            kTriedNear),
+            kSamplesNearLimit),
         &Row::verified},
        {"may_fail_share", "1",
         "largest fraction of the values between K and G K that may still be unstable, with 95 % confidence, given the "

@@ -17,8 +17,8 @@ Json law_json(const TunedLaw& law) {
   for (const Margin& margin : kMargins) json["margins"][margin.key] = cell_json(cell_of(law.margins.*margin.of));
   json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
   json["error"] = law.error;
-  json["linear_edge"] = law.choice ? cell_json(cell_of(law.edge.linear_edge())) : Json();
-  json["edge_in_runs"] = law.choice ? cell_json(cell_of(law.edge.end.value)) : Json();
+  json["linear_limit"] = law.choice ? cell_json(cell_of(law.edge.linear_edge())) : Json();
+  json["simulated_limit"] = law.choice ? cell_json(cell_of(law.edge.end.value)) : Json();
   return json;
 }
 
@@ -36,8 +36,8 @@ Json limits_json(const TuneQuestion& question) {
 Json tuning_json(const Tuning& tuning, const std::filesystem::path& tuned) {
   Json laws = Json::array();
   for (const TunedLaw& law : tuning.laws) laws.push_back(law_json(law));
-  const auto name_of = [&](std::size_t place) {
-    return place < tuning.ranking.size() ? Json(tuning.ranking[place]->algorithm) : Json();
+  const auto name_of = [&](std::size_t rank) {
+    return rank < tuning.ranking.size() ? Json(tuning.ranking[rank]->algorithm) : Json();
   };
   return {{"algorithms", std::move(laws)},
           {"recommended", name_of(0)},

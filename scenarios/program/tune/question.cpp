@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "scenarios/analysis/stability/compared_devices.hpp"
-#include "scenarios/analysis/tuning/family.hpp"
+#include "scenarios/analysis/tuning/scene_variants.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/chosen_devices.hpp"
 #include "scenarios/program/names.hpp"
@@ -16,8 +16,8 @@ namespace hapbench {
 namespace {
 
 /// Returns a range of numbers above 0, which is searched in ratios; empty for an empty text. Throws InputError.
-std::optional<Range> ratios_of(const char* option, const std::string& text) {
-  std::optional<Range> range = range_of(option, text);
+std::optional<Range> parse_ratio_range(const char* option, const std::string& text) {
+  std::optional<Range> range = parse_range(option, text);
   if (!range) return range;
   if (!(range->from > 0.0)) fail_in_option(option, fmt::format("got \"{}\"; allowed: a:b with 0 < a < b", text));
   range->logarithmic = true;
@@ -35,8 +35,8 @@ TuneQuestion tune_question(const TuneOptions& options, const std::filesystem::pa
   for (const std::string& bound : options.bounds) add_bound(bound, question.limits);
   if (!options.family.empty())
     question.families = chosen_names("--family", options.family, {std::begin(kFamilies), std::end(kFamilies)});
-  if (const auto range = ratios_of("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
-  question.mass = ratios_of("--mass", options.mass);
+  if (const auto range = parse_ratio_range("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
+  question.mass = parse_ratio_range("--mass", options.mass);
   question.threads = threads_of(options);
   return question;
 }

@@ -40,8 +40,8 @@ std::string margins_text(const TuneMargins& margins) {
   std::vector<std::string> texts;
   for (const Margin& margin : kMargins)
     if (const auto& found = margins.*margin.of)
-      texts.push_back(fmt::format(fmt::runtime(margin.words),
-                                  (*found >= margin.most ? "more than " : "") + significant(*found, 3)));
+      texts.push_back(
+          fmt::format(fmt::runtime(margin.text), (*found >= margin.max ? "more than " : "") + significant(*found, 3)));
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
@@ -57,11 +57,11 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
     line("runner-up", fmt::format("{}, {}: renders {} times the stiffness", next->algorithm, choice_text(*next->choice),
                                   significant(next->choice->rendered() / best->choice->rendered(), 2)));
   }
-  line("limits of K", limit_answer(best->edge, kEdgeResolution));
+  line("limits of K", limit_answer(best->edge, kBisectionResolution));
   line("verified",
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
                    "unstable (95 % confidence); {} runs in total",
-                   best->verified, tuning.question.margin, 100.0 * may_fail_share(kTriedBetween), tuning.runs));
+                   best->verified, tuning.question.margin, 100.0 * may_fail_share(kVerificationSamples), tuning.runs));
   line("metrics at K",
        "+-: change with half the time step, half the point spacing, and the depth evaluated at every step");
   for (const auto& [name, value] : best->choice->metrics)

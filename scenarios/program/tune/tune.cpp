@@ -116,7 +116,7 @@ void add_tune(CommandLine& line) {
       "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder.\n\n"
       "Time: seconds to minutes; the search for a law ends after {} runs.\n\n"
       "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
-      kTriedBetween + kTriedNear, kMostTuneRuns));
+      kVerificationSamples + kSamplesNearLimit, kMaxTuneRuns));
 }
 
 }  // namespace hapbench

@@ -72,7 +72,7 @@ bool runs_in_python(const Call& call) noexcept {
 }
 
 /// Returns true while a call from Python is computing. Precondition: the interpreter lock is held.
-bool is_work_under_way();
+bool is_call_active();
 
 /// Adds the Python function add_force_law(), which makes an algorithm from a Python callable.
 void bind_force_laws(pybind11::module_& module);

@@ -43,7 +43,7 @@ namespace py = pybind11;
 using namespace std::chrono_literals;
 
 /// Interval at which a waiting call handles signals and reports progress.
-constexpr auto kLookEvery = 50ms;
+constexpr auto kPollInterval = 50ms;
 
 /// Largest wait for running calls before the interpreter ends; bounded because a loaded module may loop
 /// forever.
@@ -52,7 +52,7 @@ constexpr auto kPatience = 2s;
 /// Number of calls that are computing, and the Python error that ends them; null if there is none. Both are
 /// guarded by the interpreter lock. The error is a bare pointer because no interpreter exists any more when the
 /// process destroys static objects.
-int under_way = 0;
+int active_calls = 0;
 PyObject* python_error = nullptr;
 
 /// Label, completed work and total work of a progress report; the total is 0 before the first report.
@@ -61,16 +61,16 @@ using ProgressState = std::tuple<std::string, std::uint64_t, std::uint64_t>;
 /// Counts a call that computes, for its lifetime. A Python error in one call stops all calls. When the last
 /// call ends, the error is cleared and work may start again. Precondition of constructor and destructor: the
 /// interpreter lock is held.
-class UnderWay {
+class ActiveCall {
  public:
-  UnderWay() { ++under_way; }
-  ~UnderWay() {
-    if (--under_way > 0) return;
+  ActiveCall() { ++active_calls; }
+  ~ActiveCall() {
+    if (--active_calls > 0) return;
     Py_CLEAR(python_error);
     stop_work(0);
   }
-  UnderWay(const UnderWay&) = delete;
-  UnderWay& operator=(const UnderWay&) = delete;
+  ActiveCall(const ActiveCall&) = delete;
+  ActiveCall& operator=(const ActiveCall&) = delete;
 };
 
 /// Raises the error that stop_work_by() has stored, if any. Preconditions: a call is counted, and the
@@ -88,7 +88,7 @@ void raise_python_error() {
 /// handler (such as KeyboardInterrupt) stops the work of all threads and is raised. Precondition: the
 /// interpreter lock is held.
 void supervise(const py::object& progress, const std::function<void(const ProgressListener*)>& work) {
-  const UnderWay counted;
+  const ActiveCall counted;
   const bool has_function = PyCallable_Check(progress.ptr()) != 0;
   std::mutex mutex;
   ProgressState reported, delivered;  // last report of the work, under the mutex; last report to Python
@@ -100,12 +100,12 @@ void supervise(const py::object& progress, const std::function<void(const Progre
     const std::lock_guard lock(mutex);
     reported = {std::string(label), done, total};
   };
-  const ProgressListener* const heard_by = progress.is_none() ? nullptr : &listener;
+  const ProgressListener* const forwarded = progress.is_none() ? nullptr : &listener;
   // Start the work.
-  auto result = std::async(std::launch::async, [&] { work(heard_by); });
+  auto result = std::async(std::launch::async, [&] { work(forwarded); });
   const auto has_ended = [&result] {
     const py::gil_scoped_release released;
-    return result.wait_for(kLookEvery) == std::future_status::ready;
+    return result.wait_for(kPollInterval) == std::future_status::ready;
   };
   // Handle signals and report progress until the work ends.
   while (!has_ended()) {
@@ -124,12 +124,12 @@ void supervise(const py::object& progress, const std::function<void(const Progre
 
 /// Exit handler: ends the calls of daemon threads by SystemExit and waits for them at most 2 s, because they
 /// would request the interpreter lock of an interpreter that has ended.
-void end_work() {
-  if (under_way == 0) return;
+void stop_calls_at_exit() {
+  if (active_calls == 0) return;
   PyErr_SetNone(PyExc_SystemExit);
   stop_work_by(py::error_already_set());
   const auto latest = std::chrono::steady_clock::now() + kPatience;
-  while (under_way > 0 && std::chrono::steady_clock::now() < latest) {
+  while (active_calls > 0 && std::chrono::steady_clock::now() < latest) {
     const py::gil_scoped_release released;
     std::this_thread::sleep_for(10ms);
   }
@@ -139,7 +139,7 @@ void end_work() {
 /// Throws InputError while another thread computes.
 std::shared_ptr<void> guard_loading() {
   auto held = std::make_shared<py::gil_scoped_acquire>();  // starting work requires this lock
-  if (under_way > 1) throw InputError("a law cannot be loaded while another thread computes");
+  if (active_calls > 1) throw InputError("a law cannot be loaded while another thread computes");
   return held;
 }
 
@@ -225,7 +225,7 @@ py::tuple command(const std::vector<std::string>& words, const py::object& progr
 }
 
 /// Runs a command that prints on the terminal, and returns its exit status.
-int be_program(const std::vector<std::string>& words) {
+int run_main(const std::vector<std::string>& words) {
   int status = 0;
   supervise(py::none(), [&](const ProgressListener* listener) {
     ProgramContext context{.program = program_file(), .progress = listener, .guard_loading = guard_loading};
@@ -257,7 +257,7 @@ class PythonSimulation {
  public:
   PythonSimulation(const std::string& scenario, const std::vector<std::string>& overrides)
       : loaded_(load_scenario(find_scenario(scenario), overrides)) {
-    const UnderWay counted;
+    const ActiveCall counted;
     {
       const py::gil_scoped_release released;
       SimulationParts parts = with_file(loaded_, [&] { return assemble(loaded_.scenario); });
@@ -268,19 +268,19 @@ class PythonSimulation {
   }
 
   bool step() {
-    const UnderWay counted;
+    const ActiveCall counted;
     const bool more = simulation_->step();
     raise_python_error();
     return more;
   }
 
-  /// Advances in pieces of kAskEvery steps and handles signals between them. Returns the number of computed
+  /// Advances in pieces of kStepsPerStopCheck steps and handles signals between them. Returns the number of computed
   /// steps.
   std::uint64_t advance(std::uint64_t steps) {
-    const UnderWay counted;
+    const ActiveCall counted;
     const std::uint64_t first = simulation_->result().rows;
     for (bool more = true; more && steps > 0;) {
-      const std::uint64_t piece = std::min(steps, kAskEvery);
+      const std::uint64_t piece = std::min(steps, kStepsPerStopCheck);
       {
         const py::gil_scoped_release released;
         more = simulation_->advance(piece);
@@ -293,7 +293,7 @@ class PythonSimulation {
   }
 
   void reset() {
-    const UnderWay counted;
+    const ActiveCall counted;
     simulation_->reset();
     last_->row = {};
     last_->contacts.clear();
@@ -376,8 +376,8 @@ bool is_work_stopped() {
   return python_error != nullptr;
 }
 
-bool is_work_under_way() {
-  return under_way > 0;
+bool is_call_active() {
+  return active_calls > 0;
 }
 
 }  // namespace hapbench
@@ -386,7 +386,7 @@ PYBIND11_MODULE(_hapbench, module) {
   using namespace hapbench;
   module.doc() = "The compiled part of hapbench: use the package around it.";
   translate_errors();
-  py::module_::import("atexit").attr("register")(py::cpp_function(end_work));
+  py::module_::import("atexit").attr("register")(py::cpp_function(stop_calls_at_exit));
   module.def(
       "set_program", [](const std::string& program) { program_file() = program; }, py::arg("program"),
       "Say which file is the program, for commands that name it.");
@@ -394,7 +394,7 @@ PYBIND11_MODULE(_hapbench, module) {
              "Run a scenario and keep what it records in memory.");
   module.def("command", command, py::arg("words"), py::arg("progress"),
              "Run a command of the program; returns status, standard output, warnings and errors.");
-  module.def("main", be_program, py::arg("words"), "Be the program: print on the terminal and return the exit status.");
+  module.def("main", run_main, py::arg("words"), "Be the program: print on the terminal and return the exit status.");
   module.def(
       "algorithms", [] { return algorithm_names(); }, "The names of all algorithms there are.");
   bind_force_laws(module);

@@ -55,9 +55,9 @@ struct Definition {
 
 /// The interpreter's thread state of the calling thread, which is kept for the lifetime of a law, because
 /// creating a state takes longer than a call.
-class KeptThread {
+class PersistentThreadState {
  public:
-  KeptThread() {
+  PersistentThreadState() {
     if (PyGILState_GetThisThreadState() != nullptr) return;
     PyGILState_Ensure();
     state_ = PyEval_SaveThread();
@@ -171,7 +171,7 @@ class PythonLaw {
 };
 
 struct State {
-  KeptThread thread;
+  PersistentThreadState thread;
   std::unique_ptr<PythonLaw> law;
 };
 
@@ -236,7 +236,7 @@ void add_force_law(const std::string& name, const py::object& callable, bool is_
                    const std::vector<std::string>& arguments, const std::vector<GivenParameter>& parameters,
                    const std::array<std::string, 4>& texts, const std::string& depth_model, const std::string& file,
                    const std::string& source) {
-  if (is_work_under_way()) throw std::runtime_error("a force law cannot be defined while something is computed");
+  if (is_call_active()) throw std::runtime_error("a force law cannot be defined while something is computed");
   const DepthModelEntry* fixed = depth_model.empty() ? nullptr : find_depth_model(depth_model);
   if (!depth_model.empty() && fixed == nullptr)
     throw std::invalid_argument("unknown depth model \"" + depth_model + "\"");

@@ -85,7 +85,7 @@ def compare(
 
     Returns a Report: `runs` by their paths ("mean", of several scenarios and seeds
     "drag_molar/mean/seed_0"), the tables `comparison` and, with several scenarios or seeds or `by`,
-    `league`. `out` keeps the folder; without it, it goes with the Report. `scenarios`, `overrides`
+    `ranking`. `out` keeps the folder; without it, it goes with the Report. `scenarios`, `overrides`
     and `progress` as in `run`."""
     return _report(
         ["compare"],

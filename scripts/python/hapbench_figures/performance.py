@@ -38,7 +38,7 @@ PANELS = (
     ),
     (
         "late contacts",
-        ("late_contacts/shaped_stiffness ",),
+        ("multi_rate_contacts/shaped_stiffness ",),
         "error_rms_m",
         "rms way apart [mm]",
         1e3,

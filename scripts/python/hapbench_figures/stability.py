@@ -130,8 +130,8 @@ def over(results, study):
     return draw_over(found), {
         "field": axis(found.field),
         "over": axis(found.over[-1]),
-        "theory": "its ratio to the limit from theory; then "
-        if any(row["theory"] for row in found.rows)
+        "theoretical_limit": "its ratio to the limit from theory; then "
+        if any(row["theoretical_limit"] for row in found.rows)
         else "",
         "known": "Thin lines: known limits, and the least over passive hands. "
         if found.known(found.rows)

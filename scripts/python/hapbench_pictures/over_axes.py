@@ -35,7 +35,7 @@ TRIALS, LAWS = "tune_trials.csv", "tune.csv"
 # Closed forms and what is known besides, as columns of limit.csv. Where the loop has no linear
 # edge, as with dry friction, those of stability say nothing of it.
 KNOWN = {
-    "worst_hand": "linear limit, worst hand",
+    "worst_hand_limit": "linear limit, worst hand",
     "passive_colgate_schenkel": "passive (Colgate, Schenkel)",
     "passive_with_delay": "passive, with delay",
     "stable_gil_hulin": "stable (Gil, Hulin)",
@@ -152,7 +152,7 @@ class Limits:
 
     def known(self, rows):
         """Label, values and look of each known limit that has a number in some row."""
-        found, has_edge = [], np.isfinite(numbers(rows, "theory"))
+        found, has_edge = [], np.isfinite(numbers(rows, "theoretical_limit"))
         for (name, label), own in zip(KNOWN.items(), KNOWN_LOOKS):
             values = numbers(rows, name) if name in rows[0] else np.array([])
             if name in OF_LINEAR_EDGE and values.size:
@@ -163,7 +163,7 @@ class Limits:
 
     def lines(self, rows):
         found = [
-            ("theoretical limit", numbers(rows, "theory"), THEORY),
+            ("theoretical limit", numbers(rows, "theoretical_limit"), THEORY),
             *self.known(rows),
             ("simulated limit", numbers(rows, "limit"), FOUND),
         ]
@@ -241,7 +241,7 @@ def draw_strip(found):
             {"color": colour, "mew": wide, "marker": "|", "ms": 18, "ls": "none"},
         )
         for key, label, colour, wide in (
-            ("theory", "theoretical limit", PETROL, 3),
+            ("theoretical_limit", "theoretical limit", PETROL, 3),
             ("limit", "simulated limit", BLACK, 1.4),
         )
         if np.isfinite(numbers(found.rows, key)).any()
@@ -263,7 +263,7 @@ def draw_strip(found):
 def draw_over(found):
     """The limit of every algorithm and its ratio to theory; then the classes of the runs,
     algorithms with the same limits together."""
-    groups, has_theory = found.groups(), np.isfinite(numbers(found.rows, "theory")).any()
+    groups, has_theory = found.groups(), np.isfinite(numbers(found.rows, "theoretical_limit")).any()
     cells = 1 + has_theory + len(groups)
     columns = cells if cells < 4 else 2 if cells == 4 else min((3, 4), key=lambda n: -cells % n)
     entries = class_legend(found)
@@ -290,7 +290,7 @@ def draw_over(found):
             np.isfinite(theory), theory, np.nan
         )  # without an edge of theory there is no ratio
         ratios = [
-            (None, *of(name, numbers(rows, "limit") / finite(numbers(rows, "theory"))))
+            (None, *of(name, numbers(rows, "limit") / finite(numbers(rows, "theoretical_limit"))))
             for name, rows in curves.items()
         ]
         over_axes(ratio, x, Axis("simulated / theoretical limit", np.array([])), ratios)

@@ -32,7 +32,7 @@ RenderingConfig config_of(std::string_view algorithm) {
 
 /// Random springs at random places: the laws on every family of gradients.
 void print_springs(const AlgorithmEntry& algorithm) {
-  for (const GradientFamily& family : gradient_families()) {
+  for (const GradientDistribution& family : gradient_distributions()) {
     Random random(1);
     Hash hash;
     for (int i = 0; i < 20; ++i) {
@@ -136,7 +136,7 @@ void print_mesh_tool() {
     for (std::size_t k = 0; k < contacts.size(); ++k) hash.add(exits[k]);
     tool.surface_constraints(pose, random.direction(), 0.0, contacts);
     hash.add(contacts);
-    tool.foremost_places(pose, contacts, {x.data(), y.data(), z.data()});
+    tool.support_points(pose, contacts, {x.data(), y.data(), z.data()});
     for (std::size_t k = 0; k < contacts.size(); ++k) hash.add(Vec3(x[k], y[k], z[k]));
   }
   print("mesh tool", hash.value());
@@ -172,7 +172,7 @@ void print_tools(const ToolKind& kind) {
     tool.shape->surface_constraints(pose, 1e-3 * random.direction(), 1e-5, all);
     hash.add(all);
     AlignedDoubles x(points.size()), y(x), z(x);
-    tool.shape->foremost_places(pose, all, {x.data(), y.data(), z.data()});
+    tool.shape->support_points(pose, all, {x.data(), y.data(), z.data()});
     for (std::size_t k = 0; k < points.size(); ++k) hash.add(Vec3(x[k], y[k], z[k]));
   }
   print(std::string("tool ") + kind.name, hash.value());

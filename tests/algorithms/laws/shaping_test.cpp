@@ -25,14 +25,14 @@ namespace {
 // logarithms it is I minus a matrix with eigenvalues in [0, 1]), so after 20 of them the errors have at most added up.
 constexpr double kTolerance = 1e-12;
 
-ContactBuffer random_contacts(const test::GradientFamily& family, Random& random) {
+ContactBuffer random_contacts(const test::GradientDistribution& family, Random& random) {
   const auto gradients = family.draw(random, test::random_size(random, 100));
   return test::contacts_of(gradients, test::random_depths(random, gradients.size()));
 }
 
 TEST(ShapedStiffness, WeightsAndRatiosEqualThoseOfTheMatrixIterationFor0To20Iterations) {
   Random random(1);
-  for (const auto& family : test::gradient_families()) {
+  for (const auto& family : test::gradient_distributions()) {
     for (std::size_t i = 0; i < test::cases(30); ++i) {
       ContactBuffer contacts = random_contacts(family, random);
       const Eigen::MatrixXd A = test::Dense(contacts).A();
@@ -53,7 +53,7 @@ TEST(ShapedStiffness, WeightsAndRatiosEqualThoseOfTheMatrixIterationFor0To20Iter
 
 TEST(ShapedStiffness, ForceIsThatOfTheShapedWeights) {
   Random random(4);
-  for (const auto& family : test::gradient_families()) {
+  for (const auto& family : test::gradient_distributions()) {
     for (const int m : {0, 3, 20}) {
       ContactBuffer contacts = random_contacts(family, random);
       const test::Dense dense(contacts);
@@ -107,7 +107,7 @@ constexpr std::size_t kLargestSet = 1000;
 constexpr double kTraceRounding = 2.4 * test::kShapingRounding;
 
 /// Everything that holds at the optimum, with the tolerance of double rounding.
-void expect_optimal(const test::GradientFamily& family, ContactBuffer& contacts) {
+void expect_optimal(const test::GradientDistribution& family, ContactBuffer& contacts) {
   const int steps = solve_exact_shaping(contacts);
   // Typical are one to five. Clusters at several scales beside many duplicates,
   // which only the mixtures have, make the active set change contact by contact: 135 steps were the worst of 1e6.
@@ -122,9 +122,10 @@ void expect_optimal(const test::GradientFamily& family, ContactBuffer& contacts)
   ASSERT_LE(lambda_max(stiffness_tensor(contacts)), bound + kTraceRounding);
 }
 
-class ExactShapingOnFamily : public testing::TestWithParam<test::GradientFamily> {};
+class ExactShapingOnFamily : public testing::TestWithParam<test::GradientDistribution> {};
 INSTANTIATE_TEST_SUITE_P(Families, ExactShapingOnFamily,
-                         testing::ValuesIn(test::gradient_families().begin(), test::gradient_families().end()),
+                         testing::ValuesIn(test::gradient_distributions().begin(),
+                                           test::gradient_distributions().end()),
                          [](const auto& family) { return std::string(family.param.name); });
 
 TEST_P(ExactShapingOnFamily, IsOptimalAndWithinTheBounds) {
@@ -155,7 +156,7 @@ const std::pair<const char*, std::vector<std::uint64_t>> kHardSets[] = {
 
 TEST(ExactShaping, IsOptimalOnSetsThatOnceDefeatedTheSolver) {
   for (const auto& [name, seeds] : kHardSets) {
-    const auto families = test::gradient_families();
+    const auto families = test::gradient_distributions();
     const auto family = std::find_if(families.begin(), families.end(),
                                      [name = std::string(name)](const auto& f) { return f.name == name; });
     ASSERT_NE(family, families.end());

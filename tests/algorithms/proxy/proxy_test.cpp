@@ -43,7 +43,7 @@ struct Problem {
 template <class Check>
 void for_feasible_problems(Check check) {
   Random random(1);
-  for (const test::GradientFamily& family : test::gradient_families()) {
+  for (const test::GradientDistribution& family : test::gradient_distributions()) {
     for (int i = 0; i < 200; ++i) {
       const std::vector<Vec3> gradients = family.draw(random, test::random_size(random, 300));
       const Vec3 allowed = 1e-4 * random.uniform() * random.direction();

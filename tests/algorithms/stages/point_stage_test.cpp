@@ -53,7 +53,7 @@ struct Reference {
 
 TEST(GradientReduction, IsTheAlgorithmOfTheThesisOnRandomSets) {
   Random random(1);
-  for (const auto& family : test::gradient_families()) {
+  for (const auto& family : test::gradient_distributions()) {
     for (int i = 0; i < 30; ++i) {
       const auto gradients = family.draw(random, 2 + random.below(300));
       const ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, gradients.size()));

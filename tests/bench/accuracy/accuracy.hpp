@@ -54,7 +54,7 @@ Panel reduction(const Scenario& drill);
 /// Reduced, merged and all contacts, dozens to hundreds, against exact shaping of all.
 Panel merging(const Scenario& drill);
 /// Every algorithm with contacts found in every n-th row, held or linear in between, against contacts of every row.
-Panel late_contacts(const Scenario& free);
+Panel multi_rate_contacts(const Scenario& free);
 /// The search for contacts with what it skips and without, whose contacts are the same.
 Panel skips(const Scenario& free);
 /// Energy that a bounce gains because contacts begin and end between samples. For a free tool that is thrown at

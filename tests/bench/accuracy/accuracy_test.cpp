@@ -108,11 +108,11 @@ TEST(Merging, DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced) {
   }
 }
 
-TEST(LateContacts, OfEveryRowAreNotLate) {
-  const Panel panel = accuracy::late_contacts(bundled("drag_molar", {"time.duration_s=0.05"}));
-  EXPECT_EQ(value(panel, "late_contacts/mean hold 1", "error_rms_m"), 0.0);
-  EXPECT_GT(value(panel, "late_contacts/mean hold 8", "error_rms_m"), 0.0);
-  EXPECT_EQ(value(panel, "late_contacts/mean hold 8", "rate_Hz"), 256.0);
+TEST(MultiRateContacts, OfEveryRowAreNotLate) {
+  const Panel panel = accuracy::multi_rate_contacts(bundled("drag_molar", {"time.duration_s=0.05"}));
+  EXPECT_EQ(value(panel, "multi_rate_contacts/mean hold 1", "error_rms_m"), 0.0);
+  EXPECT_GT(value(panel, "multi_rate_contacts/mean hold 8", "error_rms_m"), 0.0);
+  EXPECT_EQ(value(panel, "multi_rate_contacts/mean hold 8", "rate_Hz"), 256.0);
   for (const Setting& setting : accuracy::skips(bundled("drag_molar", {"time.duration_s=0.05"})))
     EXPECT_EQ(setting.errors()["error_rms_m"], 0.0) << setting.name << ": skips change nothing";
 }

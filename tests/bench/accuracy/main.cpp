@@ -41,7 +41,7 @@ void add_panels() {
   const Scenario drill = bundled("rotate_in_hole"), molar = bundled("drag_molar");
   add(integrators(bundled("springs_oscillation")));
   for (const auto panel : {algorithms, spacing, shaping, reduction, merging}) add(panel(drill));
-  for (const auto panel : {late_contacts, skips}) add(panel(molar));
+  for (const auto panel : {multi_rate_contacts, skips}) add(panel(molar));
   add(events(bundled("bounce_plane")));
 }
 

@@ -139,7 +139,7 @@ Errors off_the_ideal(const Scenario& scenario, std::shared_ptr<const PointShell>
   IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool));
   MetricsObserver motion(scenario.time.step);
   const SampledRun run = sampled_run(scenario, std::move(shell), 1, {&ideal, &motion});
-  const MetricList metrics = told(ideal);
+  const MetricList metrics = reported(ideal);
   const std::string hand = number_of(metrics, "gentle.rows") > 0.0 ? "gentle." : "firm.";
   const auto error = [&](const char* name) { return number_of(metrics, hand + name).value_or(0.0); };
   return {std::string(outcome_name(outcome_of(run.result.ending))),
@@ -147,7 +147,7 @@ Errors off_the_ideal(const Scenario& scenario, std::shared_ptr<const PointShell>
            {"ideal_height_error_max_m", std::max(-error("height_error_min_m"), error("height_error_max_m"))},
            {"ideal_lateral_error_rms_m", error("lateral_error_rms_m")},
            {"interpenetration_max_m", error("interpenetration_max_m")},
-           {"force_step_max_N", told(motion, "force_step_max_N").value_or(0.0)}}};
+           {"force_step_max_N", reported(motion, "force_step_max_N").value_or(0.0)}}};
 }
 
 }  // namespace
@@ -233,7 +233,7 @@ Errors off_the_fresh(const Scenario& run, const std::shared_ptr<const PointShell
   return {std::string(outcome_name(outcome_of(late.result.ending))),
           {{"rate_Hz", 1.0 / (run.time.step * every)},
            {"error_rms_m", distance(late.positions, fresh).rms},
-           {"force_rms_above_30Hz_N", told(metrics, "force_rms_above_30Hz_N")}}};
+           {"force_rms_above_30Hz_N", reported(metrics, "force_rms_above_30Hz_N")}}};
 }
 
 /// M v^2 / 2 and what the springs store, at the first and the last row [J], and how often contact began or ended.
@@ -279,7 +279,7 @@ Scenario with(const Scenario& scenario, const IntegratorEntry& integrator, doubl
 
 }  // namespace
 
-Panel late_contacts(const Scenario& free) {
+Panel multi_rate_contacts(const Scenario& free) {
   const Scenario scenario = briefly_free(free);
   const auto shell = once([scenario] { return make_shell(scenario); });
   Panel panel;
@@ -289,10 +289,10 @@ Panel late_contacts(const Scenario& free) {
     const auto fresh = once([=] { return sampled_run(run, shell(), 1).positions; });
     for (const bool linear : {false, true}) {
       for (const std::int64_t every : kQueryEvery) {
-        run.rendering.late = Lateness{};
+        run.rendering.late = MultiRateSchedule{};
         run.rendering.late->every = every;
         run.rendering.late->linear = linear;
-        panel.push_back({fmt::format("late_contacts/{} {} {}", algorithm.info->name, linear ? "linear" : "hold", every),
+        panel.push_back({fmt::format("multi_rate_contacts/{} {} {}", algorithm.info->name, linear ? "linear" : "hold", every),
                          "step", [=] { return off_the_fresh(run, shell(), fresh()); },
                          [=] { return bare_run(run, shell()); }});
       }

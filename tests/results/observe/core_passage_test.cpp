@@ -168,7 +168,7 @@ TEST(DeepInABlock, IsNotThrough) {
   const std::vector<Vec3> points = points_of(low, high);
   const auto there_and_back = [](double u) { return 1.0 - std::abs(2.0 * u - 1.0); };
   for (const NamedTool& tool : tools()) {
-    const double back = way_to_core(*tool.shape);
+    const double back = core_offset(*tool.shape);
     const Way pressed = [&](double u) { return upright(0.002, 0.001 - there_and_back(u) * (0.001 + 0.95 * back)); };
     const Way beside = [&](double u) { return upright(-0.001 + 0.0013 * there_and_back(u), -0.002); };
     const Way out_above = [&](double u) {

@@ -59,9 +59,9 @@ TEST(HighPass, SettledAtAConstantGivesExactlyZero) {
   for (int k = 0; k < 100; ++k) ASSERT_EQ(filter.filter(value), Vec3::Zero());
 }
 
-TEST(JudgedRows, BeginAQuarterIntoTheContactOrWholePeriodsBeforeTheEnd) {
+TEST(EvaluationWindow, BeginAQuarterIntoTheContactOrWholePeriodsBeforeTheEnd) {
   const auto begin = [](double period) {
-    JudgedRows rows(1000, period);
+    EvaluationWindow rows(1000, period);
     EXPECT_FALSE(rows.begin());
     rows.touch(200);
     rows.touch(500);
@@ -79,7 +79,7 @@ constexpr SettlingRule kThreeRows = {.from = {}, .time = 0.03};
 std::ptrdiff_t settled_metrics(const MetricsObserver& observer) {
   constexpr const char* kNames[] = {"force_mean_in_contact_N",  "settled_force_max_N",    "force_step_p99_N",
                                     "settled_force_step_max_N", "force_rms_above_30Hz_N", "force_reversals_per_s"};
-  return std::ranges::count_if(kNames, [&](const char* name) { return told(observer, name).has_value(); });
+  return std::ranges::count_if(kNames, [&](const char* name) { return reported(observer, name).has_value(); });
 }
 
 TEST(SettlingRule, OnlyALongTimeAwayMakesTheNextTouchTheBeginningOfALanding) {
@@ -111,11 +111,11 @@ TEST(ContactForces, HaveNoValueBelowAPeriodOfTheHighPass) {
 
 TEST(ContactForces, HaveNoValueWithoutSuchRows) {
   const MetricsObserver away = forces_of({{0, false}, {0, false}}, kThreeRows);
-  EXPECT_FALSE(told(away, "landing_force_max_N") || told(away, "landing_force_step_max_N"));
+  EXPECT_FALSE(reported(away, "landing_force_max_N") || reported(away, "landing_force_step_max_N"));
   const MetricsObserver landing = forces_of({{0, false}, {4}}, kThreeRows);
-  EXPECT_EQ(told(landing, "landing_force_step_max_N"), 4.0);
+  EXPECT_EQ(reported(landing, "landing_force_step_max_N"), 4.0);
   EXPECT_EQ(settled_metrics(landing), 0);
-  EXPECT_EQ(told(landing, "settled_s"), 0.0);
+  EXPECT_EQ(reported(landing, "settled_s"), 0.0);
 }
 
 TEST(ContactForces, HaveNoVibrationAtASamplingRateOfSixtyHertz) {
@@ -129,7 +129,7 @@ TEST(ContactForces, AShortBreakOfContactVibratesAndALongOneStartsFromRest) {
     std::vector<Row> rows(10, {1.0});
     rows.insert(rows.end(), rows_away, {0.0, false});
     rows.insert(rows.end(), 10, {1.0});
-    return told(forces_of(rows, from), "force_rms_above_30Hz_N").value();
+    return reported(forces_of(rows, from), "force_rms_above_30Hz_N").value();
   };
   EXPECT_GT(with_break(2), 0.0);
   EXPECT_EQ(with_break(4), with_break(400));
@@ -146,7 +146,7 @@ TEST(ContactForces, OfSeveralTrialsAddUp) {
   add_trial(3.0);
   MetricList list;
   Section section(list, "");
-  forces.tell(section);
+  forces.report(section);
   EXPECT_EQ(number_of(list, "landings"), 2.0);
   EXPECT_EQ(number_of(list, "settled_s"), 12 * kDt);
   EXPECT_EQ(number_of(list, "force_mean_in_contact_N"), 2.0);
@@ -186,10 +186,10 @@ TEST(ForceFidelity, WhereNothingIsRenderedTheNormalIsTheMeasuredForces) {
   const ReferenceForce measured({{0.0, {0.3, 0, 2}}, {1.0, {0.3, 0, 2}}});
   ForceFidelityObserver observer(measured, kMeasuredDt, 1);
   observer.on_step({});
-  EXPECT_NEAR(told(observer, "force_error_normal_rms_N").value(), told(observer, "reference_force_rms_N").value(),
-              1e-15);
-  EXPECT_NEAR(told(observer, "force_error_tangential_rms_N").value(), 0.0, 1e-15);
-  EXPECT_EQ(told(observer, "direction_rows"), 0.0);
+  EXPECT_NEAR(reported(observer, "force_error_normal_rms_N").value(),
+              reported(observer, "reference_force_rms_N").value(), 1e-15);
+  EXPECT_NEAR(reported(observer, "force_error_tangential_rms_N").value(), 0.0, 1e-15);
+  EXPECT_EQ(reported(observer, "direction_rows"), 0.0);
 }
 
 TEST(ForceFidelity, FindsNoLagBeyondItsReach) {
@@ -198,9 +198,9 @@ TEST(ForceFidelity, FindsNoLagBeyondItsReach) {
     early.push_back({0, 0, kMeasuredDt * k});
     late.push_back({0, 0, std::max(0.0, kMeasuredDt * (k - 500))});
   }
-  EXPECT_FALSE(lag_between(early, std::vector<Vec3>(3000, Vec3(0, 0, 1)), kMeasuredDt, kMostLag));
-  EXPECT_FALSE(lag_between({}, {}, kMeasuredDt, kMostLag));
-  EXPECT_FALSE(lag_between(early, late, kMeasuredDt, kMostLag)) << "0.5 s late";
+  EXPECT_FALSE(lag_between(early, std::vector<Vec3>(3000, Vec3(0, 0, 1)), kMeasuredDt, kMaxLag));
+  EXPECT_FALSE(lag_between({}, {}, kMeasuredDt, kMaxLag));
+  EXPECT_FALSE(lag_between(early, late, kMeasuredDt, kMaxLag)) << "0.5 s late";
 }
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -239,7 +239,7 @@ Accounts keep_accounts(SimulationConfig config, SimulationParts parts) {
   accounts.stored_at_start = ledger.balance().stored;
   simulation.run();
   accounts.balance = ledger.balance();
-  accounts.residual_max = told(ledger, "residual_max_J").value();
+  accounts.residual_max = reported(ledger, "residual_max_J").value();
   accounts.turnover = turnover.value;
   return accounts;
 }

@@ -49,24 +49,24 @@ TEST(Metrics, OfSeveralTrialsAreOneLongRunButForTheSeams) {
   EXPECT_EQ(both.rows(), 5u);
   EXPECT_EQ(both.trial().rows, 3u);
   EXPECT_EQ(both.trial().force_max_squared, 64.0);
-  EXPECT_EQ(told(both, "velocity_total_variation_m_per_s"), 0.0 + 8.0 + 6.0) << "without the seam's 5";
-  EXPECT_EQ(told(both, "force_max_N"), 8.0);
-  EXPECT_EQ(told(turned, "force_max_N"), 8.0);
-  EXPECT_EQ(told(both, "force_step_max_N"), 8.0);
-  EXPECT_EQ(told(both, "colliding_mean"), (2 * 3 + 3 * 8) / 5.0);
-  EXPECT_EQ(told(both, "steps_in_contact"), 5.0);
-  EXPECT_EQ(told(turned, "last_contact_s"), 2 * kDt) << "the latest of all trials";
-  EXPECT_EQ(told(both, "landings"), 2.0);
-  EXPECT_NEAR(told(both, kVibration).value(),
-              (2 * told(first, kVibration).value() + 3 * told(second, kVibration).value()) / 5.0, 1e-15);
+  EXPECT_EQ(reported(both, "velocity_total_variation_m_per_s"), 0.0 + 8.0 + 6.0) << "without the seam's 5";
+  EXPECT_EQ(reported(both, "force_max_N"), 8.0);
+  EXPECT_EQ(reported(turned, "force_max_N"), 8.0);
+  EXPECT_EQ(reported(both, "force_step_max_N"), 8.0);
+  EXPECT_EQ(reported(both, "colliding_mean"), (2 * 3 + 3 * 8) / 5.0);
+  EXPECT_EQ(reported(both, "steps_in_contact"), 5.0);
+  EXPECT_EQ(reported(turned, "last_contact_s"), 2 * kDt) << "the latest of all trials";
+  EXPECT_EQ(reported(both, "landings"), 2.0);
+  EXPECT_NEAR(reported(both, kVibration).value(),
+              (2 * reported(first, kVibration).value() + 3 * reported(second, kVibration).value()) / 5.0, 1e-15);
   EXPECT_NE(both.state_hash(), turned.state_hash());
-  EXPECT_FALSE(told(both, "ratio_min"));
+  EXPECT_FALSE(reported(both, "ratio_min"));
 }
 
 TEST(Metrics, OfNoRowsHaveNoMeansAndNoPlace) {
   const MetricsObserver none(kDt);
   for (const char* name : {"colliding_mean", "contact_share", "last_contact_s", kVibration, "force_mean_in_contact_N"})
-    EXPECT_FALSE(told(none, name)) << name;
+    EXPECT_FALSE(reported(none, name)) << name;
 }
 
 /// Two rows; `change` alters the second.
@@ -120,15 +120,15 @@ TEST(ExplicitFriction, OfSeveralTrialsIsTheSumAndTheFirstOfTheFirst) {
       observer.on_step(r);
     }
   }
-  EXPECT_EQ(told(observer, "explicit_friction_rows_beyond"), 2.0);
-  EXPECT_EQ(told(observer, "explicit_friction_first_step"), 1.0);
+  EXPECT_EQ(reported(observer, "explicit_friction_rows_beyond"), 2.0);
+  EXPECT_EQ(reported(observer, "explicit_friction_first_step"), 1.0);
 }
 
 TEST(LostTorque, HasNoValueWithoutContact) {
   const ContactBuffer none(1);
   LostTorqueObserver observer;
   observer.on_step(row(0, 0.0, none));
-  for (const char* name : {"lost_mean_Nm", "lost_max_Nm"}) EXPECT_FALSE(told(observer, name)) << name;
+  for (const char* name : {"lost_mean_Nm", "lost_max_Nm"}) EXPECT_FALSE(reported(observer, name)) << name;
 }
 
 TEST(PassivityObserver, OfSeveralTrialsTheOneThatCreatedMostCounts) {
@@ -137,7 +137,7 @@ TEST(PassivityObserver, OfSeveralTrialsTheOneThatCreatedMostCounts) {
   const SimulationParts parts = test::fake_parts([](const ToolState&) { return Vec3::Zero(); });
   const ContactBuffer none(1);
   PassivityObserver observer;
-  EXPECT_FALSE(told(observer, "energy_min_J"));
+  EXPECT_FALSE(reported(observer, "energy_min_J"));
   // A tool that moves at 1 m/s: without rows; least energies of -1, -3 and -3 J, which end with -1, -2 and -3 J.
   for (const std::vector<double>& forces : std::vector<std::vector<double>>{{}, {2, 0}, {4, 2, -2, 0}, {6, 0}}) {
     observer.begin({config, parts});
@@ -148,9 +148,9 @@ TEST(PassivityObserver, OfSeveralTrialsTheOneThatCreatedMostCounts) {
       observer.on_step(r);
     }
   }
-  EXPECT_EQ(told(observer, "energy_min_J"), -3.0);
-  EXPECT_EQ(told(observer, "time_of_min_s"), 1.0);
-  EXPECT_EQ(told(observer, "energy_end_J"), -2.0);
+  EXPECT_EQ(reported(observer, "energy_min_J"), -3.0);
+  EXPECT_EQ(reported(observer, "time_of_min_s"), 1.0);
+  EXPECT_EQ(reported(observer, "energy_end_J"), -2.0);
   EXPECT_EQ(observer.net_created(), 3.0) << "of the last trial";
 }
 
@@ -217,7 +217,7 @@ TEST(ReductionJumps, TakeTimeThatGrowsLessThanQuadratically) {
 
 TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {
   const ContactBuffer first = kept({1}), second = kept({2});
-  MetricsObserver with(0.01, {.friction_limit = {}, .settling = {.from = 0.0, .time = 0.05}, .most_reduced = 1});
+  MetricsObserver with(0.01, {.friction_limit = {}, .settling = {.from = 0.0, .time = 0.05}, .reduction_capacity = 1});
   MetricsObserver without(0.01);
   const AllocationCount allocations;
   for (std::uint64_t k = 0; k < 20; ++k) {
@@ -228,9 +228,9 @@ TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {
     without.on_step(r);
   }
   EXPECT_EQ(allocations.value(), 0u);
-  EXPECT_FALSE(told(without, "reduction_changes"));
-  EXPECT_EQ(told(with, "reduction_changes"), 18.0);
-  EXPECT_EQ(told(with, "reduction_force_step_max_N"), 2.0);
+  EXPECT_FALSE(reported(without, "reduction_changes"));
+  EXPECT_EQ(reported(with, "reduction_changes"), 18.0);
+  EXPECT_EQ(reported(with, "reduction_force_step_max_N"), 2.0);
 }
 
 }  // namespace

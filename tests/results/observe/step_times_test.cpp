@@ -63,10 +63,10 @@ TEST(StepSampler, SeesTheStep) {
 TEST(StepSampler, TakesAFewOfManySteps) {
   EXPECT_EQ(samples(8, milliseconds(0), milliseconds(0)).size(), 7u);
   EXPECT_TRUE(samples(1, milliseconds(0), milliseconds(0)).empty());
-  const std::uint64_t many = 40 * StepSampler::kMostSamples;
+  const std::uint64_t many = 40 * StepSampler::kMaxSamples;
   const std::size_t taken = samples(many, milliseconds(0), milliseconds(0)).size();
-  EXPECT_LE(taken, StepSampler::kMostSamples);
-  EXPECT_GT(taken, StepSampler::kMostSamples / 2);
+  EXPECT_LE(taken, StepSampler::kMaxSamples);
+  EXPECT_GT(taken, StepSampler::kMaxSamples / 2);
 }
 
 using Times = std::vector<std::uint64_t>;

@@ -21,12 +21,12 @@ constexpr double kRadius = 0.0005;
 
 TEST(IdealPlace, ExistsWhileTheTipIsOnTheWallAboveTheBottom) {
   const double limit = std::numbers::pi / 3;
-  EXPECT_TRUE(ideal_place(kBlock, kRadius, limit - 1e-9));
-  EXPECT_FALSE(ideal_place(kBlock, kRadius, limit + 1e-9));
-  EXPECT_FALSE(ideal_place(kBlock, kRadius, 0.0));
-  EXPECT_FALSE(ideal_place(kBlock, kRadius, -0.5));
-  EXPECT_FALSE(ideal_place(kBlock, kRadius, 0.01)) << "would be 100 mm deep";
-  EXPECT_TRUE(ideal_place(kBlock, kRadius, 0.3));
+  EXPECT_TRUE(ideal_tip_position(kBlock, kRadius, limit - 1e-9));
+  EXPECT_FALSE(ideal_tip_position(kBlock, kRadius, limit + 1e-9));
+  EXPECT_FALSE(ideal_tip_position(kBlock, kRadius, 0.0));
+  EXPECT_FALSE(ideal_tip_position(kBlock, kRadius, -0.5));
+  EXPECT_FALSE(ideal_tip_position(kBlock, kRadius, 0.01)) << "would be 100 mm deep";
+  EXPECT_TRUE(ideal_tip_position(kBlock, kRadius, 0.3));
 }
 
 ToolPose tilted(const Vec3& position, double tilt, double azimuth = 0.0) {
@@ -43,8 +43,8 @@ TEST(IdealTrajectory, ComparesEachSoManyRows) {
     observer.on_step(record);
     EXPECT_EQ(observer.error().has_value(), step == 0 || step == 6) << step;
   }
-  EXPECT_EQ(told(observer, "gentle.rows"), 2.0) << "0 and 6";
-  EXPECT_EQ(told(observer, "rows_without_ideal"), 1.0) << "row 3";
+  EXPECT_EQ(reported(observer, "gentle.rows"), 2.0) << "0 and 6";
+  EXPECT_EQ(reported(observer, "rows_without_ideal"), 1.0) << "row 3";
 }
 
 constexpr double kRounding = 1e-11;  // what the header promises
@@ -212,7 +212,7 @@ TEST(TargetMetrics, MeansAreOverTheRowsOnTheTargetOfTheTrial) {
   ASSERT_EQ(observer.rows().size(), 4u);
   EXPECT_EQ(observer.rows()[2].trial, 6u);
   EXPECT_EQ(observer.rows()[2].target, 0u);
-  EXPECT_EQ(told(observer, "0.success_rate.mean"), 0.5);
+  EXPECT_EQ(reported(observer, "0.success_rate.mean"), 0.5);
 }
 
 }  // namespace

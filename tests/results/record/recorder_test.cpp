@@ -170,13 +170,13 @@ TEST(Columns, AreDocumentedWithTheUnitTheyAreNamedAfter) {
 }
 
 TEST(Metrics, AreDocumentedWithTheUnitTheyAreNamedAfter) {
-  expect_documented(told(MetricsObserver(1.0)), "metrics");
-  expect_documented(told(PassivityObserver()), "passivity");
-  expect_documented(told(EnergyLedger()), "energy");
-  expect_documented(told(IdealTrajectoryObserver()), "ideal trajectory");
-  expect_documented(told(ForceFidelityObserver()), "fidelity");
-  expect_documented(told(LostTorqueObserver()), "torque");
-  expect_documented(told(TargetMetricsObserver()), "targets");
+  expect_documented(reported(MetricsObserver(1.0)), "metrics");
+  expect_documented(reported(PassivityObserver()), "passivity");
+  expect_documented(reported(EnergyLedger()), "energy");
+  expect_documented(reported(IdealTrajectoryObserver()), "ideal trajectory");
+  expect_documented(reported(ForceFidelityObserver()), "fidelity");
+  expect_documented(reported(LostTorqueObserver()), "torque");
+  expect_documented(reported(TargetMetricsObserver()), "targets");
 }
 
 TEST(Provenance, NamesTheBuild) {

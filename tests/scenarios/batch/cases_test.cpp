@@ -52,7 +52,7 @@ TEST(Cases, AreThePointsOfAFile) {
 }
 
 TEST(Cases, RefuseMoreRunsThanTheyMayHaveHoweverMany) {
-  EXPECT_EQ(cases_of({"a=0:1:1000", "b=0:1:1000"}).size(), kMostRuns);
+  EXPECT_EQ(cases_of({"a=0:1:1000", "b=0:1:1000"}).size(), kMaxRuns);
   // 1000^7 is beyond 64 bits.
   Values vary;
   for (const char path : std::string("abcdefg")) vary.push_back(std::string(1, path) + "=0:1:1000");

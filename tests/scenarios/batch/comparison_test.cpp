@@ -90,7 +90,7 @@ TEST_F(ComparisonOf, WhatCannotBeComparedSaysWhichFile) {
 
 TEST_F(ComparisonOf, ScenesRemovesWhatAnEarlierOneLeftAndNothingElse) {
   const fs::path out = directory_ / "out";
-  for (const char* name : {"league.csv", "plane/comparison.csv", "plane/mean/seed_1/summary.json",
+  for (const char* name : {"ranking.csv", "plane/comparison.csv", "plane/mean/seed_1/summary.json",
                            "plane/proxy/summary.json", "plane/proxy/notes.txt", "plane/mine/summary.json"}) {
     fs::create_directories((out / name).parent_path());
     test::write_plainly(out / name, "x");

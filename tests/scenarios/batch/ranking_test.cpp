@@ -13,8 +13,8 @@ using Values = std::vector<std::optional<double>>;
 
 /// One scene, metric and seed, or so many seeds; a value for each algorithm and seed. A negative one stands for a run
 /// that diverged. Each number may be wrong by `error`.
-League league_of(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0) {
-  League league{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}, {}};
+Ranking rank_comparison(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0) {
+  Ranking league{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}, {}};
   for (std::size_t a = 0; a < values.size() / seeds; ++a) league.algorithms.push_back("law_" + std::to_string(a));
   std::vector<Result> runs;
   for (const auto& value : values) {
@@ -30,18 +30,18 @@ League league_of(const Values& values, Better better = Better::less, std::size_t
   return league;
 }
 
-std::vector<std::size_t> ranks(const League& league) {
+std::vector<std::size_t> ranks(const Ranking& league) {
   std::vector<std::size_t> ranks;
-  for (const Standing& standing : league.standings) ranks.push_back(standing.rank.value_or(0));
+  for (const RankingEntry& standing : league.standings) ranks.push_back(standing.rank.value_or(0));
   return ranks;
 }
 
 using Ranks = std::vector<std::size_t>;
 
-TEST(League, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
+TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   constexpr std::nullopt_t kNone = std::nullopt;
   const auto of_one_seed = [](const Values& values, Better better = Better::less) {
-    return ranks(league_of(values, better));
+    return ranks(rank_comparison(values, better));
   };
   EXPECT_EQ(of_one_seed({6.0, 2.0, 3.0}), (Ranks{3, 1, 2}));
   EXPECT_EQ(of_one_seed({0.5, 1.0, 0.25}, Better::more), (Ranks{2, 1, 3}));
@@ -50,19 +50,19 @@ TEST(League, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   // 0.1 % of the larger of two is the limit: two are less than 1.0015 by more, the third is not.
   EXPECT_EQ(of_one_seed({1.0 + 1e-15, 1.0, 1.0009, 1.0015}), (Ranks{1, 1, 1, 3}));
   EXPECT_EQ(of_one_seed({0.0, 1e-300, 0.0}), (Ranks{1, 3, 1})) << "nothing is like zero";
-  EXPECT_EQ(ranks(league_of({1.0, 1.3, 1.5}, Better::less, 1, 0.2)), (Ranks{1, 1, 2}))
+  EXPECT_EQ(ranks(rank_comparison({1.0, 1.3, 1.5}, Better::less, 1, 0.2)), (Ranks{1, 1, 2}))
       << "only the third is worse than the first by more than both errors";
   EXPECT_EQ(of_one_seed({kNone, 2.0, 1.0, kNone}), (Ranks{3, 2, 1, 3}));
   EXPECT_EQ(of_one_seed({-1.0, kNone, 2.0}), (Ranks{3, 2, 1}));
   EXPECT_EQ(of_one_seed({7.0, -1.0, 3.0, -9.0}), (Ranks{2, 3, 1, 3})) << "however small the numbers of failures";
   EXPECT_EQ(of_one_seed({-1.0, kNone}), (Ranks{0, 0})) << "nobody has a number that counts";
   // Failing with one seed of three beats two of three, whatever the rest is.
-  const League league = league_of({9.0, 9.0, -1.0, 1.0, -1.0, -1.0, 50.0, 60.0, 70.0}, Better::less, 3);
+  const Ranking league = rank_comparison({9.0, 9.0, -1.0, 1.0, -1.0, -1.0, 50.0, 60.0, 70.0}, Better::less, 3);
   EXPECT_EQ(ranks(league), (Ranks{2, 3, 1}));
   EXPECT_EQ(league.at(0, 0, 0).mean, 9.0) << "of those that did not fail";
   EXPECT_EQ(league.at(0, 1, 0).outcome, "completes 1; diverges 2");
   // No seed is common to both: the law that never failed is judged by all.
-  const League apart = league_of({-1.0, 2.0, 3.0, -1.0, 4.0, 6.0}, Better::less, 2);
+  const Ranking apart = rank_comparison({-1.0, 2.0, 3.0, -1.0, 4.0, 6.0}, Better::less, 2);
   EXPECT_EQ(apart.at(0, 2, 0).common_seeds, 2u);
   EXPECT_EQ(apart.at(0, 2, 0).mean, 5.0);
 }

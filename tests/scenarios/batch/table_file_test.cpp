@@ -69,7 +69,7 @@ TEST_F(TableFiles, CutShortAnywhereKeepTheWholeLinesAndGoOn) {
     const auto lines = std::count(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size), '\n');
     const Rows expected(rows.begin(), rows.begin() + std::max<std::ptrdiff_t>(lines - 1, 0));
     ASSERT_EQ(resumed(), expected) << size;
-    ASSERT_EQ(TableFile::rows_under_way(file_), expected.size());
+    ASSERT_EQ(TableFile::rows_in_progress(file_), expected.size());
   }
 }
 

@@ -30,8 +30,8 @@ TEST(CsvReader, GivesRowsAsCells) {
 
 TEST(NumberTable, MayHaveBlanksBlankLinesCarriageReturnsAndAsManyRowsAsAllowed) {
   const std::string text = "a,b\r\n\r\n 1 ,\t2\r\n  \n3,4";
-  EXPECT_EQ(number_table_in(text, kFile, {"a,b"}, 2).values, (std::vector<double>{1, 2, 3, 4}));
-  const auto error = test::input_error_of([&] { number_table_in(text, kFile, {"a,b"}, 1); });
+  EXPECT_EQ(parse_number_table(text, kFile, {"a,b"}, 2).values, (std::vector<double>{1, 2, 3, 4}));
+  const auto error = test::input_error_of([&] { parse_number_table(text, kFile, {"a,b"}, 1); });
   ASSERT_TRUE(error);
   EXPECT_STREQ(error->what(), "t.csv, line 5: more than 1 rows");
 }

@@ -33,7 +33,7 @@ TEST(ShellFile, AsCsvReadsBackBitForBit) {
   const std::vector<SurfacePoint> more = random_points(1000);
   points.insert(points.end(), more.begin(), more.end());
   points.push_back({{-0.0, 5e-324, 1000.0}, {-0.0, 0.0, -1.0}});
-  const auto again = point_shell_in(point_shell_text(points, "s.csv"), "s.csv");
+  const auto again = parse_point_shell(format_point_shell(points, "s.csv"), "s.csv");
   ASSERT_EQ(again.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -45,7 +45,7 @@ TEST(ShellFile, AsCsvReadsBackBitForBit) {
 
 TEST(ShellFile, AsPlyReadsBackToSinglePrecision) {
   const std::vector<SurfacePoint> points = random_points(1000);
-  const auto again = point_shell_in(point_shell_text(points, "s.ply"), "s.ply");
+  const auto again = parse_point_shell(format_point_shell(points, "s.ply"), "s.ply");
   ASSERT_EQ(again.size(), points.size());
   // Half a unit in the last of 24 bits, of numbers up to 0.1 and up to 1; normals also move by their normalisation.
   const double position_tolerance = 0.1 * 0x1p-24, normal_tolerance = 4 * 0x1p-24;
@@ -81,7 +81,7 @@ std::string float_bytes(float value, bool big_endian = false) {
 }
 
 std::vector<SurfacePoint> read(const std::string& contents) {
-  return ply_points_in(contents, "points.ply");
+  return parse_ply_points(contents, "points.ply");
 }
 
 TEST(PlyPoints, MayHaveEveryScalarType) {
@@ -117,7 +117,7 @@ TEST(PlyPoints, AreRefusedWhereHeaderOrNumberIsWrong) {
         {header("ascii", "1", kSixFloats + "property float x\n"), "got 2 vertex properties \"x\""},
         {header("binary_little_endian", "1") + infinite,
          "point 0: got coordinate inf; allowed: finite, at most 1000 m"}}) {
-    const auto error = test::input_error_of([&, bad = text] { point_shell_in(bad, "points.ply"); });
+    const auto error = test::input_error_of([&, bad = text] { parse_point_shell(bad, "points.ply"); });
     ASSERT_TRUE(error) << text;
     EXPECT_NE(std::string(error->what()).find(says), std::string::npos) << error->what();
   }

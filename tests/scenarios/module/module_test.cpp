@@ -30,9 +30,9 @@ std::unique_ptr<ForceAlgorithm> make_some(const RenderingConfig& config) {
 }
 
 /// Adds an algorithm and returns the reason of a refusal, or nothing.
-std::string problem_with(const ModelInfo& info, std::vector<OwnParameter> parameters = {}) {
+std::string problem_with(const ModelInfo& info, std::vector<AlgorithmParameter> parameters = {}) {
   try {
-    add_algorithm({.info = &info, .make = make_some, .own_parameters = parameters});
+    add_algorithm({.info = &info, .make = make_some, .algorithm_parameters = parameters});
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -43,7 +43,7 @@ TEST(AddedAlgorithm, IsFoundAndCanBeReplaced) {
   const std::size_t before = algorithms().size(), additions_before = additions();
   const AlgorithmEntry& mean = *find_algorithm("mean");
   std::string text = "text";  // which is copied
-  const OwnParameter own{"gain", {0, 2, "1"}, 0.5, "m"};
+  const AlgorithmParameter own{"gain", {0, 2, "1"}, 0.5, "m"};
   EXPECT_EQ(problem_with({"added", text.c_str(), "a", "b", "c"}, {own}), "");
   text = "other";
   ASSERT_EQ(algorithms().size(), before + 1);
@@ -54,7 +54,7 @@ TEST(AddedAlgorithm, IsFoundAndCanBeReplaced) {
   RenderingConfig config;
   config.algorithm = "added";
   EXPECT_NE(make_algorithm(config), nullptr);
-  EXPECT_EQ(own_values(config, added), std::vector<double>{0.5});
+  EXPECT_EQ(parameter_values(config, added), std::vector<double>{0.5});
 
   EXPECT_EQ(problem_with({"added", "again", "a", "b", "c"}), "");
   EXPECT_EQ(algorithms().size(), before + 1);
@@ -77,10 +77,10 @@ TEST(AddedAlgorithm, IsRefusedWithTheReason) {
   EXPECT_EQ(problem_with({"x", "a", "b", "c", nullptr}), "its known failure is missing");
 
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const auto with = [](std::vector<OwnParameter> own) {
+  const auto with = [](std::vector<AlgorithmParameter> own) {
     return problem_with({"x", "a", "b", "c", "d"}, std::move(own));
   };
-  const OwnParameter good{"p", {0, 1, "1"}, 0.5, "meaning"};
+  const AlgorithmParameter good{"p", {0, 1, "1"}, 0.5, "meaning"};
   EXPECT_EQ(with({good, good}), "parameter \"p\" is there twice");
   EXPECT_TRUE(with({{"a b", good.range, 0.5, "m"}}).starts_with("a parameter is called \"a b\"; allowed"));
   EXPECT_EQ(with({{"p", good.range, 1.5, "m"}}), "parameter \"p\": its default is out of its range");
@@ -407,7 +407,7 @@ TEST(OwnParameters, AreWrittenWithTheirAlgorithmCheckedAndInTheSchema) {
   const std::string others = R"({"algorithm": "mean", "parameters": {"hostile": {"bias": 0.5}}})";
   EXPECT_EQ(rendering_of(others)["parameters"]["hostile"]["bias"], 0.5);
   const Scenario scenario = with_algorithm(scenario_with(others).scenario, "hostile");
-  EXPECT_EQ(own_values(scenario.rendering, *find_algorithm("hostile")), (std::vector<double>{1.0, 0.5}));
+  EXPECT_EQ(parameter_values(scenario.rendering, *find_algorithm("hostile")), (std::vector<double>{1.0, 0.5}));
 
   const auto refusal = [](const std::string& parameters) {
     const auto error = test::input_error_of([&] { scenario_with(R"({"parameters": )" + parameters + "}"); });

@@ -321,7 +321,7 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
     const auto warns_of_it = [start = "hapbench: warning: " + bundled.name + ": "](const std::string& warning) {
       return warning.starts_with(start);
     };
-    if (turn++ % 8 != 0 && !test::soaks()) {
+    if (turn++ % 8 != 0 && !test::runs_all_cases()) {
       std::erase_if(warnings, warns_of_it);
       continue;
     }

@@ -22,7 +22,7 @@ std::string letters_of(const std::string& name) {
 TEST(Glossary, FindsEachNameOfEachEntry) {
   const Index terms = glossary_index(Layout());
   ASSERT_GT(terms.size(), 100u);
-  for (const Named& term : terms) {
+  for (const IndexEntry& term : terms) {
     EXPECT_TRUE(find_term(term.name, Layout())) << term.name;
     for (const std::string_view alias : parts_of(term.name, ','))
       EXPECT_TRUE(find_term(alias.substr(0, alias.find('(')), Layout())) << alias;
@@ -35,8 +35,8 @@ TEST(Glossary, FindsEachNameOfEachEntry) {
 
 TEST(Glossary, IsInAlphabeticalOrderWithShortEntries) {
   const Index terms = glossary_index(Layout());
-  EXPECT_TRUE(std::ranges::is_sorted(terms, {}, [](const Named& term) { return letters_of(term.name); }));
-  for (const Named& term : terms) EXPECT_LE(term.summary.size(), 200u) << term.name << ": at most two lines";
+  EXPECT_TRUE(std::ranges::is_sorted(terms, {}, [](const IndexEntry& term) { return letters_of(term.name); }));
+  for (const IndexEntry& term : terms) EXPECT_LE(term.summary.size(), 200u) << term.name << ": at most two lines";
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ class KilledSweep : public testing::Test {
     return words;
   }
   /// Rows of the table that is under way.
-  std::size_t rows() const { return TableFile::rows_under_way(directory_ / "out/sweep.csv"); }
+  std::size_t rows() const { return TableFile::rows_in_progress(directory_ / "out/sweep.csv"); }
   /// Kills a sweep. False when it ended before, since a busy machine let the test wait for longer than it takes.
   bool is_killed() const {
     RunningProgram sweep(test::hapbench_program(), words("out"));

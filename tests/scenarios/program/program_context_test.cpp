@@ -15,7 +15,7 @@ namespace hapbench::program_context_test {
 namespace {
 
 /// What a command prints for a host. Precondition: it succeeds.
-std::string text_of(const ProgramWords& words) {
+std::string text_of(const ProgramArguments& words) {
   CapturedOutput output;
   ProgramContext context{.program = "/some/where/hapbench", .captured = &output};
   EXPECT_EQ(run_program(words, context), kSuccess);

@@ -187,7 +187,7 @@ TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
 std::string warnings_of_tooth(std::vector<std::string> fields) {
   std::vector<std::string> words = {"validate", "mesh_molar"};
   for (const std::string& field : fields) words.insert(words.end(), {"--set", field});
-  const ProgramRun run = test::hapbench_here(words);
+  const ProgramRun run = test::hapbench_in_process(words);
   EXPECT_EQ(run.status, 0) << run.err;
   return run.err;
 }
@@ -215,7 +215,7 @@ TEST(ValidateCommand, NamesPointsThatTheToolFeelsOneByOne) {
 /// A warning of a bundled scene would be a false one.
 TEST(ValidateCommand, FindsNoUnitsWrongInBundledScenes) {
   for (const test::NamedScenario& scenario : test::bundled_scenario_files()) {
-    const ProgramRun run = test::hapbench_here({"validate", scenario.name});
+    const ProgramRun run = test::hapbench_in_process({"validate", scenario.name});
     EXPECT_EQ(run.status, 0) << scenario.name << run.err;
     for (const char* words : {"in metres?", "in seconds?", "behind the surface", "right?", "rough surface"})
       EXPECT_EQ(run.err.find(words), std::string::npos) << scenario.name << run.err;
@@ -225,7 +225,7 @@ TEST(ValidateCommand, FindsNoUnitsWrongInBundledScenes) {
 class ShellCommand : public NewCommand {
  protected:
   std::vector<SurfacePoint> points_in(const std::string& name) const {
-    return point_shell_in(test::read_file(directory_ / name), directory_ / name);
+    return parse_point_shell(test::read_file(directory_ / name), directory_ / name);
   }
 };
 

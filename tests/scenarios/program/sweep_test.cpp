@@ -232,7 +232,7 @@ TEST_F(CompareCommand, GivesTheSameBytesWhateverTheJobs) {
               "--jitter", "1e-5", "--jobs", jobs, "--quiet", "--out", at(jobs)});
   }
   for (const char* name :
-       {"league.csv", "press/comparison.csv", "poke/comparison.csv", "poke/proxy/seed_1/summary.json"})
+       {"ranking.csv", "press/comparison.csv", "poke/comparison.csv", "poke/proxy/seed_1/summary.json"})
     EXPECT_TRUE(std::filesystem::exists(directory_ / "1" / name)) << name;
   test::expect_same_files(directory_ / "1", directory_ / "5");
 }
@@ -257,7 +257,7 @@ TEST_F(Study, IsTheWordsOfItsCommand) {
     "algorithms": ["mean", "proxy"], "bound": ["x=1", "y=2"], "set": {"hand": {"mass_kg": 1}, "seed": 3},
     "over": {"device.delay_samples": {"from": 0, "to": 8, "count": 5, "log": true}, "integrator.type": ["rk4", "event"],
              "device": [{"type": "ideal"}]}})");
-  const auto words = StudyWords::in({"limit", "--quiet", mine, "--resolution=0.5"}, kSecond);
+  const auto words = StudyArguments::in({"limit", "--quiet", mine, "--resolution=0.5"}, kSecond);
   ASSERT_TRUE(words);
   EXPECT_EQ(fmt::format("{}", fmt::join(words->words, " ")),
             "limit a b.json --between 100:1e+05 --smallest --algorithms mean,proxy --bound x=1 --bound y=2 "
@@ -265,9 +265,10 @@ TEST_F(Study, IsTheWordsOfItsCommand) {
             R"(--over integrator.type=rk4,event --over device={"type":"ideal"} --quiet --resolution=0.5)")
       << "an option that is given goes before the study's";
   test::write_plainly(directory_ / "b.json", "{}");
-  EXPECT_EQ(StudyWords::in({"limit", mine}, kFirst)->words[2], (directory_ / "b.json").string()) << "beside the study";
-  EXPECT_FALSE(StudyWords::in({"limit", "single_spring"}, kFirst));
-  EXPECT_FALSE(StudyWords::in({"describe", "stability_z_width"}, kFirst));
+  EXPECT_EQ(StudyArguments::in({"limit", mine}, kFirst)->words[2], (directory_ / "b.json").string())
+      << "beside the study";
+  EXPECT_FALSE(StudyArguments::in({"limit", "single_spring"}, kFirst));
+  EXPECT_FALSE(StudyArguments::in({"describe", "stability_z_width"}, kFirst));
 }
 
 TEST_F(Study, IsRefusedByAnotherCommandAndAtTheLineOfItsFault) {

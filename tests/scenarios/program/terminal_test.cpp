@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::hapbench;
-using test::hapbench_here;
+using test::hapbench_in_process;
 using test::lines_of;
 using test::ProgramRun;
 
@@ -180,7 +180,7 @@ TEST(Installation, HasItsScenariosBesideTheProgramAndMissesThemAloud) {
 
 TEST(DescribeCommand, ExplainsEveryNameThereIs) {
   std::set<std::string> listed;
-  for (const Json& entry : hapbench_here({"describe", "--json"}).json()) {
+  for (const Json& entry : hapbench_in_process({"describe", "--json"}).json()) {
     EXPECT_NE(entry["summary"], "") << entry;  // a field whose type has no summary would be listed without a word
     listed.insert(entry["name"].get<std::string>());
   }
@@ -188,7 +188,7 @@ TEST(DescribeCommand, ExplainsEveryNameThereIs) {
   for (const AlgorithmEntry& entry : algorithms()) models.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) models.emplace_back(entry.info->name);
   for (const IntegratorEntry* integrator : kIntegrators) models.emplace_back(integrator->info.name);
-  for (const PlacedField& placed : placed_fields())
+  for (const ScenarioField& placed : scenario_fields())
     if (placed.path == "environment")
       for (const ValueGuide& type : placed.field->value.choices) models.push_back(type.type);
   for (const BundledScenario& bundled : bundled_scenarios()) models.push_back(bundled.name);
@@ -199,7 +199,7 @@ TEST(DescribeCommand, ExplainsEveryNameThereIs) {
   for (const Claim& claim : all_claims()) names.emplace_back(claim.id);
   names.insert(names.end(), listed.begin(), listed.end());
   for (const std::string& name : names) {
-    const ProgramRun run = hapbench_here({"describe", name});
+    const ProgramRun run = hapbench_in_process({"describe", name});
     EXPECT_EQ(run.status, 0) << name << run.err;
     EXPECT_EQ(run.err, "") << name;
     EXPECT_NE(run.out.find(name), std::string::npos) << run.out;
@@ -211,11 +211,13 @@ TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
   for (const OutcomeInfo& outcome : outcome_infos()) words.emplace_back(outcome.name);
   for (const RunVerdictText& verdict : run_verdict_texts()) words.emplace_back(verdict.name);
   for (const RunHeading& heading : kRunHeadings) words.emplace_back(heading.title);
-  for (const std::string& word : words) EXPECT_EQ(hapbench_here({"describe", word}).status, 0) << word;
+  for (const std::string& word : words) EXPECT_EQ(hapbench_in_process({"describe", word}).status, 0) << word;
 }
 
 TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
-  const auto claims = [](const char* name) { return hapbench_here({"describe", name, "--json"}).json()["claims"]; };
+  const auto claims = [](const char* name) {
+    return hapbench_in_process({"describe", name, "--json"}).json()["claims"];
+  };
   for (const char* name : {"Fig. A.2", "fig a.2", "figure_A.2", "figure_A.2_springs.svg"})
     EXPECT_EQ(claims(name), Json::array({"A1"})) << name;
   // Section A.2 is about the springs, and Fig. 2 has the parts 2c and 2d.
@@ -242,11 +244,11 @@ TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
     std::string header;
     for (const Json& column : columns.at(file)) {
       header += (header.empty() ? "" : ",") + column["name"].get<std::string>();
-      const ProgramRun run = hapbench_here({"describe", column["name"].get<std::string>()});
+      const ProgramRun run = hapbench_in_process({"describe", column["name"].get<std::string>()});
       EXPECT_NE(run.out.find(file), std::string::npos) << column << run.out << run.err;
     }
     EXPECT_EQ(lines_of(test::read_file(entry.path()))[0], header) << file;
-    EXPECT_EQ(hapbench_here({"describe", file, "--json"}).json()["columns"], columns[file]) << file;
+    EXPECT_EQ(hapbench_in_process({"describe", file, "--json"}).json()["columns"], columns[file]) << file;
     ++files;
   }
   EXPECT_EQ(files, 7u);
@@ -339,7 +341,7 @@ std::set<std::pair<std::string, std::string>> titles_in(const std::string& text)
 }
 
 bool is_described(const std::string& name) {
-  return test::hapbench_here({"describe", name}).status == 0;
+  return test::hapbench_in_process({"describe", name}).status == 0;
 }
 
 /// A title of two lines is one name, or the name of a scene above that of an algorithm.
@@ -407,7 +409,7 @@ TEST(Headings, OfEveryListHaveAMeaning) {
 }
 
 TEST(Words, OfTheOutputsAreKnownToDescribe) {
-  for (const char* word : {"league.csv", "sweep.json", "quantum", "planar.first_tilt"})
+  for (const char* word : {"ranking.csv", "sweep.json", "quantum", "planar.first_tilt"})
     EXPECT_TRUE(is_described(word)) << word;
 }
 

@@ -89,11 +89,11 @@ std::vector<const ModelInfo*> all_models() {
 /// Parameters are documented with the models and enforced where scenarios are described.
 TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
   EXPECT_FALSE(find_algorithm("shaped_stiffness")->info->parameters.empty());
-  const std::vector<PlacedField> fields = placed_fields();
+  const std::vector<ScenarioField> fields = scenario_fields();
   for (const ModelInfo* model : all_models()) {
     for (const auto& [parameter, meaning] : model->parameters) {
       const std::string where = std::string(model->name) + ": " + parameter.field, unit = parameter.range.unit;
-      const auto placed = std::ranges::find(fields, parameter.field, &PlacedField::path);
+      const auto placed = std::ranges::find(fields, parameter.field, &ScenarioField::path);
       ASSERT_NE(placed, fields.end()) << where;
       const std::string allowed = placed->field->value.allowed;
       const bool is_number = allowed.find("a number") != std::string::npos;

@@ -69,7 +69,7 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
 }
 
 /// The contacts of every row, by way of the held ones: a chance of 1e-300 loses none.
-TEST(LateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
+TEST(MultiRateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
     const std::vector<std::string> law = {"rendering.algorithm=" + std::string(algorithm.info->name),

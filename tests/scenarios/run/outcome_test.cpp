@@ -156,7 +156,7 @@ TEST(Drag, PressesWithItsForceAndLagsAsItsSpringSays) {
 
 std::string warnings_of(const Result& report) {
   std::string text;
-  for (const Warning& warning : report.warnings) text += warning.told() + "\n";
+  for (const Warning& warning : report.warnings) text += warning.located_text() + "\n";
   return text;
 }
 

@@ -258,12 +258,13 @@ TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
 
 TEST(ScenarioTool, ThatLiesOddlyInItsFrameIsNamed) {
   const Vec3 wide(0.001, 0.001, 0.0), low(0, 0, 0.009);
-  EXPECT_EQ(odd_frame({-wide, wide + low}), "");
-  EXPECT_EQ(odd_frame({-wide - low, wide}), "extends in front of its tip centre instead of behind it");
-  EXPECT_EQ(odd_frame({Vec3(0, -0.001, -0.001), Vec3(0.009, 0.001, 0.001)}), "is longer across its axis than along it");
-  EXPECT_EQ(odd_frame({wide + low, 2.0 * wide + 2.0 * low}), "is 9.11 mm away from its tip centre");
+  EXPECT_EQ(frame_problem({-wide, wide + low}), "");
+  EXPECT_EQ(frame_problem({-wide - low, wide}), "extends in front of its tip centre instead of behind it");
+  EXPECT_EQ(frame_problem({Vec3(0, -0.001, -0.001), Vec3(0.009, 0.001, 0.001)}),
+            "is longer across its axis than along it");
+  EXPECT_EQ(frame_problem({wide + low, 2.0 * wide + 2.0 * low}), "is 9.11 mm away from its tip centre");
   // A wheel is wider than it is long on purpose.
-  EXPECT_EQ(odd_frame({Vec3(-0.002, -0.002, 0), Vec3(0.002, 0.002, 0.0005)}), "");
+  EXPECT_EQ(frame_problem({Vec3(-0.002, -0.002, 0), Vec3(0.002, 0.002, 0.0005)}), "");
 }
 
 TEST(ScenarioTool, HasAnOutlineFromTheFarEndToTheTipThatIsAsLargeAsItIs) {

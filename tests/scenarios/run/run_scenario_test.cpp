@@ -167,13 +167,13 @@ TEST(StiffnessEigenvalues, AreThoseOfTheSpringsUnderTheAlgorithm) {
 }
 
 TEST(SpringsStay, OnlyWhereTheyDo) {
-  EXPECT_TRUE(springs_stay(single_spring()));
+  EXPECT_TRUE(has_permanent_springs(single_spring()));
   for (const char* override :
        {R"(environment={"type":"plane"})", "environment.bilateral=false", "environment.signed=false",
         "rendering.friction.mu_s_N_s_per_m=1", "rendering.friction.mu_f_s_per_m=1",
         "rendering.limits.max_damping_N_s_per_m=1", "rendering.limits.max_force_N=1",
         "rendering.passivity_controller=true", R"(motion={"position":{"type":"prescribed","x_m":0,"y_m":0,"z_m":0}})"})
-    EXPECT_FALSE(springs_stay(single_spring({override}))) << override;
+    EXPECT_FALSE(has_permanent_springs(single_spring({override}))) << override;
 }
 
 Scenario struck(Scenario scenario) {
@@ -287,7 +287,7 @@ TEST(ContactLoops, HaveThatOfAToolHeldByFriction) {
     Scenario scenario = test::bundled("drag_molar_dry");
     const double edge = 4.0 * scenario.rendering.mass / (scenario.time.step * scenario.time.step);
     scenario.rendering.dry_friction = DryFrictionConfig{0.3, factor * edge, 0.0};
-    const auto loops = contact_loops(scenario, 1.0, false);
+    const auto loops = contact_step_matrices(scenario, 1.0, false);
     ASSERT_EQ(loops.size(), 2u);
     EXPECT_TRUE(is_stable_step(loops[0].second));
     EXPECT_EQ(loops[1].first, "the tool held by friction");
@@ -302,11 +302,11 @@ TEST(DeviceLoop, KnowsEveryFieldOfTheDevices) {
        {VelocityFilterConfig(filter), VelocityFilterConfig(AdaptiveWindowFilter{2e-5})}) {
     scenario.device = ImpedanceDeviceConfig{0.1, 0.2,  0.3,   1e-5,   1.5,  1.5e-3, velocity,
                                             5.0, 0.01, 100.0, filter, 1e-6, 9,      Transmission{0.3, 2000.0, 2.0}};
-    EXPECT_EQ(unknown_to_theory(scenario), "");
+    EXPECT_EQ(unmodelled_fields(scenario), "");
   }
   scenario.device = AdmittanceDeviceConfig{
       {1.0, Vec3::UnitX(), false, 0.1, 7}, 3.0, {1e4, 100.0, 20.0, 3}, {1.0, 2.0, 3.0, 4.0, 5.0}};
-  EXPECT_EQ(unknown_to_theory(scenario), "");
+  EXPECT_EQ(unmodelled_fields(scenario), "");
 }
 
 }  // namespace

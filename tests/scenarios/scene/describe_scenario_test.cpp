@@ -108,10 +108,10 @@ TEST(ScenarioInCode, HasWhatAnotherAlgorithmFixes) {
 
 TEST(Object, HasNoMoreFaultsReportedThanAnybodyReads) {
   Json json = test::minimal_scenario("plane");
-  for (std::size_t i = 0; i < 10 * kMostFaults; ++i) json["key" + std::to_string(i)] = 0;
+  for (std::size_t i = 0; i < 10 * kMaxFaults; ++i) json["key" + std::to_string(i)] = 0;
   const auto error = test::input_error_of([&] { read_scenario(json, ""); });
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->faults().size(), kMostFaults);
+  EXPECT_EQ(error->faults().size(), kMaxFaults);
 }
 
 }  // namespace

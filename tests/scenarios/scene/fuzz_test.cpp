@@ -73,7 +73,7 @@ TEST(Fuzz, PointShellsInCsvAreReadOrRefused) {
   const std::vector<std::string> texts = {test::read_file(test::data_directory() / "shell.csv"),
                                           "x_m,y_m,z_m,nx,ny,nz\r\n0,0,0,0,0,1\r\n1e-3,-2.5,0.125,0.6,0,-0.8"};
   expect_mixture(fuzz(texts, test::cases(10'000), 2, [](const std::string& text) {
-    const auto points = point_shell_in(text, "shell.csv");
+    const auto points = parse_point_shell(text, "shell.csv");
     EXPECT_FALSE(points.empty());
     for (const SurfacePoint& point : points) {
       EXPECT_TRUE(point.position.cwiseAbs().maxCoeff() <= 1000.0) << text;
@@ -83,8 +83,8 @@ TEST(Fuzz, PointShellsInCsvAreReadOrRefused) {
 }
 
 TEST(Fuzz, PointShellsInPlyAreReadOrRefused) {
-  const auto points = point_shell_in(test::read_file(test::data_directory() / "shell.csv"), "shell.csv");
-  const std::string text = point_shell_text({points[0], points[40], points[80]}, "x.ply");
+  const auto points = parse_point_shell(test::read_file(test::data_directory() / "shell.csv"), "shell.csv");
+  const std::string text = format_point_shell({points[0], points[40], points[80]}, "x.ply");
   std::string binary =
       "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
       "property double nx\nproperty short ny\nproperty uchar nz\nelement face 1\nproperty list uchar int "
@@ -92,7 +92,7 @@ TEST(Fuzz, PointShellsInPlyAreReadOrRefused) {
   const std::string vertex = std::string(20, '\0') + std::string("\0\0\1", 3);  // normal (0, 0, 1)
   binary += vertex + vertex + std::string("\3\0\0\0\0\1\0\0\0\1\0\0\0", 13);
   expect_mixture(fuzz({text, binary}, test::cases(20'000), 3, [](const std::string& mutant) {
-    for (const SurfacePoint& point : point_shell_in(mutant, "shell.ply")) {
+    for (const SurfacePoint& point : parse_point_shell(mutant, "shell.ply")) {
       EXPECT_TRUE(point.position.cwiseAbs().maxCoeff() <= 1000.0) << mutant;
       EXPECT_NEAR(point.normal.norm(), 1.0, 1e-12) << mutant;
     }
@@ -129,7 +129,7 @@ TEST(Fuzz, RecordedMotionsAreReadOrRefused) {
   const std::vector<std::string> texts = {test::read_file(test::data_directory() / "stroke.csv"),
                                           with_force.substr(0, with_force.rfind('\n') + 1)};
   expect_mixture(fuzz(texts, test::cases(10'000), 4, [](const std::string& text) {
-    const auto [motion, force] = stroke_in(text, "stroke.csv");
+    const auto [motion, force] = parse_stroke(text, "stroke.csv");
     const auto sample = force ? force->at(0.01) : std::nullopt;
     EXPECT_TRUE(!sample || sample->allFinite());
     EXPECT_NEAR(motion.axis_at(-1.0).norm(), 1.0, 1e-12) << text;
@@ -140,7 +140,7 @@ TEST(Fuzz, RecordedMotionsAreReadOrRefused) {
 TEST(Fuzz, TracesAreReadOrRefused) {
   expect_mixture(fuzz({test::read_file(test::data_directory() / "trace.csv")}, test::cases(10'000), 4,
                       [](const std::string& text) {
-                        const ContactTrace trace = trace_in(text, "trace.csv");
+                        const ContactTrace trace = parse_contact_trace(text, "trace.csv");
                         std::size_t from = 0;
                         for (std::size_t i = 0; i < trace.times.size(); ++i) {
                           EXPECT_EQ(trace.times[i].first == from, i == 0) << text;
@@ -160,9 +160,9 @@ TEST(Fuzz, GarbageIsRefused) {
     std::string garbage;
     for (std::uint64_t n = random.below(300); n > 0; --n) garbage += static_cast<char>(random.below(256));
     EXPECT_THROW(read_scenario(parse_json(garbage), ""), InputError);
-    for (const char* name : {"g.csv", "g.ply"}) EXPECT_THROW(point_shell_in(garbage, name), InputError);
-    EXPECT_THROW(stroke_in(garbage, "g.csv"), InputError);
-    EXPECT_THROW(trace_in(garbage, "g.csv"), InputError);
+    for (const char* name : {"g.csv", "g.ply"}) EXPECT_THROW(parse_point_shell(garbage, name), InputError);
+    EXPECT_THROW(parse_stroke(garbage, "g.csv"), InputError);
+    EXPECT_THROW(parse_contact_trace(garbage, "g.csv"), InputError);
     for (const char* name : {"g.obj", "g.off", "g.stl", "g.ply"}) EXPECT_THROW(MeshFile(garbage, name, {}), InputError);
   }
 }

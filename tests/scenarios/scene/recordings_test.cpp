@@ -17,7 +17,7 @@ const std::string kQuaternions = "time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n";
 constexpr const char* kFile = "stroke.csv";
 
 RecordedMotion read(const std::string& rows) {
-  return stroke_in(kHeader + rows, kFile).motion;
+  return parse_stroke(kHeader + rows, kFile).motion;
 }
 
 TEST(MotionFile, IsPlayedBackLinearly) {
@@ -38,13 +38,14 @@ TEST(MotionFile, HasItsAxesNormalised) {
 
 /// A quarter of a turn about x takes the axis from -z to y.
 TEST(MotionFileOfQuaternions, TurnsTheToolsFrameIntoTheWorlds) {
-  const RecordedMotion motion = stroke_in(kQuaternions + "0,1,2,3,1,0,0,0\n1,1,2,3,0.7072,0.7072,0,0\n", kFile).motion;
+  const RecordedMotion motion =
+      parse_stroke(kQuaternions + "0,1,2,3,1,0,0,0\n1,1,2,3,0.7072,0.7072,0,0\n", kFile).motion;
   EXPECT_EQ(motion.axis_at(0.0), Vec3(0, 0, -1));
   EXPECT_LE((motion.axis_at(1.0) - Vec3(0, 1, 0)).norm(), 4e-16) << "normalised";
   EXPECT_EQ(motion.position_at(0.5), Vec3(1, 2, 3));
   EXPECT_TRUE(motion.scripts_roll());
-  EXPECT_NO_THROW(stroke_in(kQuaternions + "1,0,0,0,0,1.0009,0,0\n", kFile)) << "within a thousandth";
-  EXPECT_THROW(stroke_in(kQuaternions + "1,0,0,0,0,1.0011,0,0\n", kFile), InputError);
+  EXPECT_NO_THROW(parse_stroke(kQuaternions + "1,0,0,0,0,1.0009,0,0\n", kFile)) << "within a thousandth";
+  EXPECT_THROW(parse_stroke(kQuaternions + "1,0,0,0,0,1.0011,0,0\n", kFile), InputError);
 }
 
 const std::string kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m\n";
@@ -52,7 +53,7 @@ const std::string kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m\n";
 /// The message with which a trace of these rows is refused; empty when it is read.
 std::string refusal(const std::string& rows) {
   try {
-    trace_in(kTraceHeader + rows, "t.csv");
+    parse_contact_trace(kTraceHeader + rows, "t.csv");
   } catch (const InputError& error) {
     return error.what();
   }
@@ -61,7 +62,7 @@ std::string refusal(const std::string& rows) {
 
 TEST(TraceFile, HasContactsByTime) {
   const ContactTrace trace =
-      trace_in(kTraceHeader + "0,1,2,3,0,0,-1,0.5\n0,4,5,6,1,0,0,0\n\n0.25,7,8,9,0,0.6,0.8,1e-3\n", "t.csv");
+      parse_contact_trace(kTraceHeader + "0,1,2,3,0,0,-1,0.5\n0,4,5,6,1,0,0,0\n\n0.25,7,8,9,0,0.6,0.8,1e-3\n", "t.csv");
   ASSERT_EQ(trace.times.size(), 2u);
   EXPECT_EQ(trace.times[1].time, 0.25);
   EXPECT_EQ(trace.times[1].first, 2u);
@@ -70,13 +71,13 @@ TEST(TraceFile, HasContactsByTime) {
   EXPECT_EQ(trace.contacts[0].point, Vec3(1, 2, 3));
   EXPECT_EQ(trace.contacts[2].gradient, Vec3(0, 0.6, 0.8));
   EXPECT_EQ(trace.contacts[2].depth, 1e-3);
-  EXPECT_TRUE(trace_in(kTraceHeader, "t.csv").times.empty());
+  EXPECT_TRUE(parse_contact_trace(kTraceHeader, "t.csv").times.empty());
 }
 
 TEST(TraceFile, NormalisesRoundedGradientsAlone) {
   const double exact = 0.57735026918962573;
   const auto gradient = [](const std::string& text) {
-    return trace_in(kTraceHeader + "0,0,0,0," + text + ",1\n", "t.csv").contacts[0].gradient;
+    return parse_contact_trace(kTraceHeader + "0,0,0,0," + text + ",1\n", "t.csv").contacts[0].gradient;
   };
   EXPECT_EQ(gradient("0.57735026918962573,0.57735026918962573,0.57735026918962573"), Vec3::Constant(exact));
   EXPECT_NEAR(gradient("0.5774,0.5774,0.5774").norm(), 1.0, 1e-15);
@@ -93,8 +94,8 @@ TEST(TraceFile, IsRefusedWithItsRow) {
   std::string many;
   for (int i = 0; i < 100'001; ++i) many += "0,0,0,0,0,0,1,1\n";
   EXPECT_EQ(refusal(many), "t.csv, contact 100001: got more contacts at time 0; allowed: at most 100000");
-  EXPECT_THROW(trace_in("time_s,x,y,z\n", "t.csv"), InputError);
-  EXPECT_THROW(trace_in("", "t.csv"), InputError);
+  EXPECT_THROW(parse_contact_trace("time_s,x,y,z\n", "t.csv"), InputError);
+  EXPECT_THROW(parse_contact_trace("", "t.csv"), InputError);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 std::vector<std::string> warnings_with(std::vector<std::string> overrides) {
   std::vector<std::string> warnings;
   for (const Warning& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)
-    warnings.push_back(warning.told());
+    warnings.push_back(warning.located_text());
   return warnings;
 }
 
@@ -42,7 +42,7 @@ TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
   constexpr const char* kDelay = R"({"type": "admittance", "servo": {"delay_samples": 20}})";
   for (const char* device : {kDelay, R"({"type": "admittance"})"}) {
     ASSERT_EQ(warnings(R"({"type": "none"})", device).size(), 1u) << device;
-    EXPECT_EQ(warnings(R"({"type": "none"})", device)[0].told().find("/device: servo and mechanics"), 0u);
+    EXPECT_EQ(warnings(R"({"type": "none"})", device)[0].located_text().find("/device: servo and mechanics"), 0u);
   }
   EXPECT_EQ(warnings(R"({"type": "push", "force_N": 1})", kDelay).size(), 1u);
   EXPECT_TRUE(warnings(R"({"type": "push", "force_N": 1})", R"({"type": "ideal"})").empty());

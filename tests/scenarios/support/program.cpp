@@ -125,7 +125,7 @@ ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOpti
   return run_program(hapbench_program(), arguments, options);
 }
 
-ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
+ProgramRun hapbench_in_process(const std::vector<std::string>& arguments) {
   ProgramContext context{.program = hapbench_program()};
   ProgramRun run;
   testing::internal::CaptureStdout();

@@ -49,7 +49,7 @@ ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOpti
 
 /// Runs a command of hapbench in this process. For commands that only read and print; about 100 times faster
 /// than a new process.
-ProgramRun hapbench_here(const std::vector<std::string>& arguments);
+ProgramRun hapbench_in_process(const std::vector<std::string>& arguments);
 
 /// A process that runs while the test continues. The destructor kills it if it is still running.
 class RunningProgram {

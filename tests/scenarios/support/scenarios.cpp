@@ -104,7 +104,7 @@ std::vector<NamedScenario> rich_scenarios() {
       "initial": {"position_m": [0, 0, -0.0018]},
       "hand": {"type": "tracking", "trials": 2,
         "task": {"display": "height", "places_m": [[0, 0, -0.001], [0, 0, -0.0015]], "targets_per_place": 1,
-          "tolerance_m": 0.0003, "least_press_N": 0.5, "gauge": {"cutoff_Hz": 20, "grace_s": 0.05},
+          "tolerance_m": 0.0003, "min_press_N": 0.5, "gauge": {"cutoff_Hz": 20, "grace_s": 0.05},
           "threshold": {"low": "pauses"}, "hold_s": 0.1, "time_limit_s": 0.4},
         "subjects": [{"reaction_delay_s": 0.1, "bandwidth_Hz": 1, "stiffness_N_per_m": 200, "damping_N_s_per_m": 5,
           "press_N": 1.2, "press_bandwidth_Hz": 0.5, "motor_noise_N": 0.01, "tilt_noise_rad": 0.001,

@@ -10,7 +10,7 @@
 #include "sim/contact/contact_query.hpp"
 #include "sim/contact/contact_schedule.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/multi_rate_contacts.hpp"
 #include "sim/contact/spring_source.hpp"
 #include "sim/contact/trace_source.hpp"
 #include "sim/loop/simulation.hpp"
@@ -160,7 +160,7 @@ std::vector<ToolPose> random_way(std::uint64_t seed, std::size_t rows, bool roll
   return way;
 }
 
-/// Q of LateContacts: the smallest turn between the axes, then the difference of roll.
+/// Q of MultiRateContacts: the smallest turn between the axes, then the difference of roll.
 Mat3 smallest_turn(const ToolPose& from, const ToolPose& to) {
   const Vec3 across = from.axis.cross(to.axis);
   const double angle = std::atan2(across.norm(), from.axis.dot(to.axis));
@@ -185,7 +185,8 @@ TEST(TurnMatrix, IsTheSmallestTurnFollowedByTheRoll) {
 }
 
 /// The rows of the queries that serve, from the rows of those that are not lost; -1 before the first.
-std::vector<std::int64_t> rows_that_serve(const Lateness& late, const std::set<std::int64_t>& lost, std::size_t rows) {
+std::vector<std::int64_t> rows_that_serve(const MultiRateSchedule& late, const std::set<std::int64_t>& lost,
+                                          std::size_t rows) {
   std::vector<std::int64_t> serve(rows, -1);
   for (std::size_t k = 0; k < rows; ++k)
     for (std::int64_t q = 0; q + late.delay <= static_cast<std::int64_t>(k); q += late.every)
@@ -194,7 +195,7 @@ std::vector<std::int64_t> rows_that_serve(const Lateness& late, const std::set<s
 }
 
 struct Case {
-  Lateness late;
+  MultiRateSchedule late;
   bool rolls;
 };
 
@@ -218,7 +219,7 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
     if (random.uniform() < late.dropout) lost.insert(q);
   const auto serve = rows_that_serve(late, lost, kRows);
 
-  LateContacts source(std::make_unique<PoseSource>(), late, false, 42);
+  MultiRateContacts source(std::make_unique<PoseSource>(), late, false, 42);
   std::uint64_t row = 0;
   source.follow(&row);
   PoseSource fresh;
@@ -268,11 +269,11 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
 }
 
 /// Springs that pull keep their negative depths, so linear contacts of springs are the fresh ones.
-TEST(LateContacts, OfSpringsThatPullAreFreshWhenLinear) {
+TEST(MultiRateContacts, OfSpringsThatPullAreFreshWhenLinear) {
   const auto springs = std::make_shared<SpringSet>();
   Random random(1);
   for (int i = 0; i < 20; ++i) springs->gradients.push_back(random.direction());
-  LateContacts late(std::make_unique<SpringSource>(springs), {.every = 8, .linear = true}, true, 1);
+  MultiRateContacts late(std::make_unique<SpringSource>(springs), {.every = 8, .linear = true}, true, 1);
   SpringSource fresh(springs);
   ContactBuffer a(20), b(20);
   for (const ToolPose& pose : random_way(5, 50, false)) {

@@ -145,7 +145,7 @@ std::size_t marked_near(const PointShell& shell, const ToolShape& tool, const To
 double worst_part_of_bound(const ToolShape& tool, double size, Random& random) {
   const double margin = random.uniform(0.0, 0.3) * tool.half_width();
   const PointShell shell(test::random_shell(random, size), 0.0);
-  const std::size_t bound = most_points_in(shell, tool.cover(margin));
+  const std::size_t bound = max_points_in(shell, tool.cover(margin));
   EXPECT_LE(bound, shell.size());
   ToolPose pose{Vec3::Zero(), random.direction()};
   std::size_t worst = 0;

@@ -85,8 +85,8 @@ TEST(Solid, OfAClosedMeshHasItsExactDistance) {
     for (int i = 0; i < 300; ++i) {
       const Vec3 q = random_point(random, 0.01);
       EXPECT_NEAR(solid->at(q).value, test::exact_distance(*soup, q), 1e-12) << q.transpose();
-      const LookedUp near{q + random_point(random, 0.002), 0.0};
-      const LookedUp looked{near.place, solid->at(near.place).value};
+      const KnownDistance near{q + random_point(random, 0.002), 0.0};
+      const KnownDistance looked{near.place, solid->at(near.place).value};
       EXPECT_EQ(solid->at(q, &looked).value, solid->at(q).value);
       EXPECT_NEAR(solid->gradient(q, 1e-6).dot(test_gradient(*soup, q)), 1.0, 1e-6) << q.transpose();
       EXPECT_TRUE(solid->at(q).known);
@@ -253,7 +253,7 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
       const double moved = (beside.position - pose.position).norm(), turned = (beside.axis - pose.axis).norm();
       EXPECT_GE(std::max(0.0, bound.at(beside, moved, turned, 0.0, true)), *depth - 1e-12)
           << kind.name << " in " << place.name;
-      EXPECT_GE(std::max(0.0, bound.roughly_at(beside, moved, turned)), *depth - 1e-12)
+      EXPECT_GE(std::max(0.0, bound.coarse_bound_at(beside, moved, turned)), *depth - 1e-12)
           << kind.name << " in " << place.name;
       // A bound that is known already spares the search, not the answer.
       EXPECT_EQ(search.depth(pose, *depth).value_or(-1.0), *depth) << kind.name << " in " << place.name;

@@ -67,8 +67,8 @@ TriangleSoup shuffled(TriangleSoup soup, Random& random) {
 
 void expect_nothing_found(const MeshFindings& found) {
   EXPECT_EQ(found.degenerate_triangles, 0u);
-  EXPECT_EQ(found.rewound_triangles, 0u);
-  EXPECT_EQ(found.inside_out_parts, 0u);
+  EXPECT_EQ(found.flipped_triangles, 0u);
+  EXPECT_EQ(found.inverted_parts, 0u);
   EXPECT_EQ(found.open_edges.size(), 0u);
 }
 
@@ -115,9 +115,9 @@ TEST(MeshFromTriangles, CutsTheSurfaceAlongEdgesWithMoreThanTwoFaces) {
   };
   for (const auto& c : cases) {
     const auto [mesh, found] = mesh_from_triangles(c.soup);
-    EXPECT_EQ(found.crowded_edges.size(), c.crowded);
+    EXPECT_EQ(found.non_manifold_edges.size(), c.crowded);
     EXPECT_EQ(found.open_edges.size(), c.boundary);
-    EXPECT_EQ(found.rewound_triangles, 0u);
+    EXPECT_EQ(found.flipped_triangles, 0u);
     EXPECT_EQ(mesh.n_faces(), c.soup.triangles.size());
     EXPECT_EQ(mesh.n_vertices(), c.vertices);
   }
@@ -147,7 +147,7 @@ TEST(MeshFromTriangles, HoldsWhateverTrianglesThereAre) {
       const auto [mesh, found] = mesh_from_triangles(soup);
       EXPECT_EQ(mesh.n_faces(), soup.triangles.size() - found.degenerate_triangles);
       ++held;
-      if (!found.crowded_edges.empty()) ++crowded;
+      if (!found.non_manifold_edges.empty()) ++crowded;
     } catch (const MeshError& error) {
       const std::string message = error.what();
       EXPECT_TRUE(message.starts_with("is not orientable") || message.starts_with("has no faces")) << message;
@@ -184,8 +184,8 @@ TEST(MeshFromTriangles, MakesTheWindingThatOfTheMajority) {
     const std::size_t wrong = random.below(64);
     for (std::size_t i = 0; i < wrong; ++i) std::swap(soup.triangles[i][1], soup.triangles[i][2]);
     const auto [mesh, found] = mesh_from_triangles(shuffled(soup, random));
-    EXPECT_EQ(found.rewound_triangles, wrong);
-    EXPECT_EQ(found.inside_out_parts, 0u);
+    EXPECT_EQ(found.flipped_triangles, wrong);
+    EXPECT_EQ(found.inverted_parts, 0u);
     EXPECT_GT(enclosed_volume(mesh), 0.0);
     EXPECT_EQ(euler_characteristic(mesh), 2);
   }
@@ -193,11 +193,11 @@ TEST(MeshFromTriangles, MakesTheWindingThatOfTheMajority) {
 
 TEST(MeshFromTriangles, TurnsClosedPartsOutwards) {
   const CheckedMesh one = mesh_from_triangles(reversed(cube()));
-  EXPECT_EQ(one.findings.inside_out_parts, 1u);
-  EXPECT_EQ(one.findings.rewound_triangles, 0u);
+  EXPECT_EQ(one.findings.inverted_parts, 1u);
+  EXPECT_EQ(one.findings.flipped_triangles, 0u);
   EXPECT_EQ(enclosed_volume(one.mesh), 8.0);
   const CheckedMesh two = mesh_from_triangles(together(cube(), reversed(cube(1.0, {900, 0, 0}))));
-  EXPECT_EQ(two.findings.inside_out_parts, 1u);
+  EXPECT_EQ(two.findings.inverted_parts, 1u);
   EXPECT_NEAR(enclosed_volume(two.mesh), 16.0, 1e-9);  // terms up to 1e3^3 / 6 cancel to rounding
 }
 
@@ -209,7 +209,7 @@ TEST(MeshFromTriangles, KeepsCavitiesAndTurnsThemWithWhatIsAroundThem) {
     EXPECT_NEAR(enclosed_volume(mesh), 216.0 - 8.0, 1e-12);
   }
   const CheckedMesh turned = mesh_from_triangles(reversed(hollow));
-  EXPECT_EQ(turned.findings.inside_out_parts, 2u);
+  EXPECT_EQ(turned.findings.inverted_parts, 2u);
   EXPECT_NEAR(enclosed_volume(turned.mesh), 216.0 - 8.0, 1e-12);
 }
 
@@ -219,8 +219,8 @@ TEST(MeshFromTriangles, KeepsTheWindingOfOpenSurfaces) {
   for (const bool turned : {false, true}) {
     const auto [mesh, found] = mesh_from_triangles(turned ? reversed(open) : open);
     EXPECT_EQ(found.open_edges.size(), 4u);
-    EXPECT_EQ(found.rewound_triangles, 0u);
-    EXPECT_EQ(found.inside_out_parts, 0u);
+    EXPECT_EQ(found.flipped_triangles, 0u);
+    EXPECT_EQ(found.inverted_parts, 0u);
     const auto points = vertices_with_normals(mesh);
     ASSERT_EQ(points.size(), 8u);
     EXPECT_EQ(points[0].normal.dot(Vec3(-1, -1, -1)) > 0.0, !turned);

@@ -160,7 +160,7 @@ TEST_P(EveryTool, MovesNoPointOfItsBodyFurtherThanItSays) {
     const double turn = std::pow(10.0, random.uniform(-6.0, 0.0));
     const ToolPose to{from.position + turn * 1e-3 * random.direction(),
                       (from.axis + turn * random.direction()).normalized(), random.uniform(-3.0, 3.0)};
-    const double moved = tool.shape->moved_at_most(from, to);
+    const double moved = tool.shape->displacement_bound(from, to);
     ContactBuffer contacts(1);
     contacts.push(0, tool.surface_point(to, random), Vec3::UnitZ());
     ASSERT_TRUE(marked(contacts, [&](auto points, auto ranges, auto marks) {
@@ -173,7 +173,7 @@ TEST_P(EveryTool, IsAxisymmetricWhereATurnAboutItsAxisMovesNoPoint) {
   for_tools(20, [&](const DefinedTool& tool, const ToolPose& pose, Random&) {
     ToolPose rolled = pose;
     rolled.roll += 1.0;
-    EXPECT_EQ(tool.shape->is_axisymmetric(), tool.shape->moved_at_most(pose, rolled) == 0.0);
+    EXPECT_EQ(tool.shape->is_axisymmetric(), tool.shape->displacement_bound(pose, rolled) == 0.0);
   });
 }
 
@@ -181,7 +181,7 @@ TEST_P(EveryTool, HasItsForemostPlaceOnTheSurfaceAndNoneBeyondIt) {
   for_tools(2000, [&](const DefinedTool& tool, const ToolPose& pose, Random& random) {
     const ContactBuffer contacts = contacts_around(tool, pose, random, 8);
     alignas(64) double x[simd::lanes], y[simd::lanes], z[simd::lanes];
-    tool.shape->foremost_places(pose, contacts, {x, y, z});
+    tool.shape->support_points(pose, contacts, {x, y, z});
     for (std::size_t i = 0; i < 8; ++i) {
       const Vec3 place(x[i], y[i], z[i]);
       ASSERT_NEAR(slack_at(tool, pose, place), 0.0, kRounding);
@@ -251,7 +251,7 @@ std::vector<double> answers(const DefinedTool& tool, const ToolPose& pose, const
   ContactBuffer out = contacts;
   tool.shape->surface_constraints(pose, move, slack, out);
   AlignedDoubles x(simd::padded(out.size())), y(x), z(x);
-  tool.shape->foremost_places(pose, out, {x.data(), y.data(), z.data()});
+  tool.shape->support_points(pose, out, {x.data(), y.data(), z.data()});
   for (std::size_t i = 0; i < in.size(); ++i) all.insert(all.end(), {in.depth[i], exits[i]});
   for (std::size_t i = 0; i < out.size(); ++i) {
     all.push_back(out.depth[i]);

@@ -329,9 +329,9 @@ TEST_P(MeshToolOf, MovesNoPointOfItsBodyFurtherThanItSays) {
                       from.roll + turn * random.uniform(-1.0, 1.0)};
     Vec3 x = random_place(grid_, random, 0.0);
     if (x.norm() > tool_.reach()) x *= tool_.reach() / x.norm();
-    ASSERT_LE((to_world(to, x) - to_world(from, x)).norm(), tool_.moved_at_most(from, to) + 1e-14);
+    ASSERT_LE((to_world(to, x) - to_world(from, x)).norm(), tool_.displacement_bound(from, to) + 1e-14);
   }
-  EXPECT_EQ(tool_.moved_at_most(kHome, kHome), 0.0);
+  EXPECT_EQ(tool_.displacement_bound(kHome, kHome), 0.0);
   EXPECT_FALSE(tool_.is_axisymmetric());
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "results/io/columns.hpp"
-#include "scenarios/analysis/convergence/held_order.hpp"
+#include "scenarios/analysis/convergence/significant_order.hpp"
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/run_all.hpp"
 #include "tests/results/files.hpp"
@@ -39,7 +39,7 @@ TEST(FinerRuns, LeaveNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
     known.push_back(finer.known_error(i, "force_max_N"));
     numbers.push_back({number_of(reports[i].metrics, "force_max_N"), known.back().sum()});
   }
-  EXPECT_EQ(held_text(numbers, laws), "no significant order: virtual_coupling ~ mcneely");
+  EXPECT_EQ(significant_order_text(numbers, laws), "no significant order: virtual_coupling ~ mcneely");
   EXPECT_NEAR(*numbers[0].value, 5.0 * kOne, 1e-12);
   EXPECT_NEAR(*known[0].spacing, 5.0 * kOne, 1e-9) << "the plain difference: no order is seen";
   EXPECT_GE(*known[1].spacing, (25.3 - 4.45) * kOne);

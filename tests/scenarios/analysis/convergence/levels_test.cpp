@@ -26,7 +26,7 @@ struct Study {
   Convergence of(const std::string& metric) const { return convergence_of(levels, levels_of(metric)); }
 };
 
-Study studied(const Json& json, std::size_t count = 5, const std::string& path = kStepPath) {
+Study convergence_study(const Json& json, std::size_t count = 5, const std::string& path = kStepPath) {
   const ScenarioText scenario{test::data_directory() / "converge.json", json};
   LevelSweep levels = level_sweep(load_scenario(scenario, {}), path, count, 2.0);
   const Cases cases({scenario}, {}, {levels.axis});
@@ -71,7 +71,7 @@ TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
                        {"y_m", 0},
                        {"z_m", 0}}}};
   scene["rendering"]["damping_ratio"] = 0;
-  const Study study = studied(scene);
+  const Study study = convergence_study(scene);
   for (const char* metric : {"force_max_N", "force_step_max_N", "force_reversals"}) {
     const auto levels = study.levels_of(metric);
     const double first = *levels.front().result;

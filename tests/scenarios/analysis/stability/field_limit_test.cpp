@@ -69,7 +69,7 @@ TEST(FieldLimit, OfADeviceAtAWallIsComparedWithItsLinearLoop) {
   const FieldLimit limit = ask({.scenario = "tap_wall",
                                 .field = "rendering.stiffness_N_per_m",
                                 .overrides = device,
-                                .rule = {.most_vibration = 1e-3}});
+                                .rule = {.max_vibration = 1e-3}});
   ASSERT_TRUE(limit.end.value && limit.linear);
   EXPECT_NEAR(*limit.linear, 1773.8, 0.1);
   EXPECT_TRUE(limit.is_beyond_linear(0.01));

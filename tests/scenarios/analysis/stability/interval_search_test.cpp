@@ -12,21 +12,21 @@ namespace {
 
 using Stable = std::function<bool(double value)>;
 
-/// What find_tried_edge gives from 1e4 to 1e6: the last stable value, 0 without an edge, -1 for scattered ones.
+/// What find_verified_interval gives from 1e4 to 1e6: the last stable value, 0 without an edge, -1 for scattered ones.
 double tried_edge(const Stable& stable) {
-  const SearchWay way{.range = {1e4, 1e6, true}};
+  const IntervalSearchOptions way{.range = {1e4, 1e6, true}};
   const auto holds = [&](double part) { return stable(way.value_at(part)); };
-  std::map<double, bool> tried = scanned(kEdgeIntervals, holds);
-  const FoundEdge edge = find_tried_edge(way, tried, holds, true, [](std::span<const double>) {});
+  std::map<double, bool> tried = evaluate_scan(kScanIntervals, holds);
+  const StableInterval edge = find_verified_interval(way, tried, holds, true, [](std::span<const double>) {});
   return edge.stable ? way.value_at(*edge.stable) : edge.scattered ? -1.0 : 0.0;
 }
 
 TEST(TriedEdge, IsBelowAnIslandThatBisectionDoesNotMeet) {
   const Stable islands = [](double K) { return K < 3e5 && !(K > 1.05e5 && K < 1.2e5); };
-  const SearchWay way{.range = {1e4, 1e6, true}};
+  const IntervalSearchOptions way{.range = {1e4, 1e6, true}};
   const auto holds = [&](double part) { return islands(way.value_at(part)); };
-  std::map<double, bool> tried = scanned(kEdgeIntervals, holds);
-  EXPECT_NEAR(way.value_at(find_edge(way, tried, holds, true).stable.value()), 3e5, 300.0);
+  std::map<double, bool> tried = evaluate_scan(kScanIntervals, holds);
+  EXPECT_NEAR(way.value_at(find_stable_interval(way, tried, holds, true).stable.value()), 3e5, 300.0);
   EXPECT_NEAR(tried_edge(islands), 1.05e5, 105.0);
 }
 

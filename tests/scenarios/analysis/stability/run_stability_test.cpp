@@ -17,7 +17,7 @@ namespace {
 /// What goes on bouncing below 30 Hz is not still, however little it vibrates.
 TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
   const ScenarioText plane = read_scenario_text(find_scenario("poke_plane"));
-  const StabilityRule any_vibration{.most_vibration = 1.0};
+  const StabilityRule any_vibration{.max_vibration = 1.0};
   for (const auto& [zeta, verdict] : {std::pair("0", RunVerdict::vibrating), {"0.5", RunVerdict::stable}}) {
     const std::vector<std::string> fields = {R"(hand={"type":"force","z_N":-0.05})",
                                              "time.duration_s=4",

@@ -52,7 +52,7 @@ TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
   loop.device.delay_samples = 1.5;
   const double K = 2.0 * law.choice->stiffness;
   loop.wall_damping = 2.0 * *law.choice->setting.damping_ratio * std::sqrt(K * kMass);
-  EXPECT_NEAR(K / worst_hand_edge(loop), 1.0, kWithin);
+  EXPECT_NEAR(K / worst_hand_stability_limit(loop), 1.0, kWithin);
 }
 
 /// The least edge of the loop of the virtual mass at a wall and its servo, over the scene's own hand and the family's.
@@ -63,7 +63,7 @@ double worst_edge_at_wall(const Scenario& scenario, double zeta, double mass) {
   double least = INFINITY;
   for (const double hand : {100.0, 300.0, 1000.0}) {
     loop.hand_stiffness = hand;
-    least = std::min(least, first_edge(1e3, 1e8, [&](double K) {
+    least = std::min(least, first_stability_limit(1e3, 1e8, [&](double K) {
                        loop.tool = {K, 2.0 * zeta * std::sqrt(K * mass), mass, scenario.time.step, 1.0};
                        return loop.state_matrix();
                      }));
@@ -81,7 +81,7 @@ TEST(Tune, OfTheDeviceAtAWallIsTheEdgeOfTheWorstHand) {
   asked.limits["force_max_N"].max = 1e9;  // nothing needs to be quiet
   const TunedLaw law = tuned_law(asked, "shaped_stiffness");
   ASSERT_TRUE(law.choice) << law.why;
-  EXPECT_EQ(law.verified, kTriedBetween + kTriedNear);
+  EXPECT_EQ(law.verified, kVerificationSamples + kSamplesNearLimit);
   const Scenario scenario = load_scenario(asked.scenario, law.overrides).scenario;
   double best = 0.0;
   for (double zeta = 0.5; zeta < 3.0; zeta *= 1.05)
@@ -96,7 +96,7 @@ TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
   asked.damping_ratio = {0.1, 0.3};
   const TunedLaw free = tuned_law(asked, "shaped_stiffness");
   ASSERT_TRUE(free.choice) << free.why;
-  EXPECT_LE(free.runs, kMostTuneRuns + 1000);
+  EXPECT_LE(free.runs, kMaxTuneRuns + 1000);
   const double buzz = free.choice->metrics.at("force_rms_above_30Hz_N");
   asked.limits["force_rms_above_30Hz_N"].max = 0.7 * buzz;
   const TunedLaw quiet = tuned_law(asked, "shaped_stiffness");

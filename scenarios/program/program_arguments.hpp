@@ -6,10 +6,10 @@
 namespace hapbench {
 
 /// The arguments of a command line after the program's name.
-using ProgramWords = std::vector<std::string>;
+using ProgramArguments = std::vector<std::string>;
 
 /// Returns a command line for a POSIX shell. Arguments with characters other than letters, digits and
 /// "_-./:=,+@%" are in single quotes.
-std::string shell_line(const ProgramWords& words);
+std::string shell_line(const ProgramArguments& arguments);
 
 }  // namespace hapbench

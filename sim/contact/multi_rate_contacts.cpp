@@ -1,11 +1,11 @@
-#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/multi_rate_contacts.hpp"
 
 #include <utility>
 
 namespace hapbench {
 
-LateContacts::LateContacts(std::unique_ptr<ContactSource> source, const Lateness& timing, bool may_pull,
-                           std::uint64_t seed)
+MultiRateContacts::MultiRateContacts(std::unique_ptr<ContactSource> source, const MultiRateSchedule& timing,
+                                     bool may_pull, std::uint64_t seed)
     : source_(std::move(source)),
       may_pull_(may_pull),
       seed_(seed),
@@ -16,7 +16,7 @@ LateContacts::LateContacts(std::unique_ptr<ContactSource> source, const Lateness
   source_->follow(&schedule_.latest.row);
 }
 
-void LateContacts::reset() noexcept {
+void MultiRateContacts::reset() noexcept {
   source_->reset();
   fault_ = nullptr;
   random_ = Random(seed_);
@@ -27,8 +27,8 @@ void LateContacts::reset() noexcept {
   found_.clear();
 }
 
-void LateContacts::begin_step(std::uint64_t row, const ToolPose& pose) noexcept {
-  const Lateness& timing = schedule_.timing;
+void MultiRateContacts::begin_step(std::uint64_t row, const ToolPose& pose) noexcept {
+  const MultiRateSchedule& timing = schedule_.timing;
 
   // Send a query if this step has one.
   if (row % static_cast<std::uint64_t>(timing.every) == 0) {
@@ -49,7 +49,7 @@ void LateContacts::begin_step(std::uint64_t row, const ToolPose& pose) noexcept 
   fault_ = source_->fault();
 }
 
-void LateContacts::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+void MultiRateContacts::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   // Integrators that query again within a step get the contacts of the step.
   const std::uint64_t row = row_ != nullptr ? *row_ : calls_++;
   if (row != last_step_) begin_step(row, pose);
@@ -61,7 +61,7 @@ void LateContacts::contacts_at(const ToolPose& pose, ContactBuffer& contacts) no
     contacts.assign(found_);
 }
 
-void LateContacts::move_found_to(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
+void MultiRateContacts::move_found_to(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
   contacts.clear();
   const ToolPose& from = schedule_.latest.pose;
   const Vec3 moved = pose.position - from.position;

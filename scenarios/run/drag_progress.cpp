@@ -1,4 +1,4 @@
-#include "scenarios/run/drag_course.hpp"
+#include "scenarios/run/drag_progress.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "scenarios/program/describe/places.hpp"
+#include "scenarios/program/describe/thesis_locations.hpp"
 
 #include <fmt/format.h>
 
@@ -23,13 +23,13 @@ namespace {
 
 /// A location in the thesis: "Fig. A.2" has the kind "Fig." and the number "A.2". The kind is "Fig.", "Table"
 /// or "section"; empty: any kind.
-struct Place {
+struct ThesisLocation {
   std::string kind, number;
 };
 
 /// Returns the kind of location that a word announces. Every word other than figure and table announces
 /// sections.
-std::string place_kind(const std::string& word) {
+std::string location_kind(const std::string& word) {
   const std::string lower = lower_case(word);
   if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";
   if (lower == "table" || lower == "tables") return "Table";
@@ -38,41 +38,41 @@ std::string place_kind(const std::string& word) {
 
 /// Parses a location, of any kind if `name` gives none. Also accepts the file name of a figure, such as
 /// figure_A.4_springs.svg. Returns empty for other names.
-std::optional<Place> asked_place(const std::string& name) {
-  static const std::regex kPlace(R"((?:(fig|figs|figure|table|section)[._ ]*)?)"
-                                 R"(((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
-                                 std::regex::icase);
+std::optional<ThesisLocation> parse_thesis_location(const std::string& name) {
+  static const std::regex kLocation(R"((?:(fig|figs|figure|table|section)[._ ]*)?)"
+                                    R"(((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
+                                    std::regex::icase);
   std::smatch parts;
-  if (!std::regex_match(name, parts, kPlace)) return std::nullopt;
-  Place place{parts[1].matched ? place_kind(parts[1]) : "", parts[2]};
+  if (!std::regex_match(name, parts, kLocation)) return std::nullopt;
+  ThesisLocation location{parts[1].matched ? location_kind(parts[1]) : "", parts[2]};
   // A number without a dot and a kind is ambiguous.
-  if (place.kind.empty() && place.number.find('.') == std::string::npos) return std::nullopt;
-  if (place.number.find('.') == 1) place.number[0] = static_cast<char>(std::toupper(place.number[0]));
-  return place;
+  if (location.kind.empty() && location.number.find('.') == std::string::npos) return std::nullopt;
+  if (location.number.find('.') == 1) location.number[0] = static_cast<char>(std::toupper(location.number[0]));
+  return location;
 }
 
 /// Returns true if a source such as "3.3, Fig. 4, C.2a" names the location or a part of it. A kind applies to
 /// all numbers up to the next word. Other numbers in the source also count as locations.
-bool names_place(const std::string& source, const Place& asked) {
+bool mentions_location(const std::string& source, const ThesisLocation& requested) {
   static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
   std::string kind = "section";
   for (std::sregex_iterator found(source.begin(), source.end(), kParts), end; found != end; ++found) {
     const std::string word = found->str();
     if (!(*found)[1].matched) {
-      if (word != "and") kind = place_kind(word);
+      if (word != "and") kind = location_kind(word);
       continue;
     }
-    if ((!asked.kind.empty() && kind != asked.kind) || !word.starts_with(asked.number)) continue;
-    const std::string part = word.substr(asked.number.size());
+    if ((!requested.kind.empty() && kind != requested.kind) || !word.starts_with(requested.number)) continue;
+    const std::string part = word.substr(requested.number.size());
     if (part.empty() || part[0] == '.' || std::isalpha(static_cast<unsigned char>(part[0]))) return true;
   }
   return false;
 }
 
 /// Returns the stored pictures of a figure of the thesis: figure_A.2.svg for "A.2".
-std::vector<std::filesystem::path> pictures_of(const Place& place) {
-  if (!place.kind.empty() && place.kind != "Fig.") return {};
-  const std::string figure = place.number.substr(0, place.number.find_last_not_of("abcd") + 1);
+std::vector<std::filesystem::path> pictures_of(const ThesisLocation& location) {
+  if (!location.kind.empty() && location.kind != "Fig.") return {};
+  const std::string figure = location.number.substr(0, location.number.find_last_not_of("abcd") + 1);
   std::vector<std::filesystem::path> pictures;
   std::error_code none;
   for (const auto& entry :
@@ -85,25 +85,25 @@ std::vector<std::filesystem::path> pictures_of(const Place& place) {
 
 }  // namespace
 
-std::optional<Description> describe_place(const std::string& name, const Layout& layout) {
-  const std::optional<Place> place = asked_place(name);
-  if (!place) return std::nullopt;
-  const std::string title = place->kind + (place->kind.empty() ? "" : " ") + place->number;
+std::optional<Description> describe_thesis_location(const std::string& name, const Layout& layout) {
+  const std::optional<ThesisLocation> location = parse_thesis_location(name);
+  if (!location) return std::nullopt;
+  const std::string title = location->kind + (location->kind.empty() ? "" : " ") + location->number;
   // Collect scenarios and claims whose source names the location.
   std::string scenarios, claims;
   Json json = {{"kind", "place"}, {"name", title}, {"scenarios", Json::array()}, {"claims", Json::array()}};
-  for (const Named& thing : folder_index(layout)) {
-    const std::string source = thing.more.value("source", "");
-    if (!names_place(source, *place)) continue;
-    if (thing.kind == "claim")
-      claims += layout.entry(thing.name, fmt::format("{} ({})", thing.summary, source), 4, 10);
+  for (const IndexEntry& item : folder_index(layout)) {
+    const std::string source = item.more.value("source", "");
+    if (!mentions_location(source, *location)) continue;
+    if (item.kind == "claim")
+      claims += layout.entry(item.name, fmt::format("{} ({})", item.summary, source), 4, 10);
     else
-      scenarios += layout.entry(thing.name, source, 4, 44);
-    json[list_name(thing.kind)].push_back(thing.name);
+      scenarios += layout.entry(item.name, source, 4, 44);
+    json[list_name(item.kind)].push_back(item.name);
   }
   // Collect the stored pictures.
   std::string pictures;
-  for (const std::filesystem::path& picture : pictures_of(*place)) {
+  for (const std::filesystem::path& picture : pictures_of(*location)) {
     std::string id = picture.stem().string().substr(std::string_view("figure_").size());
     std::replace(id.begin(), id.end(), '_', '-');
     pictures += fmt::format("    {}\n    redraw it with: scripts/reproduce --figure {}\n", picture.string(), id);

@@ -27,11 +27,12 @@ namespace hapbench {
 ///
 /// The source is queried when the result is due, for the pose of the query. Pending queries therefore store no
 /// contacts, and a source with a memory still sees all queries in order.
-class LateContacts final : public ContactSource {
+class MultiRateContacts final : public ContactSource {
  public:
   /// `may_pull`: contacts with negative depth are springs that pull and stay. `seed` determines which queries
   /// are lost. Precondition: every >= 1, delay >= 0.
-  LateContacts(std::unique_ptr<ContactSource> source, const Lateness& timing, bool may_pull, std::uint64_t seed);
+  MultiRateContacts(std::unique_ptr<ContactSource> source, const MultiRateSchedule& timing, bool may_pull,
+                    std::uint64_t seed);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return source_->capacity(); }

@@ -1,4 +1,4 @@
-#include "scenarios/program/typed_places.hpp"
+#include "scenarios/program/override_locations.hpp"
 
 #include <fmt/format.h>
 
@@ -14,11 +14,11 @@ namespace {
 /// Replaces the file in a location by the override that gave its field. `pointer` is the JSON pointer of the
 /// override's field.
 void name_override(ErrorLocation& location, const std::string& override, const std::string& pointer) {
-  constexpr std::size_t kMostTyped = 60;
-  const bool is_long = override.size() > kMostTyped;
+  constexpr std::size_t kMaxTypedLength = 60;
+  const bool is_long = override.size() > kMaxTypedLength;
   const bool has_option = !location.option.empty();  // another typed option, such as --device
   location.option +=
-      fmt::format("{}--set {}{}", has_option ? ": " : "", override.substr(0, kMostTyped), is_long ? "…" : "");
+      fmt::format("{}--set {}{}", has_option ? ": " : "", override.substr(0, kMaxTypedLength), is_long ? "…" : "");
   location.about_options.emplace_back("--set");
   location.file.clear();
   if (location.pointer == pointer) location.pointer.clear();  // the override already names the field
@@ -26,7 +26,7 @@ void name_override(ErrorLocation& location, const std::string& override, const s
 
 }  // namespace
 
-InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides) {
+InputError with_override_locations(const InputError& error, const std::vector<std::string>& overrides) {
   std::vector<InputError> faults;
   for (const InputError& fault : error.faults()) {
     ErrorLocation location = fault.location();

@@ -1,4 +1,4 @@
-#include "scenarios/program/compare/league_text.hpp"
+#include "scenarios/program/compare/ranking_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,7 +14,7 @@ namespace hapbench {
 namespace {
 
 /// Returns true if row a precedes row b in the table: by rank, then by mean. Rows without a rank come last.
-bool comes_first(const Standing& a, const Standing& b) {
+bool precedes_in_table(const RankingEntry& a, const RankingEntry& b) {
   if (a.rank != b.rank) return a.rank && (!b.rank || *a.rank < *b.rank);
   if (a.better == Better::none) return false;
   if (!a.mean || !b.mean) return a.mean && !b.mean;
@@ -22,13 +22,13 @@ bool comes_first(const Standing& a, const Standing& b) {
 }
 
 /// Returns the rankings by scenario and metric, each with the best algorithm first.
-std::vector<Standing> ranked(const League& league) {
-  std::vector<Standing> all;
+std::vector<RankingEntry> ranked(const Ranking& league) {
+  std::vector<RankingEntry> all;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
     for (std::size_t m = 0; m < league.metrics.size(); ++m) {
       const auto first = static_cast<std::ptrdiff_t>(all.size());
       for (std::size_t a = 0; a < league.algorithms.size(); ++a) all.push_back(league.at(s, a, m));
-      std::stable_sort(all.begin() + first, all.end(), comes_first);
+      std::stable_sort(all.begin() + first, all.end(), precedes_in_table);
     }
   }
   return all;
@@ -39,9 +39,9 @@ struct RankCount {
   std::size_t rankings = 0, first = 0;
 };
 
-RankCount rank_count(const League& league, const std::string& algorithm) {
+RankCount rank_count(const Ranking& league, const std::string& algorithm) {
   RankCount count;
-  for (const Standing& standing : league.standings) {
+  for (const RankingEntry& standing : league.standings) {
     if (standing.algorithm != algorithm || !standing.rank) continue;
     ++count.rankings;
     if (*standing.rank == 1) ++count.first;
@@ -49,12 +49,12 @@ RankCount rank_count(const League& league, const std::string& algorithm) {
   return count;
 }
 
-std::string firsts_text(const League& league) {
-  constexpr std::size_t kMostNamed = 5;
+std::string first_ranks_text(const Ranking& league) {
+  constexpr std::size_t kMaxNamed = 5;
   if (!league.laws.front().mean_rank) return "nothing is ranked: none of these metrics has a better direction";
-  std::size_t rankings = 0;  // the same number for each law
+  std::size_t rankings = 0;  // equal for all laws
   std::vector<std::string> firsts;
-  for (const LawStanding& law : league.laws) {
+  for (const LawRankingEntry& law : league.laws) {
     const RankCount count = rank_count(league, law.algorithm);
     rankings = count.rankings;
     if (count.first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count.first));
@@ -63,16 +63,16 @@ std::string firsts_text(const League& league) {
     return fmt::format("{} alone has rank 1 in all {} rankings (scenario and metric)", league.laws.front().algorithm,
                        rankings);
   return fmt::format("no algorithm alone has rank 1 in all {} rankings (scenario and metric); times with rank 1: {}",
-                     rankings, fmt::join(first_few(firsts, kMostNamed), ", "));
+                     rankings, fmt::join(first_few(firsts, kMaxNamed), ", "));
 }
 
 /// Summarizes which algorithms are first, and whether the seeds give a spread.
-std::string verdict(const League& league, const Layout& layout) {
-  const std::string text = layout.wrapped(firsts_text(league), 0);
+std::string verdict(const Ranking& league, const Layout& layout) {
+  const std::string text = layout.wrapped(first_ranks_text(league), 0);
   if (league.seeds < 2) return text + "one seed: the spread is unknown; --seeds K estimates it\n";
   std::vector<std::string> alike;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s)
-    if (!league.seeds_matter[s]) alike.push_back(league.scenarios[s]);
+    if (!league.depends_on_seed[s]) alike.push_back(league.scenarios[s]);
   if (alike.empty()) return text + "\"hapbench report\" shows the differences between algorithms, seed by seed\n";
   return text +
          layout.wrapped(
@@ -85,15 +85,16 @@ std::string verdict(const League& league, const Layout& layout) {
 
 }  // namespace
 
-std::string league_text(const League& league, const Layout& layout) {
-  constexpr std::size_t kMostPrinted = 60;
+std::string ranking_text(const Ranking& league, const Layout& layout) {
+  constexpr std::size_t kMaxPrinted = 60;
   const std::string table =
-      league.standings.size() <= kMostPrinted || layout.in_full()
-          ? league_columns(league.seeds > 1).text(ranked(league), layout)
+      league.standings.size() <= kMaxPrinted || layout.in_full()
+          ? ranking_columns(league.seeds > 1).text(ranked(league), layout)
           : fmt::format("{} ranks are in ranking.csv; --wide prints them\n", league.standings.size());
   const std::string note =
       layout.wrapped("rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %", 0);
-  return fmt::format("{}\n{}\n{}{}", table, law_columns().text(league.laws, layout), note, verdict(league, layout));
+  return fmt::format("{}\n{}\n{}{}", table, law_ranking_columns().text(league.laws, layout), note,
+                     verdict(league, layout));
 }
 
 }  // namespace hapbench

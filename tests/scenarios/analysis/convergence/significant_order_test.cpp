@@ -1,4 +1,4 @@
-#include "scenarios/analysis/convergence/held_order.hpp"
+#include "scenarios/analysis/convergence/significant_order.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-namespace hapbench::held_order_test {
+namespace hapbench::significant_order_test {
 namespace {
 
-TEST(HeldOrder, SaysWhatHoldsAndOfWhatNoErrorIsKnown) {
+TEST(SignificantOrder, SaysWhatHoldsAndOfWhatNoErrorIsKnown) {
   const auto says = [](const std::vector<NumberWithError>& numbers) {
     const std::vector<std::string> names = {"a", "b", "c", "d"};
-    return held_text(numbers, names);
+    return significant_order_text(numbers, names);
   };
   EXPECT_EQ(says({{2.0, 0.1}, {1.0, 0.1}}), "significant order: b < a");
   EXPECT_EQ(says({{2.0, 0.1}, {1.0, 1.0}}), "no significant order: b ~ a");
@@ -25,4 +25,4 @@ TEST(HeldOrder, SaysWhatHoldsAndOfWhatNoErrorIsKnown) {
 }
 
 }  // namespace
-}  // namespace hapbench::held_order_test
+}  // namespace hapbench::significant_order_test

@@ -9,7 +9,8 @@
 namespace hapbench {
 
 /// Names of the variant sets, which add runs to the run of the scene itself:
-///   hands   hand stiffnesses of 100 and 1000 N/m (the extremes of hand_family()) with the scene's damping; a hand with
+///   hands   hand stiffnesses of 100 and 1000 N/m (the extremes of typical_hands()) with the scene's damping; a hand
+///   with
 ///   a
 ///           mass also gets masses of 0.1 and 0.5 kg
 ///   seeds   four further seeds, with start positions shifted by 10 um, less than the repeatability of a hand
@@ -24,6 +25,6 @@ struct SceneVariant {
 
 /// Returns the variants of a set. Empty if the scene has nothing to vary, such as a hand whose force is a script.
 /// Precondition: `family` is an element of kFamilies.
-std::vector<SceneVariant> family_of(const LoadedScenario& loaded, const std::string& family);
+std::vector<SceneVariant> scene_variants(const LoadedScenario& loaded, const std::string& family);
 
 }  // namespace hapbench

@@ -1,4 +1,4 @@
-#include "scenarios/analysis/convergence/held_order.hpp"
+#include "scenarios/analysis/convergence/significant_order.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,7 +18,7 @@ std::string joined(std::span<const std::size_t> positions, std::span<const std::
 
 }  // namespace
 
-HeldOrder held_order(std::span<const NumberWithError> numbers) {
+SignificantOrder significant_order(std::span<const NumberWithError> numbers) {
   // Sort the numbers that have a value and an error.
   const auto comes_before = [&](std::size_t a, std::size_t b) { return is_less(numbers[a], numbers[b]); };
   std::vector<std::size_t> order;
@@ -26,7 +26,7 @@ HeldOrder held_order(std::span<const NumberWithError> numbers) {
     if (numbers[i].value && numbers[i].error) order.push_back(i);
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return *numbers[i].value; });
   // Separate numbers that differ significantly from no other number.
-  HeldOrder order_found;
+  SignificantOrder order_found;
   const auto is_indistinguishable = [&](std::size_t a) {
     return std::ranges::none_of(order, [&](std::size_t b) { return comes_before(a, b) || comes_before(b, a); });
   };
@@ -47,8 +47,8 @@ HeldOrder held_order(std::span<const NumberWithError> numbers) {
   return order_found;
 }
 
-std::string held_text(std::span<const NumberWithError> numbers, std::span<const std::string> names) {
-  const auto [groups, indistinguishable] = held_order(numbers);
+std::string significant_order_text(std::span<const NumberWithError> numbers, std::span<const std::string> names) {
+  const auto [groups, indistinguishable] = significant_order(numbers);
   std::vector<std::string> parts;
   std::size_t grouped = 0;
   for (const std::vector<std::size_t>& group : groups) {

@@ -1,4 +1,4 @@
-#include "scenarios/analysis/tuning/family.hpp"
+#include "scenarios/analysis/tuning/scene_variants.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ std::vector<SceneVariant> hand_variants(const Scenario& scenario) {
   const bool has_mass = std::holds_alternative<MassSpringDamperHandFields>(scenario.hand);
   if (!has_mass && spring_of(scenario.hand) == nullptr && !std::holds_alternative<DragHandFields>(scenario.hand))
     return {};
-  const auto family = hand_family().subspan(1);  // the first entry is no hand
+  const auto family = typical_hands().subspan(1);  // the first entry is no hand
   const auto [soft, stiff] = std::ranges::minmax(family, {}, &AttachedHand::stiffness);
   const auto [light, heavy] = std::ranges::minmax(family, {}, &AttachedHand::mass);
   std::vector<SceneVariant> hands;
@@ -80,7 +80,7 @@ std::vector<SceneVariant> speed_variants(const LoadedScenario& loaded) {
 
 }  // namespace
 
-std::vector<SceneVariant> family_of(const LoadedScenario& loaded, const std::string& family) {
+std::vector<SceneVariant> scene_variants(const LoadedScenario& loaded, const std::string& family) {
   if (family == "hands") return hand_variants(loaded.scenario);
   return family == "seeds" ? seed_variants(loaded) : speed_variants(loaded);
 }

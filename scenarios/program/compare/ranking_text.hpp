@@ -11,6 +11,6 @@ namespace hapbench {
 
 /// Returns the ranking in each scenario by each metric, the table of the algorithms over all scenarios and
 /// metrics, and sentences that summarize them.
-std::string league_text(const League& league, const Layout& layout);
+std::string ranking_text(const Ranking& league, const Layout& layout);
 
 }  // namespace hapbench

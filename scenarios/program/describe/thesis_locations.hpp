@@ -13,6 +13,6 @@ namespace hapbench {
 /// the location's pictures. `name` is, for example, "A.2", "Fig. A.2", "Table A.1" or "section 3.4"; 3.4.1 is a
 /// part of section 3.4, and Fig. 2c a part of Fig. 2. Returns empty if `name` has no such form. Throws
 /// InputError if no scenario, claim or picture belongs to the location.
-std::optional<Description> describe_place(const std::string& name, const Layout& layout);
+std::optional<Description> describe_thesis_location(const std::string& name, const Layout& layout);
 
 }  // namespace hapbench

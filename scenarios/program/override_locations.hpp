@@ -9,6 +9,6 @@ namespace hapbench {
 
 /// Returns the error with a new location for each fault in a field that --set gave: the option as typed instead
 /// of the scene's file. `overrides` are the values of --set.
-InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides);
+InputError with_override_locations(const InputError& error, const std::vector<std::string>& overrides);
 
 }  // namespace hapbench

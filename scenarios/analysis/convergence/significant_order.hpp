@@ -11,7 +11,7 @@
 namespace hapbench {
 
 /// An order of groups of numbers, given as indices of the numbers.
-struct HeldOrder {
+struct SignificantOrder {
   /// Groups in increasing order: each number is significantly smaller (is_less()) than every number of later groups.
   std::vector<std::vector<std::size_t>> groups;
   std::vector<std::size_t> indistinguishable;  ///< numbers that differ significantly from no other number
@@ -19,9 +19,9 @@ struct HeldOrder {
 
 /// Returns the significant order of numbers. Omits numbers without a value or an error. `indistinguishable` is empty if
 /// no two numbers differ significantly; then all numbers are in one group.
-HeldOrder held_order(std::span<const NumberWithError> numbers);
+SignificantOrder significant_order(std::span<const NumberWithError> numbers);
 
-/// Returns held_order() as a sentence about named numbers, such as "the order holds: mean < proxy".
-std::string held_text(std::span<const NumberWithError> numbers, std::span<const std::string> names);
+/// Returns significant_order() as a sentence about named numbers, such as "the order holds: mean < proxy".
+std::string significant_order_text(std::span<const NumberWithError> numbers, std::span<const std::string> names);
 
 }  // namespace hapbench
