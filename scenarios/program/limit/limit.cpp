@@ -47,7 +47,7 @@ void report_limits(const LimitTable& table, const Layout& layout, Report& report
     for (const JudgedValue& run : row.limit.inconsistent)
       inconsistent.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
     Json& limit = limits.emplace_back(columns.json(row));
-    limit[kNonMonotonic] = limit[kAstray] = inconsistent;
+    limit[kNonMonotonic] = std::move(inconsistent);
     for (const JudgedValue& run : row.limit.runs) runs.push_back({row, run});
   }
   report.write("limit.csv", columns, table.rows);
