@@ -259,13 +259,13 @@ TEST_F(Study, IsTheWordsOfItsCommand) {
              "device": [{"type": "ideal"}]}})");
   const auto words = StudyArguments::in({"limit", "--quiet", mine, "--resolution=0.5"}, kSecond);
   ASSERT_TRUE(words);
-  EXPECT_EQ(fmt::format("{}", fmt::join(words->words, " ")),
+  EXPECT_EQ(fmt::format("{}", fmt::join(words->arguments, " ")),
             "limit a b.json --between 100:1e+05 --smallest --algorithms mean,proxy --bound x=1 --bound y=2 "
             R"(--set hand={"mass_kg":1} --set seed=3 --over device.delay_samples=0:8:5:log )"
             R"(--over integrator.type=rk4,event --over device={"type":"ideal"} --quiet --resolution=0.5)")
       << "an option that is given goes before the study's";
   test::write_plainly(directory_ / "b.json", "{}");
-  EXPECT_EQ(StudyArguments::in({"limit", mine}, kFirst)->words[2], (directory_ / "b.json").string())
+  EXPECT_EQ(StudyArguments::in({"limit", mine}, kFirst)->arguments[2], (directory_ / "b.json").string())
       << "beside the study";
   EXPECT_FALSE(StudyArguments::in({"limit", "single_spring"}, kFirst));
   EXPECT_FALSE(StudyArguments::in({"describe", "stability_z_width"}, kFirst));
