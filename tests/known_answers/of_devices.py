@@ -101,9 +101,9 @@ def devices(bench):
     how = "handle's speed above 30 Hz by the held loop and scipy"
     exact = [
         ("limit", edges, fine, "edge of the eigenvalues", theory),
-        ("beyond", beyond, EXACT, "the limit", limits),
-        ("low", [min(v) for v in tried], EXACT, "the limit", limits),
-        ("below", [math.nan] * 2, EXACT, "0", [0.0] * 2),
+        ("first_unstable", beyond, EXACT, "the limit", limits),
+        ("stable_low", [min(v) for v in tried], EXACT, "the limit", limits),
+        ("unstable_below", [math.nan] * 2, EXACT, "0", [0.0] * 2),
         (
             "vibration_m_per_s",
             [vibration(K, lam) for K, lam in zip(limits, stiffer)],

@@ -211,7 +211,7 @@ class Adding(unittest.TestCase):
                 claims = {
                     name
                     for name in row
-                    if name.startswith(("theory", "worst_hand_limit", "passive", "stable_gil", "exact"))
+                    if name.startswith(("theoretical_limit", "worst_hand_limit", "passive", "stable_gil", "exact"))
                     and row[name]
                 }
                 self.assertEqual(

@@ -138,7 +138,7 @@ class Identify(unittest.TestCase):
         self.assert_holds(told)
         self.assertAlmostEqual(told["position_noise_m"]["value"], 2e-5, delta=1e-6)
         self.assertIn(f"{np.count_nonzero(~kept)} samples are missing", warned)
-        self.assertIn("the clock is not even", warned)
+        self.assertIn("the sampling is not uniform", warned)
 
     def test_a_handful_of_the_study_ends_in_the_global_minimum(self):
         ones = [judged(seed) for seed in (0, 10, 11, 16, 25, 43)]
@@ -180,7 +180,7 @@ class Identify(unittest.TestCase):
 
     def test_units_that_are_unlikely_are_asked_about(self):
         file = self.log(1e3 * np.round(self.places / 1e-5) * 1e-5, 1e3 * self.time)
-        self.assertIn("are the units s, N, m?", self.refused(file))
+        self.assertIn("are the units s, N and m?", self.refused(file))
         told, _ = self.told(file, "--scale", "time=1e-3,position=1e-3")
         self.assert_holds(told)
         self.assertGreater(
@@ -189,8 +189,8 @@ class Identify(unittest.TestCase):
 
     def test_it_says_when_something_else_is_on_the_handle(self):
         for spring, why in (
-            (2.0, "The device has something that this model has not"),
-            (200.0, "The device has something|Is a hand or a spring"),
+            (2.0, "the device has a property that the model lacks"),
+            (200.0, "the device has a property that|Is a hand or a spring"),
         ):
             places = played(self.time, self.force, 50, spring)
             done = run(

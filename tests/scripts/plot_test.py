@@ -43,7 +43,7 @@ class Plot(Given):
             "colliding points",
             "tip x [mm]",
             "tip z [mm]",
-            "filled: the solid",
+            "filled: section of the solid",
             "outlines: the tool at four times",
             "time [s]",
         )
@@ -375,7 +375,7 @@ class Plot(Given):
             "touch",
             "my$own$",
             "summation",
-            "published, of a wall",
+            "published, for a wall",
             "largest stable stiffness K [N/m]",
         )
 

@@ -98,6 +98,17 @@ std::vector<Description> other_meanings(const Index& index, const std::string& n
   return {describe_scenario(find_scenario(name), layout)};
 }
 
+/// Returns the glossary's entry for a name that has another meaning too, after an empty line. Returns an empty text if
+/// the glossary has no entry, or if its file is missing: the other meaning does not need it.
+std::string glossary_addition(const std::string& name, const Layout& layout) {
+  try {
+    const std::optional<Description> term = find_term(name, layout);
+    return term ? "\n" + term->text : "";
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
 int describe(const DescribeOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   if (options.name.empty() || is_kind(options.name)) return list(options, context);
@@ -113,8 +124,7 @@ int describe(const DescribeOptions& options, ProgramContext& context) {
   Description d = joined(meanings);
   // A name of the program may also be a term of the glossary, such as "proxy". The text has both meanings, the
   // JSON only the program's meaning.
-  if (is_known && !d.text.empty())
-    if (const std::optional<Description> term = find_term(options.name, layout)) d.text += "\n" + term->text;
+  if (is_known && !d.text.empty()) d.text += glossary_addition(options.name, layout);
   OutputOptions output = options.output;
   output.json |= d.text.empty();
   print(context, output, d.text, d.json);

@@ -130,7 +130,7 @@ def over(results, study):
     return draw_over(found), {
         "field": axis(found.field),
         "over": axis(found.over[-1]),
-        "theoretical_limit": "its ratio to the limit from theory; then "
+        "theory": "its ratio to the limit from theory; then "
         if any(row["theoretical_limit"] for row in found.rows)
         else "",
         "known": "Thin lines: known limits, and the least over passive hands. "

@@ -111,7 +111,7 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
   std::string said;
   const Json turned = made({"bur", "--from", path("down.obj"), "--extent", "8mm"}, &said);
   EXPECT_EQ(turned["environment"]["flip_normals"], true);
-  EXPECT_NE(said.find("its normals point away from side z and are turned round"), std::string::npos) << said;
+  EXPECT_NE(said.find("its normals point away from side z and are inverted"), std::string::npos) << said;
   // Without that the tool starts behind the surface.
   const std::string behind = hapbench({"validate", path("made.json"), "--set", "environment.flip_normals=false"}).err;
   EXPECT_NE(behind.find("1.5 mm behind the surface"), std::string::npos) << behind;

@@ -131,7 +131,7 @@ TEST_F(SweepCommand, PrintsTheRunsThatKeepConditions) {
   // Asked for at once, or of the table: the same.
   const ProgramRun again = hapbench(words), first = sweep("a", where);
   EXPECT_EQ(first.out, again.out);
-  const std::string says = " of 24 runs have force_max_N<3 and rendering.algorithm!=mean\n";
+  const std::string says = " of 24 runs satisfy force_max_N<3 and rendering.algorithm!=mean\n";
   EXPECT_NE(again.out.find(std::to_string(expected.size()) + says), std::string::npos) << again.out;
   words.emplace_back("--json");
   EXPECT_EQ(hapbench(words).json()["rows"], expected);
