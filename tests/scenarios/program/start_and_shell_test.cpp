@@ -238,7 +238,7 @@ TEST_F(ShellCommand, WritesTheEnvironmentsPointsExactlyAsCsv) {
     EXPECT_EQ(points[i].position, expected[i].position) << i;
     EXPECT_EQ(points[i].normal, expected[i].normal) << i;
   }
-  EXPECT_NE(run.out.find("\n  points       in " + path("hole.csv") + "\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("\n  points       written to " + path("hole.csv") + "\n"), std::string::npos) << run.out;
 }
 
 TEST_F(ShellCommand, WritesWhatARunReadsAsTheSameEnvironment) {

@@ -68,12 +68,12 @@ TEST(ObservedOrder, IsAsymptoticWhereTheIndicesAgreeWithinATenth) {
 TEST(ObservedOrder, IsNotStatedWhereTheDifferencesShowNone) {
   const double ulp = std::nextafter(1.0, 2.0) - 1.0;
   const std::pair<std::vector<double>, const char*> kCases[] = {
-      {{1.0, 1.2, 1.1, 1.15, 1.125}, "change their sign"},
-      {{2.0, 1.0, 1.4, 1.2, 1.1}, "change their sign"},  // the last three alone would have order 1
+      {{1.0, 1.2, 1.1, 1.15, 1.125}, "change sign"},
+      {{2.0, 1.0, 1.4, 1.2, 1.1}, "change sign"},  // the last three alone would have order 1
       {{1.0, 1.1, 1.3, 1.7}, "do not shrink"},
       {{1.0, 1.1, 1.2, 1.3}, "do not shrink"},
       {{1.0, 1.01, 1.2, 1.344}, "do not shrink"},  // the last three alone would have order 0.4
-      {{2.0, 1.125, 1.015625, 1.001953125}, "more than twice the formal one, 1"},
+      {{2.0, 1.125, 1.015625, 1.001953125}, "more than twice the formal order 1"},
       {{2.0, 2.0, 2.0}, "rounding"},
       {{0.0, 0.0, 0.0}, "rounding"},
       {{1.1, 1.0 + 16 * ulp, 1.0 + 4 * ulp, 1.0 + 2 * ulp, 1.0 + ulp}, "rounding"},
