@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <span>
@@ -101,10 +102,22 @@ int simulate_log_for_pipe() {
   return kSuccess;
 }
 
+/// Blocks Ctrl-C until the Python of the command answers it (stop_on_ctrl_c in hapbench_command.py). A blocked signal
+/// stays pending across exec. Otherwise the shell would lose the signal, or Python would print a traceback of its
+/// imports. Throws Stopped if the signal came before.
+void leave_ctrl_c_to_python() {
+  sigset_t ctrl_c;
+  sigemptyset(&ctrl_c);
+  sigaddset(&ctrl_c, SIGINT);
+  ::pthread_sigmask(SIG_BLOCK, &ctrl_c, nullptr);
+  throw_if_stopped();
+}
+
 /// At a terminal this process becomes the launcher.
 int run(const ProgramWords& package, const ProgramWords& given, ProgramContext& context) {
   const std::string line = launch_line(package, given, context);
   if (context.captured != nullptr) return run_for(*context.captured, line);
+  leave_ctrl_c_to_python();
   ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
   fail_to_launch();
 }
