@@ -7,29 +7,33 @@ from hapbench_command import (
     answer,
     exit_status,
     fail,
+    leave,
     refuse_source,
     shell_line,
+    stop_on_ctrl_c,
     table_text,
     write,
 )
 
-from .options import FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
+from .options import DECIMALS, FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
 
 FOOTER = """\
---columns: time, and position, orientation and force by the first of their columns, or each by \
+--columns: time, and position, orientation and force by the name of their first column, whose \
+others are found by their names (x, y, z), or by its number, which the others follow; or each by \
 itself as px, py, pz, qw, qx, qy, \
 qz, mfx, mfy, mfz. --orientation is none, axis (the direction out of the tip), quat_wxyz, \
 quat_xyzw, axis_angle (axis, angle) or \
-matrix (r11, r12 ... r33, row by row); it turns the tool's frame into the world's.
+matrix (r11, r12 ... r33, row by row); it turns the tool's frame into the world's. Units in names, \
+such as "x [mm]", are applied.
 --set: sample_rate_Hz of a file without times; tip_axis, the direction out of the tip in the \
 tool's frame, default 0,0,-1; shift, \
 added to the places of the tip [m]; force_by_tool=true, forces are the tool's on the object and \
 are turned round; max_speed, faster \
 jumps are refused [m/s], default 5; max_gap, longer gaps are refused, not bridged [s], default \
-0.5; floats=true, hapi-binary has \
+0.5; held_rows=keep, rows that repeat a pose are samples, default thin; floats=true, hapi-binary has \
 numbers of four bytes.
 Rows with wrong numbers, times that do not increase, quaternions not of unit length and jumps are \
-refused with their lines, and \
+refused with their first line, and \
 nothing is written.
   hapbench import stroke
   hapbench import stroke log.txt --preset hapi --smooth window=11,order=3 --out stroke.csv
@@ -57,12 +61,15 @@ def command_line():
     line.one_of(
         FORMATS, "--format", "csv (default), traj (blanks between numbers), hapi, hapi-binary"
     )
+    line.one_of(
+        DECIMALS, "--decimal", "the decimal sign: comma, point or auto (default), which finds it"
+    )
     line.texts("--columns", "where quantities are, by name or number from 1 (below)")
     line.texts("--scale", "what units are: time [s], position [m], angle [rad], force [N] (below)")
     line.one_of(
         list(ORIENTATIONS),
         "--orientation",
-        "what its columns hold; default none: the tool never turns",
+        "what its columns hold; default: as their names say; none: the tool never turns",
     )
     line.texts("--frame", "recorded directions that are the scenario's x, y, z; y up: x,-z,y")
     line.text(
@@ -111,7 +118,7 @@ def run(options):
 
 
 if __name__ == "__main__":
+    stop_on_ctrl_c("import stroke")
     asked_for = command_line().parse(sys.argv[1:])
-    sys.exit(
-        exit_status("import stroke", "" if asked_for.quiet else "importing", lambda: run(asked_for))
-    )
+    doing = "" if asked_for.quiet else "importing"
+    leave(exit_status("import stroke", doing, lambda: run(asked_for)))
