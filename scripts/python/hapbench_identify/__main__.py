@@ -5,24 +5,32 @@ import math
 import sys
 from pathlib import Path
 
-import numpy as np
 from hapbench_command import (
     CommandLine,
     answer,
     exit_status,
     fail,
     finite_number,
+    leave,
     refuse_source,
     require_name,
     shell_line,
+    stop_on_ctrl_c,
     table_text,
     write,
 )
-from hapbench_import.stroke import number_text
 
-from .fit import fit
+if __name__ == "__main__":
+    stop_on_ctrl_c("import device")
+
+import numpy as np
+from hapbench_import.options import DECIMALS
+from hapbench_import.stroke import columns_text, number_text
+
+from .fit import MASS, fit
 from .log import read_log
 from .model import FRICTION_TOLD, KINDS, NAMES, design, force_to_ask, travel_of
+from .units import LONGEST_STEP, is_likely, is_usual, likely_units, scale_option, turned_round
 
 FOOTER = """\
 Fits m x'' = u(t - delay) + offset - b x' - c sign(x') to the positions by least squares, \
@@ -34,7 +42,8 @@ the residual has beyond the \
 encoder's step. A constant force besides the commands is told and not part of a device.
 --columns: time, force and position, by default time_s, force_N and position_m. Forces are as \
 commanded at the time of the row, \
-positive in the direction of the position.
+positive in the direction of the position (--scale force=-1 turns them round). Units in names, such as \
+"x [mm]", are applied.
 --design: force, the largest [N], default 1; travel, the way that the handle has [m], default \
 0.05; mass, the least that it may have \
 [kg], default 0.05; rate of the samples [Hz], default 1000; duration [s], default 5.
@@ -74,6 +83,9 @@ def command_line():
     )
     line.texts("--columns", "where quantities are, by name or number from 1 (below)")
     line.texts("--scale", "what units are: time [s], force [N], position [m] (below)")
+    line.one_of(
+        DECIMALS, "--decimal", "the decimal sign: comma, point or auto (default), which finds it"
+    )
     line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
     line.texts(
         "--design",
@@ -105,16 +117,28 @@ def run(options):
         if options.design
         else shell_line("hapbench", "limit", "tap_wall", "--device", out)
     )
+    read = "" if kind else f"{log_text(data)}\n"
     answer(
         options,
-        f"{out}\n{table_text(headings, table, options.wide, numbers=True)}\nnext: {next_line}",
+        f"{out}\n{read}{table_text(headings, table, options.wide, numbers=True)}\nnext: {next_line}",
         data | {"next": next_line},
+    )
+
+
+def log_text(data):
+    """Which columns were read, and the clock."""
+    return (
+        f"{columns_text(data['columns'], data['columns_not_read'], data['scales'])}\n"
+        f"clock: {data['samples']} samples in {data['duration_s']:.4g} s, {1.0 / data['step_s']:.4g} Hz"
     )
 
 
 def identify(options, out):
     log = read_log(options)
+    if log.step > LONGEST_STEP and "time" not in given_scales(options):
+        refuse_units(options, log, f"intervals of {log.step:.4g} s")
     found = fit(log)
+    require_right_sign(options, log, found)
     told = {
         name: {"value": None if name in found.untold else value, "interval": ends}
         for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
@@ -140,7 +164,9 @@ def identify(options, out):
         | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]}
         for name in UNITS
     }
-    require_likely_units(options, found.values[0], step)
+    if not options.scale and not is_likely(found.values[MASS], step):
+        handle = f"a handle of {found.values[MASS]:.3g} kg"
+        refuse_units(options, log, f"{handle}, an encoder's step of {step:.3g} m", found)
     if told["handle_mass_kg"]["value"] is None:
         fail(
             f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. "
@@ -149,6 +175,11 @@ def identify(options, out):
             options.log,
         )
     warnings = log.warnings + warnings_of(told, found, log)
+    if not found.misfit and not is_usual(log, found.values[MASS]):
+        warnings.append(
+            f"a handle of {found.values[MASS]:.3g} kg, a travel of {np.ptp(log.position[np.isfinite(log.position)]):.3g} m "
+            f"and forces of up to {np.abs(log.force).max():.3g} N are unusual. {units_text(options, log, found)}".rstrip()
+        )
     device = {"type": "impedance"} | {
         name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]
     }
@@ -168,6 +199,10 @@ def identify(options, out):
         "step_s": log.step,
         "residual_m": found.rms,
         "samples": int(np.isfinite(log.position).sum()),
+        "duration_s": float(log.time[-1] - log.time[0]),
+        "columns": log.columns,
+        "columns_not_read": log.columns_not_read,
+        "scales": log.scales,
         "device": out,
         "picture": str(picture),
         "warnings": warnings,
@@ -183,16 +218,46 @@ def unless_wide(value, interval):
     }
 
 
-def require_likely_units(options, mass, encoder_step):
-    """A log in milliseconds and millimetres fits as well as any, with a handle of tons."""
-    if options.scale or (1e-3 <= mass <= 20.0 and encoder_step <= 1e-3):
+def require_right_sign(options, log, found):
+    """Refuses a log that only a force of the other sign explains."""
+    other = turned_round(log, found)
+    if other is None:
         return
     fail(
-        f"a handle of {mass:.3g} kg, an encoder's step of {encoder_step:.3g} m: are the units s, "
-        "N, m? For a log in ms and mm: --scale "
-        "time=1e-3,position=1e-3. If they are, --scale time=1 says so",
+        f"the handle accelerates against the force: the sign of force or position is wrong. With the other sign the "
+        f"residual is {other.rms:.3g} m instead of {found.rms:.3g} m, and the handle has "
+        f"{other.values[MASS]:.3g} kg: {scale_option({'force': -1.0}, given_scales(options))}",
         options.log,
     )
+
+
+def refuse_units(options, log, problem, found=None):
+    """Refuses a log that is hardly in s, N and m, with the units that make it a likely one. A log in milliseconds and
+    millimetres fits as well as any, with a handle of tons."""
+    advice = (
+        units_text(options, log, found) or "No usual units explain it. Is a hand or a spring on it?"
+    )
+    fail(
+        f"{problem}: are the units s, N, m? {advice} If they are, --scale time=1 says so",
+        options.log,
+    )
+
+
+def units_text(options, log, found):
+    """The likely units of a log as a sentence, or nothing."""
+    given = given_scales(options)
+    text = " or ".join(
+        f"{text}: {scale_option(factors, given)}"
+        for text, factors in likely_units(log, found)
+        if factors
+    )
+    return f"{text[0].upper()}{text[1:]}." if text else ""
+
+
+def given_scales(options):
+    """The numbers of --scale, by quantity."""
+    pairs = (word.partition("=") for word in options.scale)
+    return {name: float(value) for name, _, value in pairs}
 
 
 def shown_end(end):
@@ -318,4 +383,4 @@ def limited_by_travel(kind, numbers, peak):
 if __name__ == "__main__":
     asked_for = command_line().parse(sys.argv[1:])
     doing = "" if asked_for.quiet else "designing" if asked_for.design else "identifying"
-    sys.exit(exit_status("import device", doing, lambda: run(asked_for)))
+    leave(exit_status("import device", doing, lambda: run(asked_for)))
