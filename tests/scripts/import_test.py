@@ -622,6 +622,8 @@ class Layouts(Given):
             (self.PLAIN.replace(",", "\t"), ""),
             (self.PLAIN.replace(",", " "), ""),
             (quoted, ""),
+            (quoted.replace('"', "'"), ""),
+            ("Rate: 500\n" + self.PLAIN, "1 line above the header skipped, the first: line 1"),
             (comma, 'line 3: got "0,002": numbers have a decimal comma'),
             (comma.replace(";", "\t"), "numbers have a decimal comma"),
             (comma.replace(";", " "), "numbers have a decimal comma"),
@@ -700,6 +702,12 @@ class Layouts(Given):
             table("t_ms,x_mm,y_mm,z_mm", 1e3 * self.TIME, 1e3 * self.PLACES),
             "time=t_ms,position=x_mm",
         )
+        rows = millimetres.partition("\n")[2]
+        for header in ("t/ms,x/mm,y/mm,z/mm\n", '"t, ms","x, mm","y, mm","z, mm"\n'):
+            self.assert_places(header + rows)
+        said, _ = self.assert_places("t,x,y,z\nms,mm,mm,mm\n" + rows)
+        self.assertEqual(said, "line 2 has the units of the columns")
+        self.assert_places(self.PLAIN.replace("z\n", "z [-]\n", 1).replace("x", "x [-]"))
         counts = millimetres.replace("mm", "counts")
         self.assertIn(
             'column 2 x [counts]: the unit "counts" is unknown: --scale position=...',

@@ -30,10 +30,17 @@ class Unit:
 
 
 def without_unit(name):
-    """(name, Unit or None): "x [mm]" is x in mm. Brackets around a number, as in q[0], are an index."""
+    """(name, Unit or None): "x [mm]", "x/mm" and "x, mm" are x in mm. Brackets around a number or a component, as in
+    q[0], are an index."""
     found = _BRACKETED.search(name)
-    if found and found[2] and not found[2].isdigit() and found[2] not in ("-", "x", "y", "z", "w"):
+    if found and found[2] in ("", "-", "1"):
+        return name[: found.start()] if found[2] != "1" else name, None
+    if found and not found[2].isdigit() and found[2] not in ("x", "y", "z", "w"):
         return name[: found.start()], Unit(found[2], found[1] == "[")
+    for mark in "/,":
+        head, _, ending = name.rpartition(mark)
+        if head and any(ending.strip() in known for known in UNITS.values()):
+            return head.strip(), Unit(ending.strip(), True)
     head, _, ending = name.rpartition("_")
     return name, Unit(ending, True) if head and ending in _ENDINGS else None
 

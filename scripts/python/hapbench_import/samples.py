@@ -573,7 +573,7 @@ def _in_sequence(rows, max_speed, held):
             step, way = time[row] - time[kept[-1]], math.dist(position[row], position[kept[-1]])
             if not step > 0.0:
                 rows.problems[row] = (
-                    f"got time {rows.origin + time[row]:.9g} s after {rows.origin + time[kept[-1]]:.9g} s; "
+                    f"got time {rows.origin + time[row]:.12g} s after {rows.origin + time[kept[-1]]:.12g} s; "
                     "allowed: increasing times"
                 )
                 continue

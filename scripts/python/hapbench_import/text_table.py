@@ -3,9 +3,12 @@ both read text here."""
 import csv
 import math
 import re
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from hapbench_command import fail, finite_number
+
+from .columns import UNITS
 
 MOST_COLUMNS = 1000
 SAMPLED = 20  # lines from which the separator is found
@@ -35,6 +38,8 @@ def read_table(data, file, by_blanks=False, names_of=None):
     if not lines:
         fail("no samples; allowed: a line for each", file)
     separator = None if by_blanks else _separator([line for _, line in lines[:SAMPLED]])
+    if names_of is None:
+        lines = _from_header_on(lines, separator, notes)
     number, first = lines[0]
     words = split(first, separator)
     if len(words) > MOST_COLUMNS:
@@ -42,6 +47,10 @@ def read_table(data, file, by_blanks=False, names_of=None):
     names = names_of(words) if names_of else _header(words)
     if names:
         lines = lines[1:]
+        if names_of is None and lines and (units := _units_of(split(lines[0][1], separator))):
+            notes.append(f"line {lines[0][0]} has the units of the columns")
+            names = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units)]
+            lines = lines[1:]
     header_line = number if names else None
     if not names:
         header_line, names = _commented_header(comments, number, len(words), separator)
@@ -99,9 +108,15 @@ def split(line, separator):
         return line.split()
     if b'"' in line:
         text = line.decode("utf-8", "surrogateescape")
-        cells = next(csv.reader([text], delimiter=separator.decode(), skipinitialspace=True))
-        return [cell.encode("utf-8", "surrogateescape").strip(_BLANK) for cell in cells]
-    return [cell.strip(_BLANK) for cell in line.split(separator)]
+        with suppress(csv.Error):
+            cells = next(csv.reader([text], delimiter=separator.decode(), skipinitialspace=True))
+            return [cell.encode("utf-8", "surrogateescape").strip(_BLANK) for cell in cells]
+    cells = [cell.strip(_BLANK) for cell in line.split(separator)]
+    if b"'" not in line:
+        return cells
+    return [
+        cell[1:-1] if cell[:1] == cell[-1:] == b"'" and cell != b"'" else cell for cell in cells
+    ]
 
 
 def is_number(cell):
@@ -115,16 +130,13 @@ def is_number(cell):
 
 
 def _separator(lines):
-    """The separator that leaves the fewest cells that are no numbers and, of several, the most cells."""
+    """The separator that leaves the smallest fraction of cells that are no numbers and, of several, the most cells."""
     sample = lines[1:] or lines  # the first line may have names
 
     def rank(separator):
-        try:
-            cells = [cell for line in sample for cell in split(line, separator)]
-        except csv.Error:
-            return len(sample) * MOST_COLUMNS, 0
+        cells = [cell for line in sample for cell in split(line, separator)]
         words = sum(1 for cell in cells if cell and not is_number(cell))
-        return words, -len(cells)
+        return words / max(1, len(cells)), -len(cells)
 
     return min(SEPARATORS, key=rank)
 
@@ -135,6 +147,31 @@ def _header(words):
     if not named or any(is_number(word) and not _NOT_A_NUMBER.fullmatch(word) for word in words):
         return []
     return [word.decode("utf-8", "surrogateescape") for word in words]
+
+
+def _from_header_on(lines, separator, notes):
+    """The lines without those above a header that have fewer or more cells than it and the rows."""
+    rows = [split(line, separator) for _, line in lines[: 2 * SAMPLED]]
+    counts = [len(row) - (not row[-1]) for row in rows]  # a separator may be at the end
+    later = counts[len(counts) // 2 :]
+    first = counts.index(max(set(later), key=later.count))
+    if not first or not _header(rows[first]):
+        return lines
+    notes.append(
+        f"{counted(first, 'line')} above the header skipped, the first: line {lines[0][0]}"
+    )
+    return lines[first:]
+
+
+def _units_of(words):
+    """The units in a line below the header, "" where the line has none; nothing if a word is no unit."""
+    words = [word.decode("utf-8", "replace").strip("[]()") for word in words]
+    is_unit = [
+        word in ("", "-") or any(word in known for known in UNITS.values()) for word in words
+    ]
+    if not all(is_unit) or not any(word not in ("", "-") for word in words):
+        return []
+    return ["" if word == "-" else word for word in words]
 
 
 def _commented_header(comments, before, count, separator):
