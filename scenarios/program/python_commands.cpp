@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <span>
@@ -123,10 +124,22 @@ int print_runs_where(const ProgramArguments& given, ProgramContext& context) {
   return kSuccess;
 }
 
+/// Blocks Ctrl-C until the Python of the command handles it (stop_on_ctrl_c in hapbench_command.py). A blocked signal
+/// stays pending across exec. Otherwise the shell would lose the signal, or Python would print a traceback of its
+/// imports. Throws Stopped if the signal came before.
+void leave_ctrl_c_to_python() {
+  sigset_t ctrl_c;
+  sigemptyset(&ctrl_c);
+  sigaddset(&ctrl_c, SIGINT);
+  ::pthread_sigmask(SIG_BLOCK, &ctrl_c, nullptr);
+  throw_if_stopped();
+}
+
 /// Runs a package. Unless a host captures the output, this process becomes the launcher.
 int run(const ProgramArguments& package, const ProgramArguments& given, ProgramContext& context) {
   const std::string line = launch_line(package, given, context);
   if (context.captured != nullptr) return run_captured(*context.captured, line);
+  leave_ctrl_c_to_python();
   ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
   fail_to_launch();
 }

@@ -1,6 +1,7 @@
 """Shared by the commands written in Python: error messages, hints at names, writing of files, and a
 notice while work takes long."""
 import argparse
+import atexit
 import difflib
 import errno
 import json
@@ -9,12 +10,15 @@ import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import textwrap
 import threading
 import time
-from contextlib import contextmanager
+import traceback
+from contextlib import contextmanager, suppress
+from pathlib import Path
 
 from hapbench.errors import InputError
 
@@ -23,6 +27,9 @@ SHARED = 'shared options; "hapbench --help" explains them'
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
 MOST_FAULTS = 20  # reported at once
 SILENCE = 2.0  # before a notice [s]
+
+_unfinished = set()  # scratch files of write(), which an end by Ctrl-C removes
+_written = []  # files that write() completed
 
 
 def say_error(text):
@@ -169,7 +176,8 @@ def the_program():
 
 def asked_of_program(what, *words):
     """Returns the text that the program prints for the arguments `words`. `what` completes the message for a missing
-    program, such as "evaluates --where". Raises InputError with the program's messages if the program fails."""
+    program, such as "evaluates --where". Raises InputError with the program's messages if the program fails.
+    """
     program = the_program()
     if not program:
         fail(f"the program hapbench, which {what}, is not in the path")
@@ -186,9 +194,72 @@ def asked_of_program(what, *words):
     return done.stdout
 
 
+def stop_on_ctrl_c(name):
+    """Makes Ctrl-C end this process with status 130 and one line, and any other failure end it with one line.
+
+    The __main__ of a command calls it before it imports numpy and the like. The program starts
+    Python with Ctrl-C blocked; this function unblocks it. The handler ends the process itself:
+    a KeyboardInterrupt can be lost in a callback or a destructor, and prints a traceback in an import.
+    """
+
+    def stop(*_):
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        for scratch in list(_unfinished):
+            with suppress(OSError):
+                os.unlink(scratch)
+        end_of_line = "\r\033[K" if sys.stderr.isatty() else ""  # of notice()
+        with suppress(OSError):
+            os.write(2, f"{end_of_line}hapbench: {name} {stopped()}\n".encode())
+        _end(INTERRUPTED)
+
+    def fail_in_one_line(kind, error, trace):
+        if isinstance(error, OSError):
+            unwritable(error)
+        else:
+            say_error(error if isinstance(error, InputError) else internal_error(name, error))
+
+    sys.excepthook = fail_in_one_line
+    # A shell starts background jobs with Ctrl-C ignored. That stays.
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, stop)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+
+
+def stopped():
+    return (
+        f"stopped; written: {', '.join(_written)}" if _written else "stopped; nothing was written"
+    )
+
+
+def leave(status):
+    """Ends this process with a status of exit_status(). The interpreter does not finalize its modules, during which
+    Ctrl-C would print a traceback or be lost."""
+    with suppress(OSError, ValueError):
+        sys.stderr.flush()
+    _end(status)
+
+
+def _end(status):
+    """Calls what was registered to be called at the end (matplotlib removes a folder) and ends the process."""
+    with suppress(BaseException):
+        atexit._run_exitfuncs()
+    os._exit(status)
+
+
+def internal_error(name, error):
+    """One line about an exception that no reader of the command expected, with the line of the source."""
+    frames = traceback.extract_tb(error.__traceback__)
+    place = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
+    if isinstance(error, MemoryError):
+        return f"{name}: not enough memory{place}"
+    text = str(error) or "no message"
+    return f"{name}: internal error: {type(error).__name__}: {text}{place}"
+
+
 def exit_status(name, doing, work):
     """Does the work of a command, with a notice that says what it is `doing`, unless that is empty.
-    Returns the exit status; what is refused is printed, each fault in a line."""
+    Returns the exit status; what is refused is printed, each fault in a line, and so is any other failure.
+    """
     try:
         with notice(doing):
             status = work()
@@ -205,8 +276,11 @@ def exit_status(name, doing, work):
     except OSError as error:
         return unwritable(error)
     except KeyboardInterrupt:
-        print(f"hapbench: {name} stopped; nothing was written", file=sys.stderr)
+        print(f"hapbench: {name} {stopped()}", file=sys.stderr)
         return INTERRUPTED
+    except Exception as error:
+        say_error(internal_error(name, error))
+        return FAILED
 
 
 def answer(options, text, data):
@@ -313,13 +387,16 @@ def write(file, data):
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
+        _unfinished.add(scratch)
         try:
             with scratch.open("wb") as open_scratch:
                 open_scratch.write(data if isinstance(data, bytes) else data.encode())
                 open_scratch.flush()
                 scratch.replace(file)
+            _written.append(str(file))
         finally:
             scratch.unlink(missing_ok=True)
+            _unfinished.discard(scratch)
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(file)) from error
 
@@ -327,6 +404,11 @@ def write(file, data):
 def unwritable(error):
     """Says why write() failed. Exit status: bad input where no file can be, a fault where the disk
     is full or broken."""
+    if error.filename is None:
+        with suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what is left to print cannot be printed
+        say_error(f"cannot write to standard output: {error.strerror or error}")
+        return FAILED
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
         say_error(f"cannot write {error.filename}: {error.strerror}")
         return FAILED

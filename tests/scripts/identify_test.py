@@ -67,8 +67,10 @@ class Identify(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout), done.stderr
 
-    def refused(self, file):
-        said = hapbench("import", "device", file, "--out", self.root / "none.json", expected=2)
+    def refused(self, file, *words):
+        said = hapbench(
+            "import", "device", file, "--out", self.root / "none.json", *words, expected=2
+        )
         self.assertFalse((self.root / "none.json").exists())
         return said
 
@@ -187,10 +189,68 @@ class Identify(unittest.TestCase):
             self.told(file, "--scale", "time=1")[0]["handle_mass_kg"]["value"], 100.0
         )
 
+    def test_a_force_of_the_other_sign_is_named_with_the_scale(self):
+        places = np.round(self.places / Q) * Q
+        for given in (
+            self.log(places, force=-self.force),
+            self.log(-places),
+        ):
+            said = self.refused(given)
+            self.assertIn("the handle accelerates against the force", said)
+            self.assertIn("--scale force=-1", said)
+        told, warned = self.told(given, "--scale", "force=-1")
+        self.assert_holds(told)
+        self.assertEqual(warned, "")
+        both = self.log(1e3 * places, 1e3 * self.time, -self.force)
+        self.assertIn("--scale time=0.001,force=-1,position=0.001", self.refused(both))
+
+    def test_units_that_explain_the_log_are_named(self):
+        places = np.round(self.places / Q) * Q
+        for time, force, position, scale in (
+            (1.0, 1.0, 1e3, "position=0.001"),
+            (1e3, 1.0, 1.0, "time=0.001"),
+            (1e9, 1.0, 1.0, "time=1e-09"),
+            (1.0, 1e-3, 1.0, "force=1000"),
+            (1.0, 1e3, 1.0, "force=0.001"),
+        ):
+            said = self.refused(self.log(position * places, time * self.time, force * self.force))
+            self.assertIn(f"it is a handle of 0.12 kg: --scale {scale}", said)
+        # What is given stays in the advice.
+        said = self.refused(self.log(1e3 * places, 1e3 * self.time), "--scale", "position=1e-3")
+        self.assertIn("--scale position=0.001,time=0.001", said)
+        # A handle that may be one is kept, with a warning.
+        _, warned = self.told(self.log(places, force=self.force / 9.80665e-3))
+        self.assertIn("In s, gf, m it is a handle of 0.12 kg: --scale force=0.00980665", warned)
+
+    def test_units_in_names_and_decimal_commas_are_read(self):
+        file = self.log(1e3 * np.round(self.places / Q) * Q, 1e3 * self.time)
+        numbers = file.read_text().partition("\n")[2].replace(",", ";").replace(".", ",")
+        file.write_text("Time [ms];force [N];position [mm]\n" + numbers)
+        told, warned = self.told(file)
+        self.assert_holds(told)
+        self.assertIn("numbers have a decimal comma", warned)
+        self.assertEqual(told["scales"], {"time": 1e-3, "force": 1.0, "position": 1e-3})
+        self.assertEqual(
+            [told["columns"][name][0]["name"] for name in ("time", "force", "position")],
+            ["Time [ms]", "force [N]", "position [mm]"],
+        )
+
+    def test_positions_held_for_several_rows_do_not_bias_the_delay(self):
+        for rows in (2, 5):
+            held = np.arange(len(self.time)) // rows * rows
+            for force in (self.force, self.force[held]):
+                places = positions(self.time, force, HANDLE)
+                told, warned = self.told(self.log((np.round(places / Q) * Q)[held], force=force))
+                self.assertIn(f"each position is repeated in {rows} rows", warned)
+                delay = told["delay_s"]
+                self.assertAlmostEqual(delay["value"], LATE, delta=3e-5)
+                self.assertLess(np.ptp(delay["interval"]), 1e-4)
+                self.assertAlmostEqual(told["handle_mass_kg"]["value"] / M, 1.0, delta=0.01)
+
     def test_it_says_when_something_else_is_on_the_handle(self):
         for spring, why in (
             (2.0, "the device has a property that the model lacks"),
-            (200.0, "the device has a property that|Is a hand or a spring"),
+            (200.0, "the device has a property|Is a hand or a spring"),
         ):
             places = played(self.time, self.force, 50, spring)
             done = run(
@@ -212,7 +272,15 @@ class Identify(unittest.TestCase):
             ),
             (
                 "time_s,force_N,position_m\n" + "".join(f"0,{i},{i}\n" for i in range(60)),
-                "increasing times",
+                "increasing times (59 rows, the last: line 61)",
+            ),
+            (
+                "time_s,force_N,position_m,force_N\n" + "0,1,2,3\n" * 60,
+                'two columns are named "force_N"',
+            ),
+            (
+                "time_s,force_N,position_m\n" + "0,1,x\n" * 60,
+                "line 2: got no number for time, force or position (60 rows, the last: line 61)",
             ),
         ):
             (self.root / "bad.csv").write_text(text)

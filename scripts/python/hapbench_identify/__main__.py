@@ -5,29 +5,39 @@ import math
 import sys
 from pathlib import Path
 
-import numpy as np
 from hapbench_command import (
     CommandLine,
     answer,
     exit_status,
     fail,
     finite_number,
+    leave,
     refuse_source,
     require_name,
     shell_line,
+    stop_on_ctrl_c,
     table_text,
     write,
 )
-from hapbench_import.stroke import number_text
 
-from .fit import fit
+if __name__ == "__main__":
+    stop_on_ctrl_c("import device")
+
+import numpy as np
+from hapbench_import.options import DECIMALS
+from hapbench_import.stroke import columns_text, number_text
+
+from .fit import MASS, fit
 from .log import read_log
 from .model import FRICTION_TOLD, KINDS, NAMES, design, force_to_ask, travel_of
+from .units import LONGEST_STEP, is_likely, is_usual, likely_units, scale_option, turned_round
 
 NOTES = [
     "Log: a CSV file of one axis while no hand holds the handle: time, commanded force and "
     "position, named time_s, force_N and position_m, or as --columns and --scale say. The force of "
     "a row is the one commanded at its time, positive in the direction of the position.",
+    'Units in column names, such as "position [mm]", are applied; --scale overrides them. '
+    "--scale force=-1 changes the sign of the forces.",
     "Result: mass, viscous and dry friction, delay, encoder step and noise, each with a 95 % "
     "interval. A parameter that the log cannot determine is not written; a warning gives the "
     "reason. A constant offset force is printed, but is not part of the device.",
@@ -82,6 +92,12 @@ def command_line():
         "<name=factor,...>",
         "units of the log: seconds per unit of time, and so on for force [N] and position [m]",
     )
+    line.one_of(
+        DECIMALS,
+        "--decimal",
+        "<sign>",
+        "decimal sign: comma, point or auto (default: auto; found from the numbers)",
+    )
     line.flag(
         "--skip-bad-rows", "leave out invalid rows and list them, instead of refusing the log"
     )
@@ -117,16 +133,28 @@ def run(options):
         if options.design
         else shell_line("hapbench", "limit", "tap_wall", "--device", out)
     )
+    read = "" if kind else f"{log_text(data)}\n"
     answer(
         options,
-        f"{out}\n{table_text(headings, table, options.wide, numbers=True)}\nnext: {next_line}",
+        f"{out}\n{read}{table_text(headings, table, options.wide, numbers=True)}\nnext: {next_line}",
         data | {"next": next_line},
+    )
+
+
+def log_text(data):
+    """Which columns were read, and the clock."""
+    return (
+        f"{columns_text(data['columns'], data['columns_not_read'], data['scales'])}\n"
+        f"clock: {data['samples']} samples in {data['duration_s']:.4g} s, {1.0 / data['step_s']:.4g} Hz"
     )
 
 
 def identify(options, out):
     log = read_log(options)
+    if log.step > LONGEST_STEP and "time" not in given_scales(options):
+        refuse_units(options, log, f"the log has a mean interval of {log.step:.4g} s")
     found = fit(log)
+    require_right_sign(options, log, found)
     told = {
         name: {"value": None if name in found.untold else value, "interval": ends}
         for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
@@ -152,7 +180,9 @@ def identify(options, out):
         | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]}
         for name in UNITS
     }
-    require_likely_units(options, found.values[0], step)
+    if not options.scale and not is_likely(found.values[MASS], step):
+        handle = f"a handle of {found.values[MASS]:.3g} kg and an encoder step of {step:.3g} m"
+        refuse_units(options, log, f"the fit gives {handle}", found)
     if told["handle_mass_kg"]["value"] is None:
         fail(
             f"the mass cannot be identified from this log: the simulated position is off by {found.rms:.3g} m "
@@ -161,6 +191,11 @@ def identify(options, out):
             options.log,
         )
     warnings = log.warnings + warnings_of(told, found, log)
+    if not found.misfit and not is_usual(log, found.values[MASS]):
+        warnings.append(
+            f"a handle of {found.values[MASS]:.3g} kg, a travel of {np.ptp(log.position[np.isfinite(log.position)]):.3g} m "
+            f"and forces of up to {np.abs(log.force).max():.3g} N are unusual. {units_text(options, log, found)}".rstrip()
+        )
     device = {"type": "impedance"} | {
         name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]
     }
@@ -180,6 +215,10 @@ def identify(options, out):
         "step_s": log.step,
         "residual_m": found.rms,
         "samples": int(np.isfinite(log.position).sum()),
+        "duration_s": float(log.time[-1] - log.time[0]),
+        "columns": log.columns,
+        "columns_not_read": log.columns_not_read,
+        "scales": log.scales,
         "device": out,
         "picture": str(picture),
         "warnings": warnings,
@@ -195,16 +234,48 @@ def unless_wide(value, interval):
     }
 
 
-def require_likely_units(options, mass, encoder_step):
-    """A log in milliseconds and millimetres fits as well as any, with a handle of tons."""
-    if options.scale or (1e-3 <= mass <= 20.0 and encoder_step <= 1e-3):
+def require_right_sign(options, log, found):
+    """Refuses a log that only a force of the other sign explains."""
+    other = turned_round(log, found)
+    if other is None:
         return
     fail(
-        f"the fit gives a handle of {mass:.3g} kg and an encoder step of {encoder_step:.3g} m: are the "
-        "units s, N and m? For a log in ms and mm use --scale time=1e-3,position=1e-3; if the "
-        "units are right, confirm them with --scale time=1",
+        "the handle accelerates against the force: the sign of force or position is wrong. With the other "
+        f"sign the residual is {other.rms:.3g} m instead of {found.rms:.3g} m, and the fit gives a handle of "
+        f"{other.values[MASS]:.3g} kg: {scale_option({'force': -1.0}, given_scales(options))}",
         options.log,
     )
+
+
+def refuse_units(options, log, problem, found=None):
+    """Refuses a log that is hardly in s, N and m, with the units that make it a likely one. A log in milliseconds and
+    millimetres fits as well as any, with a handle of tons."""
+    advice = (
+        units_text(options, log, found)
+        or "No usual units explain the log. Is a hand or a spring on the handle?"
+    )
+    fail(
+        f"{problem}: are the units s, N and m? {advice} If the units are right, confirm them with "
+        "--scale time=1",
+        options.log,
+    )
+
+
+def units_text(options, log, found):
+    """The likely units of a log as a sentence, or nothing."""
+    given = given_scales(options)
+    text = " or ".join(
+        f"{text}: {scale_option(factors, given)}"
+        for text, factors in likely_units(log, found)
+        if factors
+    )
+    return f"{text[0].upper()}{text[1:]}." if text else ""
+
+
+def given_scales(options):
+    """The numbers of --scale, by quantity."""
+    pairs = (word.partition("=") for word in options.scale)
+    return {name: float(value) for name, _, value in pairs}
 
 
 def shown_end(end):
@@ -335,4 +406,4 @@ def limited_by_travel(kind, numbers, peak):
 if __name__ == "__main__":
     asked_for = command_line().parse(sys.argv[1:])
     doing = "" if asked_for.quiet else "designing" if asked_for.design else "identifying"
-    sys.exit(exit_status("import device", doing, lambda: run(asked_for)))
+    leave(exit_status("import device", doing, lambda: run(asked_for)))

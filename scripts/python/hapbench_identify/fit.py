@@ -168,7 +168,7 @@ def _fit(log, simulate):
         found = resting
     misfit = found.squares / samples > 2.0 * (noise**2 + log.encoder_step**2 / 12.0)
     # Forces of missing rows are guesses, whose errors go on in the motion.
-    by_pieces = misfit or not known.all()
+    by_pieces = misfit or not log.knows_forces
     if by_pieces:
         found, spread = _by_pieces(Cost(simulate, log, piece=SHORT_PIECE), found, scale)
     residual = whole(found.x)

@@ -5,6 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 from hapbench_command import MOST_FAULTS, Faults, fail, finite_number, quoted, require_name
+from hapbench_import.columns import Names, scale_of
+from hapbench_import.holds import hold_of
 from hapbench_import.recording import open_recording
 
 NAMES = {
@@ -23,11 +25,15 @@ class Log:
     step: float  # mean interval without a gap [s]
     encoder_step: float  # 0: positions are not multiples of anything
     warnings: list
+    knows_forces: bool = True  # False: forces of missing rows are guesses
+    columns: dict | None = None  # by quantity, as those of import stroke
+    columns_not_read: list | None = None
+    scales: dict | None = None  # by quantity
 
 
 def read_log(options):
     """The log that the command line names (__main__)."""
-    columns, scale = dict(NAMES), dict.fromkeys(NAMES, 1.0)
+    columns, scale = dict.fromkeys(NAMES), {}
     for option, words, target in (
         ("columns", options.columns, columns),
         ("scale", options.scale, scale),
@@ -38,11 +44,50 @@ def read_log(options):
                 fail(f"--{option}: got {quoted(word)}; allowed: NAME=VALUE")
             require_name(f"--{option}: got", name, list(NAMES))
             target[name] = value if option == "columns" else _factor(name, value)
-    recording = open_recording(options.log, SimpleNamespace(format="csv", floats=False))
-    time, force, position = (
-        scale[name] * recording.column(_index(recording, name, column))
-        for name, column in columns.items()
+    layout = SimpleNamespace(format="csv", floats=False, decimal=options.decimal or "auto")
+    recording = open_recording(options.log, layout)
+    names, notes = Names(recording), []
+    found = {name: _index(names, name, word) for name, word in columns.items()}
+    if len(set(found.values())) < len(found):
+        fail(f"columns: got one column for two of {', '.join(NAMES)}", recording.file)
+    scales = {
+        name: scale_of(names, name, [column], scale.get(name), notes)
+        for name, column in found.items()
+    }
+    force, position = (
+        scales[name] * recording.column(found[name]) for name in ("force", "position")
     )
+    time = scales["time"] * recording.clock(found["time"])[1]
+    bad = _bad_rows(recording, time, force, position)
+    faults = recording.faults(bad)
+    if faults and not options.skip_bad_rows:
+        place, problem = faults[-1]
+        faults[-1] = (place, f"{problem}; --skip-bad-rows leaves bad rows out")
+        raise Faults(faults[:MOST_FAULTS])
+    kept = [row for row in range(len(time)) if row not in bad]
+    if len(kept) < FEWEST:
+        fail(
+            f"{len(kept)} usable samples of {len(time)}; allowed: at least {FEWEST}", recording.file
+        )
+    for name, values in (("force", force[kept]), ("position", position[kept])):
+        if np.ptp(values) == 0.0:
+            fail(f"every {name} is {values[0]:g}: nothing to identify", recording.file)
+    log = log_of(time[kept], force[kept], position[kept])
+    if faults:
+        log.warnings.insert(
+            0, f"{len(bad)} bad rows were left out, the first: {faults[0][0]}: {faults[0][1]}"
+        )
+    log.warnings[:0] = notes + recording.notes
+    log.columns = {
+        name: [{"component": name, "column": column + 1, "name": names.names[column]}]
+        for name, column in found.items()
+    }
+    log.columns_not_read, log.scales = names.others(log.columns), scales
+    return log
+
+
+def _bad_rows(recording, time, force, position):
+    """By row: why it is no sample."""
     bad, last = recording.problems(), -math.inf
     usual = not bad and np.isfinite((time, force, position)).all() and (np.diff(time) > 0.0).all()
     for row in () if usual else range(len(time)):
@@ -52,29 +97,30 @@ def read_log(options):
             bad[row] = f"got time {time[row]:.9g} s after {last:.9g} s; allowed: increasing times"
         if row not in bad:
             last = time[row]
-    faults = [(recording.place(row), bad[row]) for row in sorted(bad)]
-    if faults and not options.skip_bad_rows:
-        raise Faults(faults[:MOST_FAULTS])
-    kept = [row for row in range(len(time)) if row not in bad]
-    if len(kept) < FEWEST:
-        fail(
-            f"{len(kept)} usable samples of {len(time)}; allowed: at least {FEWEST}", recording.file
-        )
-    log = log_of(time[kept], force[kept], position[kept])
-    if faults:
-        log.warnings.insert(
-            0, f"{len(faults)} bad rows were left out, the first: {faults[0][0]}: {faults[0][1]}"
-        )
-    for name, values in (("force", force[kept]), ("position", position[kept])):
-        if np.ptp(values) == 0.0:
-            fail(f"every {name} is {values[0]:g}: nothing to identify", recording.file)
-    return log
+    return bad
 
 
 def log_of(time, force, position):
     """Puts the times of missing samples back, with forces on the line between their neighbours',
-    which is right for signals that change little from sample to sample; positions stay unknown."""
-    warnings, intervals = [], np.diff(time)
+    which is right for signals that change little from sample to sample; positions stay unknown.
+    A position that is repeated in several rows was measured at the first of them: the others are unknown.
+    """
+    warnings, held = [], hold_of(position)
+    if held is not None:
+        rate = (len(time) - 1) / (time[-1] - time[0]) / held.rows
+        warnings.append(
+            f"each position is repeated in {held.rows:.4g} rows: positions were measured at {rate:.4g} Hz; the first "
+            "row of each is used"
+        )
+        if not np.any((np.diff(force) != 0.0) & ~held.fresh[1:]):
+            # The force is held with the position: a log of the slower rate, without its repeated rows.
+            time, force, position, held = (
+                time[held.fresh],
+                force[held.fresh],
+                position[held.fresh],
+                None,
+            )
+    intervals = np.diff(time)
     missing = np.maximum(np.rint(intervals / np.median(intervals)).astype(int) - 1, 0)
     even = missing == 0
     step = float(intervals[even].mean())
@@ -94,7 +140,9 @@ def log_of(time, force, position):
         + [time[-1:]]
     )
     known = np.full(len(all_times), math.nan)
-    known[np.searchsorted(all_times, time)] = position
+    known[np.searchsorted(all_times, time)] = (
+        position if held is None else np.where(held.fresh, position, math.nan)
+    )
     return Log(
         all_times,
         np.interp(all_times, time, force),
@@ -102,6 +150,7 @@ def log_of(time, force, position):
         step,
         encoder_step_of(position),
         warnings,
+        not missing.any(),
     )
 
 
@@ -119,19 +168,31 @@ def encoder_step_of(position):
 
 
 def _factor(name, word):
+    """A scale. Force and position may be turned round."""
     value = finite_number(word.encode("utf-8", "surrogateescape"))
-    if not value > 0.0:
-        fail(f"--scale: {name}: got {quoted(word)}; allowed: > 0")
+    if not (value > 0.0 or (value < 0.0 and name != "time")):
+        allowed = "> 0" if name == "time" else "a number, not 0"
+        fail(f"--scale: {name}: got {quoted(word)}; allowed: {allowed}")
     return value
 
 
-def _index(recording, quantity, word):
-    if word in recording.names:
-        return recording.names.index(word)
-    if word.isascii() and word.isdigit() and 1 <= int(word) <= len(recording.names):
-        return int(word) - 1
-    known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(recording.names[:20], 1))
-    fail(
-        f"columns: {quantity}: no {quoted(word)}; the file has {known} (--columns {quantity}=NAME or number)",
-        recording.file,
-    )
+def _index(names, quantity, word):
+    """The column of a quantity: `word`, or without one NAMES or the quantity with its unit, such as "force [N]"."""
+    asked = word if word is not None else NAMES[quantity]
+    column, _ = names.find(quantity, [asked], ())
+    if column is None and word is None:
+        column = next(
+            (
+                i
+                for i, (bare, unit) in enumerate(zip(names.bare, names.units))
+                if bare.lower() == quantity and unit
+            ),
+            None,
+        )
+    if column is None:
+        known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(names.names[:20], 1))
+        fail(
+            f"columns: {quantity}: no {quoted(asked)}; the file has {known} (--columns {quantity}=NAME or number)",
+            names.file,
+        )
+    return column

@@ -41,7 +41,7 @@ class Simulator(subprocess.Popen):
         self._send([rows, *parameters])
         answer = self.stdout.read(8 * rows)
         if len(answer) != 8 * rows:
-            raise OSError(0, "the program ended", "the simulation of the log")
+            raise RuntimeError("the program, which simulates the log, ended")
         return np.frombuffer(answer)
 
 

@@ -7,27 +7,34 @@ from hapbench_command import (
     answer,
     exit_status,
     fail,
+    leave,
     refuse_source,
     shell_line,
+    stop_on_ctrl_c,
     table_text,
     write,
 )
 
-from .options import FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
+from .options import DECIMALS, FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
 
 NOTES = [
     "Columns: time, position, orientation and force, each given by its first column, or single "
-    "ones: px, py, pz, qw, qx, qy, qz, mfx, mfy, mfz. Numbers count from 1.",
+    "ones: px, py, pz, qw, qx, qy, qz, mfx, mfy, mfz. A name also takes the columns of the other "
+    "components, by their names (x, y, z); a number, counted from 1, takes the columns after it.",
+    'Units in column names, such as "x [mm]", are applied; --scale overrides them.',
     "Orientation: none, axis (direction out of the tip), quat_wxyz, quat_xyzw, axis_angle (axis, "
     "angle) or matrix (r11, r12 ... r33, row by row). It turns the tool's frame into the frame of "
     "the scene.",
     "Fields of --set: sample_rate_Hz (for a file without times), tip_axis (direction out of the tip"
     " in the tool's frame, default 0,0,-1), shift (added to the positions [m]), force_by_tool=true "
     "(forces act on the object; their sign is changed), floats=true (hapi-binary with 4-byte "
-    "numbers), max_speed, max_gap.",
+    "numbers), max_speed, max_gap, held_rows.",
+    "Held rows: if the file repeats each pose in several rows, the first row of each pose is used; "
+    "with --set held_rows=keep all rows are samples (default: thin).",
     "Refused: invalid numbers, times that do not increase, quaternions not of unit length, jumps "
-    "faster than max_speed (default 5 m/s), gaps longer than max_gap (default 0.5 s). All such rows"
-    " are listed, nothing is written, and the exit status is 2.",
+    "faster than max_speed (default 5 m/s), gaps longer than max_gap (default 0.5 s). Each kind of "
+    "fault is listed with its first row and the number of rows, nothing is written, and the exit "
+    "status is 2.",
     "Files: the stroke, a CSV file with one pose per row; it replaces an earlier one.",
 ]
 EXAMPLES = [
@@ -79,10 +86,17 @@ def command_line():
         "time=1e-6,position=0.001 are microseconds and millimetres",
     )
     line.one_of(
+        DECIMALS,
+        "--decimal",
+        "<sign>",
+        "decimal sign: comma, point or auto (default: auto; found from the numbers)",
+    )
+    line.one_of(
         list(ORIENTATIONS),
         "--orientation",
         "<kind>",
-        "what the orientation columns hold, see below (default: none; the tool does not turn)",
+        "what the orientation columns hold, see below (default: found from their names; none: "
+        "the tool does not turn)",
     )
     line.texts(
         "--frame",
@@ -143,7 +157,7 @@ def run(options):
 
 
 if __name__ == "__main__":
+    stop_on_ctrl_c("import stroke")
     asked_for = command_line().parse(sys.argv[1:])
-    sys.exit(
-        exit_status("import stroke", "" if asked_for.quiet else "importing", lambda: run(asked_for))
-    )
+    doing = "" if asked_for.quiet else "importing"
+    leave(exit_status("import stroke", doing, lambda: run(asked_for)))

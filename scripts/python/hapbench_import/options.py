@@ -8,6 +8,7 @@ from pathlib import Path
 from hapbench_command import Faults, fail, finite_number, plain, quoted, require_name, shown
 
 PRESETS = Path(__file__).resolve().parents[3] / "scenarios" / "library" / "presets"
+DECIMALS = ("auto", "comma", "point")
 FORMATS = ("csv", "traj", "hapi", "hapi-binary")
 # The columns of each way to write an orientation, in their order.
 ORIENTATIONS = {
@@ -43,6 +44,7 @@ class Options:
 
     format: str = "csv"
     floats: bool = False  # hapi-binary: numbers of four bytes
+    decimal: str = "auto"  # "comma", "point", or as the numbers of a column show
     columns: dict = field(
         default_factory=dict
     )  # of each quantity: the names or numbers, from 1, that its column may have
@@ -53,7 +55,8 @@ class Options:
     scale: dict = field(
         default_factory=dict
     )  # of "time", "position", "angle", "force": SI units in one of the file's
-    orientation: str = "none"
+    orientation: str | None = None  # of ORIENTATIONS; None: as the names of its columns say
+    named: frozenset = frozenset()  # quantities of `columns` that the command line names
     tip_axis: tuple = (
         0.0,
         0.0,
@@ -71,6 +74,7 @@ class Options:
     max_speed: float = 5.0  # [m/s]
     max_gap: float = 0.5  # [s]
     skip_bad_rows: bool = False
+    held_rows: str = "thin"  # rows that repeat a held sample are left out; "keep": they are samples
 
     def set(self, name, value):
         """Sets an option from a value of JSON."""
@@ -86,12 +90,13 @@ def options_of(asked):
     options = Options()
     if asked.preset:
         _apply_preset(options, asked.preset)
-    for name in ("format", "orientation", "frame"):
+    for name in ("format", "decimal", "orientation", "frame"):
         if value := getattr(asked, name):
             options.set(name, value)
     columns = dict(_assignments("columns", asked.columns))
     options.set("columns", columns)
     options.optional -= set(columns)
+    options.named = frozenset(columns)
     options.set(
         "scale",
         {
@@ -104,6 +109,8 @@ def options_of(asked):
     if "time" in columns:
         options.sample_rate_Hz = None
     for name, value in _assignments("set", asked.set):
+        if name == "sample_rate_Hz" and "time" in columns:
+            fail("--columns time and --set sample_rate_Hz: allowed: one of them")
         require_name("--set: got", name, list(_FIELDS))
         options.set(name, _value(value))
     options.rate = asked.rate
@@ -286,6 +293,8 @@ _FIELDS = {
     "orientation": ("a text", lambda v: isinstance(v, str), _named("orientation", ORIENTATIONS)),
     "tip_axis": ("three numbers", _is_vector, _vector),
     "shift": ("three numbers", _is_vector, _vector),
+    "decimal": ("a text", lambda v: isinstance(v, str), _named("decimal", DECIMALS)),
+    "held_rows": ("a text", lambda v: isinstance(v, str), _named("held_rows", ("thin", "keep"))),
     "max_speed": ("a number", _is_number, lambda _, v: float(v)),
     "max_gap": ("a number", _is_number, lambda _, v: float(v)),
     "frame": (

@@ -1,11 +1,12 @@
 """Recordings in the formats that are read: their columns as arrays, and where in the file each row is."""
 import math
+import re
 
 import numpy as np
 from hapbench_command import fail, finite_number, nearest, plain, quoted
 
+from .text_table import has_decimal_commas, read_table, with_points
 
-MOST_COLUMNS = 1000
 LARGEST_FILE = 4 << 30  # bytes
 # The fields of a HAPI log and how many columns each takes.
 HAPI_FIELDS = {
@@ -24,24 +25,20 @@ HAPI_FIELDS = {
     "RAW_TORQUE": 3,
 }
 _NUMERIC = b"0123456789eE.+-\n"
-_BLANK = b" \t\r"
+CHUNK = 1 << 24  # bytes read at once
+EXACT = 2.0**53  # whole numbers below are exact in a double
 
 
 class Recording:
     """The rows of a file. `names` of the columns are empty where the file gives none; `rows` are
     lists of cells, or an array with the names; `places` are those of the rows in the file, counted
-    as `row_word` says."""
+    as `row_word` says. `notes`: what was skipped or repaired, each said once."""
 
-    def __init__(self, file, names, rows, places, row_word="line", remark=""):
-        self.file, self.names, self.rows, self.places, self.row_word, self.remark = (
-            file,
-            names,
-            rows,
-            places,
-            row_word,
-            remark,
-        )
+    def __init__(self, file, names, rows, places, row_word="line", notes=(), decimal="auto"):
+        self.file, self.names, self.rows, self.places = file, names, rows, places
+        self.row_word, self.notes, self._decimal = row_word, list(notes), decimal
         self.is_binary = isinstance(rows, np.ndarray)
+        self._says_comma = decimal == "comma"  # true once the notes have it, or the user does
 
     def place(self, row):
         return f"{self.file}, {self.row_word} {self.places[row]}"
@@ -56,26 +53,85 @@ class Recording:
             if len(row) != len(self.names)
         }
 
+    def faults(self, problems):
+        """(place, problem) of problems by row. A problem that repeats itself is reported at its first row,
+        with the number of rows."""
+        kinds = {}
+        for row in sorted(problems):
+            kinds.setdefault(_kind_of(problems[row]), []).append(row)
+        return [
+            (
+                self.place(rows[0]),
+                problems[rows[0]]
+                + (
+                    f" ({len(rows)} rows, the last: {self.row_word} {self.places[rows[-1]]})"
+                    if len(rows) > 1
+                    else ""
+                ),
+            )
+            for rows in kinds.values()
+        ]
+
     def column(self, column):
         """The numbers in a column, NaN where there is no finite one."""
         if self.is_binary:
             values = self.rows[self.names[column]].astype(float)
-        else:
-            cells = [row[column] if len(row) > column else b"" for row in self.rows]
-            text = b"\n".join(cells)
-            # Otherwise float() may accept what is not a number here, and cells are read one by one.
-            usual = not text.translate(None, _NUMERIC) and text.count(b"+") == text.count(
-                b"e+"
-            ) + text.count(b"E+")
-            try:
-                values = np.array(
-                    [float(cell) for cell in cells]
-                    if usual
-                    else [finite_number(cell) for cell in cells]
-                )
-            except ValueError:
-                values = np.array([finite_number(cell) for cell in cells])
+            return np.where(np.isfinite(values), values, math.nan)
+        cells = self._cells(column)
+        text = b"\n".join(cells)
+        # Otherwise float() may accept what is not a number here, and cells are read one by one.
+        usual = not text.translate(None, _NUMERIC) and text.count(b"+") == text.count(
+            b"e+"
+        ) + text.count(b"E+")
+        try:
+            values = np.array(
+                [float(cell) for cell in cells]
+                if usual
+                else [finite_number(cell) for cell in cells]
+            )
+        except ValueError:
+            values = np.array([finite_number(cell) for cell in cells])
         return np.where(np.isfinite(values), values, math.nan)
+
+    def clock(self, column):
+        """(origin, numbers less the origin) of a column of times. The origin is 0, except for whole numbers that a
+        double does not hold, such as nanoseconds since 1970."""
+        values = self.column(column)
+        if self.is_binary or not np.nanmax(np.abs(values), initial=0.0) > EXACT:
+            return 0, values
+        cells = self._cells(column)
+        whole = [re.fullmatch(rb"-?\d{1,30}", cell) is not None for cell in cells]
+        if not any(whole) or any(np.isfinite(values) & ~np.array(whole)):
+            return 0, values
+        origin = int(cells[whole.index(True)])
+        return origin, np.array(
+            [float(int(cell) - origin) if ok else math.nan for cell, ok in zip(cells, whole)]
+        )
+
+    def _cells(self, column):
+        cells = [row[column] if len(row) > column else b"" for row in self.rows]
+        if self._decimal == "point" or not any(b"," in cell for cell in cells):
+            return cells
+        if self._decimal == "auto" and has_decimal_commas(self.rows):
+            self._decimal = "comma"
+        cells, first, unclear = with_points(cells, self._decimal == "comma")
+        if unclear is not None:
+            fail(
+                f"column {self.title(column)}: got {self.shown(column, unclear)}: is the comma a decimal comma? "
+                "--decimal comma reads it as one; allowed otherwise: numbers without commas between thousands",
+                self.place(unclear),
+            )
+        if first is not None and not self._says_comma:
+            self._says_comma = True
+            self.notes.append(
+                f"{self.row_word} {self.places[first]}: got {self.shown(column, first)}: numbers have a decimal "
+                "comma and are read as such (--decimal comma; --decimal point refuses them)"
+            )
+        return cells
+
+    def title(self, column):
+        """Number and name of a column."""
+        return f"{column + 1} {self.names[column]}".rstrip()
 
     def shown(self, column, row):
         """A value as a message shows it."""
@@ -86,65 +142,45 @@ class Recording:
         )
 
 
+def _kind_of(problem):
+    """A problem without its values, which differ from row to row; column and name stay."""
+    where, got, rest = problem.partition("got ")
+    return where, re.sub(r'"[^"]*"|-?\d[\d.e+-]*', "#", got + rest)
+
+
 def open_recording(file, options):
+    """Reads a file once, so that it may be a pipe."""
+    data = _content(file)
+    if options.format == "hapi-binary":
+        return _binary(data, file, options.floats)
+    decimal = getattr(options, "decimal", "auto")
+    table = (
+        _hapi(data, file)
+        if options.format == "hapi"
+        else read_table(data, file, options.format == "traj")
+    )
+    return Recording(file, table.names, table.rows, table.lines, "line", table.notes, decimal)
+
+
+def _content(file):
+    parts, size = [], 0
     try:
         with open(file, "rb") as stream:
-            data = stream.read(LARGEST_FILE + 1)
+            while part := stream.read(CHUNK):
+                size += len(part)
+                if size > LARGEST_FILE:
+                    fail(f"is larger than {LARGEST_FILE >> 20} MiB", file)
+                parts.append(part)
     except IsADirectoryError:
         fail("is a directory, not a file", file)
     except OSError as error:
         fail(f"cannot be read: {error.strerror}", file)
-    if len(data) > LARGEST_FILE:
-        fail(f"is larger than {LARGEST_FILE >> 20} MiB", file)
-    return (
-        _binary(data, file, options.floats)
-        if options.format == "hapi-binary"
-        else _text(data, file, options.format)
-    )
+    return b"".join(parts)
 
 
-def _text(data, file, kind):
-    """Blank lines and those that begin with # or % are skipped."""
-    lines = [
-        (number, line)
-        for number, line in enumerate(
-            map(lambda line: line.strip(_BLANK), data.removeprefix(b"\xef\xbb\xbf").split(b"\n")), 1
-        )
-        if line and line[0] not in b"#%"
-    ]
-    if not lines:
-        fail("no samples; allowed: a line for each", file)
-    number, first = lines[0]
-    separator = (
-        next((c for c in (b",", b";", b"\t") if c in first), None) if kind == "csv" else None
-    )
-    words = _cells(first, separator)
-    names = (
-        _hapi_columns(words, file)
-        if kind == "hapi"
-        else [word.decode("utf-8", "surrogateescape") for word in words]
-    )
-    if kind != "hapi":
-        if len(words) > MOST_COLUMNS:
-            fail(f"got {len(words)} columns; allowed: {MOST_COLUMNS}", f"{file}, line {number}")
-        if not all(math.isnan(finite_number(word)) for word in words):
-            names = [""] * len(words)
-            lines.insert(0, lines[0])
-    return Recording(
-        file,
-        names,
-        [_cells(line, separator) for _, line in lines[1:]],
-        [number for number, _ in lines[1:]],
-    )
-
-
-def _cells(line, separator):
-    if separator is None:
-        return line.split()
-    cells = [cell.strip(_BLANK) for cell in line.split(separator)]
-    return [
-        cell[1:-1] if len(cell) > 1 and cell[:1] == cell[-1:] == b'"' else cell for cell in cells
-    ]
+def _hapi(data, file):
+    """A text log of HAPI: its first line has names of fields, of which each has one to four columns."""
+    return read_table(data, file, True, lambda words: _hapi_columns(words, file))
 
 
 def _hapi_columns(fields, file):
@@ -203,5 +239,5 @@ def _binary(data, file, floats):
         np.frombuffer(data, kind, count, end + 1),
         range(1, count + 1),
         "sample",
-        remark,
+        [remark] if remark else [],
     )

@@ -3,9 +3,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from hapbench_command import MOST_FAULTS, Faults, fail, nearest, quoted
+from hapbench_command import MOST_FAULTS, Faults, fail
 from scipy.spatial.transform import Rotation
 
+from .columns import Names, scale_of
+from .holds import hold_of
 from .options import ORIENTATIONS
 
 MOST_SAMPLES = 10_000_000
@@ -13,6 +15,19 @@ UNIT_TOLERANCE = 1e-3  # of norms: numbers further from 1 are not rounded but wr
 LEAST_JUMP = (
     1e-3  # [m]: below, a jump may be jitter of a clock that wrote two samples almost at once
 )
+# The components of a group as names of columns have them.
+LETTERS = {
+    ("px", "py", "pz"): ("x", "y", "z"),
+    ("mfx", "mfy", "mfz"): ("x", "y", "z"),
+    ("axis_x", "axis_y", "axis_z"): ("x", "y", "z"),
+    ("axis_x", "axis_y", "axis_z", "angle"): ("x", "y", "z", "angle"),
+    ("qw", "qx", "qy", "qz"): ("w", "x", "y", "z"),
+    ("qx", "qy", "qz", "qw"): ("x", "y", "z", "w"),
+}
+PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))  # of orientations
+LATEST = 1e11  # [s]; later times are in other units
+SINCE_1970 = (9e8, 4e9)  # 1998 to 2096 [s]
+DEGREE = math.pi / 180.0
 DOWN = np.array([0.0, 0.0, -1.0])  # the tool's axis in its own frame
 
 
@@ -36,67 +51,230 @@ class Read:
     unit_deviation: float  # largest |norm - 1| of an orientation before it was normalised
     notes: list  # what a reader of the stroke must know
     coordinates: np.ndarray  # positions before they were turned and shifted [m]
+    rows_left_out: int  # of all faults
+    origin: float  # added to times it gives those of the recording [s]
+    columns: dict  # Columns.used()
+    columns_not_read: list  # numbers and names of the others
+    scales: dict  # by quantity: SI units in one of the file's
+    held: object  # Hold, or None
 
 
 class Columns:
-    """Finds the columns that the options ask for; each is a list of indices, empty for none."""
+    """The columns that the options ask for: lists of indices in the order of the components, empty for none."""
 
     def __init__(self, recording, options):
-        self._recording, self._options, self.notes = recording, options, []
+        self._options, self.notes, self.scales = options, [], {}
+        self.names = names = Names(recording)
         self.time = [] if options.sample_rate_Hz else self._group("time", ("time",))
         self.position = self._group("position", ("px", "py", "pz"))
         if not self.position:
-            self._fail("position", "is missing")
+            names.fail("position", "is missing")
         if not options.sample_rate_Hz and not self.time:
-            self._fail("time", "is missing (or give --set sample_rate_Hz=...)")
-        self.orientation = self._group("orientation", ORIENTATIONS[options.orientation])
-        if (
-            not self.orientation
-            and options.orientation != "none"
-            and "orientation" not in options.optional
-        ):
-            self._fail("orientation", "is missing")
+            names.fail("time", "is missing (or give --set sample_rate_Hz=...)")
+        self.kind = self._kind_of_orientation()
+        self.orientation = self._group("orientation", ORIENTATIONS[self.kind])
+        if not self.orientation and self.kind != "none" and "orientation" not in options.optional:
+            names.fail("orientation", "is missing")
         self.force = self._group("force", ("mfx", "mfy", "mfz"))
+        self._refuse_unused()
+        self._refuse_shared()
+        self._note_lone_order()
 
-    def _fail(self, quantity, problem):
-        names = self._recording.names
-        known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(names[:20], 1)) + (
-            ", ..." if len(names) > 20 else ""
-        )
-        fail(f"columns: {quantity}: {problem}; the file has {known}", self._recording.file)
+    def used(self):
+        """By quantity: its components, and number, name and unit of the column of each."""
+        return {
+            quantity: [
+                {
+                    "component": component,
+                    "column": column + 1,
+                    "name": self.names.names[column],
+                }
+                for component, column in zip(components, columns)
+            ]
+            for quantity, components, columns in (
+                ("time", ("time",), self.time),
+                ("position", ("x", "y", "z"), self.position),
+                ("orientation", ORIENTATIONS[self.kind], self.orientation),
+                ("force", ("x", "y", "z"), self.force),
+            )
+        }
+
+    def scale(self, quantity, columns):
+        """The factor to SI units; `scales` keeps it."""
+        if quantity not in self.scales:
+            given = self._options.scale.get(quantity)
+            self.scales[quantity] = scale_of(self.names, quantity, columns, given, self.notes)
+        return self.scales[quantity]
 
     def _group(self, group, parts):
-        """The group's first column and those after it, or each by itself."""
-        wanted = self._options.columns
-        if any(part != group and part in wanted for part in parts):
+        """The columns of a group: by the name of its first component, by number, or each by itself."""
+        wanted, named = self._options.columns, self._options.named
+        alone = [part for part in parts if part != group and part in wanted]
+        # What the command line says goes before what a preset says.
+        if alone and not (group in named and not named & set(alone)):
+            if group in named:
+                self.names.fail(
+                    group, f"is named as a whole and by {alone[0]}; allowed: one of them"
+                )
             for part in parts:
                 if part not in wanted:
-                    self._fail(part, f"is missing beside others of {group}")
+                    self.names.fail(part, f"is missing beside others of {group}")
             return [self._column(part) for part in parts]
         if not parts or group not in wanted:
             return []
-        first = self._column(group)
+        if len(parts) == 1:
+            column = self._column(group)
+            return [] if column is None else [column]
+        letters = LETTERS.get(parts, parts)
+        first, by_number = self._first(group, letters)
         if first is None:
+            if group not in self._options.optional:
+                self.names.unknown(group, wanted[group])
             self.notes.append(f"no columns of {group} as the preset names them: left out")
             return []
-        if first + len(parts) > len(self._recording.names):
-            self._fail(group, f"takes columns {first + 1} ... {first + len(parts)}")
-        return list(range(first, first + len(parts)))
+        found = self.names.components(first, letters)
+        if by_number:
+            return self._consecutive(group, first, found, len(parts))
+        if found is None:
+            self._ask(group, first, parts)
+        if letters[0] not in ("w", "x") or len(letters) != 4 or letters[3] == "angle":
+            if found[0] != first:
+                self.names.fail(
+                    group,
+                    f"column {self.names.title(first)} is not its first by name; allowed: "
+                    f"{group}={self.names.names[found[0]]}",
+                )
+        elif found[0] != first:
+            self.notes.append(self._other_order(first, found))
+        return found
+
+    def _first(self, group, letters):
+        """The column of the group's first component, and whether a number says so. A name may lack the component."""
+        endings = [f"{mark}{letters[0]}" for mark in ("_", ".", "")] + ["[0]", "_0", ".0", "0"]
+        if letters[0] != "x":
+            endings = ["_x", *endings]
+        return self.names.find(group, self._options.columns[group], endings)
+
+    def _consecutive(self, group, first, by_name, count):
+        if first + count > len(self.names.names):
+            self.names.fail(group, f"takes columns {first + 1} ... {first + count}")
+        found = list(range(first, first + count))
+        if by_name is not None and by_name != found:
+            titles = ", ".join(map(self.names.title, found))
+            self.notes.append(
+                f"columns {titles} are read as {group} in this order, as their number says; by their names it "
+                f"would be {', '.join(map(self.names.title, by_name))} "
+                f"(--columns {group}={self.names.names[by_name[0]]})"
+            )
+        return found
+
+    def _ask(self, group, first, parts):
+        """Refuses a name that does not say where the other components are."""
+        names, count = self.names, len(parts)
+        alone = ",".join(f"{part}=..." for part in parts)
+        consecutive = (
+            f", or {group}={first + 1} for the columns "
+            f"{', '.join(map(names.title, range(first, first + count)))}"
+            if first + count <= len(names.names)
+            else ""
+        )
+        names.fail(
+            group,
+            f'the names do not say which columns go with "{names.names[first]}"; allowed: {alone}{consecutive}',
+        )
+
+    def _other_order(self, first, found):
+        shown = ", ".join(self.names.names[column] for column in sorted(found))
+        return (
+            f"--orientation {self.kind} says that the first component is {self.names.names[found[0]]}, and --columns that "
+            f"it is {self.names.names[first]}: the quaternion was read by the names of its columns ({shown})"
+        )
+
+    def _kind_of_orientation(self):
+        """That of --orientation or of the preset; without, what the columns show by their names."""
+        kind, wanted = self._options.orientation, self._options.columns
+        parts = {part for part in PARTS if part in wanted}
+        if kind is not None or ("orientation" not in wanted and not parts):
+            return kind or "none"
+        if "orientation" not in wanted:
+            return next((kind for kind, of in ORIENTATIONS.items() if parts <= set(of)), "none")
+        first, by_number = self.names.find(
+            "orientation", wanted["orientation"], ("_x", ".x", "x", "_w", ".w", "w")
+        )
+        if first is None:
+            self.names.unknown("orientation", wanted["orientation"])
+
+        def shown(kind):
+            letters = LETTERS.get(ORIENTATIONS[kind], ORIENTATIONS[kind])
+            return None if by_number else self.names.components(first, letters, numbers=False)
+
+        if quaternion := shown("quat_wxyz"):
+            return "quat_wxyz" if quaternion[0] == first else "quat_xyzw"
+        for kind in ("axis_angle", "matrix"):
+            if shown(kind):
+                return kind
+        kinds = ", ".join(kind for kind in ORIENTATIONS if kind != "none")
+        self.names.fail(
+            "orientation",
+            f"what begins at column {self.names.title(first)} is not known by its name; --orientation is missing; "
+            f"allowed: {kinds} (of Euler angles, make one of these)",
+        )
+
+    def _refuse_unused(self):
+        """A column that the command line names is used, or refused."""
+        used = {"time": self.time, "position": self.position, "force": self.force}
+        used["orientation"] = self.orientation
+        parts = {"position": ("px", "py", "pz"), "force": ("mfx", "mfy", "mfz")}
+        for quantity in self._options.named:
+            group = next((g for g, members in parts.items() if quantity in members), None)
+            if quantity in PARTS and quantity not in ORIENTATIONS[self.kind]:
+                of_kind = ", ".join(ORIENTATIONS[self.kind]) or "no columns"
+                self.names.fail(quantity, f"is not used: --orientation {self.kind} takes {of_kind}")
+            if not used.get(group or quantity, True):
+                self.names.fail(
+                    quantity, f"is not used: --orientation {self.kind} takes no columns"
+                )
+
+    def _refuse_shared(self):
+        """Two quantities cannot be one column."""
+        owners = {}
+        for quantity, parts in self.used().items():
+            for part in parts:
+                other = owners.setdefault(part["column"], quantity)
+                if other != quantity:
+                    self.names.fail(
+                        quantity,
+                        f"column {self.names.title(part['column'] - 1)} is also named for {other}",
+                    )
+
+    def _note_lone_order(self):
+        """Components that are named one by one, against what the names of their columns say."""
+        wanted = self._options.columns
+        for group, parts, columns in (
+            ("position", ("px", "py", "pz"), self.position),
+            ("force", ("mfx", "mfy", "mfz"), self.force),
+            ("orientation", ("qw", "qx", "qy", "qz"), self._quaternion()),
+        ):
+            if len(columns) != len(parts) or not set(parts) <= set(wanted):
+                continue
+            by_name = self.names.components(columns[0], LETTERS[parts])
+            if by_name and sorted(by_name) == sorted(columns) and by_name != columns:
+                self.notes.append(
+                    f"the columns of {group} are read as {', '.join(parts)} from "
+                    f"{', '.join(map(self.names.title, columns))}, as --columns says; their names say otherwise"
+                )
+
+    def _quaternion(self):
+        """Columns of a quaternion, w first; of another orientation none."""
+        if self.kind == "quat_xyzw":
+            return self.orientation[3:] + self.orientation[:3]
+        return self.orientation if self.kind == "quat_wxyz" else []
 
     def _column(self, quantity):
-        names, wanted = self._recording.names, self._options.columns[quantity]
-        for word in wanted:
-            for name in filter(None, (word, word + "_x")):
-                if names.count(name) > 1:
-                    self._fail(quantity, f"two columns are named {quoted(name)}: give its number")
-                if name in names:
-                    return names.index(name)
-            if word.isascii() and word.isdigit() and 1 <= int(word) <= len(names):
-                return int(word) - 1
-        if quantity in self._options.optional:
-            return None
-        word = (wanted or [""])[0]
-        self._fail(quantity, f"got {quoted(word)}{nearest(word, list(filter(None, names)))}")
+        column, _ = self.names.find(quantity, self._options.columns[quantity])
+        if column is None and quantity not in self._options.optional:
+            self.names.unknown(quantity, self._options.columns[quantity])
+        return column
 
 
 class Rows:
@@ -104,31 +282,37 @@ class Rows:
 
     def __init__(self, recording, columns, options):
         self.problems, self.unit_deviation, self._recording = recording.problems(), 0.0, recording
-        scale = {
-            quantity: options.scale.get(quantity, 1.0)
-            for quantity in ("time", "position", "angle", "force")
-        }
+        self.jumps = {}  # by row: speed [m/s]
+        self.notes, self.origin = columns.notes, 0.0
         frame = np.array(options.frame).T
         if columns.time:
-            self.time = scale["time"] * self._numbers(columns.time)[:, 0]
+            scale = columns.scale("time", columns.time)
+            self._numbers(columns.time)
+            origin, values = recording.clock(columns.time[0])
+            self.origin, self.time = scale * origin, scale * values
         else:
             is_sample = [i not in self.problems for i in range(len(recording.rows))]
             self.time = (np.cumsum(is_sample) - 1) / options.sample_rate_Hz
-        self.recorded = scale["position"] * self._numbers(columns.position)
+        self.recorded = columns.scale("position", columns.position) * self._numbers(
+            columns.position
+        )
         self.position = self.recorded @ frame + options.shift
         sign = -1.0 if options.force_by_tool else 1.0
         self.force = (
-            sign * scale["force"] * (self._numbers(columns.force) @ frame)
+            sign * columns.scale("force", columns.force) * (self._numbers(columns.force) @ frame)
             if columns.force
             else None
         )
-        self.kind = options.orientation if columns.orientation else "none"
+        self.kind = columns.kind if columns.orientation else "none"
         if columns.orientation:
             self.orientation = self._numbers(columns.orientation)
             if self.kind == "axis_angle":
-                self.orientation[:, 3] *= scale["angle"]
+                scale = columns.scale("angle", columns.orientation[3:])
+                self._note_unlikely_angles(scale)
+                self.orientation[:, 3] *= scale
             self._check_orientation()
         forces = np.zeros(1) if self.force is None else np.linalg.norm(self.force, axis=1)
+        self.clock_problems = set(self.problems)  # rows without a time or a place
         fits = (
             (np.linalg.norm(self.position, axis=1) < 1e6)
             & (forces < 1e9)
@@ -138,6 +322,17 @@ class Rows:
             ~fits,
             lambda row: "too large a number; allowed: positions below 1e6 m, forces below 1e9 N, times below 1e12 s",
         )
+
+    def _note_unlikely_angles(self, scale):
+        largest = np.nanmax(np.abs(self.orientation[:, 3]), initial=0.0)
+        if scale == 1.0 and largest > 2.0 * math.pi + 0.1:
+            self.notes.append(
+                f"angles of up to {largest:.4g} rad look like degrees (--scale angle={DEGREE:.10g} is for degrees)"
+            )
+        if abs(scale / DEGREE - 1.0) < 1e-3 and 0.3 < largest < 2.0 * math.pi + 0.1:
+            self.notes.append(
+                f"angles of up to {largest:.4g} degrees look like radians (--scale angle=1 is for radians)"
+            )
 
     def turns(self, kept, options):
         """The orientations of the rows that were kept, from the tool's frame to the world's."""
@@ -229,17 +424,25 @@ def _from_down_to(axes):
 
 def read_samples(recording, options):
     """Reads a recording. Bad rows (too few values, no finite number, time that does not increase,
-    an orientation that is none, a jump faster than max_speed) are refused all together, each with
-    its place, or left out when the options say so.
+    an orientation that is none, a jump faster than max_speed) are refused all together, each kind with
+    its first place, or left out when the options say so. Rows that repeat a held sample are left out.
     """
     columns = Columns(recording, options)
     with np.errstate(invalid="ignore", over="ignore"):
         rows = Rows(recording, columns, options)
     if len(recording.rows) - len(rows.problems) > MOST_SAMPLES:
         fail(f"more than {MOST_SAMPLES} samples", recording.file)
-    kept = _in_sequence(rows, options.max_speed)
-    faults = [(recording.place(row), rows.problems[row]) for row in sorted(rows.problems)]
+    if columns.time:
+        require_likely_clock(
+            rows, recording.file, columns.scale("time", columns.time), options.max_gap
+        )
+    held = _held_rows(rows, options, columns.notes)
+    kept = _in_sequence(rows, options.max_speed, held)
+    problems = _with_hints(rows, len(recording.rows))
+    faults = recording.faults(problems)
     if faults and not options.skip_bad_rows:
+        place, problem = faults[-1]
+        faults[-1] = (place, f"{problem}; --skip-bad-rows leaves bad rows out")
         raise Faults(faults[:MOST_FAULTS])
     if len(kept) < 2:
         fail(
@@ -253,24 +456,129 @@ def read_samples(recording, options):
         None if rows.force is None else rows.force[kept],
         rows.kind not in ("none", "axis"),
     )
-    notes = columns.notes + ([recording.remark] if recording.remark else [])
-    return Read(samples, recording, kept, faults, rows.unit_deviation, notes, rows.recorded[kept])
+    return Read(
+        samples,
+        recording,
+        kept,
+        faults,
+        rows.unit_deviation,
+        list(dict.fromkeys(columns.notes + recording.notes)),
+        rows.recorded[kept],
+        len(problems),
+        rows.origin,
+        columns.used(),
+        columns.names.others(columns.used()),
+        columns.scales,
+        held,
+    )
 
 
-def _in_sequence(rows, max_speed):
-    """The rows that can follow each other; adds the problems of the others."""
+def require_likely_clock(rows, file, scale, longest):
+    """Refuses a clock in other units than seconds: intervals that are too long in the median, or times long after
+    those since 1970. Names the scale of time that makes them likely."""
+    usable = np.isfinite(rows.time)
+    usable[list(rows.clock_problems)] = False
+    time, place = rows.time[usable], rows.recorded[usable]
+    steps = np.diff(time)
+    if not len(steps):
+        return
+    median = float(np.sort(steps)[len(steps) // 2])
+    latest = rows.origin + float(time.max())
+    if not median > longest and latest < LATEST:
+        return
+    with np.errstate(over="ignore", invalid="ignore"):
+        ways = np.linalg.norm(np.diff(place, axis=0), axis=1)
+    moved = ways[np.isfinite(ways) & (ways > 0.0)]
+    speed = float(np.median(moved)) / median if len(moved) and median > 0.0 else 0.0
+    got = (
+        f"a median interval of {median:.4g} s; allowed: {longest:g} s (--set max_gap=...)"
+        if median > longest
+        else f"times of up to {latest:.4g} s; allowed: {LATEST:g} s"
+    )
+    unit = likely_unit(abs(median), speed, latest)
+    fail(f"got {got}; are times in other units? (--scale time={unit * scale:g})", file)
+
+
+def likely_unit(interval, speed, latest=0.0):
+    """1e-3, 1e-6 or 1e-9: what makes the latest time one of our days since 1970, or else an interval [s] the nearest
+    to 2 ms and a speed [m/s] the nearest to 5 cm/s."""
+    units = (1e-3, 1e-6, 1e-9)
+    for unit in units:
+        if SINCE_1970[0] < latest * unit < SINCE_1970[1]:
+            return unit
+
+    def unlikely(unit):
+        of_speed = abs(math.log10(speed / unit / 0.05)) if speed > 0.0 else 0.0
+        of_interval = abs(math.log10(interval * unit / 2e-3)) if interval > 0.0 else 0.0
+        return of_interval + min(of_speed, 3.0)
+
+    return min(units, key=unlikely)
+
+
+def _held_rows(rows, options, notes):
+    """The Hold of the rows without problems, or None; its `fresh` counts all rows."""
+    usable = np.array([row not in rows.problems for row in range(len(rows.time))], bool)
+    values = [rows.recorded] + ([rows.orientation] if rows.kind != "none" else [])
+    held = hold_of(np.column_stack(values)[usable]) if usable.any() else None
+    if held is None:
+        return None
+    steps = np.diff(rows.time[usable])
+    rate = 1.0 / (held.rows * float(np.median(steps))) if np.median(steps) > 0.0 else math.nan
+    said = f"each pose is repeated in {held.rows:.4g} rows: poses were measured at {rate:.4g} Hz"
+    if options.held_rows == "keep":
+        notes.append(f"{said}, and steps between poses are not motion (--set held_rows=thin)")
+        return None
+    forces = rows.force is not None and not _is_held(rows.force[usable], held.fresh)
+    notes.append(
+        f"{said}; the first row of each is used"
+        + (", and the forces of the other rows are left out" if forces else "")
+        + " (--set held_rows=keep uses all rows)"
+    )
+    fresh = np.zeros(len(rows.time), bool)
+    fresh[np.flatnonzero(usable)] = held.fresh
+    held.fresh = fresh
+    return held
+
+
+def _is_held(values, fresh):
+    """True if values change only in fresh rows."""
+    return not np.any((np.diff(values, axis=0) != 0.0).any(axis=1) & ~fresh[1:])
+
+
+def _with_hints(rows, count):
+    """The problems of rows; if most rows are jumps, with the scale that makes them a motion."""
+    jumps = [row for row, speed in rows.jumps.items() if row in rows.problems]
+    if len(jumps) < 3 or 3 * len(jumps) <= count:
+        return rows.problems
+    speed = float(np.median([rows.jumps[row] for row in jumps]))
+    hint = (
+        "(is the scale right? --scale position=0.001 is for millimetres, --scale time=... for another clock)"
+        if speed * 1e-3 < 5.0
+        else "(is the scale right? --scale time=... or position=...)"
+    )
+    return {
+        row: problem.replace("(is the scale right?)", hint)
+        for row, problem in rows.problems.items()
+    }
+
+
+def _in_sequence(rows, max_speed, held):
+    """The rows that can follow each other; adds the problems of the others. Rows of a held sample but its first are
+    passed over."""
     kept, time, position = [], rows.time.tolist(), rows.position.tolist()
     for row in range(len(time)):
-        if row in rows.problems:
+        if row in rows.problems or (held is not None and not held.fresh[row]):
             continue
         if kept:
             step, way = time[row] - time[kept[-1]], math.dist(position[row], position[kept[-1]])
             if not step > 0.0:
-                rows.problems[
-                    row
-                ] = f"got time {time[row]:.9g} s after {time[kept[-1]]:.9g} s; allowed: increasing times"
+                rows.problems[row] = (
+                    f"got time {rows.origin + time[row]:.12g} s after {rows.origin + time[kept[-1]]:.12g} s; "
+                    "allowed: increasing times"
+                )
                 continue
             if way > LEAST_JUMP and way > max_speed * step:
+                rows.jumps[row] = way / step
                 rows.problems[row] = (
                     f"got a jump of {1e3 * way:.4g} mm in {1e3 * step:.4g} ms, {way / step:.3g} m/s; allowed: "
                     f"{max_speed:g} m/s (is the scale right?)"

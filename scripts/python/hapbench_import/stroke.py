@@ -8,14 +8,17 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from hapbench_command import MOST_FAULTS, Faults, fail
 
-from .samples import DOWN, Samples, read_samples
+from .columns import scale_text
+from .samples import DOWN, Samples, likely_unit, read_samples
 
 STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
 MOST_SAMPLES = 1e7
 LONG_INTERVALS = 10.0  # median intervals from which on one is a gap
 USUAL_RATES = (1.0, 1e5)  # of recordings [Hz]
 LONGEST, SHORTEST = 3.0, 1e-5  # of a hand's stroke, which is millimetres to decimetres long [m]
+FASTEST = 5.0  # of a hand [m/s]
 MOST_GAPS = 5  # that are told each
+MOST_NOT_READ = 12  # columns that the table names
 
 
 def import_stroke(recording, options):
@@ -31,7 +34,8 @@ def import_stroke(recording, options):
     )
     stroke = resample(read.samples, rate) if resampled else read.samples
     if not resampled:
-        stroke.time = stroke.time - clock["first_time_s"]
+        stroke.time = stroke.time - stroke.time[0]
+    clock["first_time_s"] += read.origin
     smoothing = smooth(stroke, **options.smooth) if options.smooth else None
     speeds = sorted(
         (np.linalg.norm(np.diff(stroke.position, axis=0), axis=1) / np.diff(stroke.time)).tolist()
@@ -44,7 +48,11 @@ def import_stroke(recording, options):
     forces = None if stroke.force is None else np.linalg.norm(stroke.force, axis=1)
     found = {
         "rows_read": len(recording.rows),
-        "rows_left_out": len(read.left_out),
+        "rows_left_out": read.rows_left_out,
+        "columns": read.columns,
+        "columns_not_read": read.columns_not_read,
+        "scales": read.scales,
+        "rows_per_held_sample": 1.0 if read.held is None else read.held.rows,
         "samples": len(stroke.time),
         "rate_Hz": rate,
         "resampled": resampled,
@@ -63,7 +71,18 @@ def import_stroke(recording, options):
         "force_max_N": None if forces is None else float(forces.max()),
         "smoothing": smoothing,
     }
-    return stroke, found | {"warnings": _warnings(read, gaps, found)}
+    along = into_surface(stroke)
+    warnings = _warnings(read, gaps, found)
+    if along > 0.5:
+        warnings.append(
+            "the measured force points along the tip, into the surface; a surface pushes the other way: "
+            + (
+                "are the forces those on the tool? (leave out force_by_tool=true)"
+                if options.force_by_tool
+                else "are the forces those of the tool on the object? (--set force_by_tool=true)"
+            )
+        )
+    return stroke, found | {"warnings": warnings}
 
 
 def clock_of(time):
@@ -93,13 +112,6 @@ def usual_rate(clock, is_regular, samples):
 def gaps_in(read, median, longest):
     """The gaps to bridge: index of the sample before it, and duration [s]. Intervals longer than
     `longest` [s] are refused, however many there are."""
-    if median > longest:
-        factor = next((unit for unit in (1e-3, 1e-6, 1e-9) if median * unit <= longest), 1e-9)
-        fail(
-            f"got a median interval of {median:.4g} s; allowed: {longest:g} s (--set max_gap=...); are times in "
-            f"other units? (--scale time={factor:g})",
-            read.recording.file,
-        )
     intervals = np.diff(read.samples.time)
     faults = [
         (
@@ -315,16 +327,56 @@ def table_of(found):
             )
         )
     least, most = found["force_min_N"], found["force_max_N"]
+    if found["rows_per_held_sample"] > 1.0:
+        rows.insert(
+            1,
+            (
+                "held",
+                f"{found['rows_per_held_sample']:.4g} rows per pose; the first row of each pose is used",
+            ),
+        )
     return [
+        ("columns", columns_text(found["columns"], found["columns_not_read"], found["scales"])),
         *rows,
         ("force", "not measured" if least is None else f"measured, {least:.4g} ... {most:.4g} N"),
     ]
 
 
+def columns_text(columns, not_read, scales):
+    """Columns by quantity, with numbers and names: "time: column 1 t; position x, y, z: columns 2 px, 3 py, 4 pz"."""
+    said = []
+    for quantity, parts in columns.items():
+        titles = ", ".join(f"{part['column']} {part['name']}".rstrip() for part in parts)
+        of = "angle" if quantity == "orientation" else quantity
+        titles += scale_text(of, scales.get(of, 1.0))
+        if len(parts) > 1:
+            order = ", ".join(part["component"] for part in parts)
+            said.append(f"{quantity} {order}: columns {titles}")
+        else:
+            said.append(f"{quantity}: column {titles}" if parts else f"{quantity}: none")
+    if not_read:
+        more = f" and {len(not_read) - MOST_NOT_READ} more" if len(not_read) > MOST_NOT_READ else ""
+        said.append(f"not read: {', '.join(not_read[:MOST_NOT_READ])}{more}")
+    return "; ".join(said)
+
+
+def into_surface(stroke):
+    """Mean share of the measured force along the tip [-1, 1], where it is at least a fifth of the largest; 0 without
+    forces. A surface pushes against the tip, which gives negative values."""
+    if stroke.force is None:
+        return 0.0
+    sizes = np.linalg.norm(stroke.force, axis=1)
+    touching = sizes > 0.2 * sizes.max(initial=0.0)
+    if np.count_nonzero(touching) < 10:
+        return 0.0
+    along = np.einsum("ij,ij->i", stroke.force, stroke.turn.apply(DOWN))[touching] / sizes[touching]
+    return float(along.mean()) if np.mean(along > 0.0) > 0.95 else 0.0
+
+
 def _warnings(read, gaps, found):
     warnings = list(read.notes)
     if read.left_out:
-        warnings.append(f"{len(read.left_out)} bad rows were left out")
+        warnings.append(f"{read.rows_left_out} bad rows were left out")
     warnings += [f"{place}: {problem}" for place, problem in read.left_out[:20]]
     warnings += [
         f"a gap of {duration:.4g} s after {read.recording.row_word} "
@@ -339,15 +391,29 @@ def _warnings(read, gaps, found):
             f"the tip's positions span {extent:.4g} m, which is unusual for a hand: is the scale right? "
             "(--scale position=0.001 is for millimetres)"
         )
-    if not USUAL_RATES[0] <= found["rate_Hz"] <= USUAL_RATES[1]:
-        warnings.append(
-            f"{found['rate_Hz']:.4g} samples per second is an unusual rate: is the scale of time "
-            "right? (--scale time=1e-3 is for "
-            "milliseconds)"
-        )
+    warnings += _clock_warnings(found)
     if found["tip_direction"][2] > 0.5:
         warnings.append(
             "the tip points upwards in the mean: are --orientation (the order of a quaternion), "
             "tip_axis and --frame right?"
         )
     return warnings
+
+
+def _clock_warnings(found):
+    """At most one: an unusual rate or speed, with the scale of time that makes it usual."""
+    rate, speed = found["rate_Hz"], found["speed_p99_m_per_s"]
+    scale = found["scales"].get("time", 1.0)
+    what = f"{rate:.4g} samples per second and a speed of {speed:.3g} m/s"
+    if rate < USUAL_RATES[0] or (rate < 20.0 and 0.0 < speed < 2e-3):
+        factor = likely_unit(1.0 / rate, speed)
+    elif rate > USUAL_RATES[1] or speed > FASTEST:
+        factor = 1e3 if rate < 1e7 else 1e6
+        if rate <= USUAL_RATES[1]:
+            return [f"{what} are unusual: are the scales of time and position right?"]
+    else:
+        return []
+    return [
+        f"{what} are unusual: is the scale of time right? (with --scale time={scale * factor:g} the rate is "
+        f"{rate / factor:.4g} Hz; time=0.001 is for milliseconds)"
+    ]

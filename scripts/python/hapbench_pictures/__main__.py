@@ -3,7 +3,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-from hapbench_command import SHARED, CommandLine, exit_status
+from hapbench_command import SHARED, CommandLine, exit_status, leave, stop_on_ctrl_c
 
 PLOT_NOTES = [
     "Quantities of --y: force, spring, measured, input, reference, force_error, torque (with "
@@ -115,4 +115,5 @@ def main(words):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    stop_on_ctrl_c(sys.argv[1])
+    leave(main(sys.argv[1:]))

@@ -4,8 +4,20 @@ import subprocess
 import sys
 from pathlib import Path
 
+from hapbench_command import (
+    DIFFERENT,
+    SUCCESS,
+    Arguments,
+    exit_status,
+    leave,
+    stop_on_ctrl_c,
+    write,
+)
+
+if __name__ == "__main__":
+    stop_on_ctrl_c("report")
+
 from hapbench.errors import InputError
-from hapbench_command import DIFFERENT, SUCCESS, Arguments, exit_status, write
 
 from .figures import load_figures
 from .ledger import load_claims
@@ -122,4 +134,4 @@ def run(options):
 
 if __name__ == "__main__":
     asked_for = arguments(sys.argv[1:])
-    sys.exit(exit_status("report", "writing the report", lambda: run(asked_for)))
+    leave(exit_status("report", "writing the report", lambda: run(asked_for)))

@@ -1,0 +1,108 @@
+"""What explains a log whose fit is impossible: a force of the other sign, or other units than s, N and m."""
+import dataclasses
+import itertools
+import math
+
+import numpy as np
+
+from .fit import MASS, fit
+
+TIMES = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
+POSITIONS = {1.0: "m", 1e-3: "mm", 1e-2: "cm", 1e-6: "um"}
+FORCES = {1.0: "N", 1e-3: "mN", 1e3: "kN", 9.80665e-3: "gf", 9.80665: "kgf"}
+# What logs of haptic devices have.
+STEPS, TRAVELS, PEAKS, MASSES = (1e-5, 0.05), (1e-3, 0.8), (0.05, 60.0), (5e-3, 5.0)
+LONGEST_STEP = 0.2  # [s]; a log of longer intervals is not fitted as it is
+COARSEST = 1e-3  # step of an encoder [m]
+ACCEPTED = (1e-3, 20.0)  # masses of handles that need no --scale [kg]
+MOST_TOLD = 3
+
+
+def is_likely(mass, encoder_step):
+    return _within(mass, ACCEPTED) and encoder_step <= COARSEST
+
+
+def turned_round(log, found):
+    """The fit with the force turned round if it explains the log where `found` does not, or None."""
+    if not found.misfit and _within(found.values[MASS], ACCEPTED):
+        return None
+    other = fit(_scaled(log, 1.0, 1.0, -1.0))
+    is_good = not other.misfit and other.rms < 0.5 * found.rms or other.rms < 0.1 * found.rms
+    return other if is_good else None
+
+
+def is_usual(log, mass):
+    """True if mass, travel and force are those of a haptic device."""
+    return _within(mass, MASSES) and _travel(log) <= TRAVELS[1] and _peak(log) <= PEAKS[1]
+
+
+def likely_units(log, found=None):
+    """(text, factors by quantity) of the units, and the sign of the force, in which the log is that of a likely handle: at most
+    three, those that change the least first. `found`: the fit of the log as it is, if there is one.
+    """
+    times = [one for one in TIMES if _within(one * log.step, STEPS)] or [1.0]
+    positions = [
+        one
+        for one in POSITIONS
+        if _within(one * _travel(log), TRAVELS) and one * log.encoder_step <= COARSEST
+    ] or [1.0]
+    forces = [one for one in FORCES if _within(one * _peak(log), PEAKS)]
+    sign, unit_mass = _unit_mass(log, times[0], positions[0], found)
+    likely = []
+    for time, position, force in itertools.product(times, positions, forces):
+        mass = unit_mass * force * time**2 / position
+        if _within(mass, MASSES):
+            changes = (time != 1.0) + (position != 1.0) + (force != 1.0)
+            likely.append(
+                (changes, abs(math.log10(mass / 0.1)), time, position, sign * force, mass)
+            )
+    return [_said(*one[2:]) for one in sorted(likely)[:MOST_TOLD] if one[0] == min(likely)[0]]
+
+
+def _unit_mass(log, time, position, found):
+    """The sign of the force, and the mass of the handle if all numbers were in s, N and m. Mass is proportional to
+    force * time^2 / position. Without a good fit, the log is fitted in units that are likely, with both signs.
+    """
+    if found is not None and not found.misfit:
+        return 1.0, found.values[MASS]
+    signs = {sign: fit(_scaled(log, time, position, sign)) for sign in (1.0, -1.0)}
+    sign = min(signs, key=lambda one: signs[one].rms * (1.0 if one > 0.0 else 1.5))
+    return sign, signs[sign].values[MASS] / time**2 * position
+
+
+def _travel(log):
+    return float(np.nanmax(log.position) - np.nanmin(log.position))
+
+
+def _peak(log):
+    return float(np.abs(log.force).max())
+
+
+def _said(time, position, force, mass):
+    units = f"{TIMES[time]}, {FORCES[abs(force)]}, {POSITIONS[position]}"
+    turned = ", the force with the other sign" if force < 0.0 else ""
+    factors = {"time": time, "force": force, "position": position}
+    return f"in {units}{turned} it is a handle of {mass:.3g} kg", {
+        name: factor for name, factor in factors.items() if factor != 1.0
+    }
+
+
+def scale_option(factors, given):
+    """The option that scales by the factors besides the `given` scales, numbers by quantity."""
+    both = given | {name: factor * given.get(name, 1.0) for name, factor in factors.items()}
+    return "--scale " + ",".join(f"{name}={factor:g}" for name, factor in both.items())
+
+
+def _scaled(log, time, position, force):
+    return dataclasses.replace(
+        log,
+        time=time * log.time,
+        force=force * log.force,
+        position=position * log.position,
+        step=time * log.step,
+        encoder_step=position * log.encoder_step,
+    )
+
+
+def _within(value, ends):
+    return ends[0] <= value <= ends[1]
