@@ -50,9 +50,9 @@ class ContactAgeObserver final : public MetricObserver {
         "largest age of the contacts in use, from the contact query to the step that uses its result; no value if no "
         "step used contacts",
         if_any(rows_ > 0, dt_ * static_cast<double>(oldest_)));
-    s.metric("queries", "1", "number of contact queries, including queries whose result was lost", requested_);
+    s.metric("searches", "1", "number of contact queries, including queries whose result was lost", requested_);
     s.metric("lost_share", "1",
-             "fraction of the contact queries (contacts.asked) whose result was lost; no value without a query",
+             "fraction of the contact queries (contacts.searches) whose result was lost; no value without a query",
              per(lost_, requested_));
   }
 

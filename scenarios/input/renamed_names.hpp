@@ -12,7 +12,7 @@ struct RenamedName {
 
 /// All renamed names. Error messages suggest the new name wherever it is allowed. CHANGELOG.md has the same table.
 inline constexpr RenamedName kRenamedNames[] = {
-    {"ranking.csv", "ranking.csv"},
+    {"league.csv", "ranking.csv"},
     {"beyond", "first_unstable"},
     {"class_beyond", "first_unstable_class"},
     {"low", "stable_low"},
@@ -29,15 +29,15 @@ inline constexpr RenamedName kRenamedNames[] = {
     {"no_theory", "no_theory_reason"},
     {"inconsistent_runs", "non_monotonic_runs"},
     {"astray", "non_monotonic_runs"},
-    {"linear_limit", "linear_limit"},
-    {"simulated_limit", "simulated_limit"},
+    {"linear_edge", "linear_limit_N_per_m"},
+    {"edge_in_runs", "simulated_limit_N_per_m"},
     {"scattered", "no_contiguous_interval"},
-    {"decaying", "decaying"},
-    {"contacts.asked", "contacts.queries"},
-    {"asked", "queries"},
+    {"dying_out", "decaying"},
+    {"contacts.asked", "contacts.searches"},
+    {"asked", "searches"},
     {"force_stage.taken_J", "force_stage.removed_J"},
     {"taken_J", "removed_J"},
-    {"min_press_N", "min_press_N"},
+    {"least_press_N", "min_press_N"},
     {"--anew", "--rerun"},
 };
 

@@ -541,7 +541,7 @@ def words_of_limit(bench, base, printed, resolution, row):
         )
     bench.add(
         "limit --json: rule",
-        "comes to rest or dies out" in printed["rule"],
+        "comes to rest or its oscillation decays" in printed["rule"],
         True,
         "describe stability",
         EXACT,

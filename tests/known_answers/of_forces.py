@@ -374,6 +374,8 @@ def imported(bench):
         ("quantum_force_N", 20000 * 2e-5, close, "of the finest axis", 0.1),
         ("rows_read", 400, EXACT, "with the header", 401),
         ("rows_left_out", 0, EXACT, "the header", 1),
+        ("columns_not_read", [], EXACT, "the force's", ["fx"]),
+        ("rows_per_held_sample", 1.0, EXACT, "each pose twice", 2.0),
         ("samples", 400, EXACT, "intervals", 399),
         ("rate_Hz", 500, close, "samples over duration", 400 / 0.798),
         ("resampled", False, EXACT, "rounded times", True),
@@ -415,6 +417,20 @@ def imported(bench):
         value = told[key][:19] if key == "next" else told[key]
         bench.add(
             f"import --json: {key}", value, known, "numpy on the recording", within, (says, naive)
+        )
+    columns = told["columns"]
+    for key, printed, known, naive in (
+        ("orientation", columns["orientation"], [], [1]),
+        (
+            "component",
+            [part["component"] for part in columns["position"]],
+            list("xyz"),
+            list("zyx"),
+        ),
+        ("column", [part["column"] for part in columns["force"]], [5, 6, 7], [4, 5, 6]),
+    ):
+        bench.add(
+            f"import --json: {key}", printed, known, "as the header names", EXACT, ("others", naive)
         )
     for i, key in enumerate(("min", "median", "max")):
         bench.add(

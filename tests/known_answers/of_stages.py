@@ -188,7 +188,7 @@ def late(bench):
             ),
             ("contacts.age_max_s", age.max(), how, ROUNDING, "without losses", 6 * dt),
             (
-                "contacts.queries",
+                "contacts.searches",
                 len(asked),
                 "every fourth row",
                 EXACT,

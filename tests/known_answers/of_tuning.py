@@ -65,8 +65,8 @@ def tuned(bench):
     tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zeta)
     tuned_words(bench, law, m)
     for name, within in (
-        ("linear_limit", Within("bisected to 1e-12", relative=1e-9)),
-        ("simulated_limit", margin),
+        ("linear_limit_N_per_m", Within("bisected to 1e-12", relative=1e-9)),
+        ("simulated_limit_N_per_m", margin),
     ):
         bench.add(f"tune --json: {name}", law[name], gain * K, by, within, ("K", K))
     bench.add(

@@ -122,21 +122,21 @@ TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
 /// device table.
 TEST_F(TuneCommand, SaysTheEdgesThatLimitSays) {
   const Json law = tune({"--device", "touch", "--json"}).json()["algorithms"][0];
-  ASSERT_TRUE(law["simulated_limit"].is_number() && law["linear_limit"].is_number()) << law.dump(1);
+  ASSERT_TRUE(law["simulated_limit_N_per_m"].is_number() && law["linear_limit_N_per_m"].is_number()) << law.dump(1);
   const std::string tuned = file("out/tap_wall_tuned.json");
   const auto asked = [&](Words words) {
     words.insert(words.begin(), {"limit", tuned, "--json", "--out", file("limit")});
     return hapbench(words).json()["limits"][0];
   };
   const Json limit = asked({}), in_table = asked({"--device", "touch", "--friction", "none"});
-  EXPECT_EQ(limit["limit"], law["simulated_limit"]);
-  EXPECT_EQ(limit["linear_limit"], law["linear_limit"]);
+  EXPECT_EQ(limit["limit"], law["simulated_limit_N_per_m"]);
+  EXPECT_EQ(limit["linear_limit"], law["linear_limit_N_per_m"]);
   EXPECT_EQ(in_table["stable_low"], limit["stable_low"]);
   EXPECT_NEAR(in_table["linear_limit"].get<double>(), limit["linear_limit"].get<double>(),
               0.01 * limit["linear_limit"].get<double>());
   EXPECT_GE(in_table["limit"], limit["limit"]) << "a table tries nothing between";
-  EXPECT_GE(law["simulated_limit"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
-  EXPECT_GE(law["linear_limit"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
+  EXPECT_GE(law["simulated_limit_N_per_m"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
+  EXPECT_GE(law["linear_limit_N_per_m"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
 }
 
 /// A limit is kept by as much as half the step, half the spacing and a look at every row move the metric.
