@@ -16,8 +16,8 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
 /// enough.
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
 
-/// Throws an InputError about the value of an option if the value is not one of the valid names. `shown_by` is passed to
-/// quoted_list.
+/// Throws an InputError about the value of an option if the value is not one of the valid names. `shown_by` is passed
+/// to quoted_list.
 void require_valid_option(const std::string& option, const std::string& name, std::span<const std::string> valid,
                           std::string_view shown_by = {});
 

@@ -91,7 +91,8 @@ def sampled_finer(bench):
         order = " < ".join(" ~ ".join(group) for group in row["order"])
         bench.add(
             "compare --json: says",
-            order in row["says"] and row["says"].startswith("no significant order") == ("<" not in order),
+            order in row["says"]
+            and row["says"].startswith("no significant order") == ("<" not in order),
             True,
             "the same in words",
             EXACT,

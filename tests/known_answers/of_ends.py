@@ -347,7 +347,10 @@ def divergence(bench, run):
         EXACT,
         ("what happened alone", ["diverged"]),
     )
-    for name, words in (("number", "K divided by the linear limit"), ("try", "a shorter time.step_s")):
+    for name, words in (
+        ("number", "K divided by the linear limit"),
+        ("try", "a shorter time.step_s"),
+    ):
         bench.add(
             f"run --json: diagnosis.{name}",
             words in edge[name],

@@ -50,7 +50,11 @@ def limits_of_springs(bench):
     fine = Within("bisected to 1e-12, of eigenvalues near a double one to rounding", relative=1e-9)
     runs = Within("bisection ends at 1e-4; growth of 2e-6 a step is seen", relative=1.1e-4)
     wrong = ("of a single spring", [2 * value[0], 433731.0, 2 * value[2], 2 * value[3]])
-    for column, within in (("closed_form_limit", fine), ("theoretical_limit", fine), ("limit", runs)):
+    for column, within in (
+        ("closed_form_limit", fine),
+        ("theoretical_limit", fine),
+        ("limit", runs),
+    ):
         bench.add(
             f"limit.csv:{column}",
             np.concatenate([table[column] for table in tables]),
@@ -111,7 +115,14 @@ def smallest_mass(bench):
     how = "4 - 2 B dt / M - K dt^2 / M = 0"
     bench.add("limit.csv:theoretical_limit", row["theoretical_limit"], known, how, fine, undamped)
     bench.add("limit.csv:limit", row["limit"], known, how, runs, undamped)
-    bench.add("limit.csv:stable_low", row["stable_low"], known, how, runs, ("the low end of the range", 1e-4))
+    bench.add(
+        "limit.csv:stable_low",
+        row["stable_low"],
+        known,
+        how,
+        runs,
+        ("the low end of the range", 1e-4),
+    )
 
 
 @scene
@@ -139,7 +150,9 @@ def smallest_stiffness(bench):
     row = bench.json(*ask, *bound)["limits"][0]
     within = Within("bisection ends at 1e-4; the motion has died out to e^-300", relative=1.1e-4)
     bench.add("limit.csv:limit", row["limit"], F / x, "F / x", within, ("half of it", F / x / 2))
-    bench.add("limit.csv:stable_low", row["stable_low"], F / x, "F / x", within, ("the range's", 1e3))
+    bench.add(
+        "limit.csv:stable_low", row["stable_low"], F / x, "F / x", within, ("the range's", 1e3)
+    )
     bench.add(
         "limit.csv:unstable_below_class",
         row["unstable_below_class"],
@@ -216,7 +229,12 @@ def over_another_field(bench):
     ]
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
     bench.add(
-        "limit.csv:theoretical_limit", edges["theoretical_limit"], theory, how, close, ("passive, 2 b / T", [1000.0] * 5)
+        "limit.csv:theoretical_limit",
+        edges["theoretical_limit"],
+        theory,
+        how,
+        close,
+        ("passive, 2 b / T", [1000.0] * 5),
     )
     bench.add(
         "limit.csv:limit",

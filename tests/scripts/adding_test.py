@@ -211,11 +211,15 @@ class Adding(unittest.TestCase):
                 claims = {
                     name
                     for name in row
-                    if name.startswith(("theoretical_limit", "worst_hand_limit", "passive", "stable_gil", "exact"))
+                    if name.startswith(
+                        ("theoretical_limit", "worst_hand_limit", "passive", "stable_gil", "exact")
+                    )
                     and row[name]
                 }
                 self.assertEqual(
-                    ("device.play_m" in row["no_theory_reason"], bool(claims)), (play > 0, play == 0), row
+                    ("device.play_m" in row["no_theory_reason"], bool(claims)),
+                    (play > 0, play == 0),
+                    row,
                 )
 
     def test_a_named_file_is_read_checked_hashed_and_moved(self):

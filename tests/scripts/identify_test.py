@@ -305,7 +305,8 @@ class Design(unittest.TestCase):
         )
         warned = designed("chirp,travel=0.08,mass=0.1,force=2").stderr
         self.assertIn(
-            "the travel of 0.08 m limits the force to 0.72 N instead of 2 N, so that dry friction can be identified up to 0.432 N",
+            "the travel of 0.08 m limits the force to 0.72 N instead of 2 N, so that dry friction can be "
+            "identified up to 0.432 N",
             warned,
         )
         asked = warned.split("force=")[1].split()[0]

@@ -193,8 +193,10 @@ def identify(options, out):
     warnings = log.warnings + warnings_of(told, found, log)
     if not found.misfit and not is_usual(log, found.values[MASS]):
         warnings.append(
-            f"a handle of {found.values[MASS]:.3g} kg, a travel of {np.ptp(log.position[np.isfinite(log.position)]):.3g} m "
-            f"and forces of up to {np.abs(log.force).max():.3g} N are unusual. {units_text(options, log, found)}".rstrip()
+            f"a handle of {found.values[MASS]:.3g} kg, a travel of "
+            f"{np.ptp(log.position[np.isfinite(log.position)]):.3g} m "
+            f"and forces of up to {np.abs(log.force).max():.3g} N are unusual. "
+            f"{units_text(options, log, found)}".rstrip()
         )
     device = {"type": "impedance"} | {
         name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]
@@ -284,7 +286,8 @@ def shown_end(end):
 
 def warnings_of(told, found, log):
     warnings = [
-        f"{name} cannot be identified from this log: {why}; 95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}"
+        f"{name} cannot be identified from this log: {why}; "
+        f"95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}"
         for name, why in found.untold.items()
         if name in IN_DEVICE
     ]

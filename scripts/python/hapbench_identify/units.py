@@ -37,7 +37,8 @@ def is_usual(log, mass):
 
 
 def likely_units(log, found=None):
-    """(text, factors by quantity) of the units, and the sign of the force, in which the log is that of a likely handle: at most
+    """(text, factors by quantity) of the units, and the sign of the force, in which the log is that of a likely
+    handle: at most
     three, those that change the least first. `found`: the fit of the log as it is, if there is one.
     """
     times = [one for one in TIMES if _within(one * log.step, STEPS)] or [1.0]

@@ -186,7 +186,8 @@ class Columns:
     def _other_order(self, first, found):
         shown = ", ".join(self.names.names[column] for column in sorted(found))
         return (
-            f"--orientation {self.kind} says that the first component is {self.names.names[found[0]]}, and --columns that "
+            f"--orientation {self.kind} says that the first component is "
+            f"{self.names.names[found[0]]}, and --columns that "
             f"it is {self.names.names[first]}: the quaternion was read by the names of its columns ({shown})"
         )
 

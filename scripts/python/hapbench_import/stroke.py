@@ -289,7 +289,8 @@ def table_of(found):
         ),
         (
             "speed",
-            f"{found['speed_max_m_per_s']:.4g} m/s at most; 99 % of the steps below {found['speed_p99_m_per_s']:.4g} m/s",
+            f"{found['speed_max_m_per_s']:.4g} m/s at most; 99 % of the steps below "
+            f"{found['speed_p99_m_per_s']:.4g} m/s",
         ),
         (
             "pose",
@@ -314,7 +315,8 @@ def table_of(found):
         rows.append(
             (
                 "",
-                f"this resolution q alone causes force steps of K q = {found['quantum_force_N']:.4g} N at the default K = {STIFFNESS:g} N/m",
+                f"this resolution q alone causes force steps of K q = "
+                f"{found['quantum_force_N']:.4g} N at the default K = {STIFFNESS:g} N/m",
             )
         )
     if smoothing:

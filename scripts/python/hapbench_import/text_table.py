@@ -191,7 +191,8 @@ def _drop_trailing_separators(table):
         table.rows[i].pop()
     if longer:
         table.notes.append(
-            f"a separator at the end of {counted(len(longer), 'line')} ignored, the first: line {table.lines[longer[0]]}"
+            f"a separator at the end of {counted(len(longer), 'line')} ignored, the first: "
+            f"line {table.lines[longer[0]]}"
         )
     if width < 2 or table.names[-1] or not table.rows:
         return

@@ -261,7 +261,8 @@ def pareto_section(runs):
     light = [RunLook(name, look(name).colour, look(name).dark, ()) for name in means]
     words = "; ".join(f"{name} {mean[0]:.3g} mm, {mean[1]:.3g} N" for name, mean in means.items())
     return (
-        "<p>Mean over all runs of an algorithm. Dotted line: algorithms that no other algorithm beats in both depth and vibration.</p><div class=curves>"
+        "<p>Mean over all runs of an algorithm. Dotted line: algorithms that no "
+        "other algorithm beats in both depth and vibration.</p><div class=curves>"
         + drawing(SCENE_SIZE, draw, light, "Depth and vibration", words)
         + "</div>"
     )
@@ -445,7 +446,8 @@ def commands_section(runs, words):
             if lines
             else ""
         )
-        + f"<p>These commands write the pictures and this page again:</p>{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
+        + f"<p>These commands write the pictures and this page again:</p>"
+        + f"{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
         + "<p class=note>The paths belong to the machine that wrote this page. On another machine, save "
         "a scenario from above as a file.</p>"
     )

@@ -292,9 +292,9 @@ Panel multi_rate_contacts(const Scenario& free) {
         run.rendering.late = MultiRateSchedule{};
         run.rendering.late->every = every;
         run.rendering.late->linear = linear;
-        panel.push_back({fmt::format("multi_rate_contacts/{} {} {}", algorithm.info->name, linear ? "linear" : "hold", every),
-                         "step", [=] { return off_the_fresh(run, shell(), fresh()); },
-                         [=] { return bare_run(run, shell()); }});
+        panel.push_back(
+            {fmt::format("multi_rate_contacts/{} {} {}", algorithm.info->name, linear ? "linear" : "hold", every),
+             "step", [=] { return off_the_fresh(run, shell(), fresh()); }, [=] { return bare_run(run, shell()); }});
       }
     }
   }
