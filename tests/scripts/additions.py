@@ -87,7 +87,7 @@ AlgorithmEntry halved_entry() {
 }  // namespace hapbench
 """,
             ),
-            behind("row(mcneely) row(static_coupling)", " row(halved)"),
+            behind("              entry(static_coupling)", " entry(halved)"),
         ],
     ),
     "environment": (
@@ -103,7 +103,7 @@ AlgorithmEntry halved_entry() {
             ),
             behind("using Environment = std::variant<SpringsEnvironment, ", "RidgeEnvironment, "),
             behind(
-                """{"springs", "springs on the tool's tip, without a surface"},
+                """{"springs", "springs that act on the tool's tip, without a surface"},
 """,
                 """             {"ridge", "a row of points"},
 """,
@@ -137,7 +137,7 @@ static std::vector<SurfacePoint> surface_points(const RidgeEnvironment& ridge) {
 """,
             ),
             behind(
-                """    {"cylinder", "a drill's stylus with a flat or a round tip"},
+                """    {"cylinder", "cylinder with a flat or a round tip, like a drill's stylus"},
 """,
                 """    {"taper", "a cone that ends in a narrow tip"},
 """,
@@ -288,7 +288,7 @@ class StillnessObserver final : public MetricObserver {
             ),
             before(
                 '#include "results/observe/target_metrics.hpp"\n\nnamespace hapbench {\nnamespace {\n\n'
-                "/// A section of the summary.\n",
+                "/// A section of the summary: its name, when a run has it, and its observer.\n",
                 '#include "results/observe/stillness.hpp"\n',
             ),
             behind(
