@@ -11,14 +11,6 @@
 namespace hapbench {
 namespace {
 
-/// Returns the text without white space at both ends.
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
 /// Splits a row into cells and trims them.
 Words cells_of(std::string_view row) {
   Words cells = parts_of(row, ',');

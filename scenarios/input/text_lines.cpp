@@ -29,6 +29,13 @@ Words parts_of(std::string_view text, char separator) {
   return parts;
 }
 
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
 std::optional<double> finite_number(std::string_view word) {
   const auto value = parse_number<double>(word);
   return value && std::isfinite(*value) ? value : std::nullopt;

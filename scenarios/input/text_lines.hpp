@@ -23,6 +23,9 @@ Words words_of(std::string_view line);
 /// Splits a text at each separator. Parts may be empty. There is one part more than there are separators.
 Words parts_of(std::string_view text, char separator);
 
+/// Returns the text without blanks, tabs and carriage returns at both ends.
+std::string_view trimmed(std::string_view text);
+
 /// Converts a token to a finite number. Returns nullopt if the token is anything else.
 std::optional<double> finite_number(std::string_view word);
 

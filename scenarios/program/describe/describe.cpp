@@ -92,7 +92,7 @@ std::vector<Description> other_meanings(const Index& index, const std::string& n
   });
   if (!found.empty()) return found;
   // Find a term of the glossary, then a scenario file.
-  if (const std::optional<Description> term = find_term(name, layout)) return {*term};
+  if (const std::optional<Description> term = find_term(in_folders, name)) return {*term};
   std::error_code ignored;
   if (!std::filesystem::exists(name, ignored)) refuse(name, index, in_folders);
   return {describe_scenario(find_scenario(name), layout)};
@@ -102,7 +102,7 @@ std::vector<Description> other_meanings(const Index& index, const std::string& n
 /// the glossary has no entry, or if its file is missing: the other meaning does not need it.
 std::string glossary_addition(const std::string& name, const Layout& layout) {
   try {
-    const std::optional<Description> term = find_term(name, layout);
+    const std::optional<Description> term = find_term(glossary_index(layout), name);
     return term ? "\n" + term->text : "";
   } catch (const InputError&) {
     return "";

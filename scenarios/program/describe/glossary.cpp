@@ -11,12 +11,7 @@
 namespace hapbench {
 namespace {
 
-/// Returns the text without spaces at its ends.
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
-}
+constexpr const char* kTerm = "term";
 
 /// Returns the name in lower case, without spaces at its ends and with spaces for "_".
 std::string normalized(std::string_view name) {
@@ -44,20 +39,23 @@ Index glossary_index(const Layout& layout) {
   // the rule below it.
   bool is_in_table = false;
   for (const std::string_view line : parts_of(text, '\n')) {
+    if (line.starts_with("|---")) {
+      is_in_table = true;
+      continue;
+    }
     const Words cells = parts_of(line, '|');
-    if (line.starts_with("|---")) is_in_table = true;
-    if (!is_in_table || cells.size() != 4 || line.starts_with("|---")) continue;
-    const Json json = {{"kind", "term"}, {"name", trimmed(cells[1])}, {"meaning", trimmed(cells[2])}};
-    index.push_back({"term", json["name"].get<std::string>(), json["meaning"].get<std::string>(),
+    if (!is_in_table || cells.size() != 4) continue;
+    const Json json = {{"kind", kTerm}, {"name", trimmed(cells[1])}, {"meaning", trimmed(cells[2])}};
+    index.push_back({kTerm, json["name"].get<std::string>(), json["meaning"].get<std::string>(),
                      [json, layout] { return entry_description(json, layout); }});
   }
   return index;
 }
 
-std::optional<Description> find_term(std::string_view name, const Layout& layout) {
+std::optional<Description> find_term(const Index& index, std::string_view name) {
   std::vector<Description> found;
-  for (const IndexEntry& term : glossary_index(layout))
-    if (is_name_of(term.name, name)) found.push_back(term.describe());
+  for (const IndexEntry& entry : index)
+    if (entry.kind == kTerm && is_name_of(entry.name, name)) found.push_back(entry.describe());
   if (found.empty()) return std::nullopt;
   return joined(found);
 }
