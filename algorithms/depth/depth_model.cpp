@@ -17,7 +17,7 @@ constexpr ModelInfo kShortestDistanceInfo = {
     .summary = "distance to the nearest surface of the tool, with the gradient towards it",
     .formula = "d = |q - x|, u = (q - x) / d, with q the point of the tool's surface nearest to x",
     .source =
-        "thesis B.1, with depths >= 0 of which the smallest is used (as printed, negative depths would pull the tool "
+        "thesis B.1; uses the smallest depth >= 0 (as printed, negative depths would pull the tool "
         "in)",
     .known_failure = "the gradient flips by 180 degrees when a point crosses the tool's median line (thesis B.3.1)",
 };

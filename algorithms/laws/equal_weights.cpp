@@ -86,7 +86,7 @@ AlgorithmEntry mean_entry() {
 AlgorithmEntry mcneely_entry() {
   static constexpr ModelInfo kInfo = {
       .name = "mcneely",
-      .summary = "the 10/N rule: the springs are added; the sum of more than ten is scaled to that of ten",
+      .summary = "the 10/N rule: adds the springs; the sum of more than ten springs is scaled to the sum of ten",
       .formula = "c_i = min(1, p / n), p = 10 points, n colliding points; always without reduction",
       .source =
           "McNeely, Puterbaugh and Troy, Six degree-of-freedom haptic rendering using voxel sampling (SIGGRAPH 1999)",

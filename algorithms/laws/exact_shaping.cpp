@@ -387,7 +387,7 @@ AlgorithmEntry exact_shaping_entry() {
           "not in the thesis; the iteration is the multiplicative update of Sha, Lin, Saul, Lee, Neural Computation "
           "2007",
       .known_failure =
-          "force jumps when contacts appear or disappear, larger than those of shaped_stiffness; ratios above 1 where "
+          "force jumps when contacts appear or disappear, larger than under shaped_stiffness; ratios above 1 where "
           "the weight is zero; soft in the direction out of a wedge, 2 sin^2 w / (1 + cos^2 2w) K for half angle w, "
           "about w^2 K",
       .parameters = kStiffnessAlone,

@@ -98,7 +98,7 @@ std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector
     if (!coefficient) return std::nullopt;
     found.push_back(*coefficient);
   }
-  // Of equally high peaks, take the peak nearest to 0; the distance to the next is the period.
+  // Choose the peak nearest to 0 if several peaks are equally high. The distance to the next peak is the period.
   const std::vector<Peak> peaks = largest_peaks(found);
   const Peak* nearest = nullptr;
   for (const Peak& peak : peaks) {

@@ -135,7 +135,7 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
     std::iota(runs.begin(), runs.end(), std::size_t{0});
     return runs;
   }
-  // Of a large grid, the lines through the first and the last run.
+  // Check only the lines through the first and the last run of a large grid.
   std::set<std::size_t> runs;
   std::size_t stride = 1;
   for (std::size_t a = cases.axes().size(); a-- > 0;) {

@@ -13,7 +13,7 @@ struct HandleState {
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
-/// What the user perceives in one step: the handle in the hand, and the display. Exact simulated values.
+/// Exact simulated values that the user perceives in one step: the motion of the handle, and the display.
 struct HandView {
   const HandleState& handle;
   const ToolPose& tool;      ///< tool as shown on the display

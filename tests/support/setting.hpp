@@ -69,7 +69,7 @@ std::unique_ptr<Motion> constant_axis(const Vec3& axis);
 
 // Small scenes whose rendered force is known analytically.
 
-/// What is known about the force in a scene: constraints that every algorithm must satisfy.
+/// Known properties of the force in a scene, which every algorithm must satisfy.
 struct Answer {
   /// Unit vector of the force; zero if the force is zero. Not checked if `only_in_plane`.
   Vec3 direction = Vec3::Zero();

@@ -12,7 +12,8 @@ namespace {
 
 using Stable = std::function<bool(double value)>;
 
-/// What find_verified_interval gives from 1e4 to 1e6: the last stable value, 0 without an edge, -1 for scattered ones.
+/// Returns the last stable value that find_verified_interval finds from 1e4 to 1e6. Returns 0 without a stability
+/// limit, and -1 if stable and unstable values alternate.
 double tried_edge(const Stable& stable) {
   const IntervalSearchOptions way{.range = {1e4, 1e6, true}};
   const auto holds = [&](double part) { return stable(way.value_at(part)); };
