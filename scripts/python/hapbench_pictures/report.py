@@ -446,7 +446,7 @@ def commands_section(runs, words):
             if lines
             else ""
         )
-        + f"<p>These commands write the pictures and this page again:</p>"
+        + "<p>These commands write the pictures and this page again:</p>"
         + f"{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
         + "<p class=note>The paths belong to the machine that wrote this page. On another machine, save "
         "a scenario from above as a file.</p>"
