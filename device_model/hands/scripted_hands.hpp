@@ -93,7 +93,7 @@ class ImpedanceHand final : public Hand {
  public:
   /// Stiffness k [N/m], damping b [N s/m], and the target's x, y, z [m] over time.
   ImpedanceHand(double stiffness, double damping, std::array<Profile, 3> target, std::optional<Tremor> tremor = {})
-      : stiffness_(stiffness), damping_(damping), target_(std::move(target)), tremor_(std::move(tremor)) {}
+      : stiffness_(stiffness), damping_(damping), target_(std::move(target)), tremor_(tremor) {}
 
   Vec3 force(double t, const HandView& view) noexcept override {
     Vec3 position{target_[0](t), target_[1](t), target_[2](t)};

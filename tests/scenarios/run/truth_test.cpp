@@ -376,13 +376,13 @@ TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   const Case cases[] = {
       {"led sideways through a plate, its tip below",
        {kPlate, kFlat, "initial.position_m=[-0.006,0,-0.002]", "time.steps=500",
-        R"(hand={"type":"impedance","stiffness_N_per_m":4000,"damping_N_s_per_m":40,"target":{"y_m":0,)"
-        R"("z_m":-0.002,"x_m":{"type":"waypoints","points":[[0,-0.006],[0.25,0.006]]}}})"},
+        std::string{R"(hand={"type":"impedance","stiffness_N_per_m":4000,"damping_N_s_per_m":40,)"} +
+            R"("target":{"y_m":0,"z_m":-0.002,"x_m":{"type":"waypoints","points":[[0,-0.006],[0.25,0.006]]}}})"},
        kThrough},
       {"turned through a plate",
        {kPlate, kFlat, kNoHand, R"(motion.position={"type":"prescribed","x_m":-0.0048,"y_m":0,"z_m":-0.001})",
-        R"(motion.orientation={"up":[0,0,1],"lean":[1,0,0],"tilt_rad":{"type":"waypoints","points":[[0,0],)"
-        R"([0.3,1.4]]}})"},
+        std::string{R"(motion.orientation={"up":[0,0,1],"lean":[1,0,0],)"} +
+            R"("tilt_rad":{"type":"waypoints","points":[[0,0],[0.3,1.4]]}})"},
        kThrough},
       {"dragged into a gap",
        {R"(environment={"type":"mesh","file":"gap.off","scale":1,"spacing_m":0.0001})",
@@ -393,7 +393,7 @@ TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   };
   for (Case c : cases) {
     SCOPED_TRACE(c.name);
-    c.changes.push_back("record.inside=false");
+    c.changes.emplace_back("record.inside=false");
     const LoadedScenario loaded = scene(c);
     const Outcome outcome = run_scenario(checked(loaded), std::nullopt, false).end.outcome;
     EXPECT_EQ(outcome, c.outcomes[0]) << outcome_name(outcome);
