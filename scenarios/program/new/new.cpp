@@ -90,6 +90,9 @@ void add_new(CommandLine& line) {
       "--extent", options.extent,
       "size of the mesh, the longest edge of its box, with a unit: 12mm, 1.2cm, 0.012m, 0.5in (default: the file is "
       "in metres)");
+  command.add("--unit", options.unit,
+              "unit of the mesh's file: mm, cm, m or in; replaces --extent and keeps the size of the mesh",
+              {.one_of = {"mm", "cm", "m", "in"}});
   command.add("--side", options.side, "from which the tool comes: x, y, z (default), or --side=-x, -y, -z",
               {.one_of = {"x", "y", "z", "-x", "-y", "-z"}});
   command.add("--path", options.path, "X,Y,Z [m] of a point to drag over; give it for each, two or more",

@@ -23,6 +23,7 @@
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "sim/geometry/triangle_tree.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 
 namespace hapbench {
 namespace {
@@ -51,6 +52,8 @@ class Start {
  public:
   Start(const StartKind& kind, const NewOptions& options, const std::filesystem::path& directory)
       : scene_(kind.scene), options_(options), directory_(directory) {
+    for (const LengthUnit& unit : kLengthUnits)
+      if (options.unit == unit.name) unit_ = unit.metres;
     if (!options.extent.empty()) extent_ = length_in("--extent", options.extent);
     for (const std::string& point : options.path) named_.push_back(place_in("--path", point));
     if (!options.at.empty()) named_.push_back(place_in("--at", options.at));
@@ -62,6 +65,7 @@ class Start {
     const bool is_placed = scene_.contains("initial") && scene_["initial"]["position_m"].is_null();
     if (is_placed) scene_["initial"]["position_m"] = {0, 0, 0};
     if (has_type("environment", "mesh")) scale_environment();
+    if (has_type("environment", "point_shell")) check_shell_size();
     if (has_type("tool", "mesh")) {
       place_mesh_tool();
     } else if (is_placed) {
@@ -110,42 +114,97 @@ class Start {
     return make_shell(loaded.scenario, loaded.files);
   }
 
-  /// The points of the scene in the side's frame.
+  /// Returns the points over which the tool starts, in the side's frame: of the largest component of a mesh, unless the
+  /// place of the start is given.
   std::vector<SurfacePoint> points() const {
-    std::vector<SurfacePoint> points = shell()->points();
+    return in_frame_of_side(is_over_largest_ ? mesh().largest_component().points() : shell()->points());
+  }
+  std::vector<SurfacePoint> all_points() const { return in_frame_of_side(shell()->points()); }
+
+  std::vector<SurfacePoint> in_frame_of_side(std::vector<SurfacePoint> points) const {
     for (SurfacePoint& point : points)
       point = {to_world_.transpose() * point.position, to_world_.transpose() * point.normal};
     return points;
   }
 
-  /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
-  /// stated is in metres. Throws InputError when it then is not 1 mm to 1 m long, with its length in either unit.
+  /// Returns the command that repeats this start with an option, as an error message shows it.
+  std::string command_with(const std::string& option) const {
+    return fmt::format("\"hapbench new {} {} {} {}\"", options_.kind, options_.on.empty() ? "--from" : "--on",
+                       mesh_file(), option);
+  }
+
+  /// Returns the scale of an object that was first read as millimetres: its stated unit, the factor to its stated
+  /// size, or 1 for a file in metres. Throws InputError if neither is stated and the object then is not 1 mm to 1 m
+  /// long.
   double choose_scale(const Box& box, const char* object) {
     const double longest = box.size().maxCoeff() / 0.001;
-    if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
-      const std::string command = fmt::format("hapbench new {} {} {} --extent", options_.kind,
-                                              options_.on.empty() ? "--from" : "--on", mesh_file());
+    if (!extent_ && !unit_ && (longest < kShortestObject || longest > kLongestObject)) {
       throw InputError(fmt::format(
-          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} "
-          "{:.7g}mm\" or \"{} {:.7g}m\"",
+          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its unit: {} or {}",
           mesh_file(), object, length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
-          length_text(kLongestObject), command, longest, command, longest));
+          length_text(kLongestObject), command_with("--unit mm"), command_with("--unit m")));
     }
-    const double scale = extent_ ? rounded_to_digits(*extent_ / longest, 6) : 1.0;
-    notes_.push_back(
-        fmt::format("longest edge of the {}'s box: {}, with scale {}", object, length_text(longest * scale), scale));
+    const double scale = unit_ ? *unit_ : extent_ ? rounded_to_digits(*extent_ / longest, 6) : 1.0;
+    notes_.push_back(fmt::format("longest edge of the {}'s box: {:.6g} in the file, {} with scale {}{}", object,
+                                 longest, length_text(longest * scale), scale, scale_note(scale)));
     return scale;
+  }
+
+  /// Returns the relation of a scale to the closest unit, if that is within 20 %.
+  static std::string scale_note(double scale) {
+    const auto distance = [scale](const LengthUnit& unit) { return std::abs(scale / unit.metres - 1.0); };
+    const LengthUnit& unit = *std::ranges::min_element(kLengthUnits, {}, distance);
+    if (distance(unit) > 0.2) return "";
+    if (distance(unit) < 1e-9) return fmt::format(" (the file is in {})", unit.name);
+    return fmt::format(", {:.2g} % {} than in {} (--unit {} keeps its size)", 100.0 * distance(unit),
+                       scale > unit.metres ? "larger" : "smaller", unit.name, unit.name);
+  }
+
+  /// Throws InputError for a point shell, which is in metres, that is not 1 mm to 1 m long. --unit m confirms its size.
+  void check_shell_size() {
+    const double longest = bounds_of(points()).size().maxCoeff();
+    const bool has_size = longest > 0.0;  // unlike a single point
+    if (unit_ || !has_size || (longest >= kShortestObject && longest <= kLongestObject)) return;
+    throw InputError(fmt::format(
+        "{}: the shell is {} long in metres, {} if its numbers are millimetres; allowed: {} ... {} (convert the "
+        "coordinates of the file to metres), or to confirm its size: {}",
+        mesh_file(), length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
+        length_text(kLongestObject), command_with("--unit m")));
+  }
+
+  MeshFile mesh() const { return scenario().files.at(kEnvironmentFile).mesh(); }
+
+  /// Returns the bounding box of the environment's mesh without specks, in the side's frame.
+  Box box_of_mesh() {
+    const MeshFile file = mesh();
+    const MeshFindings& found = file.findings();
+    const std::size_t large = components_above_speck_size(found);
+    if (large == found.component_count) return bounds_of(all_points());
+    Box box = Box::nothing();
+    for (std::size_t i = 0; i < large; ++i) {
+      const Box& part = found.components[i].box;
+      const Vec3 a = to_world_.transpose() * part.min, b = to_world_.transpose() * part.max;
+      box.add(a.cwiseMin(b));
+      box.add(a.cwiseMax(b));
+    }
+    notes_.push_back(fmt::format("measured without {} of {} components, which are specks",
+                                 found.component_count - large, found.component_count));
+    return box;
   }
 
   /// The tool is sized by the mesh, but for one that a stroke leads.
   void scale_environment() {
-    const Box box = bounds_of(points());
+    const Box box = box_of_mesh();
     const double scale = choose_scale(box, "mesh");
     scene_["environment"]["scale"] = scale;
     if (options_.on.empty()) choose_tool(box.size().maxCoeff() / 0.001 * scale);
     scene_["environment"]["spacing_m"] = rounded(diameter_ / 10.0);
     if (!options_.on.empty())
       notes_.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
+    const std::size_t components = mesh().findings().component_count;
+    is_over_largest_ = options_.on.empty() && named_.empty() && components > 1;
+    if (is_over_largest_)
+      notes_.push_back(fmt::format("the mesh has {} components; the tool starts over the largest", components));
   }
 
   /// The tool is 1 mm thick, or a fiftieth of a longer object.
@@ -161,8 +220,7 @@ class Start {
     const Box box = bounds_of(shell);
     choose_tool(box.size().maxCoeff());
     const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
-    const bool is_open =
-        !has_type("environment", "mesh") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
+    const bool is_open = !has_type("environment", "mesh") || !mesh().largest_component().open_edges().empty();
     double facing = 0.0;
     for (const SurfacePoint& point : shell) {
       const Vec3 from_top = point.position - top;
@@ -312,6 +370,8 @@ class Start {
   std::vector<std::string> notes_, warnings_;
   const NewOptions& options_;
   std::filesystem::path directory_;
+  bool is_over_largest_ = false;      ///< the tool starts over the largest of several components of a mesh
+  std::optional<double> unit_;        ///< length of the unit of the mesh's file [m]
   std::optional<double> extent_;      ///< of the mesh: longest edge of its box [m]
   std::vector<Vec3> named_;           ///< the tool starts over the surface's place nearest to it; then a drag's way [m]
   Mat3 to_world_ = Mat3::Identity();  ///< from the side's frame
