@@ -63,10 +63,11 @@ void refuse_cut_face(const MeshFaces& faces, const MeshFindings& found, const fs
   const std::size_t last = faces.ends.size() - 1, corners = faces.face(last).size();
   for (std::size_t f = 0; f < last; ++f)
     if (faces.face(f).size() <= corners) return;
-  fail_in_line(file, faces.unfinished_line,
-               fmt::format("the file is cut short: it ends within this line, whose face has {} corners, fewer than all "
-                           "other faces, and the mesh is open; allowed: a complete file",
-                           corners));
+  fail_in_line(
+      file, faces.unfinished_line,
+      fmt::format("the file is cut short: it ends within this line, whose face has {} corners, fewer than all "
+                  "other faces, and the mesh is open; allowed: a complete file, with a line end after the last face",
+                  corners));
 }
 
 /// Throws InputError for a surface that cannot be sampled.
