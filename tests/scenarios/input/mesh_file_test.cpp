@@ -287,7 +287,7 @@ TEST_F(MeshFile, NamesAPolygonThatCrossesItself) {
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(
       warnings[0],
-      "uneven.obj: polygons that are not planar: 1, the first in line 6; the largest is off its plane by 3.4 % of its "
+      "uneven.obj: polygons that are not planar: 1, the first in line 6; the largest is off its plane by 3.5 % of its "
       "diameter; their triangles are one of several choices");
   EXPECT_EQ(warnings[1].find("uneven.obj: the mesh is open"), 0u);
 }

@@ -189,7 +189,8 @@ TEST(MeshFromTriangles, HoldsWhateverTrianglesThereAre) {
       EXPECT_TRUE(message.starts_with("is not orientable") || message.starts_with("has no faces")) << message;
     }
   }
-  EXPECT_GT(crowded, held / 4);
+  // A large share of the meshes has edges with more than two triangles, after equal triangles were left out.
+  EXPECT_GT(crowded, held / 6);
 }
 
 TEST(MeshFromTriangles, RefusesSurfacesWithOneSide) {
