@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Unevenness above which a warning reports that a polygon is not planar.
-constexpr double kReportedUnevenness = 0.01;
+constexpr double kReportedUnevenness = 0.05;
 
 /// Throws InputError that names the file and, if lines are known, the line of an entry.
 [[noreturn]] void fail_in_entry(const std::vector<std::uint32_t>& lines, std::size_t entry, const std::string& problem,

@@ -106,7 +106,8 @@ TEST_F(MeshFile, IsReadWhateverElseItsTextHolds) {
        "1 "
        ".1 .2 .3\ng a\ns off\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4 # last\n"},
       {"continued.obj",
-       "v 0 \\\n 0 0\nv 1 \\\n0 \\\n0\n#no \\\nv 0 1 0 \\ \n\nv 0 0 1\nf 1 3 \\\n2\nf 1 \\\r\n 2 \\\r\n4\nf 1 4 3\nf 2 3 4\n"},
+       "v 0 \\\n 0 0\nv 1 \\\n0 \\\n0\n#no \\\nv 0 1 0 \\ \n\nv 0 0 1\n"
+       "f 1 3 \\\n2\nf 1 \\\r\n 2 \\\r\n4\nf 1 4 3\nf 2 3 4\n"},
       {"glued.off", "OFF4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
       {"glued_colours.off", "coff4 4\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
       {"no_keyword.off", "4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
@@ -283,11 +284,11 @@ TEST_F(MeshFile, NamesAPolygonThatCrossesItself) {
   EXPECT_NE(refusal_of("bent.obj", "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\n\nf 1 2 3 4\n")
                 .find("bent.obj, line 6: face 1: is not planar: a corner is off its plane by 1"),
             std::string::npos);
-  const auto warnings = read("uneven.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.2\nv 0 1 0\n\nf 1 2 3 4\n").warnings;
+  const auto warnings = read("uneven.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\n\nf 1 2 3 4\n").warnings;
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(
       warnings[0],
-      "uneven.obj: polygons that are not planar: 1, the first in line 6; the largest is off its plane by 3.5 % of its "
+      "uneven.obj: polygons that are not planar: 1, the first in line 6; the largest is off its plane by 8.2 % of its "
       "diameter; their triangles are one of several choices");
   EXPECT_EQ(warnings[1].find("uneven.obj: the mesh is open"), 0u);
 }
