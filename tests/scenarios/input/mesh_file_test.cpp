@@ -288,7 +288,7 @@ TEST_F(MeshFile, NamesAPolygonThatCrossesItself) {
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(
       warnings[0],
-      "uneven.obj: polygons that are not planar: 1, the first in line 6; the largest is off its plane by 8.2 % of its "
+      "uneven.obj: polygons that are not planar: 1, the first in line 6; the largest is off its plane by 7.9 % of its "
       "diameter; their triangles are one of several choices");
   EXPECT_EQ(warnings[1].find("uneven.obj: the mesh is open"), 0u);
 }
