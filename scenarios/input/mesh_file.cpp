@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/mesh_faces.hpp"
 #include "scenarios/input/mesh_sampling.hpp"
 #include "scenarios/input/read_obj.hpp"
 #include "scenarios/input/read_off.hpp"
@@ -23,34 +24,21 @@ namespace fs = std::filesystem;
 /// A mesh format: file extension in lower case, and parser.
 struct MeshFormat {
   std::string_view extension;
-  TriangleSoup (*read)(std::string_view text, const fs::path& file);
+  MeshFaces (*read)(std::string_view text, const fs::path& file);
 };
 constexpr MeshFormat kMeshFormats[] = {{".obj", read_obj}, {".ply", read_ply}, {".stl", read_stl}, {".off", read_off}};
 
-/// Throws InputError if a triangle refers to a vertex that the file does not have.
-void check_indices(const TriangleSoup& soup, const fs::path& file) {
-  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-    for (const std::uint32_t vertex : soup.triangles[t]) {
-      if (vertex < soup.vertices.size()) continue;
-      fail_in_file(file,
-                   fmt::format("triangle {}: got vertex {}; allowed: 0 ... {}, the vertices of the file", t,
-                               static_cast<std::int32_t>(vertex), static_cast<std::int64_t>(soup.vertices.size()) - 1));
-    }
-  }
-}
-
 /// Converts the vertices to metres. Throws InputError if a coordinate is not finite or too large.
-void scale_and_check(TriangleSoup& soup, double scale, const fs::path& file) {
-  for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
-    Vec3& vertex = soup.vertices[i];
+void scale_and_check(MeshFaces& faces, double scale, const fs::path& file) {
+  for (std::size_t i = 0; i < faces.vertices.size(); ++i) {
+    Vec3& vertex = faces.vertices[i];
     vertex *= scale;
-    if (!vertex.allFinite())
-      fail_in_file(file, fmt::format("vertex {}: is not finite; allowed: finite coordinates", i));
+    if (!vertex.allFinite()) faces.fail_at_vertex(i, "is not finite; allowed: finite coordinates", file);
     const double largest = vertex.cwiseAbs().maxCoeff();
     if (largest > kMaxCoordinate) {
-      fail_in_file(
-          file, fmt::format("vertex {}: got coordinate {} after scaling; allowed: at most {} m (is \"scale\" right?)",
-                            i, largest, kMaxCoordinate));
+      const std::string problem = fmt::format(
+          "got coordinate {} after scaling; allowed: at most {} m (is \"scale\" right?)", largest, kMaxCoordinate);
+      faces.fail_at_vertex(i, problem, file);
     }
   }
 }
@@ -68,21 +56,22 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
 /// that this bounds the number of points.
 constexpr double kMaxFaces = 2.0 * kMaxSurfacePoints;
 
-/// Parses the contents of a mesh file and makes all checks.
-CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
-  // Parse the triangles.
-  const auto* format = std::ranges::find(kMeshFormats, mesh_extension(file), &MeshFormat::extension);
-  if (bytes.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
-  TriangleSoup soup = format->read(bytes, file);
-  // Check and scale them.
-  check_indices(soup, file);
-  scale_and_check(soup, sampling.scale, file);
-  // Reverse the winding, and with it the normals.
-  if (sampling.flip) {
-    for (auto& corners : soup.triangles) std::swap(corners[1], corners[2]);
-  }
-  // Connect the triangles and check the surface.
-  CheckedMesh surface = connect(soup, file);
+/// Throws InputError for an open mesh whose file ends within the line of the last face, if this face has fewer corners
+/// than all others.
+void refuse_cut_face(const MeshFaces& faces, const MeshFindings& found, const fs::path& file) {
+  if (faces.unfinished_line == 0 || faces.ends.size() < 2 || found.open_edges.empty()) return;
+  const std::size_t last = faces.ends.size() - 1, corners = faces.face(last).size();
+  for (std::size_t f = 0; f < last; ++f)
+    if (faces.face(f).size() <= corners) return;
+  fail_in_line(
+      file, faces.unfinished_line,
+      fmt::format("the file is cut short: it ends within this line, whose face has {} corners, fewer than all "
+                  "other faces, and the mesh is open; allowed: a complete file, with a line end after the last face",
+                  corners));
+}
+
+/// Throws InputError for a surface that cannot be sampled.
+void check_surface(const CheckedMesh& surface, const MeshSampling& sampling, const fs::path& file) {
   if (sampling.flip && surface.findings.open_edges.empty())
     fail_in_file(file, "is closed, so that its outside is known; allowed: flip_normals of an open surface only");
   const std::size_t vertices = surface.mesh.n_vertices();
@@ -94,10 +83,84 @@ CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const Mes
     fail_in_file(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing",
                                    *sampling.spacing, kMaxSurfacePoints));
   }
+}
+
+/// Parses the contents of a mesh file and makes all checks. Adds what the reader ignored or guessed to `warnings`.
+CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const MeshSampling& sampling,
+                         std::vector<std::string>& warnings) {
+  // Parse the faces.
+  const auto* format = std::ranges::find(kMeshFormats, mesh_extension(file), &MeshFormat::extension);
+  if (bytes.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
+  MeshFaces faces = format->read(bytes, file);
+  // Check and scale them, and divide them into triangles.
+  check_indices(faces, file);
+  scale_and_check(faces, sampling.scale, file);
+  TriangleSoup soup;
+  soup.triangles = triangles_of(faces, file);
+  soup.vertices = std::move(faces.vertices);
+  // Reverse the winding, and with it the normals.
+  if (sampling.flip) {
+    for (auto& corners : soup.triangles) std::swap(corners[1], corners[2]);
+  }
+  // Connect the triangles and check the surface.
+  CheckedMesh surface = connect(soup, file);
+  refuse_cut_face(faces, surface.findings, file);
+  check_surface(surface, sampling, file);
+  warnings = std::move(faces.warnings);
+  if (faces.unfinished_line > 0 && !surface.findings.open_edges.empty()) {
+    warnings.push_back(
+        fmt::format("the mesh is open, and line {}, the last line, has no line end: is the file cut short?",
+                    faces.unfinished_line));
+  }
   return surface;
 }
 
+/// Returns the size and the place of a component, as a message shows them.
+std::string component_text(const MeshComponent& component) {
+  const Vec3 size = 1e3 * component.box.size(), middle = 5e2 * (component.box.min + component.box.max);
+  return fmt::format("{} triangles, {:.3g} x {:.3g} x {:.3g} mm at ({:.3g}, {:.3g}, {:.3g}) mm", component.triangles,
+                     size.x(), size.y(), size.z(), middle.x(), middle.y(), middle.z());
+}
+
+/// Warns about components that are much smaller than the largest component.
+template <class Warn>
+void warn_of_specks(const MeshFindings& found, const Warn& warn) {
+  const std::size_t large = components_above_speck_size(found);
+  if (large == found.component_count) return;
+  warn(
+      fmt::format("specks, which are components smaller than {:.0f} % of the largest: {} of {} components, the largest "
+                  "of them {}; remove specks in a mesh editor",
+                  100.0 * kSpeckSize, found.component_count - large, found.component_count,
+                  component_text(found.components[large])));
+}
+
+/// Warns about triangles that were listed several times.
+template <class Warn>
+void warn_of_copies(const MeshFindings& found, const Warn& warn) {
+  if (found.is_double_sided) {
+    warn(fmt::format("{}: each triangle is listed with both windings, and the first of them was kept{}: {}",
+                     found.open_edges.empty() ? "every face is double" : "a double-sided sheet",
+                     found.open_edges.empty() ? "" : ", so that one side remains (flip_normals selects the other side)",
+                     found.opposite_triangles));
+  } else if (found.opposite_triangles > 0) {
+    warn(fmt::format("faces left out, which repeat an earlier face with opposite winding: {}",
+                     found.opposite_triangles));
+  }
+  if (found.repeated_triangles > 0)
+    warn(fmt::format("faces left out, which repeat an earlier face: {}", found.repeated_triangles));
+}
+
 }  // namespace
+
+std::size_t components_above_speck_size(const MeshFindings& found) {
+  if (!found.crowded_edges.empty()) return found.component_count;
+  const auto is_speck = [&found](const MeshComponent& component) {
+    return component.diameter() <= kSpeckSize * found.components.front().diameter();
+  };
+  const auto first = std::ranges::find_if(found.components, is_speck);
+  return first == found.components.end() ? found.component_count
+                                         : static_cast<std::size_t>(first - found.components.begin());
+}
 
 bool is_mesh_name(const fs::path& file) {
   const std::string extension = lower_case(file.extension().string());
@@ -110,7 +173,8 @@ std::string mesh_extension(const fs::path& file) {
 }
 
 MeshFile::MeshFile(std::string_view bytes, const fs::path& file, const MeshSampling& sampling)
-    : sampling_(sampling), surface_(std::make_shared<const CheckedMesh>(read_surface(bytes, file, sampling))) {}
+    : sampling_(sampling),
+      surface_(std::make_shared<const CheckedMesh>(read_surface(bytes, file, sampling, file_warnings_))) {}
 
 std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
   const MeshFindings& found = surface_->findings;
@@ -118,6 +182,8 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
   const auto warn = [&](const std::string& text) {
     warnings.push_back(one_line(file.filename().string() + ": " + text));
   };
+  for (const std::string& text : file_warnings_) warn(text);
+  warn_of_copies(found, warn);
   // Boundary edges, with their bounding box in millimetres.
   if (!found.open_edges.empty()) {
     Box box{found.open_edges[0], found.open_edges[0]};
@@ -141,7 +207,18 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
         {found.flipped_triangles, "faces turned, which were wound against their neighbours"},
         {found.inverted_parts, "closed parts turned, which were inside out"}})
     if (count > 0) warn(fmt::format("{}: {}", text, count));
+  warn_of_specks(found, warn);
   return warnings;
+}
+
+const MeshFindings& MeshFile::findings() const {
+  return surface_->findings;
+}
+
+MeshFile MeshFile::largest_component() const {
+  if (surface_->findings.component_count < 2) return *this;
+  const TriangleSoup largest = hapbench::largest_component(surface_->mesh);
+  return MeshFile(std::make_shared<const CheckedMesh>(mesh_from_triangles(largest)), sampling_);
 }
 
 const std::vector<Vec3>& MeshFile::open_edges() const {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scenarios/input/mesh_sampling.hpp"
@@ -14,12 +15,20 @@
 namespace hapbench {
 
 struct CheckedMesh;
+struct MeshFindings;
 
 /// Returns true if the file has the extension of a supported mesh format.
 bool is_mesh_name(const std::filesystem::path& file);
 /// Returns the extension of a mesh file in lower case, such as ".obj". Throws InputError if the format is not
 /// supported.
 std::string mesh_extension(const std::filesystem::path& file);
+
+/// Largest diameter of a speck, relative to the diameter of the largest component.
+inline constexpr double kSpeckSize = 0.05;
+
+/// Returns the number of components that are no specks. They are the first in the list of components. A mesh that was
+/// cut along edges with more than two faces has no specks, because small components may belong to the surface.
+std::size_t components_above_speck_size(const MeshFindings& found);
 
 /// The checked surface of a mesh file (.obj, .ply, .stl or .off; PLY and STL as text or binary). Copies share the
 /// surface.
@@ -29,8 +38,9 @@ class MeshFile {
   /// InputError that names the file.
   MeshFile(std::string_view bytes, const std::filesystem::path& file, const MeshSampling& sampling);
 
-  /// Returns warnings about the mesh: it is open, or it was repaired (faces were reversed, removed, or cut apart
-  /// at an edge). Each warning names the file without its folder, because warnings are part of the results and
+  /// Returns warnings about the file and the mesh: parts of the file were ignored, the mesh is open, it has specks
+  /// (components much smaller than the largest), or it was repaired (faces were reversed, removed, or cut apart at an
+  /// edge). Each warning names the file without its folder, because warnings are part of the results and
   /// results must not depend on the folder.
   std::vector<std::string> warnings(const std::filesystem::path& file) const;
   /// Returns the midpoints of the boundary edges, which have only one face [m]. Empty for a closed surface.
@@ -38,6 +48,12 @@ class MeshFile {
 
   /// Returns true if every edge of the file's mesh has exactly two faces.
   bool is_closed() const;
+
+  /// Returns the repairs, irregularities and components of the mesh.
+  const MeshFindings& findings() const;
+  /// Returns the mesh without specks and other components: the component with the largest diameter alone, with the same
+  /// sampling and without warnings. Returns the mesh itself if it has one component.
+  MeshFile largest_component() const;
 
   /// Returns the triangles [m], with consistent winding. Faces of closed parts are wound such that their normals
   /// point outwards.
@@ -49,7 +65,11 @@ class MeshFile {
   std::vector<SurfacePoint> points() const;
 
  private:
+  MeshFile(std::shared_ptr<const CheckedMesh> surface, const MeshSampling& sampling)
+      : sampling_(sampling), surface_(std::move(surface)) {}
+
   MeshSampling sampling_;
+  std::vector<std::string> file_warnings_;  ///< what the reader of the format ignored or guessed
   std::shared_ptr<const CheckedMesh> surface_;
 };
 

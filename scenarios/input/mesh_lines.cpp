@@ -10,11 +10,25 @@ namespace hapbench {
 
 bool MeshLines::next() {
   while (const auto line = lines_.next()) {
-    words_ = words_of(line->substr(0, line->find('#')));
+    split_at_blanks(line->substr(0, line->find('#')), words_);
+    first_line_ = lines_.line();
+    if (continuation_ == Continuation::backslash && !words_.empty() && words_.back().ends_with('\\')) continue_line();
     if (!words_.empty()) return true;
   }
   words_.clear();
   return false;
+}
+
+void MeshLines::continue_line() {
+  while (!words_.empty() && words_.back().ends_with('\\')) {
+    words_.back().remove_suffix(1);
+    if (words_.back().empty()) words_.pop_back();
+    const auto line = lines_.next();
+    if (!line) fail("the file ends after a line that is continued with a backslash; allowed: a complete file");
+    const Words more = words_of(line->substr(0, line->find('#')));
+    words_.insert(words_.end(), more.begin(), more.end());
+    if (more.empty()) return;
+  }
 }
 
 double MeshLines::number(std::size_t word) const {
@@ -38,7 +52,25 @@ std::size_t MeshLines::count(std::size_t word, const char* what) const {
 }
 
 void MeshLines::fail(const std::string& problem) const {
-  fail_in_line(file_, lines_.line(), problem);
+  const char* cut = may_be_cut() ? " (the file ends within this line: is it cut short?)" : "";
+  fail_in_line(file_, first_line_, problem + cut);
+}
+
+void MeshLines::fail_at_end(std::size_t done, std::size_t count, const std::string& what) const {
+  fail_in_line(
+      file_, lines_.line(),
+      fmt::format("the file is cut short: it ends after {} of its {} {}; allowed: a complete file", done, count, what));
+}
+
+void MeshLines::warn_of_rest(std::vector<std::string>& warnings) {
+  if (!next()) return;
+  const std::size_t first = first_line_;
+  std::size_t count = 1;
+  while (next()) ++count;
+  warnings.push_back(
+      fmt::format("lines after the last entry that the header declares, which were ignored: {}, the "
+                  "first is line {}",
+                  count, first));
 }
 
 }  // namespace hapbench

@@ -1,43 +1,36 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/types.hpp"
-#include "sim/geometry/triangle_tree.hpp"
 
 /// Functions that the readers of mesh files share. Files are untrusted: every token is checked, and memory grows
 /// with the actual content of a file, never with a count that the file declares.
 namespace hapbench {
 
-/// Splits a polygon into a fan of triangles around its first corner and appends them to the soup. `corner(k)`
-/// returns the vertex index of corner k. It is called once for each k, in ascending order. Precondition: corners
-/// >= 2.
-template <class Corner>
-void add_polygon(std::size_t corners, TriangleSoup& soup, Corner corner) {
-  const std::uint32_t first = corner(0);
-  std::uint32_t last = corner(1);
-  for (std::size_t k = 2; k < corners; ++k) {
-    const std::uint32_t next = corner(k);
-    soup.triangles.push_back({first, last, next});
-    last = next;
-  }
-}
+/// Whether a backslash at the end of a line continues the line, as in OBJ.
+enum class Continuation { none, backslash };
 
 /// Reads a mesh file in text form line by line and splits each line into tokens at white space. Skips comments
 /// (from '#' to the end of the line) and blank lines. Every function throws an InputError with file and line if a
-/// token is invalid.
+/// token is invalid. The message adds that the file may be cut short, if the line is the last line and has no line end.
 class MeshLines {
  public:
   /// The text and the path must outlive the object.
-  MeshLines(LineReader lines, const std::filesystem::path& file) : lines_(lines), file_(file) {}
+  MeshLines(LineReader lines, const std::filesystem::path& file, Continuation continuation = Continuation::none)
+      : lines_(lines), file_(file), continuation_(continuation) {}
 
   /// Advances to the next line with tokens. Returns false at the end of the text.
   bool next();
   const Words& words() const { return words_; }
+  /// Returns the number of the current line, from 1. A continued line has the number of its first line.
+  std::size_t line() const { return first_line_; }
+  /// Returns true if the current line is the last line and has no line end, as if the file was cut within it.
+  bool may_be_cut() const { return !lines_.has_line_end(); }
 
   /// Returns the token with the index `word` as a finite number. Precondition: word < words().size().
   double number(std::size_t word) const;
@@ -48,10 +41,19 @@ class MeshLines {
   std::size_t count(std::size_t word, const char* what) const;
   /// Throws an InputError that names file and line.
   [[noreturn]] void fail(const std::string& problem) const;
+  /// Throws an InputError: the file ends after `done` of `count` entries. `what` names the entries.
+  [[noreturn]] void fail_at_end(std::size_t done, std::size_t count, const std::string& what) const;
+  /// Adds a warning about lines that remain after the last entry, if there are any.
+  void warn_of_rest(std::vector<std::string>& warnings);
 
  private:
+  /// Appends the tokens of continuation lines while a line ends with a backslash.
+  void continue_line();
+
   LineReader lines_;
   const std::filesystem::path& file_;
+  Continuation continuation_;
+  std::size_t first_line_ = 0;
   Words words_;  ///< tokens of the current line
 };
 

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <map>
 
 #include "scenarios/input/mesh_lines.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -11,6 +14,42 @@ namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Statements that describe no surface, such as names, materials, normals and display; and parts of free-form shapes,
+/// which kOtherShapes reports.
+constexpr std::array<std::string_view, 33> kWithoutShape = {
+    "vt",  "vn",    "g",        "o",        "s",    "mg",         "mtllib",    "usemtl", "usemap", "maplib", "bevel",
+    "lod", "trace", "c_interp", "d_interp", "end",  "shadow_obj", "trace_obj", "ctech",  "stech",  "call",   "vp",
+    "deg", "parm",  "cstype",   "bmat",     "step", "trim",       "hole",      "scrv",   "sp",     "con",    "csh"};
+/// Statements with shapes other than polygons.
+constexpr std::array<std::string_view, 10> kOtherShapes = {"p",   "l",   "curv", "curv2", "surf",
+                                                           "bzp", "bsp", "cdc",  "cdp",   "res"};
+
+/// Counts statements that are ignored, to report each kind once.
+class IgnoredStatements {
+ public:
+  void add(std::string_view keyword, std::size_t line) {
+    if (std::ranges::find(kWithoutShape, keyword) != kWithoutShape.end()) return;
+    if (kinds_.size() >= kMaxKinds && !kinds_.contains(keyword)) return;
+    Lines& lines = kinds_.try_emplace(keyword, Lines{line, 0}).first->second;
+    ++lines.count;
+  }
+  void report(std::vector<std::string>& warnings) const {
+    for (const auto& [keyword, lines] : kinds_) {
+      const bool is_shape = std::ranges::find(kOtherShapes, keyword) != kOtherShapes.end();
+      warnings.push_back(fmt::format("{} {}, which were ignored: {}, the first is line {}",
+                                     is_shape ? "statements other than polygons," : "unknown statements",
+                                     quoted_token(keyword), lines.count, lines.first));
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMaxKinds = 5;
+  struct Lines {
+    std::size_t first, count;
+  };
+  std::map<std::string_view, Lines> kinds_;
+};
 
 /// Returns the vertex index, from 0, of a face's corner. The token "7/1/3" means the file's 7th vertex. The token
 /// "-1" means the last of the `vertices` vertices that were read so far.
@@ -24,23 +63,41 @@ std::uint32_t vertex_of(std::string_view word, std::size_t vertices, const MeshL
   return static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index);
 }
 
+/// Reads a face. Throws InputError for a last corner that is cut, as in "f 1/1 2/2 3/".
+void read_face(const MeshLines& lines, MeshFaces& faces) {
+  const Words& words = lines.words();
+  if (words.size() < 4) lines.fail(fmt::format("got a face with {} corners; allowed: at least 3", words.size() - 1));
+  for (std::size_t k = 1; k < words.size(); ++k)
+    faces.corners.push_back(vertex_of(words[k], faces.vertices.size(), lines));
+  const auto slashes = [](std::string_view word) { return std::ranges::count(word, '/') + word.ends_with('/'); };
+  if (lines.may_be_cut() && slashes(words.back()) != slashes(words[1]))
+    lines.fail(fmt::format("got {}; allowed: a corner such as {}", quoted_token(words.back()), quoted_token(words[1])));
+  faces.end_face(lines.line());
+}
+
 }  // namespace
 
-TriangleSoup read_obj(std::string_view text, const fs::path& file) {
-  TriangleSoup soup;
-  MeshLines lines{LineReader(text), file};
+MeshFaces read_obj(std::string_view text, const fs::path& file) {
+  MeshFaces faces{.vertices = {}, .first_vertex = 1};
+  MeshLines lines{LineReader(text), file, Continuation::backslash};
+  IgnoredStatements ignored;
+  std::size_t weighted = 0;  // line of the first vertex with a weight
   while (lines.next()) {
     const Words& words = lines.words();
     if (words[0] == "v") {
-      soup.vertices.push_back(lines.position(1));
-    } else if (words[0] == "f") {
-      if (words.size() < 4)
-        lines.fail(fmt::format("got a face with {} corners; allowed: at least 3", words.size() - 1));
-      add_polygon(words.size() - 1, soup,
-                  [&](std::size_t k) { return vertex_of(words[k + 1], soup.vertices.size(), lines); });
+      faces.add_vertex(lines.position(1), lines.line());
+      if (words.size() == 5 && weighted == 0 && finite_number(words[4]).value_or(1.0) != 1.0) weighted = lines.line();
+    } else if (words[0] == "f" || words[0] == "fo") {
+      read_face(lines, faces);
+      faces.unfinished_line = lines.may_be_cut() ? lines.line() : 0;
+    } else {
+      ignored.add(words[0], lines.line());
     }
   }
-  return soup;
+  ignored.report(faces.warnings);
+  if (weighted > 0)
+    faces.warnings.push_back(fmt::format("weights of vertices, which were ignored: the first in line {}", weighted));
+  return faces;
 }
 
 }  // namespace hapbench

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "scenarios/input/mesh_lines.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -13,46 +14,80 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Parses the part of the file after the keyword "OFF". Ignores tokens after the position of a vertex or the
-/// corners of a face, such as normals or colours.
-TriangleSoup read_off_text(MeshLines& lines) {
-  // Read the counts, which may be in the line of the keyword.
-  const std::size_t counts = lines.words().size() > 1 ? 1 : 0;
-  if (counts == 0 && !lines.next()) lines.fail("the file ends before its counts of vertices, faces and edges");
-  const std::size_t vertices = lines.count(counts, "vertices"), faces = lines.count(counts + 1, "faces");
-  const auto next = [&lines](std::size_t count, const char* what) {
-    if (!lines.next()) lines.fail(fmt::format("the file ends before its {} {}; allowed: a complete file", count, what));
+/// Names of the text formats of OFF, with the data that a vertex has besides its position.
+constexpr std::array<std::string_view, 8> kKinds = {"STCNOFF", "STCOFF", "STNOFF", "STOFF",
+                                                    "CNOFF",   "COFF",   "NOFF",   "OFF"};
+
+/// Returns the keyword at the start of the first token, in capitals; empty if there is none. The count of vertices may
+/// follow without a blank, as in "OFF8 6 12".
+std::string_view keyword_of(std::string_view word) {
+  const auto is_start = [word](std::string_view kind) {
+    return lower_case(word.substr(0, kind.size())) == lower_case(kind) &&
+           (word.size() == kind.size() || whole_number(word.substr(kind.size())));
   };
-  // Read the vertices.
-  TriangleSoup soup;
-  for (std::size_t i = 0; i < vertices; ++i) {
-    next(vertices, "vertices");
-    soup.vertices.push_back(lines.position(0));
+  const auto* found = std::ranges::find_if(kKinds, is_start);
+  return found == kKinds.end() ? "" : *found;
+}
+
+/// Counts of the entries, as the header declares them.
+struct Counts {
+  std::size_t vertices, faces;
+};
+
+/// Reads the counts, which are in the line of the keyword or in the next line. The keyword has `length` letters.
+Counts read_counts(std::size_t length, MeshLines& lines) {
+  const std::string_view first = lines.words()[0];
+  if (first.size() > length && length > 0) {
+    const auto vertices = whole_number(first.substr(length));
+    return {*vertices, lines.count(1, "faces")};
   }
-  // Read the faces.
-  for (std::size_t i = 0; i < faces; ++i) {
-    next(faces, "faces");
+  const std::size_t word = length > 0 && lines.words().size() > 1 ? 1 : 0;
+  if (length > 0 && word == 0 && !lines.next())
+    lines.fail("the file ends before its counts of vertices, faces and edges; allowed: a complete file");
+  return {lines.count(word, "vertices"), lines.count(word + 1, "faces")};
+}
+
+/// Parses the part of the file after the header. Ignores tokens after the position of a vertex or the corners of a
+/// face, such as normals or colours.
+MeshFaces read_entries(const Counts& counts, MeshLines& lines) {
+  MeshFaces faces;
+  for (std::size_t i = 0; i < counts.vertices; ++i) {
+    if (!lines.next()) lines.fail_at_end(i, counts.vertices, "vertices");
+    faces.add_vertex(lines.position(0), lines.line());
+  }
+  for (std::size_t i = 0; i < counts.faces; ++i) {
+    if (!lines.next()) lines.fail_at_end(i, counts.faces, "faces");
     const std::size_t count = lines.count(0, "corners");
     if (count < 3 || lines.words().size() <= count)
-      lines.fail(fmt::format("face {}: got {} corners; allowed: at least 3, and as many vertices", i, count));
-    add_polygon(count, soup,
-                [&](std::size_t k) { return static_cast<std::uint32_t>(lines.count(k + 1, "as a vertex")); });
+      lines.fail(fmt::format("face {}: got {} corners and {} vertices; allowed: at least 3, and as many vertices", i,
+                             count, lines.words().size() - 1));
+    for (std::size_t k = 1; k <= count; ++k)
+      faces.corners.push_back(static_cast<std::uint32_t>(lines.count(k, "as a vertex")));
+    faces.end_face(lines.line());
   }
-  return soup;
+  if (lines.may_be_cut()) faces.unfinished_line = lines.line();
+  lines.warn_of_rest(faces.warnings);
+  return faces;
 }
 
 }  // namespace
 
-TriangleSoup read_off(std::string_view text, const fs::path& file) {
+MeshFaces read_off(std::string_view text, const fs::path& file) {
   MeshLines lines{LineReader(text), file};
-  constexpr std::array<std::string_view, 8> kKinds = {"OFF",   "COFF",   "NOFF",   "CNOFF",
-                                                      "STOFF", "STCOFF", "STNOFF", "STCNOFF"};
-  if (!lines.next() || std::find(kKinds.begin(), kKinds.end(), lines.words()[0]) == kKinds.end())
+  const auto refuse = [&lines] {
     lines.fail("is not an OFF file; allowed: \"OFF\" in the first line, perhaps with ST, C or N before it");
+  };
+  if (!lines.next()) refuse();
   const Words& header = lines.words();
-  if (header.size() > 1 && header[1] == "BINARY")
+  const std::string_view keyword = keyword_of(header[0]);
+  // The format allows a file without a keyword, which begins with its counts.
+  const bool has_counts = header.size() == 3 && std::ranges::all_of(header, [](std::string_view word) {
+                            return whole_number(word).has_value();
+                          });
+  if (keyword.empty() && !has_counts) refuse();
+  if (header.size() > 1 && lower_case(header[1]) == "binary")
     lines.fail("is a binary OFF file; allowed: a text, or binary PLY or STL");
-  return read_off_text(lines);
+  return read_entries(read_counts(keyword.size(), lines), lines);
 }
 
 }  // namespace hapbench

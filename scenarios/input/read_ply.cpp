@@ -91,7 +91,12 @@ class PlyHeader {
     // Drop the elements after the wanted element.
     const std::string_view name = wanted == Wanted::points ? "vertex" : "face";
     const auto last = std::ranges::find(elements_, name, &Element::name);
-    if (last == elements_.end()) fail(fmt::format("has no {}; allowed: \"element {} COUNT\"", name, name));
+    if (last == elements_.end()) {
+      const bool has_strips = std::ranges::find(elements_, "tristrips", &Element::name) != elements_.end();
+      fail(fmt::format("has no {}; allowed: \"element {} COUNT\"{}", name, name,
+                       has_strips ? " (triangle strips are not read: export the mesh with faces)" : ""));
+    }
+    has_more_elements_ = last + 1 != elements_.end();
     elements_.erase(last + 1, elements_.end());
     // Check the properties.
     check_vertices();
@@ -103,6 +108,8 @@ class PlyHeader {
 
   /// Returns the elements up to and including the wanted element. Later elements are not read.
   const std::vector<Element>& elements() const { return elements_; }
+  /// Returns true if the file has elements after elements().
+  bool has_more_elements() const { return has_more_elements_; }
   bool is_text() const { return format_ == "ascii"; }
   /// Returns the byte order of a binary file. Precondition: !is_text().
   std::endian byte_order() const { return format_ == "binary_big_endian" ? std::endian::big : std::endian::little; }
@@ -182,6 +189,7 @@ class PlyHeader {
   const fs::path& file_;
   std::optional<std::string_view> format_;
   std::vector<Element> elements_;
+  bool has_more_elements_ = false;
 };
 
 /// Reads the values after the header in order. In a text, each entry has a line and each value is a token. In a
@@ -189,13 +197,42 @@ class PlyHeader {
 class PlyValues {
  public:
   PlyValues(const LineReader& lines, const PlyHeader& header, const fs::path& file)
-      : is_text_(header.is_text()), text_(lines, file), bytes_(lines.rest(), header.byte_order()), file_(file) {}
+      : is_text_(header.is_text()),
+        text_(lines, file),
+        bytes_(lines.rest(), header.byte_order()),
+        has_more_elements_(header.has_more_elements()),
+        file_(file) {}
 
-  /// Advances to the next entry, which is an entry of `element`.
-  void begin(const Element& element) {
+  /// Advances to the next entry, which is entry number `i` of `element`.
+  void begin(const Element& element, std::size_t i) {
     element_ = &element;
+    entry_ = i;
     word_ = 0;
     if (is_text_ && !text_.next()) fail_cut_short();
+  }
+  /// Counts the entry if its line has more values than the header declares. Call it after all values were read.
+  void end() {
+    if (!is_text_ || word_ >= text_.words().size()) return;
+    if (long_entries_++ == 0) first_long_line_ = text_.line();
+  }
+  /// Returns the line of the current entry; 0 in a binary file.
+  std::size_t line() const { return is_text_ ? text_.line() : 0; }
+  bool may_be_cut() const { return is_text_ && text_.may_be_cut(); }
+  /// Adds warnings about values that were not read.
+  void warn_of_rest(std::vector<std::string>& warnings) {
+    if (long_entries_ > 0) {
+      warnings.push_back(
+          fmt::format("lines with more values than the header declares, which were ignored: {}, the first "
+                      "is line {}",
+                      long_entries_, first_long_line_));
+    }
+    if (has_more_elements_) return;
+    if (is_text_) {
+      text_.warn_of_rest(warnings);
+    } else if (bytes_.left() > 0) {
+      warnings.push_back(
+          fmt::format("bytes after the last entry that the header declares, which were ignored: {}", bytes_.left()));
+    }
   }
   /// Reads a number.
   double number(const PlyType& type) {
@@ -231,8 +268,9 @@ class PlyValues {
     if (is_text_ && !text_.words().empty())
       text_.fail(
           fmt::format("got {} values; allowed: all of a {}", text_.words().size(), quoted_token(element_->name)));
-    fail(fmt::format("the file ends before its {} {}; allowed: a complete file", element_->entries,
-                     quoted_token(element_->name)));
+    if (is_text_) text_.fail_at_end(entry_, element_->entries, quoted_token(element_->name));
+    fail(fmt::format("the file is cut short: it ends after {} of its {} {}; allowed: a complete file", entry_,
+                     element_->entries, quoted_token(element_->name)));
   }
 
   bool is_text_;
@@ -240,19 +278,22 @@ class PlyValues {
   std::size_t word_ = 0;  ///< index of the next token in the text's line
   ByteReader bytes_;
   const Element* element_ = nullptr;
+  std::size_t entry_ = 0;  ///< number of the current entry
+  bool has_more_elements_;
+  std::size_t long_entries_ = 0, first_long_line_ = 0;
   const fs::path& file_;
 };
 
 /// Contents of a PLY file: a surface or points, depending on `wanted`.
 struct Contents {
   Wanted wanted;
-  TriangleSoup soup = {};
-  std::vector<SurfacePoint> points = {};  ///< used instead of `soup` if points are wanted
+  MeshFaces faces = {};
+  std::vector<SurfacePoint> points = {};  ///< used instead of `faces` if points are wanted
 };
 
 /// Reads entry number `i` of an element and adds it to the contents.
 void read_entry(const Element& element, std::size_t i, PlyValues& values, Contents& contents) {
-  values.begin(element);
+  values.begin(element, i);
   Values vertex{};
   for (const Property& p : element.properties) {
     // Read and check the length of a list.
@@ -268,19 +309,21 @@ void read_entry(const Element& element, std::size_t i, PlyValues& values, Conten
       values.skip(static_cast<std::size_t>(length), *p.type);
     } else if (p.role == kCorners) {
       // The cast turns a negative index of a binary file into a large index, which MeshFile rejects.
-      add_polygon(static_cast<std::size_t>(length), contents.soup,
-                  [&](std::size_t) { return static_cast<std::uint32_t>(values.whole(*p.type, "as a vertex")); });
+      for (std::int64_t k = 0; k < length; ++k)
+        contents.faces.corners.push_back(static_cast<std::uint32_t>(values.whole(*p.type, "as a vertex")));
+      contents.faces.end_face(values.line());
     } else {
       vertex[p.role] = values.number(*p.type);
     }
   }
+  values.end();
   // Store the vertex.
   if (!element.is_vertex()) return;
   const Vec3 position(vertex[0], vertex[1], vertex[2]);
   if (contents.wanted == Wanted::points)
     contents.points.push_back({position, {vertex[3], vertex[4], vertex[5]}});
   else
-    contents.soup.vertices.push_back(position);
+    contents.faces.add_vertex(position, values.line());
 }
 
 Contents contents_of(std::string_view text, Wanted wanted, const fs::path& file) {
@@ -291,13 +334,15 @@ Contents contents_of(std::string_view text, Wanted wanted, const fs::path& file)
   for (const Element& element : header.elements())
     for (std::size_t i = 0; i < element.entries && !element.properties.empty(); ++i)
       read_entry(element, i, values, contents);
+  if (values.may_be_cut()) contents.faces.unfinished_line = values.line();
+  values.warn_of_rest(contents.faces.warnings);
   return contents;
 }
 
 }  // namespace
 
-TriangleSoup read_ply(std::string_view text, const fs::path& file) {
-  return contents_of(text, Wanted::faces, file).soup;
+MeshFaces read_ply(std::string_view text, const fs::path& file) {
+  return contents_of(text, Wanted::faces, file).faces;
 }
 
 std::vector<SurfacePoint> parse_ply_points(std::string_view text, const fs::path& file) {

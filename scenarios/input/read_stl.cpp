@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 #include "scenarios/input/byte_reader.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -19,71 +21,111 @@ namespace fs = std::filesystem;
 // Sizes in a binary file [bytes]: the name, the name with the number of triangles, and one triangle.
 constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;
 
-void add_triangle(const std::array<Vec3, 3>& corners, TriangleSoup& soup) {
-  const auto first = static_cast<std::uint32_t>(soup.vertices.size());
-  soup.vertices.insert(soup.vertices.end(), corners.begin(), corners.end());
-  soup.triangles.push_back({first, first + 1, first + 2});
+/// Keywords of a text, without "vertex", which read_loop() reads.
+constexpr std::array<std::string_view, 6> kKeywords = {"solid", "facet", "outer", "endloop", "endfacet", "endsolid"};
+
+/// Appends a vertex that belongs to the current triangle only. `line` is 0 in a binary file.
+void add_corner(const Vec3& corner, std::size_t line, MeshFaces& faces) {
+  faces.corners.push_back(static_cast<std::uint32_t>(faces.vertices.size()));
+  faces.add_vertex(corner, line);
 }
 
-TriangleSoup read_stl_text(std::string_view text, const fs::path& file) {
-  TriangleSoup soup;
+/// Reads the three vertices after "outer loop".
+void read_loop(MeshLines& lines, MeshFaces& faces) {
+  const std::size_t first_line = lines.line();
+  for (int corner = 0; corner < 3; ++corner) {
+    if (!lines.next()) {
+      lines.fail(
+          fmt::format("the file is cut short: it ends within triangle {}; allowed: a complete file, up to "
+                      "\"endsolid\"",
+                      faces.ends.size()));
+    }
+    if (lower_case(lines.words()[0]) != "vertex") lines.fail("allowed after \"outer loop\": three vertices");
+    add_corner(lines.position(1), lines.line(), faces);
+  }
+  faces.end_face(first_line);
+}
+
+MeshFaces read_stl_text(std::string_view text, const fs::path& file) {
+  MeshFaces faces{.vertices = {}, .face_name = "triangle"};
   MeshLines lines{LineReader(text), file};
+  std::string last;
   while (lines.next()) {
-    const std::string first = lower_case(lines.words()[0]);
-    if (first == "outer") {
-      std::array<Vec3, 3> corners;
-      for (Vec3& corner : corners) {
-        if (!lines.next() || lower_case(lines.words()[0]) != "vertex")
-          lines.fail("allowed after \"outer loop\": three vertices");
-        corner = lines.position(1);
-      }
-      add_triangle(corners, soup);
-    } else if (first != "solid" && first != "facet" && first != "endloop" && first != "endfacet" &&
-               first != "endsolid") {
+    std::string first = lower_case(lines.words()[0]);
+    if (std::ranges::find(kKeywords, first) == kKeywords.end()) {
       lines.fail(
           fmt::format("got {}; allowed: solid, facet, outer loop, three times vertex, endloop, endfacet, endsolid",
                       quoted_token(lines.words()[0])));
     }
+    if (first == "outer") read_loop(lines, faces);
+    last = std::move(first);
   }
-  return soup;
+  if (last != "endsolid") {
+    lines.fail(
+        fmt::format("the file is cut short: it ends after {} triangles and \"{}\", without \"endsolid\"; "
+                    "allowed: a complete file (if this file is complete, append \"endsolid\")",
+                    faces.ends.size(), last));
+  }
+  return faces;
 }
 
-TriangleSoup read_stl_binary(ByteReader reader, std::size_t triangles, const fs::path& file) {
-  TriangleSoup soup;
+MeshFaces read_stl_binary(ByteReader reader, std::size_t triangles, const fs::path& file) {
+  MeshFaces faces{.vertices = {}, .face_name = "triangle"};
   for (std::size_t t = 0; t < triangles; ++t) {
     reader.skip(3 * sizeof(float));  // normal
-    std::array<Vec3, 3> corners;
-    for (Vec3& corner : corners) {
+    for (int k = 0; k < 3; ++k) {
+      Vec3 corner;
       for (double& coordinate : corner) coordinate = reader.take<float>();
       if (!corner.allFinite()) fail_in_file(file, fmt::format("triangle {}: a vertex is not finite", t));
+      add_corner(corner, 0, faces);
     }
     reader.skip(2);  // attributes
-    add_triangle(corners, soup);
+    faces.end_face(0);
   }
-  return soup;
+  if (reader.left() > 0) {
+    faces.warnings.push_back(fmt::format(
+        "bytes after the {} triangles that the header declares, which were ignored: {}", triangles, reader.left()));
+  }
+  return faces;
+}
+
+/// Returns true if the file begins as a text does: with "solid", after comments and blank lines, and without zero
+/// bytes. The header of a binary file may begin with "solid", too, but zero bytes follow it.
+bool is_text(std::string_view text) {
+  constexpr std::size_t kStart = 1024;
+  const std::string_view start = text.substr(0, kStart);
+  if (start.find('\0') != std::string_view::npos) return false;
+  LineReader lines(start);
+  while (const auto line = lines.next()) {
+    const Words words = words_of(line->substr(0, line->find('#')));
+    if (!words.empty()) return lower_case(words[0]) == "solid";
+  }
+  return false;
 }
 
 }  // namespace
 
-TriangleSoup read_stl(std::string_view text, const fs::path& file) {
+MeshFaces read_stl(std::string_view text, const fs::path& file) {
   // Read the number of triangles as if the file was binary.
-  const std::string first_word = lower_case(text.substr(0, text.find_first_of(" \t\r\n")));
   ByteReader reader(text, std::endian::little);
-  std::size_t triangles = 0;
-  bool complete = text.size() >= kHeader;
-  if (complete) {
+  std::size_t triangles = 0, complete = 0;
+  if (text.size() >= kHeader) {
     reader.skip(kName);
     triangles = reader.take<std::uint32_t>();
-    complete = reader.left() / kTriangle >= triangles;
+    complete = reader.left() / kTriangle;
   }
-  // Decide whether the file is a text. Binary files may also begin with "solid", but then their size is exact or
-  // their header contains zero bytes.
-  const bool exact = complete && text.size() == kHeader + kTriangle * triangles;
-  const bool is_text = text.substr(0, kHeader).find('\0') == std::string_view::npos;
-  if (first_word == "solid" && is_text && !exact) return read_stl_text(text, file);
-  if (!complete)
+  // The size of a binary file is exact, even if its header looks like a text.
+  const bool is_exact = text.size() == kHeader + kTriangle * triangles;
+  if (is_text(text) && !is_exact) return read_stl_text(text, file);
+  if (text.size() < kHeader) {
     fail_in_file(file,
                  "is not an STL file, or cut short; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle");
+  }
+  if (complete < triangles) {
+    fail_in_file(file, fmt::format("is not an STL file, or cut short: it holds {} of the {} triangles that its header "
+                                   "declares; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle",
+                                   complete, triangles));
+  }
   return read_stl_binary(reader, triangles, file);
 }
 

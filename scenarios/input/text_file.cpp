@@ -14,6 +14,18 @@ namespace hapbench {
 
 static constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;  ///< maximum size of a named file: 4 GiB
 
+/// Throws InputError if the contents begin as a text in UTF-16 or UTF-32 does, or as a compressed file does.
+static void refuse_other_encodings(const std::string& text) {
+  const auto begins = [&text](std::string_view bytes) { return text.starts_with(bytes); };
+  const auto is_ascii = [&text](std::size_t i) { return i < text.size() && text[i] > 0; };
+  const auto is_zero = [&text](std::size_t i) { return i < text.size() && text[i] == 0; };
+  const bool little = begins("\xFF\xFE") && ((is_ascii(2) && is_zero(3)) || (is_zero(2) && is_zero(3)));
+  const bool big = begins("\xFE\xFF") && is_zero(2) && is_ascii(3);
+  if (little || big) throw InputError("is a text in UTF-16 or UTF-32; allowed: UTF-8 (save the file in this encoding)");
+  if (begins("\x1F\x8B") || begins("PK\x03\x04"))
+    throw InputError("is compressed; allowed: the unpacked file (gzip -d, unzip)");
+}
+
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
   // The operating system would ignore the part of the name after the zero byte and open another file.
   if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
@@ -28,6 +40,7 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
     text.append(chunk.data(), static_cast<std::size_t>(stream.gcount()));
     if (text.size() > largest) throw InputError(fmt::format("is larger than {} MiB", largest >> 20));
   }
+  refuse_other_encodings(text);
   return text;
 }
 

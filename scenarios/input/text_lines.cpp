@@ -8,14 +8,19 @@
 
 namespace hapbench {
 
-Words words_of(std::string_view line) {
-  constexpr std::string_view kBlank = " \t\r\v\f";
-  Words words;
-  for (std::size_t start = line.find_first_not_of(kBlank); start != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlank, start), line.size());
-    words.push_back(line.substr(start, end - start));
-    start = line.find_first_not_of(kBlank, end);
+void split_at_blanks(std::string_view line, Words& words) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; };
+  words.clear();
+  for (auto start = std::ranges::find_if_not(line, is_blank); start != line.end();) {
+    const auto end = std::find_if(start, line.end(), is_blank);
+    words.emplace_back(start, end);
+    start = std::find_if_not(end, line.end(), is_blank);
   }
+}
+
+Words words_of(std::string_view line) {
+  Words words;
+  split_at_blanks(line, words);
   return words;
 }
 
@@ -51,13 +56,30 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+LineReader::LineReader(std::string_view text) : rest_(text) {
+  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  const std::string_view first = rest_.substr(0, rest_.find('\n'));
+  newline_ = first.data() + first.size();
+  const std::size_t cr = first.find('\r');
+  ends_with_cr_ = cr != std::string_view::npos && (cr + 1 < first.size() || first.size() == rest_.size());
+}
+
 std::optional<std::string_view> LineReader::next() {
   if (rest_.empty()) return std::nullopt;
   ++line_;
-  const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-  const std::string_view line = rest_.substr(0, end);
-  rest_.remove_prefix(std::min(end + 1, rest_.size()));
-  return line;
+  // Find the next LF once for all lines before it, because a text with CR line ends may have none.
+  const char* begin = rest_.data();
+  if (newline_ < begin) newline_ = begin + std::min(rest_.find('\n'), rest_.size());
+  const std::string_view until_newline = rest_.substr(0, static_cast<std::size_t>(newline_ - begin));
+  const std::size_t length = std::min(until_newline.find('\r'), until_newline.size());
+  // Skip the line end, which has one byte or two.
+  std::size_t skipped = length;
+  if (skipped < rest_.size() && rest_[skipped] == '\r') ++skipped;
+  const bool ends_here = skipped == length || !ends_with_cr_;
+  if (skipped < rest_.size() && rest_[skipped] == '\n' && ends_here) ++skipped;
+  has_line_end_ = skipped > length;
+  rest_.remove_prefix(skipped);
+  return until_newline.substr(0, length);
 }
 
 }  // namespace hapbench

@@ -19,6 +19,8 @@ using Words = std::vector<std::string_view>;
 
 /// Splits a line into tokens at white space.
 Words words_of(std::string_view line);
+/// Replaces `words` by the tokens of a line, and keeps the memory of `words`.
+void split_at_blanks(std::string_view line, Words& words);
 
 /// Splits a text at each separator. Parts may be empty. There is one part more than there are separators.
 Words parts_of(std::string_view text, char separator);
@@ -71,18 +73,30 @@ std::vector<std::string> names_of(const Table& table, Name name) {
 }
 
 /// Returns the lines of a text one by one. The text must outlive the reader.
+///
+/// Skips a byte order mark (UTF-8) at the start of the text. A line ends with LF, CRLF or CR, so that line numbers are
+/// the numbers of an editor. If the first line ends with CR alone, CRLF ends two lines: CR is then the line end of the
+/// file, and LF may be the first byte of binary data after a header.
 class LineReader {
  public:
-  explicit LineReader(std::string_view text) : rest_(text) {}
+  explicit LineReader(std::string_view text);
 
-  /// Returns the next line without its newline, or nullopt at the end of the text.
+  /// Returns the next line without its line end, or nullopt at the end of the text.
   std::optional<std::string_view> next();
   std::size_t line() const { return line_; }  ///< number of the last returned line, from 1; 0 before the first line
   std::string_view rest() const { return rest_; }  ///< the text after the last returned line
+  /// Returns true if the last returned line has a line end. A text that was cut within a line has none.
+  bool has_line_end() const { return has_line_end_; }
 
  private:
   std::string_view rest_;
   std::size_t line_ = 0;
+  const char* newline_;  ///< next LF; the end of the text if there is none
+  bool ends_with_cr_;    ///< the first line ends with CR alone
+  bool has_line_end_ = false;
 };
+
+/// Byte order mark of UTF-8.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace hapbench

@@ -31,6 +31,7 @@
 #include "scenarios/scene/named_files.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "scenarios/scene/tools.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
@@ -49,6 +50,32 @@ std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool>
                                          : fmt::format("starts {} from the surface", length_text(gap));
   return fmt::format("  environment  {} ({}), {} points{}\n  start        {}\n", size_text(surface.box),
                      bounds_text(surface.box), surface.points, closed, start);
+}
+
+/// Returns the closedness and the orientation of a component.
+std::string closedness_text(const MeshComponent& component, const MeshFindings& found) {
+  if (!component.is_closed) {
+    return found.open_edges.empty() ? "cut along edges with more than two faces, normals by the winding of the file"
+                                    : "open, normals by the winding of the file";
+  }
+  const std::string turned = component.is_reversed ? " (turned: it was inside out)" : "";
+  return (component.is_cavity ? "closed, a cavity, normals inwards" : "closed, normals outwards") + turned;
+}
+
+/// Returns a line for each component of a mesh.
+std::string components_text(const MeshFindings& found) {
+  std::string text;
+  for (std::size_t i = 0; i < found.components.size(); ++i) {
+    const MeshComponent& component = found.components[i];
+    const std::string head = i == 0 ? fmt::format("{} component{}", found.component_count,
+                                                  found.component_count > 1 ? "s, the largest first: " : ": ")
+                                    : "";
+    text += fmt::format("  {:<11}  {}{}, {} triangles, {}\n", i == 0 ? "mesh" : "", head, size_text(component.box),
+                        component.triangles, closedness_text(component, found));
+  }
+  if (found.component_count > found.components.size())
+    text += fmt::format("               and {} smaller components\n", found.component_count - found.components.size());
+  return text;
 }
 
 const MeshTool* mesh_of(const SceneFacts& facts) {
@@ -70,6 +97,8 @@ std::string tool_text(const LoadedScenario& loaded, const SceneFacts& facts) {
         "most {}",
         bounds_text(mesh->grid().box()), triangles_of_tool(loaded), length_text(mesh->grid().nodes().spacing),
         length_text(mesh->grid().error_bound()));
+    const MeshFindings& found = loaded.files.at(kToolFile).mesh().findings();
+    if (found.component_count > 1) return text + "\n" + components_text(found);
   }
   return text + "\n";
 }
@@ -83,6 +112,8 @@ std::string bytes_text(double bytes) {
 std::string facts_text(const LoadedScenario& loaded, const SceneFacts& facts) {
   const Scenario& scenario = loaded.scenario;
   std::string text = facts.surface ? surface_text(*facts.surface, facts.is_closed) : "  environment  springs\n";
+  if (facts.surface && std::holds_alternative<MeshEnvironment>(scenario.environment))
+    text += components_text(loaded.files.at(kEnvironmentFile).mesh().findings());
   text += tool_text(loaded, facts);
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   text += fmt::format("  run          {} steps of {:.4g} ms = {:.4g} s", scenario.time.steps, 1e3 * scenario.time.step,
@@ -93,6 +124,18 @@ std::string facts_text(const LoadedScenario& loaded, const SceneFacts& facts) {
 
 Json box_json(const Box& box) {
   return {{box.min.x(), box.min.y(), box.min.z()}, {box.max.x(), box.max.y(), box.max.z()}};
+}
+
+Json components_json(const MeshFindings& found) {
+  Json list = Json::array();
+  for (const MeshComponent& component : found.components) {
+    list.push_back({{"triangles", component.triangles},
+                    {"box_m", box_json(component.box)},
+                    {"closed", component.is_closed},
+                    {"cavity", component.is_cavity},
+                    {"turned", component.is_reversed}});
+  }
+  return {{"count", found.component_count}, {"largest", list}};
 }
 
 Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
@@ -108,13 +151,17 @@ Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
   if (const MeshTool* mesh = mesh_of(facts)) {
     json["tool"]["triangles"] = triangles_of_tool(loaded);
     json["tool"]["closed"] = true;  // open meshes are rejected
+    json["tool"]["components"] = components_json(loaded.files.at(kToolFile).mesh().findings());
     json["tool"]["box_m"] = box_json(mesh->grid().box());
     json["tool"]["grid_m"] = mesh->grid().nodes().spacing;
     json["tool"]["error_bound_m"] = mesh->grid().error_bound();
   }
   if (!facts.surface) return json;
   json["environment"] = {{"box_m", box_json(facts.surface->box)}, {"points", facts.surface->points}};
-  if (facts.is_closed) json["environment"]["closed"] = *facts.is_closed;
+  if (facts.is_closed) {
+    json["environment"]["closed"] = *facts.is_closed;
+    json["environment"]["components"] = components_json(loaded.files.at(kEnvironmentFile).mesh().findings());
+  }
   json["start"] = {{"gap_m", facts.surface->start.distance}, {"touching", facts.surface->start.touching}};
   return json;
 }

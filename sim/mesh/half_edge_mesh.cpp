@@ -70,6 +70,8 @@ std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triang
 struct Shape {
   Box box = Box::nothing();
   double volume = 0.0;  ///< enclosed volume [m^3]; negative if normals point inwards
+  std::size_t triangles = 0;
+  bool is_reversed = false;  ///< the winding of the part was reversed, after the volume was computed
 
   double size() const { return box.size().norm(); }
   bool holds(const Shape& other) const {
@@ -126,14 +128,17 @@ class MeshParts {
   }
 
   /// Reverses all triangles of a part if most of its triangles are reversed, so that the majority keeps its
-  /// original winding. Returns the number of triangles that are still reversed.
-  std::size_t follow_majority() {
+  /// original winding. Returns the number of triangles that are still reversed, without the triangles of
+  /// `has_opposite`, which the file holds in both windings.
+  std::size_t follow_majority(const std::vector<bool>& has_opposite) {
     std::vector<std::int64_t> balance(count(), 0);  // per part: number of reversed minus number of other triangles
     for (std::size_t t = 0; t < part_.size(); ++t) balance[part_[t]] += reversed_[t] ? 1 : -1;
     std::vector<bool> mostly_reversed(count());
     std::transform(balance.begin(), balance.end(), mostly_reversed.begin(), [](std::int64_t b) { return b > 0; });
     reverse(mostly_reversed);
-    return static_cast<std::size_t>(std::count(reversed_.begin(), reversed_.end(), true));
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < reversed_.size(); ++t) count += reversed_[t] && !has_opposite[t] ? 1u : 0u;
+    return count;
   }
 
   /// Reverses closed parts that enclose a negative volume, together with the parts inside their bounding boxes.
@@ -141,8 +146,10 @@ class MeshParts {
   /// others.
   std::size_t orient_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
     // Bounding box and volume of each part.
-    std::vector<Shape> shapes(count());
+    shapes_.assign(count(), Shape{});
+    std::vector<Shape>& shapes = shapes_;
     for (std::size_t t = 0; t < part_.size(); ++t) {
+      ++shapes[part_[t]].triangles;
       for (const std::uint32_t corner : triangles[t]) shapes[part_[t]].box.add(vertices[corner]);
     }
     for (std::size_t t = 0; t < part_.size(); ++t) {
@@ -167,7 +174,24 @@ class MeshParts {
       if (outer == outermost.end() && outermost.size() < kMaxEnclosingParts) outermost.push_back(p);
     }
     reverse(inside_out);
+    for (std::size_t p = 0; p < shapes.size(); ++p) shapes[p].is_reversed = inside_out[p];
     return static_cast<std::size_t>(std::count(inside_out.begin(), inside_out.end(), true));
+  }
+
+  /// Adds the largest parts to the findings. Precondition: orient_outwards() was called.
+  void describe(MeshFindings& found) const {
+    found.component_count = count();
+    std::vector<std::uint32_t> order(count());
+    std::iota(order.begin(), order.end(), 0u);
+    const std::size_t described = std::min(count(), kMaxComponents);
+    std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(described), {},
+                              [&](std::uint32_t p) { return std::pair(-shapes_[p].size(), p); });
+    for (std::size_t i = 0; i < described; ++i) {
+      const std::uint32_t p = order[i];
+      const Shape& shape = shapes_[p];
+      const bool is_cavity = closed_[p] && shape.is_inside_out() != shape.is_reversed;
+      found.components.push_back({shape.triangles, shape.box, closed_[p], is_cavity, shape.is_reversed});
+    }
   }
 
   /// Flags of the triangles: true if the winding must be reversed.
@@ -184,7 +208,8 @@ class MeshParts {
   const std::vector<Hinge>& hinges_;
   std::vector<std::uint32_t> part_;  ///< part number of each triangle
   std::vector<bool> reversed_;
-  std::vector<bool> closed_;  ///< for each part: true if every edge has two triangles
+  std::vector<bool> closed_;   ///< for each part: true if every edge has two triangles
+  std::vector<Shape> shapes_;  ///< of the parts
 };
 
 /// More than in any sensible mesh. The time to find an edge at a vertex is proportional to the number of its
@@ -220,11 +245,63 @@ std::vector<Triangle> welded_triangles(const TriangleSoup& soup) {
   return welded;
 }
 
+/// Triangles that have the same corners as an earlier triangle.
+struct Copies {
+  std::vector<bool> is_copy;       ///< for each triangle; empty if there are no copies
+  std::vector<bool> has_opposite;  ///< for each triangle: a copy with the opposite winding exists
+};
+
+/// Finds triangles with the same corners, and counts them in the findings.
+Copies copies_in(const std::vector<Triangle>& triangles, const std::vector<TriangleSide>& sides, MeshFindings& found) {
+  Copies copies{{}, std::vector<bool>(triangles.size(), false)};
+  const auto third = [&](const TriangleSide& side) { return triangles[side.triangle][(side.corner + 2) % 3]; };
+  std::vector<TriangleSide> same;
+  for_each_edge(sides, [&](std::span<const TriangleSide> edge) {
+    if (edge.size() < 2 || (edge.size() == 2 && third(edge[0]) != third(edge[1]))) return;
+    // Compare the triangles at the edge between their two lowest vertices, so that they are found once.
+    same.assign(edge.begin(), edge.end());
+    std::erase_if(same, [&](const TriangleSide& side) { return third(side) < side.high; });
+    std::ranges::stable_sort(same, {}, third);
+    const TriangleSide* first = nullptr;
+    for (const TriangleSide& side : same) {
+      if (first == nullptr || third(*first) != third(side)) {
+        first = &side;
+        continue;
+      }
+      if (copies.is_copy.empty()) copies.is_copy.resize(triangles.size(), false);
+      copies.is_copy[side.triangle] = true;
+      if (side.forward == first->forward) ++found.repeated_triangles;
+      if (side.forward == first->forward) continue;
+      ++found.opposite_triangles;
+      copies.has_opposite[first->triangle] = true;
+    }
+  });
+  return copies;
+}
+
+/// Removes triangles that have the same corners as an earlier triangle. Returns for each remaining triangle whether
+/// there was a copy with the opposite winding. Updates `sides`.
+std::vector<bool> drop_copies(std::vector<Triangle>& triangles, std::vector<TriangleSide>& sides, MeshFindings& found) {
+  Copies copies = copies_in(triangles, sides, found);
+  if (copies.is_copy.empty()) return copies.has_opposite;
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (copies.is_copy[t]) continue;
+    triangles[kept] = triangles[t];
+    copies.has_opposite[kept++] = copies.has_opposite[t];
+  }
+  triangles.resize(kept);
+  copies.has_opposite.resize(kept);
+  sides = sides_by_edge(triangles);
+  found.is_double_sided = std::ranges::count(copies.has_opposite, true) == static_cast<std::ptrdiff_t>(kept);
+  return copies.has_opposite;
+}
+
 /// Returns the pairs of triangles at edges that have two. Adds the midpoints of all other edges to the findings.
-std::vector<Hinge> hinges_of(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices,
+std::vector<Hinge> hinges_of(const std::vector<TriangleSide>& sides, const std::vector<Vec3>& vertices,
                              MeshFindings& found) {
   std::vector<Hinge> hinges;
-  for_each_edge(sides_by_edge(triangles), [&](std::span<const TriangleSide> edge) {
+  for_each_edge(sides, [&](std::span<const TriangleSide> edge) {
     const TriangleSide &a = edge.front(), &b = edge.back();
     const Vec3 middle = 0.5 * (vertices[a.low] + vertices[a.high]);
     if (edge.size() == 1) found.open_edges.push_back(middle);
@@ -428,26 +505,63 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
   }
   CheckedMesh result;
   // Merge vertices.
-  const std::vector<Triangle> triangles = welded_triangles(soup);
+  std::vector<Triangle> triangles = welded_triangles(soup);
   if (triangles.empty()) throw MeshError("has no faces; allowed: at least one, with three different corners");
   result.findings.degenerate_triangles = soup.triangles.size() - triangles.size();
 
   // Wind each part consistently and outwards.
-  const std::vector<Hinge> hinges = hinges_of(triangles, soup.vertices, result.findings);
+  std::vector<TriangleSide> sides = sides_by_edge(triangles);
+  const std::vector<bool> has_opposite = drop_copies(triangles, sides, result.findings);
+  const std::vector<Hinge> hinges = hinges_of(sides, soup.vertices, result.findings);
   MeshParts parts(triangles.size(), hinges);
   if (const auto hinge = parts.contradiction()) {
     const Triangle& t = triangles[hinge->triangles[0]];
     throw MeshError("is not orientable: no winding fits all faces around " + text(soup.vertices[t[hinge->corners[0]]]) +
                     "; allowed: a surface with two sides");
   }
-  result.findings.flipped_triangles = parts.follow_majority();
+  result.findings.flipped_triangles = parts.follow_majority(has_opposite);
   result.findings.inverted_parts = parts.orient_outwards(soup.vertices, triangles);
+  parts.describe(result.findings);
 
   // Build the half-edge mesh with one vertex for each triangle fan.
   Fans fans(triangles.size());
   for (const Hinge& hinge : hinges) fans.join(hinge);
   result.mesh = connected(soup.vertices, triangles, fans, parts.reversed());
   return result;
+}
+
+TriangleSoup largest_component(const HalfEdgeMesh& mesh) {
+  // Find the components by depth-first search over the faces.
+  std::vector<bool> seen(mesh.n_faces(), false);
+  std::vector<OpenMesh::FaceHandle> largest, component;
+  double largest_size = -1.0;
+  for (const auto first : mesh.faces()) {
+    if (seen[static_cast<std::size_t>(first.idx())]) continue;
+    component.assign(1, first);
+    seen[static_cast<std::size_t>(first.idx())] = true;
+    Box box = Box::nothing();
+    for (std::size_t i = 0; i < component.size(); ++i) {
+      for (auto vertex = mesh.cfv_iter(component[i]); vertex.is_valid(); ++vertex) box.add(position(mesh, *vertex));
+      for (auto next = mesh.cff_iter(component[i]); next.is_valid(); ++next) {
+        if (seen[static_cast<std::size_t>(next->idx())]) continue;
+        seen[static_cast<std::size_t>(next->idx())] = true;
+        component.push_back(*next);
+      }
+    }
+    if (box.size().norm() <= largest_size) continue;
+    largest_size = box.size().norm();
+    largest.swap(component);
+  }
+  // Keep the order of the faces.
+  std::ranges::sort(largest, {}, [](OpenMesh::FaceHandle face) { return face.idx(); });
+  TriangleSoup soup;
+  for (const auto vertex : mesh.vertices()) soup.vertices.push_back(position(mesh, vertex));
+  for (const auto face : largest) {
+    auto corner = soup.triangles.emplace_back().begin();
+    for (auto vertex = mesh.cfv_iter(face); vertex.is_valid(); ++vertex)
+      *corner++ = static_cast<std::uint32_t>(vertex->idx());
+  }
+  return soup;
 }
 
 }  // namespace hapbench

@@ -39,16 +39,37 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 /// if several are equally close. Preserves the order of the points. O(n log n).
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing);
 
+/// Connected component of a surface: triangles that are connected across edges with two triangles.
+struct MeshComponent {
+  std::size_t triangles = 0;
+  Box box;  ///< bounding box [m]
+  /// Every edge has two triangles. False for an open component, and for a component that was cut along an edge with
+  /// more than two triangles.
+  bool is_closed = true;
+  bool is_cavity = false;    ///< closed, with normals towards its inside
+  bool is_reversed = false;  ///< closed, and was inside out
+
+  double diameter() const { return box.size().norm(); }
+};
+
 /// Repairs made by mesh_from_triangles() and irregularities that it found.
 struct MeshFindings {
   std::size_t degenerate_triangles = 0;  ///< triangles with two equal corners; omitted
+  std::size_t repeated_triangles = 0;    ///< triangles with the corners and the winding of an earlier triangle; omitted
+  std::size_t opposite_triangles = 0;    ///< triangles with the corners of an earlier triangle, reversed; omitted
+  bool is_double_sided = false;          ///< every triangle was present in both windings
   std::size_t flipped_triangles = 0;     ///< triangles wound against the majority of their part; reversed
   std::size_t inverted_parts = 0;        ///< closed parts whose normals pointed inwards; reversed
   /// Midpoints [m] of the edges with more than two triangles (non-manifold edges). The surface is cut along them.
   std::vector<Vec3> non_manifold_edges = {};
   /// Midpoints [m] of the edges with one triangle only, where the surface is open.
   std::vector<Vec3> open_edges = {};
+  std::size_t component_count = 0;
+  /// The components, at most kMaxComponents, by decreasing diameter.
+  std::vector<MeshComponent> components = {};
 };
+/// Maximum number of components that MeshFindings describes.
+inline constexpr std::size_t kMaxComponents = 20;
 
 /// Result of mesh_from_triangles().
 struct CheckedMesh {
@@ -65,6 +86,7 @@ class MeshError : public std::runtime_error {
 
 /// Connects triangles to a surface.
 ///
+/// - Triangles: keeps the first of several triangles with the same corners, in any winding.
 /// - Vertices: merges vertices at the same position and omits unused vertices; keeps the order of the others. If
 /// several triangle fans touch in one point only, each fan keeps a vertex of its own.
 /// - Edges: an edge with more than two triangles connects none of them, so the fans at its ends get separate
@@ -77,5 +99,9 @@ class MeshError : public std::runtime_error {
 /// band), or more than 10,000 triangles meet in one vertex (which would take quadratic time). O(n log n) otherwise.
 /// Precondition: vertex indices are valid.
 CheckedMesh mesh_from_triangles(const TriangleSoup& soup);
+
+/// Returns the triangles of the component with the largest diameter, the first if several are equally large, with all
+/// vertices of the mesh.
+TriangleSoup largest_component(const HalfEdgeMesh& mesh);
 
 }  // namespace hapbench

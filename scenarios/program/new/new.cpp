@@ -97,6 +97,9 @@ void add_new(CommandLine& line) {
   command.add("--extent <length>", options.extent,
               "true length of the mesh's longest edge with a unit: 12mm, 1.2cm, 0.012m or 0.5in (default: the file is "
               "in metres)");
+  command.add("--unit <unit>", options.unit,
+              "unit of the mesh file: mm, cm, m or in; in place of --extent, if the size in the file is right",
+              {.one_of = {"mm", "cm", "m", "in"}});
   command.add("--side <axis>", options.side,
               "side from which the tool approaches: x, y, z (default), --side=-x, --side=-y or --side=-z",
               {.one_of = {"x", "y", "z", "-x", "-y", "-z"}});

@@ -22,8 +22,7 @@ Vec3 parse_position(const char* option, const std::string& text) {
 }
 
 double parse_length(const char* option, const std::string& text) {
-  constexpr std::pair<std::string_view, double> kUnits[] = {{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}};
-  for (const auto& [unit, metres] : kUnits) {
+  for (const auto& [unit, metres] : kLengthUnits) {
     if (!text.ends_with(unit)) continue;
     const auto number = finite_number(std::string_view(text).substr(0, text.size() - unit.size()));
     if (number && *number > 0.0) return *number * metres;
@@ -56,6 +55,10 @@ void check_options(const NewOptions& options, const StartKind& kind) {
   require(options.at.empty() || lands, "--at", "for mesh, shell, drag and bur");
   require(options.side == "z" || (lands && !from.empty()), "--side", "for mesh, shell, drag and bur with --from");
   require(options.extent.empty() || has_mesh, "--extent", "with the file of a mesh");
+  require(options.unit.empty() || has_mesh || name == "shell", "--unit", "with the file of a mesh or shell");
+  require(options.unit.empty() || options.extent.empty(), "--unit", "either --unit or --extent");
+  require(name != "shell" || options.unit.empty() || options.unit == "m", "--unit",
+          "m for a shell, whose file is in metres; convert the coordinates of the file first");
   require_file("--on", options.on);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/program/new/kinds.hpp"
@@ -11,11 +12,18 @@ namespace hapbench {
 
 /// The options of `new`.
 struct NewOptions {
-  std::string kind, from, on, extent, side = "z", at, out;
+  std::string kind, from, on, extent, unit, side = "z", at, out;
   std::vector<std::string> path;
   bool preview = false;
   OutputOptions output;
 };
+
+/// Unit of length that an option accepts.
+struct LengthUnit {
+  std::string_view name;
+  double metres;
+};
+inline constexpr LengthUnit kLengthUnits[] = {{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}};
 
 /// Returns the point of a text such as "0.01,0,0" [m]. Throws InputError with the option's name.
 Vec3 parse_position(const char* option, const std::string& text);

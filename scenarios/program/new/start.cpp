@@ -23,6 +23,7 @@
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "sim/geometry/triangle_tree.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 
 namespace hapbench {
 namespace {
@@ -52,6 +53,8 @@ class Start {
  public:
   Start(const StartKind& kind, const NewOptions& options, const std::filesystem::path& directory)
       : scene_(kind.scene), options_(options), directory_(directory) {
+    for (const LengthUnit& unit : kLengthUnits)
+      if (options.unit == unit.name) unit_ = unit.metres;
     if (!options.extent.empty()) extent_ = parse_length("--extent", options.extent);
     for (const std::string& point : options.path) requested_points_.push_back(parse_position("--path", point));
     if (!options.at.empty()) requested_points_.push_back(parse_position("--at", options.at));
@@ -63,6 +66,7 @@ class Start {
     const bool is_placed = scene_.contains("initial") && scene_["initial"]["position_m"].is_null();
     if (is_placed) scene_["initial"]["position_m"] = {0, 0, 0};
     if (has_type("environment", "mesh")) scale_environment();
+    if (has_type("environment", "point_shell")) check_shell_size();
     if (has_type("tool", "mesh")) {
       place_mesh_tool();
     } else if (is_placed) {
@@ -111,44 +115,98 @@ class Start {
     return make_shell(loaded.scenario, loaded.files);
   }
 
-  /// Returns the surface points in the side's frame.
+  /// Returns the points over which the tool starts, in the side's frame: of the largest component of a mesh, unless a
+  /// point of the start is given.
   std::vector<SurfacePoint> points() const {
-    std::vector<SurfacePoint> points = shell()->points();
+    return in_frame_of_side(is_over_largest_ ? mesh().largest_component().points() : shell()->points());
+  }
+  std::vector<SurfacePoint> all_points() const { return in_frame_of_side(shell()->points()); }
+
+  std::vector<SurfacePoint> in_frame_of_side(std::vector<SurfacePoint> points) const {
     for (SurfacePoint& point : points)
       point = {to_world_.transpose() * point.position, to_world_.transpose() * point.normal};
     return points;
   }
 
-  /// Returns the scale that gives an object its stated size. `box`: the object's bounds, read as millimetres.
-  /// Without a stated size, the file is in metres. Throws InputError if the object then is shorter than 1 mm or
-  /// longer than 1 m, with its length in both units.
+  /// Returns the command that repeats this start with an option, as an error message shows it.
+  std::string command_with(const std::string& option) const {
+    return fmt::format("\"hapbench new {} {} {} {}\"", options_.kind, options_.on.empty() ? "--from" : "--on",
+                       mesh_file(), option);
+  }
+
+  /// Returns the scale of an object: its stated unit, the factor that gives it its stated size, or 1 for a file in
+  /// metres. `box`: the object's bounds, read as millimetres. Throws InputError if neither is stated and the object is
+  /// shorter than 1 mm or longer than 1 m in metres.
   double choose_scale(const Box& box, const char* object) {
     const double longest = box.size().maxCoeff() / 0.001;
-    if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
-      const std::string command = fmt::format("hapbench new {} {} {} --extent", options_.kind,
-                                              options_.on.empty() ? "--from" : "--on", mesh_file());
+    if (!extent_ && !unit_ && (longest < kShortestObject || longest > kLongestObject)) {
       throw InputError(fmt::format(
-          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} "
-          "{:.7g}mm\" or \"{} {:.7g}m\"",
+          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its unit: {} or {}",
           mesh_file(), object, length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
-          length_text(kLongestObject), command, longest, command, longest));
+          length_text(kLongestObject), command_with("--unit mm"), command_with("--unit m")));
     }
-    const double scale = extent_ ? rounded_to_digits(*extent_ / longest, 6) : 1.0;
-    notes_.push_back(
-        fmt::format("longest edge of the {}'s box: {}, with scale {}", object, length_text(longest * scale), scale));
+    const double scale = unit_ ? *unit_ : extent_ ? rounded_to_digits(*extent_ / longest, 6) : 1.0;
+    notes_.push_back(fmt::format("longest edge of the {}'s box: {:.6g} in the file, {} with scale {}{}", object,
+                                 longest, length_text(longest * scale), scale, scale_note(scale)));
     return scale;
+  }
+
+  /// Returns the relation of a scale to the closest unit, if that is within 20 %.
+  static std::string scale_note(double scale) {
+    const auto distance = [scale](const LengthUnit& unit) { return std::abs(scale / unit.metres - 1.0); };
+    const LengthUnit& unit = *std::ranges::min_element(kLengthUnits, {}, distance);
+    if (distance(unit) > 0.2) return "";
+    if (distance(unit) < 1e-9) return fmt::format(" (the file is in {})", unit.name);
+    return fmt::format(", {:.2g} % {} than in {} (--unit {} keeps its size)", 100.0 * distance(unit),
+                       scale > unit.metres ? "larger" : "smaller", unit.name, unit.name);
+  }
+
+  /// Throws InputError for a point shell, which is in metres, that is not 1 mm to 1 m long. --unit m confirms its size.
+  void check_shell_size() {
+    const double longest = bounds_of(points()).size().maxCoeff();
+    const bool has_size = longest > 0.0;  // unlike a single point
+    if (unit_ || !has_size || (longest >= kShortestObject && longest <= kLongestObject)) return;
+    throw InputError(fmt::format(
+        "{}: the shell is {} long in metres, {} if its numbers are millimetres; allowed: {} ... {} (convert the "
+        "coordinates of the file to metres), or to confirm its size: {}",
+        mesh_file(), length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
+        length_text(kLongestObject), command_with("--unit m")));
+  }
+
+  MeshFile mesh() const { return scenario().files.at(kEnvironmentFile).mesh(); }
+
+  /// Returns the bounding box of the environment's mesh without specks, in the side's frame.
+  Box box_of_mesh() {
+    const MeshFile file = mesh();
+    const MeshFindings& found = file.findings();
+    const std::size_t large = components_above_speck_size(found);
+    if (large == found.component_count) return bounds_of(all_points());
+    Box box = Box::nothing();
+    for (std::size_t i = 0; i < large; ++i) {
+      const Box& part = found.components[i].box;
+      const Vec3 a = to_world_.transpose() * part.min, b = to_world_.transpose() * part.max;
+      box.add(a.cwiseMin(b));
+      box.add(a.cwiseMax(b));
+    }
+    notes_.push_back(fmt::format("measured without {} of {} components, which are specks",
+                                 found.component_count - large, found.component_count));
+    return box;
   }
 
   /// Scales the mesh, and chooses the spacing of its points. The tool gets its size from the mesh unless a
   /// stroke moves it.
   void scale_environment() {
-    const Box box = bounds_of(points());
+    const Box box = box_of_mesh();
     const double scale = choose_scale(box, "mesh");
     scene_["environment"]["scale"] = scale;
     if (options_.on.empty()) choose_tool(box.size().maxCoeff() / 0.001 * scale);
     scene_["environment"]["spacing_m"] = rounded(diameter_ / 10.0);
     if (!options_.on.empty())
       notes_.push_back(fmt::format("the mesh: {}", bounds_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
+    const std::size_t components = mesh().findings().component_count;
+    is_over_largest_ = options_.on.empty() && requested_points_.empty() && components > 1;
+    if (is_over_largest_)
+      notes_.push_back(fmt::format("the mesh has {} components; the tool starts over the largest", components));
   }
 
   /// Sets the tool's diameter to a fiftieth of the object's length [m], but at least 1 mm.
@@ -165,8 +223,7 @@ class Start {
     const Box box = bounds_of(shell);
     choose_tool(box.size().maxCoeff());
     const Vec3 top = top_center(shell, box.max.z(), 0.1 * diameter_);
-    const bool is_open =
-        !has_type("environment", "mesh") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
+    const bool is_open = !has_type("environment", "mesh") || !mesh().largest_component().open_edges().empty();
     // Sum the normals around the top along the side's axis; a negative sum means that they point away.
     double facing = 0.0;
     for (const SurfacePoint& point : shell) {
@@ -328,6 +385,8 @@ class Start {
   std::vector<std::string> notes_, warnings_;
   const NewOptions& options_;
   std::filesystem::path directory_;
+  bool is_over_largest_ = false;        ///< the tool starts over the largest of several components of a mesh
+  std::optional<double> unit_;          ///< stated unit of the mesh file [m]
   std::optional<double> extent_;        ///< stated longest edge of the mesh's box [m]
   std::vector<Vec3> requested_points_;  ///< points of --path, or the point of --at [m]
   Mat3 to_world_ = Mat3::Identity();    ///< rotates vectors of the side's frame into the world frame

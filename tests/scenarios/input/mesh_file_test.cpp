@@ -1,13 +1,17 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/mesh_sampling.hpp"
 #include "scenarios/input/text_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "sim/mesh/half_edge_mesh.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"
@@ -30,6 +34,12 @@ class MeshFile : public testing::Test {
     test::write_plainly(directory_ / name, text);
     const hapbench::MeshFile mesh(read_named_file(directory_ / name), directory_ / name, sampling);
     return {mesh.points(), mesh.warnings(directory_ / name)};
+  }
+
+  std::string refusal_of(const std::string& name, const std::string& text) const {
+    const auto refusal = test::input_error_of([&] { read(name, text); });
+    EXPECT_TRUE(refusal) << name << " was not refused";
+    return refusal ? refusal->what() : "";
   }
 
   /// The one warning behind the file's name, which has no directory in front.
@@ -95,6 +105,12 @@ TEST_F(MeshFile, IsReadWhateverElseItsTextHolds) {
        "\n# colours behind positions, quadrilaterals none\nv 0 0 0 .1 .2 .3\nv 1 0 0 .1 .2 .3\nv 0 1 0 .1 .2 .3\nv 0 0 "
        "1 "
        ".1 .2 .3\ng a\ns off\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4 # last\n"},
+      {"continued.obj",
+       "v 0 \\\n 0 0\nv 1 \\\n0 \\\n0\n#no \\\nv 0 1 0 \\ \n\nv 0 0 1\n"
+       "f 1 3 \\\n2\nf 1 \\\r\n 2 \\\r\n4\nf 1 4 3\nf 2 3 4\n"},
+      {"glued.off", "OFF4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
+      {"glued_colours.off", "coff4 4\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
+      {"no_keyword.off", "4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
       {"counts_in_header.off", "OFF 4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3"},
       {"comments.off",
        "OFF # header\n# nothing\n\n4 4\n" + tetrahedron + "3 0 2 1 255 0 0\n\n3 0 1 3 # face\n3 0 3 2 1\n3 1 2 3\n"},
@@ -112,7 +128,7 @@ TEST_F(MeshFile, IsReadWhateverElseItsTextHolds) {
        "0\nENDLOOP\nENDFACET\n"
        " facet normal 0 0 0\n  Outer loop\n   vertex 0 0 0\n\n   vertex 1 0 0\n   vertex 0 0 1\n  endloop\n endfacet\n"
        "outer loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0\nendloop\n"
-       "outer loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\n"},
+       "outer loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nEndSolid outer part"},
       {"more.ply",
        "ply\nformat ascii 1.0\ncomment x\nelement sensor 1\nproperty int id\nelement vertex 4\nproperty uchar red\n"
        "property float32 z\nproperty float64 x\nproperty float y\nelement face 4\nproperty list uint8 uint "
@@ -170,6 +186,208 @@ TEST_F(MeshFile, IsReadFromABinaryStlWhateverItsHeaderAndEnd) {
   EXPECT_EQ(read("longer.stl", text + "more").points.size(), 8u);
   EXPECT_EQ(read("other.stl", std::string(80, 'x') + text.substr(80)).points.size(), 8u);
   EXPECT_EQ(read("spaces.stl", "solid" + std::string(75, ' ') + text.substr(80)).points.size(), 8u);
+}
+
+/// Texts of every text format.
+std::vector<test::NamedText> text_formats(const TriangleSoup& soup) {
+  return {{"m.obj", test::obj_text(soup)},
+          {"m.off", test::off_text(soup)},
+          {"m.ply", test::ply_text(soup)},
+          {"m.stl", test::stl_text(soup)}};
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+TEST_F(MeshFile, IsReadWithAByteOrderMarkAndAnyLineEnds) {
+  for (const auto& [name, text] : text_formats(test::cube())) {
+    const auto expected = sorted_positions(read(name, text).points);
+    for (const std::string end : {"\n", "\r\n", "\r"}) {
+      for (const std::string mark : {"", "\xEF\xBB\xBF"}) {
+        SCOPED_TRACE(testing::Message() << name << mark.size() << end.size() << int(end[0]));
+        const MeshPoints mesh = read(name, mark + replaced(replaced(text, "\n", end), " ", "\t"));
+        EXPECT_EQ(sorted_positions(mesh.points), expected);
+        EXPECT_TRUE(mesh.warnings.empty());
+      }
+    }
+  }
+  // A header with CR line ends, before binary data that begins with LF.
+  std::string binary = test::binary_ply_text(test::cube(), true, false);
+  const std::size_t data = binary.find("end_header\n") + 11;
+  binary[data] = '\n';
+  const auto expected = sorted_positions(read("lf.ply", binary).points);
+  EXPECT_EQ(sorted_positions(read("cr.ply", replaced(binary.substr(0, data), "\n", "\r") + binary.substr(data)).points),
+            expected);
+  EXPECT_EQ(
+      sorted_positions(read("crlf.ply", replaced(binary.substr(0, data), "\n", "\r\n") + binary.substr(data)).points),
+      expected);
+  // Another encoding.
+  for (const std::string& start : {std::string("\xFF\xFEv\0", 4), std::string("\xFE\xFF\0v", 4)})
+    EXPECT_NE(refusal_of("utf16.obj", start + " 0 0 0\n").find("is a text in UTF-16 or UTF-32; allowed: UTF-8"),
+              std::string::npos);
+  EXPECT_NE(refusal_of("packed.stl", "\x1F\x8B\x08").find("is compressed"), std::string::npos);
+}
+
+/// An L-shaped prism, 2 mm high, with polygons in place of triangles.
+std::vector<test::NamedText> l_prisms(const std::string& face = "5 4 3 2 1 0") {
+  const std::vector<std::string> faces = {face,      "6 7 8 9 10 11", "0 1 7 6",   "1 2 8 7",
+                                          "2 3 9 8", "3 4 10 9",      "4 5 11 10", "5 0 6 11"};
+  std::string vertices, obj, counted;
+  for (const char* z : {"0", "2"})
+    for (const char* xy : {"6 2", "6 4", "0 4", "0 0", "3 0", "3 2"}) {
+      vertices += fmt::format("{} {}\n", xy, z);
+      obj += fmt::format("v {} {}\n", xy, z);
+    }
+  for (const std::string& corners : faces) {
+    const Words words = words_of(corners);
+    counted += fmt::format("{} {}\n", words.size(), corners);
+    obj += "f";
+    for (const std::string_view word : words) obj += fmt::format(" {}", *whole_number(word) + 1);
+    obj += "\n";
+  }
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\nproperty float z\nelement face 8\n"
+      "property list uchar int vertex_indices\nend_header\n";
+  return {{"l.obj", obj}, {"l.off", "OFF\n12 8 0\n" + vertices + counted}, {"l.ply", header + vertices + counted}};
+}
+
+TEST_F(MeshFile, MayHavePolygonsWithReflexCorners) {
+  for (const auto& [name, text] : l_prisms()) {
+    SCOPED_TRACE(name);
+    const hapbench::MeshFile mesh(text, name, {});
+    EXPECT_TRUE(mesh.is_closed());
+    EXPECT_TRUE(mesh.warnings(name).empty());
+    const TriangleSoup soup = mesh.triangles();
+    double area = 0.0, volume = 0.0;
+    for (const auto& [i, j, k] : soup.triangles) {
+      const Vec3 &a = soup.vertices[i], &b = soup.vertices[j], &c = soup.vertices[k];
+      area += 0.5 * (b - a).cross(c - a).norm();
+      volume += a.dot(b.cross(c)) / 6.0;
+    }
+    EXPECT_NEAR(volume, 18.0 * 2.0, 1e-12);
+    EXPECT_NEAR(area, 2.0 * 18.0 + 20.0 * 2.0, 1e-12);
+  }
+}
+
+TEST_F(MeshFile, NamesAPolygonThatCrossesItself) {
+  const std::map<std::string, std::string> places = {{"l.obj", "l.obj, line 13: face 1: "},
+                                                     {"l.off", "l.off, line 15: face 0: "},
+                                                     {"l.ply", "l.ply, line 22: face 0: "}};
+  for (const auto& [name, text] : l_prisms("5 3 4 2 1 0")) {
+    const std::string refusal = refusal_of(name, text);
+    EXPECT_NE(refusal.find(places.at(name) + "crosses itself: the edge between its corners"), std::string::npos)
+        << refusal;
+  }
+  EXPECT_NE(refusal_of("bent.obj", "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\n\nf 1 2 3 4\n")
+                .find("bent.obj, line 6: face 1: is not planar: a corner is off its plane by 1"),
+            std::string::npos);
+  const auto warnings = read("uneven.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\n\nf 1 2 3 4\n").warnings;
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(
+      warnings[0],
+      "uneven.obj: polygons that are not planar: 1, the first in line 6; the largest is off its plane by 7.9 % of its "
+      "diameter; their triangles are one of several choices");
+  EXPECT_EQ(warnings[1].find("uneven.obj: the mesh is open"), 0u);
+}
+
+TEST_F(MeshFile, NamesVerticesAsTheFileCountsThem) {
+  EXPECT_NE(refusal_of("a.obj", "# x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 \\\n 4\n")
+                .find("a.obj, line 6: face 2: got vertex 4; allowed: 1 ... 3, the vertices of the file"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n")
+                .find("a.off, line 6: face 0: got vertex 3; allowed: 0 ... 2, the vertices of the file"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("far.obj", "v 0 0 0\nv 1 0 0\nv 0 2000 0\nf 1 2 3\n").find("far.obj, line 3: vertex 3: got"),
+            std::string::npos);
+}
+
+/// Every text that is cut is refused, or the rest of it is a mesh that is open and said to be.
+TEST_F(MeshFile, IsRefusedOrNamedIfItsFileIsCut) {
+  for (const auto& [name, text] : text_formats(test::cube())) {
+    // A cut of the last line end, or of the name after endsolid, loses nothing.
+    const std::size_t whole = name == "m.stl" ? text.rfind("endsolid") + 8 : text.size() - 1;
+    for (std::size_t size = 1; size < whole; ++size) {
+      SCOPED_TRACE(testing::Message() << name << " after " << size << " bytes");
+      const std::string cut = text.substr(0, size);
+      try {
+        const hapbench::MeshFile mesh(cut, name, {});
+        EXPECT_EQ(name, "m.obj");
+        EXPECT_FALSE(mesh.is_closed());
+        EXPECT_FALSE(mesh.warnings(name).empty());
+      } catch (const InputError&) {
+      }
+    }
+  }
+  for (const auto& [name, text] : test::mesh_texts(test::cube())) {
+    if (!name.ends_with("ly") && !name.starts_with("bin")) continue;
+    const std::string refusal = refusal_of(name, text.substr(0, text.size() - 7));
+    EXPECT_NE(refusal.find("cut short"), std::string::npos) << refusal;
+  }
+  EXPECT_NE(refusal_of("m.stl", test::stl_text(test::cube()).substr(0, 500)).find("is it cut short"),
+            std::string::npos);
+  const std::string facets = replaced(test::stl_text(test::cube()), "endsolid thing\n", "");
+  EXPECT_NE(refusal_of("m.stl", facets).find("the file is cut short: it ends after 12 triangles and \"endfacet\""),
+            std::string::npos);
+  EXPECT_NE(refusal_of("q.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 2 5 6")
+                .find("line 8: the file is cut short"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("s.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1/1 2/2 3/").find("is it cut short"), std::string::npos);
+}
+
+TEST_F(MeshFile, WarnsAboutWhatItsReaderIgnores) {
+  const TriangleSoup cube = test::cube();
+  EXPECT_EQ(warning_of("lines.obj", test::obj_text(cube) + "l 1 2\nl 2 3\nusemtl x\n"),
+            ": statements other than polygons, \"l\", which were ignored: 2, the first is line 23");
+  EXPECT_EQ(warning_of("unknown.obj", "x 1\n" + test::obj_text(cube)),
+            ": unknown statements \"x\", which were ignored: 1, the first is line 1");
+  EXPECT_EQ(warning_of("long.off", test::off_text(cube) + "\n3 0 1 2\n3 0 1 2\n"),
+            ": lines after the last entry that the header declares, which were ignored: 2, the first is line 24");
+  EXPECT_EQ(warning_of("long.ply", test::ply_text(cube) + "3 0 1 2\n"),
+            ": lines after the last entry that the header declares, which were ignored: 1, the first is line 30");
+  EXPECT_EQ(warning_of("long_binary.ply", test::binary_ply_text(cube, true, true) + "more"),
+            ": bytes after the last entry that the header declares, which were ignored: 4");
+  EXPECT_EQ(warning_of("long.stl", test::binary_stl_text(cube) + "more"),
+            ": bytes after the 12 triangles that the header declares, which were ignored: 4");
+}
+
+TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
+  const TriangleSoup cube = test::cube();
+  TriangleSoup twice = cube, sheet = cube;
+  for (const auto& [a, b, c] : cube.triangles) twice.triangles.push_back({c, b, a});
+  const MeshPoints one = read("one.obj", test::obj_text(cube)), two = read("two.obj", test::obj_text(twice));
+  ASSERT_EQ(two.points.size(), one.points.size());
+  for (std::size_t i = 0; i < one.points.size(); ++i) EXPECT_EQ(two.points[i].normal, one.points[i].normal);
+  ASSERT_EQ(two.warnings.size(), 1u);
+  EXPECT_EQ(
+      two.warnings[0],
+      "two.obj: every face is double: each triangle is listed with both windings, and the first of them was kept: 12");
+  sheet.triangles = {{0, 1, 2}, {2, 1, 0}, {1, 3, 2}, {2, 3, 1}};
+  const auto warnings = read("sheet.off", test::off_text(sheet)).warnings;
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0].find("sheet.off: a double-sided sheet: each triangle is listed with both windings"), 0u);
+  twice = cube;
+  twice.triangles.push_back(cube.triangles[3]);
+  EXPECT_EQ(warning_of("same.ply", test::ply_text(twice)), ": faces left out, which repeat an earlier face: 1");
+  std::swap(twice.triangles.back()[0], twice.triangles.back()[1]);
+  EXPECT_EQ(warning_of("opposite.ply", test::ply_text(twice)),
+            ": faces left out, which repeat an earlier face with opposite winding: 1");
+}
+
+TEST_F(MeshFile, NamesSpecks) {
+  const TriangleSoup two = test::together(test::cube(0.01, {5, 0, 0}), test::cube());
+  EXPECT_EQ(warning_of("speck.obj", test::obj_text(two)),
+            ": specks, which are components smaller than 5 % of the largest: 1 of 2 components, the largest of them 12 "
+            "triangles, 20 x 20 x 20 mm at (5e+03, 0, 0) mm; remove specks in a mesh editor");
+  const hapbench::MeshFile mesh(test::obj_text(two), "speck.obj", {});
+  ASSERT_EQ(mesh.findings().components.size(), 2u);
+  EXPECT_EQ(mesh.findings().components[0].box.max, Vec3(1, 1, 1));
+  EXPECT_TRUE(mesh.findings().components[0].is_closed);
+  EXPECT_EQ(components_above_speck_size(mesh.findings()), 1u);
+  EXPECT_EQ(sorted_positions(mesh.largest_component().points()),
+            sorted_positions(read("cube.obj", test::obj_text(test::cube())).points));
 }
 
 TEST_F(MeshFile, WarnsOnceAboutWhatIsOdd) {

@@ -248,11 +248,11 @@ const BadInput kInputs[] = {
      {"m.off", [] { return "OFF BINARY\n" + std::string("\x08\0\0\0\x0c\0\0\0\0\0\0\0", 12); }}},
     {"PlyMeshHugeCount",
      mesh<'p', 'l', 'y'>,
-     "the file ends before its 4000000000 \"face\"",
+     "the file is cut short: it ends after 0 of its 4000000000 \"face\"",
      {"m.ply", [] { return ply_header("4000000000") + std::string(36, '\0'); }}},
     {"PlyMeshHugeFace",
      mesh<'p', 'l', 'y'>,
-     "the file ends before its 1 \"face\"",
+     "the file is cut short: it ends after 0 of its 1 \"face\"",
      {"m.ply",
       [] {
         return ply_header("1", "property list int int vertex_indices\n") + std::string(36, '\0') + "\xff\xff\xff\x7f";

@@ -79,6 +79,53 @@ TEST_F(NewCommand, GivesAMeshItsStatedSize) {
   }
 }
 
+TEST_F(NewCommand, TakesTheUnitOfAFileAndReportsTheScale) {
+  write_rod(directory_ / "rod.obj", 17.22, 1.0);
+  for (const auto& [unit, scale] : {std::pair{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}}) {
+    fs::remove(path("rod.json"));
+    const ProgramRun run =
+        hapbench({"new", "mesh", "--from", path("rod.obj"), "--unit", unit, "--out", path("rod.json")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(Json::parse(test::read_file(directory_ / "rod.json"))["environment"]["scale"], scale);
+    EXPECT_NE(run.out.find(fmt::format("17.22 in the file, ")), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find(fmt::format("with scale {} (the file is in {})", scale, unit)), std::string::npos)
+        << run.out;
+  }
+  fs::remove(path("rod.json"));
+  const ProgramRun rescaled =
+      hapbench({"new", "mesh", "--from", path("rod.obj"), "--extent", "17mm", "--out", path("rod.json")});
+  EXPECT_NE(
+      rescaled.out.find("17.22 in the file, 17 mm with scale 0.000987224, 1.3 % smaller than in mm (--unit mm keeps "
+                        "its size)"),
+      std::string::npos)
+      << rescaled.out;
+  EXPECT_EQ(hapbench({"new", "mesh", "--from", path("rod.obj"), "--extent", "17mm", "--unit", "mm"}).status, 2);
+}
+
+TEST_F(NewCommand, JudgesTheSizeOfAShellAndStartsOverTheLargestComponent) {
+  std::string shell = "x_m,y_m,z_m,nx,ny,nz\n";
+  for (int x = 0; x < 9; ++x)
+    for (int y = 0; y < 9; ++y) shell += fmt::format("{},{},0,0,0,1\n", x, y);
+  test::write_plainly(directory_ / "mm.csv", shell);
+  const std::vector<std::string> words = {"new", "shell", "--from", path("mm.csv"), "--out", path("shell.json")};
+  const ProgramRun refused = hapbench(words);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("the shell is 8 m long in metres, 8 mm if its numbers are millimetres"), std::string::npos)
+      << refused.err;
+  std::vector<std::string> confirmed = words;
+  confirmed.insert(confirmed.end(), {"--unit", "m"});
+  EXPECT_EQ(hapbench(confirmed).status, 0);
+  // A speck above and beside a cube.
+  test::write_plainly(directory_ / "speck.obj",
+                      test::obj_text(test::together(test::cube(0.01, {50, 0, 9}), test::cube(3.0))));
+  const ProgramRun started =
+      hapbench({"new", "mesh", "--from", path("speck.obj"), "--extent", "6mm", "--out", path("speck.json")});
+  EXPECT_EQ(started.status, 0) << started.err;
+  EXPECT_NE(started.out.find("measured without 1 of 2 components, which are specks"), std::string::npos) << started.out;
+  EXPECT_NE(started.out.find("6 in the file, 6 mm with scale 0.001"), std::string::npos) << started.out;
+  EXPECT_NE(started.out.find("the mesh has 2 components; the tool starts over the largest"), std::string::npos);
+}
+
 /// An open sheet of 8 x 8 mm with a hump, its normals up or down.
 class NewOnASheet : public NewCommand {
  protected:
