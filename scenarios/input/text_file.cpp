@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/pipe_contents.hpp"
 
 namespace hapbench {
 
@@ -17,6 +18,8 @@ static constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 30;  ///< m
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
   // The operating system would ignore the part of the name after the zero byte and open another file.
   if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
+  // A pipe gives its bytes only once.
+  if (const auto kept = pipe_contents().find(file)) return *kept;
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
   std::ifstream stream(file, std::ios::binary);
@@ -28,6 +31,7 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
     text.append(chunk.data(), static_cast<std::size_t>(stream.gcount()));
     if (text.size() > largest) throw InputError(fmt::format("is larger than {} MiB", largest >> 20));
   }
+  pipe_contents().keep(file, text);
   return text;
 }
 
