@@ -118,6 +118,8 @@ bool has_decimal_comma(std::string_view cell) {
 }
 
 std::string cause_of_cell_count(std::string_view row, char separator, std::size_t cells, std::size_t columns) {
+  if (separator == ',' && cells > columns && row.find_first_of("[{") != std::string_view::npos)
+    return "; write a list or object in double quotes";
   if (separator == ',' && cells > columns && row.find('.') == std::string_view::npos)
     return "; a decimal comma splits a number: write a decimal point, or separate the columns by \";\"";
   for (const char other : kSeparators) {
@@ -302,6 +304,9 @@ TakenColumns take_columns(const CsvReader& csv, const std::filesystem::path& fil
                           std::span<const TableQuantity> quantities) {
   const Words& columns = csv.columns();
   const std::size_t line = std::max<std::size_t>(csv.header_line(), 1);
+  const std::string allowed = allowed_columns(quantities);
+  if (finite_number(columns[0]) || has_decimal_comma(columns[0]))
+    fail_in_line(file, line, fmt::format("got a row of numbers and no header; allowed: a header with {}", allowed));
   refuse_duplicates(columns, file, line);
   TakenColumns taken;
   std::vector<std::string> missing;
@@ -313,9 +318,6 @@ TakenColumns take_columns(const CsvReader& csv, const std::filesystem::path& fil
       taken.cells.push_back(static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin()));
   }
   if (missing.empty()) return taken;
-  const std::string allowed = allowed_columns(quantities);
-  if (finite_number(columns[0]) || has_decimal_comma(columns[0]))
-    fail_in_line(file, line, fmt::format("got a row of numbers and no header; allowed: a header with {}", allowed));
   const std::string header = fmt::format("{}", fmt::join(columns, ","));
   fail_in_line(
       file, line,
