@@ -2,7 +2,7 @@
 
 namespace hapbench {
 
-std::vector<std::string> csv_cells(std::string_view line) {
+std::vector<std::string> csv_cells(std::string_view line, char separator) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   std::vector<std::string> cells(1);
   bool in_quotes = false;
@@ -11,7 +11,7 @@ std::vector<std::string> csv_cells(std::string_view line) {
       cells.back() += line[++i];
     } else if (line[i] == '"') {
       in_quotes = !in_quotes;
-    } else if (line[i] == ',' && !in_quotes) {
+    } else if (line[i] == separator && !in_quotes) {
       cells.emplace_back();
     } else {
       cells.back() += line[i];

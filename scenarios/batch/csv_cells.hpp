@@ -8,6 +8,6 @@
 namespace hapbench {
 
 /// Returns the cells of a line of a table, without quotes and without a carriage return at the end of the line.
-std::vector<std::string> csv_cells(std::string_view line);
+std::vector<std::string> csv_cells(std::string_view line, char separator = ',');
 
 }  // namespace hapbench

@@ -36,8 +36,9 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed);
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis);
 
 /// Reads the table of --points. Its header contains paths of fields, and each further row the values of one
-/// point. Appends an axis for each field, which lists each value once. Throws InputError with the number of the
-/// line.
+/// point. Appends an axis for each field, which lists each value once. Commas, semicolons, tabs or white space separate
+/// cells; lines that begin with '#' or '%' are comments, or the header if the first other line has no paths. Throws
+/// InputError with the number of the line.
 Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes);
 
 }  // namespace hapbench

@@ -4,7 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <set>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scenarios/input/input_error.hpp"
@@ -27,6 +30,30 @@ std::string number_in(const std::string& message) {
   const std::string number =
       start == std::string::npos ? "a number too large" : message.substr(start + 1, message.rfind('\'') - start - 1);
   return number.size() > kLongest ? number.substr(0, kLongest) + "..." : number;
+}
+
+/// Returns the likely cause of a syntax error at a byte (from 1), with the correction, beginning with "; ". Empty if
+/// the cause is not known.
+std::string cause_of_syntax_error(std::string_view text, std::size_t byte) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  const std::size_t at = std::min(byte > 0 ? byte - 1 : 0, text.size());
+  const auto is_digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
+  // Find the start of the token and the character before it.
+  std::size_t start = at;
+  while (start > 0 && std::isalnum(static_cast<unsigned char>(text[start - 1])) != 0) --start;
+  const std::size_t before = text.substr(0, start).find_last_not_of(kBlank);
+  const bool follows_comma = before != std::string_view::npos && text[before] == ',';
+  const std::string_view token = text.substr(start, 9);
+  if (token.starts_with("/") || token.starts_with("#") || (start > 0 && text.substr(start - 1).starts_with("//")))
+    return "; JSON has no comments";
+  if (follows_comma && (token.starts_with("}") || token.starts_with("]"))) return "; remove the comma before it";
+  if (follows_comma && before > 0 && is_digit(before - 1) && is_digit(start))
+    return "; a decimal comma? write a decimal point";
+  if (token.starts_with("'")) return "; write double quotes around names and texts";
+  for (const auto& [word, correction] :
+       {std::pair("True", "true"), {"False", "false"}, {"None", "null"}, {"nan", "null"}, {"NaN", "null"}})
+    if (token.starts_with(word)) return fmt::format("; write {}", correction);
+  return "";
 }
 
 /// Callback for the parser's events. Rejects input that the parser accepts, such as duplicate keys, and tracks
@@ -106,7 +133,7 @@ Json parse_json(const std::string& text) {
     // "[json.exception.parse_error.101] parse error at line 2, column 5: syntax error while ...; last read: '...'"
     const std::string message = error.what();
     const std::size_t start = message.find("] ") + 2;
-    refuse_syntax(message.substr(start, message.find("; last read") - start));
+    refuse_syntax(message.substr(start, message.find("; last read") - start) + cause_of_syntax_error(text, error.byte));
   } catch (const Json::out_of_range& error) {
     guard.refuse_here(fmt::format("got {}; allowed: finite numbers", number_in(error.what())));
   }

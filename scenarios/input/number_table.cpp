@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "scenarios/input/input_error.hpp"
@@ -11,51 +12,408 @@
 namespace hapbench {
 namespace {
 
-/// Splits a row into cells and trims them.
-Words cells_of(std::string_view row) {
-  Words cells = parts_of(row, ',');
-  for (std::string_view& cell : cells) cell = trimmed(cell);
-  return cells;
+/// Returns a cell without white space and quotes around it.
+std::string_view unquoted(std::string_view cell) {
+  cell = trimmed(cell);
+  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
+  return cell;
+}
+
+/// Removes empty cells behind the number of columns, which come from separators at the end of a row.
+void drop_trailing_cells(Words& cells, std::size_t columns) {
+  while (cells.size() > columns && cells.back().empty()) cells.pop_back();
+}
+
+/// Returns a comment without the characters that begin it.
+std::string_view comment_text(std::string_view line) {
+  line = trimmed(line);
+  return line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
+}
+
+/// Names of a header, and the separator with which it has the largest number of expected names.
+struct HeaderNames {
+  Words names;
+  char separator = ',';
+  std::size_t expected = 0;  ///< number of expected names
+};
+
+HeaderNames names_in(std::string_view line, std::span<const std::string_view> expected) {
+  HeaderNames best;
+  const auto is_expected = [expected](std::string_view name) {
+    return std::ranges::find(expected, name) != expected.end();
+  };
+  for (const char separator : kSeparators) {
+    Words names;
+    split_cells(line, separator, names);
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(names, is_expected));
+    if (count > best.expected) best = {std::move(names), separator, count};
+  }
+  if (best.expected > 0) return best;
+  best.separator = expected.empty() ? ',' : separator_in(line);
+  split_cells(line, best.separator, best.names);
+  return best;
+}
+
+/// Returns a separator as a message names it.
+std::string separator_name(char separator) {
+  if (separator == '\t') return "tabs";
+  return separator == ' ' ? "white space" : fmt::format("\"{}\"", separator);
 }
 
 }  // namespace
 
-CsvReader::CsvReader(LineReader lines, const std::filesystem::path& file) : lines_(lines), file_(file) {
-  header_ = trimmed(lines_.next().value_or(""));
-  columns_ = cells_of(header_);
+void split_cells(std::string_view row, char separator, Words& cells) {
+  cells.clear();
+  if (separator == ' ') {
+    for (std::string_view rest = trimmed(row); !rest.empty(); rest = trimmed(rest)) {
+      const auto end = std::ranges::find_if(rest, is_blank) - rest.begin();
+      cells.push_back(unquoted(rest.substr(0, static_cast<std::size_t>(end))));
+      rest.remove_prefix(static_cast<std::size_t>(end));
+    }
+    return;
+  }
+  const bool has_quotes = row.find('"') != std::string_view::npos;
+  for (std::size_t start = 0; start <= row.size();) {
+    std::size_t end = start;
+    if (has_quotes) {
+      for (bool in_quotes = false; end < row.size() && (in_quotes || row[end] != separator); ++end)
+        if (row[end] == '"') in_quotes = !in_quotes;
+    } else {
+      while (end < row.size() && row[end] != separator) ++end;
+    }
+    cells.push_back(unquoted(row.substr(start, end - start)));
+    start = end + 1;
+  }
 }
 
-bool CsvReader::next() {
+char separator_in(std::string_view header) {
+  for (const char separator : {';', '\t', ','})
+    if (header.find(separator) != std::string_view::npos) return separator;
+  return std::ranges::any_of(trimmed(header), is_blank) ? ' ' : ',';
+}
+
+bool is_comment(std::string_view line) {
+  const std::string_view text = trimmed(line);
+  return text.starts_with('#') || text.starts_with('%');
+}
+
+bool has_decimal_comma(std::string_view cell) {
+  if (cell.starts_with('+')) cell.remove_prefix(1);
+  const std::size_t comma = cell.find(',');
+  if (comma == std::string_view::npos || cell.find_first_of(".", 0) != std::string_view::npos) return false;
+  std::string number(cell);
+  number[comma] = '.';
+  return finite_number(number).has_value();
+}
+
+std::string cause_of_cell_count(std::string_view row, char separator, std::size_t cells, std::size_t columns) {
+  if (separator == ',' && cells > columns && row.find_first_of("[{") != std::string_view::npos)
+    return "; write a list or object in double quotes";
+  if (separator == ',' && cells > columns && row.find('.') == std::string_view::npos)
+    return "; a decimal comma splits a number: write a decimal point, or separate the columns by \";\"";
+  for (const char other : kSeparators) {
+    Words words;
+    split_cells(row, other, words);
+    drop_trailing_cells(words, columns);
+    if (cells < columns && other != separator && words.size() == columns)
+      return fmt::format("; the row is separated by {}, the header by {}", separator_name(other),
+                         separator_name(separator));
+  }
+  return cells < columns ? "; is the row incomplete, or the file cut off?" : "";
+}
+
+void RowFaults::add(std::size_t line, const std::string& problem) {
+  if (count_++ > 0) return;
+  line_ = line;
+  problem_ = problem;
+}
+
+void RowFaults::throw_if_any(const std::filesystem::path& file) const {
+  if (count_ == 0) return;
+  const std::size_t more = count_ - 1;
+  fail_in_line(file, line_,
+               more == 0 ? problem_
+                         : fmt::format("{} ({} more {} faults)", problem_, more, more == 1 ? "row has" : "rows have"));
+}
+
+CsvReader::CsvReader(LineReader lines, const std::filesystem::path& file, std::span<const std::string_view> expected)
+    : lines_(lines), file_(file), has_comments_(!expected.empty()) {
+  find_header(expected);
+  while (columns_.size() > 1 && columns_.back().empty()) columns_.pop_back();
+  if (columns_.empty()) columns_.emplace_back();
+}
+
+void CsvReader::find_header(std::span<const std::string_view> expected) {
+  HeaderNames header;
+  for (LineReader before = lines_; const auto line = lines_.next(); before = lines_) {
+    if (has_comments_ && trimmed(*line).empty()) continue;
+    const bool comment = has_comments_ && is_comment(*line);
+    HeaderNames found = names_in(comment ? comment_text(*line) : *line, expected);
+    if (comment && found.expected == 0) continue;
+    // A row of numbers follows the header in the comment. Every other line is the header.
+    const bool is_row = !comment && header.expected > 0 && found.expected == 0;
+    if (is_row) {
+      lines_ = before;
+      break;
+    }
+    header = std::move(found);
+    header_line_ = lines_.line();
+    if (!comment) break;
+  }
+  columns_ = std::move(header.names);
+  separator_ = header.separator;
+}
+
+void CsvReader::split(std::string_view row) {
+  split_cells(row, separator_, cells_);
+  drop_trailing_cells(cells_, columns_.size());
+}
+
+void CsvReader::find_separator_of_rows(std::string_view row) {
+  is_first_row_ = false;
+  if (!has_comments_ || has_all_cells() || columns_.size() < 2) return;
+  const char of_header = separator_;
+  for (const char separator : kSeparators) {
+    // Commas in rows below a header with semicolons or tabs are more likely decimal commas.
+    if (separator == ',' && of_header != ' ') continue;
+    separator_ = separator;
+    split(row);
+    if (has_all_cells() && (finite_number(cells_[0]) || has_decimal_comma(cells_[0]))) return;
+  }
+  separator_ = of_header;
+  split(row);
+}
+
+bool CsvReader::advance() {
   auto row = lines_.next();
-  while (row && trimmed(*row).empty()) row = lines_.next();
+  while (row && (trimmed(*row).empty() || (has_comments_ && is_comment(*row)))) row = lines_.next();
   if (!row) return false;
-  cells_ = cells_of(*row);
-  if (cells_.size() != columns_.size())
-    fail_in_line(file_, line(), fmt::format("got {} cells; allowed: {}", cells_.size(), columns_.size()));
+  row_ = *row;
+  split(row_);
+  if (is_first_row_) find_separator_of_rows(row_);
   return true;
 }
 
-NumberTable parse_number_table(std::string_view text, const std::filesystem::path& file,
-                               std::initializer_list<std::string_view> headers, std::size_t max_rows) {
-  // Check the header.
-  const auto allowed = [headers] { return fmt::format("\"{}\"", fmt::join(headers, "\" or \"")); };
-  if (text.empty()) fail_in_line(file, 1, fmt::format("the file is empty; allowed: header {} and rows", allowed()));
-  CsvReader csv{LineReader(text), file};
-  if (std::find(headers.begin(), headers.end(), csv.header()) == headers.end())
-    fail_in_line(file, 1, fmt::format("got header {}; allowed: {}", quoted_token(csv.header()), allowed()));
-  // Parse the rows.
-  NumberTable table;
-  table.columns = csv.columns().size();
-  while (csv.next()) {
-    for (std::size_t i = 0; i < table.columns; ++i) {
-      const auto value = finite_number(csv.cells()[i]);
+std::string CsvReader::cell_count_problem() const {
+  return fmt::format("got {} cells; allowed: {}{}", cells_.size(), columns_.size(),
+                     cause_of_cell_count(row_, separator_, cells_.size(), columns_.size()));
+}
+
+bool CsvReader::next() {
+  if (!advance()) return false;
+  if (!has_all_cells()) fail_in_line(file_, line(), cell_count_problem());
+  return true;
+}
+
+std::size_t NumberTable::line_of(std::size_t row) const {
+  const auto next = std::ranges::upper_bound(line_jumps, row, {}, &std::pair<std::size_t, std::size_t>::first);
+  return next == line_jumps.begin() ? row + 1 : std::prev(next)->second + (row - std::prev(next)->first);
+}
+
+namespace {
+
+/// Columns of a file that a table takes.
+struct TakenColumns {
+  std::vector<std::size_t> cells;  ///< index in the file of each column of the table
+  std::vector<std::optional<std::size_t>> chosen;
+};
+
+/// Returns the columns that a file may have, as a message lists them.
+std::string allowed_columns(std::span<const TableQuantity> quantities) {
+  std::vector<std::string> texts;
+  for (const TableQuantity& quantity : quantities) {
+    std::vector<std::string> names;
+    for (const auto& alternative : quantity.alternatives)
+      names.push_back(fmt::format("{}", fmt::join(alternative, ",")));
+    texts.push_back(fmt::format("{}{}", quantity.is_optional ? "optionally " : "", fmt::join(names, " or ")));
+  }
+  return fmt::format("the columns {} (in any order, others are ignored)", fmt::join(texts, "; "));
+}
+
+void refuse_duplicates(const Words& columns, const std::filesystem::path& file, std::size_t line) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto first = static_cast<std::size_t>(std::ranges::find(columns, columns[i]) - columns.begin());
+    if (first < i && !columns[i].empty())
+      fail_in_line(file, line,
+                   fmt::format("columns {} and {} are both named {}; allowed: each name once", first + 1, i + 1,
+                               quoted_token(columns[i])));
+  }
+}
+
+/// Returns the names of an alternative that the file does not have.
+std::vector<std::string_view> missing_names(const std::vector<std::string_view>& alternative, const Words& columns) {
+  std::vector<std::string_view> missing;
+  std::ranges::copy_if(alternative, std::back_inserter(missing),
+                       [&](std::string_view name) { return std::ranges::find(columns, name) == columns.end(); });
+  return missing;
+}
+
+/// Chooses the alternative of a quantity that the file has. Appends the missing names to `missing` if there is none.
+std::optional<std::size_t> chosen_alternative(const TableQuantity& quantity, const CsvReader& csv,
+                                              const std::filesystem::path& file, std::vector<std::string>& missing) {
+  std::optional<std::size_t> chosen;
+  std::vector<std::string> absent;  // names that each incomplete alternative lacks
+  bool has_some = false;
+  for (std::size_t i = 0; i < quantity.alternatives.size(); ++i) {
+    const auto& alternative = quantity.alternatives[i];
+    const auto names = missing_names(alternative, csv.columns());
+    if (names.empty() && chosen) {
+      fail_in_line(file, csv.header_line(),
+                   fmt::format("has the columns {} and the columns {}; allowed: only one of them",
+                               fmt::join(quantity.alternatives[*chosen], ","), fmt::join(alternative, ",")));
+    }
+    if (names.empty()) chosen = i;
+    // Of an alternative that the file has in part, only the rest is missing.
+    const bool is_partial = names.size() < alternative.size();
+    if (is_partial && !has_some) absent.clear();
+    if (is_partial || !has_some) absent.push_back(fmt::format("{}", fmt::join(names, ",")));
+    has_some = has_some || is_partial;
+  }
+  if (!chosen && (has_some || !quantity.is_optional)) missing.push_back(fmt::format("{}", fmt::join(absent, " or ")));
+  return chosen;
+}
+
+/// Returns a note about the columns of a file that a table does not take; nothing if it takes all.
+std::optional<std::string> unused_columns(const CsvReader& csv, const TakenColumns& taken) {
+  constexpr std::size_t kShown = 10;
+  std::vector<std::string> names;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < csv.columns().size(); ++i) {
+    if (std::ranges::find(taken.cells, i) != taken.cells.end()) continue;
+    if (++count <= kShown) names.push_back(fmt::format("{} {}", i + 1, quoted_token(csv.columns()[i])));
+  }
+  if (count == 0) return std::nullopt;
+  if (count > kShown) names.push_back(fmt::format("{} more", count - kShown));
+  return fmt::format("line {}: {} {} {} not used", csv.header_line(), count == 1 ? "column" : "columns",
+                     fmt::join(names, ", "), count == 1 ? "is" : "are");
+}
+
+/// Finds the columns of the quantities in the header.
+TakenColumns take_columns(const CsvReader& csv, const std::filesystem::path& file,
+                          std::span<const TableQuantity> quantities) {
+  const Words& columns = csv.columns();
+  const std::size_t line = std::max<std::size_t>(csv.header_line(), 1);
+  const std::string allowed = allowed_columns(quantities);
+  if (finite_number(columns[0]) || has_decimal_comma(columns[0]))
+    fail_in_line(file, line, fmt::format("got a row of numbers and no header; allowed: a header with {}", allowed));
+  refuse_duplicates(columns, file, line);
+  TakenColumns taken;
+  std::vector<std::string> missing;
+  for (const TableQuantity& quantity : quantities) {
+    const auto chosen = chosen_alternative(quantity, csv, file, missing);
+    taken.chosen.push_back(chosen);
+    if (!chosen) continue;
+    for (const std::string_view name : quantity.alternatives[*chosen])
+      taken.cells.push_back(static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin()));
+  }
+  if (missing.empty()) return taken;
+  const std::string header = fmt::format("{}", fmt::join(columns, ","));
+  fail_in_line(
+      file, line,
+      fmt::format("got header {}; missing: {}; allowed: {}", quoted_token(header), fmt::join(missing, "; "), allowed));
+}
+
+/// Returns what is wrong with a cell that is not a number.
+std::string cell_problem(const CsvReader& csv, std::size_t cell) {
+  const std::string_view text = csv.cells()[cell];
+  const std::string lower = lower_case(text);
+  std::string cause;
+  if (lower.find("nan") != std::string::npos || lower.find("inf") != std::string::npos)
+    cause = "; remove the row, or replace the missing value";
+  else if (text.find(',') != std::string_view::npos)
+    cause = "; write numbers with a decimal point, without decimal commas and separators of thousands";
+  else if (lower.find_first_of('d') != std::string::npos && lower.find_first_of("0123456789") == 0)
+    cause = "; write an exponent as in 1e-3";
+  return fmt::format("column {} {}: got {}; allowed: a finite number{}", cell + 1, quoted_token(csv.columns()[cell]),
+                     quoted_token(text), cause);
+}
+
+/// Converts a cell that std::from_chars does not: a number with a leading '+', or with a decimal comma.
+std::optional<double> unusual_number(std::string_view cell, bool decimal_comma) {
+  if (cell.starts_with('+') && !cell.starts_with("+-")) cell.remove_prefix(1);
+  if (!decimal_comma) return finite_number(cell);
+  if (!has_decimal_comma(cell)) return std::nullopt;
+  std::string number(cell);
+  number[number.find(',')] = '.';
+  return finite_number(number);
+}
+
+/// Reads the rows of a table. With `decimal_comma`, numbers have a decimal comma and no decimal point.
+class RowParser {
+ public:
+  RowParser(CsvReader rows, const TakenColumns& taken, bool decimal_comma)
+      : csv_(std::move(rows)), taken_(taken), decimal_comma_(decimal_comma) {}
+
+  /// Appends the rows to the table. Returns the line of the first decimal comma, and stops there, if no decimal comma
+  /// is expected.
+  std::optional<std::size_t> read(NumberTable& table, const std::filesystem::path& file, std::size_t max_rows) {
+    std::size_t row = 0, line = 0;  // index of the row, and line of the row before
+    while (csv_.advance()) {
+      if (!csv_.has_all_cells()) {
+        if (!is_blank_row()) faults_.add(csv_.line(), csv_.cell_count_problem());
+        continue;
+      }
+      if (csv_.cells()[taken_.cells[0]].empty() && is_blank_row()) continue;
+      if (csv_.line() != line + 1) table.line_jumps.emplace_back(row, csv_.line());
+      line = csv_.line();
+      if (!read_row(table)) return csv_.line();
+      if (++row > max_rows) fail_in_line(file, csv_.line(), fmt::format("more than {} rows", max_rows));
+    }
+    faults_.throw_if_any(file);
+    return std::nullopt;
+  }
+
+ private:
+  bool is_blank_row() const { return std::ranges::all_of(csv_.cells(), &std::string_view::empty); }
+
+  /// Appends the numbers of the current row. Returns false at an unexpected decimal comma.
+  bool read_row(NumberTable& table) {
+    for (const std::size_t index : taken_.cells) {
+      const std::string_view cell = csv_.cells()[index];
+      const bool mixed = decimal_comma_ && cell.find('.') != std::string_view::npos;
+      auto value = mixed ? std::nullopt : finite_number(cell);
+      if (!value && !decimal_comma_ && has_decimal_comma(cell)) return false;
+      if (!value && !mixed) value = unusual_number(cell, decimal_comma_ && has_decimal_comma(cell));
       if (!value) {
-        fail_in_line(file, csv.line(),
-                     fmt::format("column {}: got {}; allowed: a finite number", i + 1, quoted_token(csv.cells()[i])));
+        faults_.add(csv_.line(),
+                    cell_problem(csv_, index) + (mixed ? "; other numbers of the file have a decimal comma" : ""));
+        table.values.resize(table.values.size() - table.values.size() % taken_.cells.size());
+        return true;
       }
       table.values.push_back(*value);
     }
-    if (table.rows() > max_rows) fail_in_line(file, csv.line(), fmt::format("more than {} rows", max_rows));
+    return true;
+  }
+
+  CsvReader csv_;
+  const TakenColumns& taken_;
+  bool decimal_comma_;
+  RowFaults faults_;
+};
+
+}  // namespace
+
+NumberTable parse_number_table(std::string_view text, const std::filesystem::path& file,
+                               std::span<const TableQuantity> quantities, std::size_t max_rows) {
+  if (text.empty())
+    fail_in_line(file, 1,
+                 fmt::format("the file is empty; allowed: a header with {}, and rows", allowed_columns(quantities)));
+  // Find the columns.
+  std::vector<std::string_view> expected;
+  for (const TableQuantity& quantity : quantities)
+    for (const auto& names : quantity.alternatives) expected.insert(expected.end(), names.begin(), names.end());
+  const CsvReader csv(LineReader(text), file, expected);
+  const TakenColumns taken = take_columns(csv, file, quantities);
+  NumberTable table;
+  table.columns = taken.cells.size();
+  table.chosen = taken.chosen;
+  if (auto note = unused_columns(csv, taken)) table.notes.push_back(std::move(*note));
+  // Parse the rows; again if they have decimal commas, because a point is then no decimal point.
+  if (const auto line = RowParser(csv, taken, false).read(table, file, max_rows)) {
+    table.values.clear();
+    table.line_jumps.clear();
+    table.notes.push_back(fmt::format("line {}: numbers are read with a decimal comma", *line));
+    RowParser(csv, taken, true).read(table, file, max_rows);
   }
   return table;
 }

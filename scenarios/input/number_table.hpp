@@ -2,56 +2,128 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <initializer_list>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scenarios/input/text_lines.hpp"
 
-/// Tables of comma-separated values.
+/// Tables of separated values, with a header of column names.
 namespace hapbench {
 
-/// Reads a CSV (comma-separated values) table row by row. Cells are not quoted. White space around a cell is
-/// ignored.
+/// Separators of cells. ' ' stands for any white space.
+inline constexpr char kSeparators[] = {',', ';', '\t', ' '};
+
+/// Splits a row into cells. Removes white space around a cell, then double quotes around it. A separator between
+/// quotes does not separate.
+void split_cells(std::string_view row, char separator, Words& cells);
+
+/// Returns the separator that the words of a header most likely have: ';', else a tab, else ',', else white space.
+char separator_in(std::string_view header);
+
+/// Returns true if a line is a comment, which begins with '#' or '%'.
+bool is_comment(std::string_view line);
+
+/// Returns the likely cause of a row with a wrong number of cells, beginning with "; ". Empty if the cause is not
+/// known.
+std::string cause_of_cell_count(std::string_view row, char separator, std::size_t cells, std::size_t columns);
+
+/// Returns true for a number whose decimal separator is a comma, such as "0,002" or "-1,5e-3".
+bool has_decimal_comma(std::string_view cell);
+
+/// The first fault of a table, and the number of rows with faults. A table with a fault in every row gives one message.
+class RowFaults {
+ public:
+  /// Adds the fault of a row. Only the text of the first fault is kept.
+  void add(std::size_t line, const std::string& problem);
+  bool any() const { return count_ > 0; }
+  /// Throws InputError with the line of the first fault and the number of further faults, if there is a fault.
+  void throw_if_any(const std::filesystem::path& file) const;
+
+ private:
+  std::size_t line_ = 0, count_ = 0;
+  std::string problem_;
+};
+
+/// Reads a table row by row.
+///
+/// Separators are commas, semicolons, tabs or white space, the same in all rows. Cells may have double quotes. Blank
+/// lines and comments (lines that begin with '#' or '%') are skipped. The header is the first other line, or a
+/// comment before it that has an expected name. A separator at the end of the header or of a row is ignored.
 class CsvReader {
  public:
-  /// Reads the header, which is the next line; without a next line the header is empty. The text and the path must
-  /// outlive the reader.
-  CsvReader(LineReader lines, const std::filesystem::path& file);
+  /// Reads the header. `expected`: names of columns, by which the reader finds the header and its separator; without
+  /// names the header is the first line and the separator is a comma. The text and the path must outlive the reader.
+  CsvReader(LineReader lines, const std::filesystem::path& file, std::span<const std::string_view> expected = {});
 
-  std::string_view header() const { return header_; }  ///< the whole header line
-  /// Returns the names in the header.
+  /// Returns the names in the header; a single empty name if the text has no header.
   const Words& columns() const { return columns_; }
+  std::size_t header_line() const { return header_line_; }  ///< line number of the header, from 1; 0 without header
+  char separator() const { return separator_; }
 
-  /// Advances to the next row and returns true, or returns false at the end of the text. Skips blank lines.
+  /// Advances to the next row and returns true, or returns false at the end of the text.
   /// Throws InputError if the number of cells differs from the number of columns.
   bool next();
+  /// Same as next(), but does not throw: has_all_cells() is false for such a row.
+  bool advance();
+  bool has_all_cells() const { return cells_.size() == columns_.size(); }
+  /// Returns what is wrong with a row that does not have all cells.
+  std::string cell_count_problem() const;
+
   /// Returns the cells of the current row.
   const Words& cells() const { return cells_; }
   /// Returns the line number of the current row in the file, from 1.
   std::size_t line() const { return lines_.line(); }
 
  private:
+  void find_header(std::span<const std::string_view> expected);
+  void split(std::string_view row);
+  /// Finds the separator of the rows, which may differ from the separator of the header.
+  void find_separator_of_rows(std::string_view row);
+
   LineReader lines_;
   const std::filesystem::path& file_;
-  std::string_view header_;
+  std::string_view row_;
+  char separator_ = ',';
+  bool has_comments_ = false;  ///< comments are skipped
+  bool is_first_row_ = true;
+  std::size_t header_line_ = 0;
   Words columns_, cells_;
 };
 
-/// The numbers of a CSV file as a matrix.
+/// A quantity of a table. Its components are columns with fixed names.
+struct TableQuantity {
+  /// Names of the columns. A table has the columns of exactly one of the alternatives.
+  std::vector<std::vector<std::string_view>> alternatives;
+  bool is_optional = false;  ///< a table may have none of the columns
+};
+
+/// The numbers of a table, as a matrix.
 struct NumberTable {
   std::size_t columns = 0;
-  std::vector<double> values;  ///< row by row (row-major)
+  /// Row by row (row-major). The columns have the order of the quantities, whatever their order in the file.
+  std::vector<double> values;
+  /// Index of the alternative of each quantity that the table has; empty if it has no columns of the quantity.
+  std::vector<std::optional<std::size_t>> chosen;
+  /// One sentence for each thing that the reader ignored or assumed, beginning with the line: "line 1: …".
+  std::vector<std::string> notes;
+  /// Rows whose line does not follow the line of the row before, with their lines.
+  std::vector<std::pair<std::size_t, std::size_t>> line_jumps;
 
   std::size_t rows() const { return columns == 0 ? 0 : values.size() / columns; }
   std::span<const double> row(std::size_t i) const { return {values.data() + i * columns, columns}; }
+  /// Returns the line of a row in the file, from 1.
+  std::size_t line_of(std::size_t row) const;
 };
 
-/// Parses the contents of a CSV file of numbers. The first line must be equal to one of `headers`. Skips blank
-/// lines. Throws InputError with file and line if the header is different, if a row has the wrong number of
+/// Parses the contents of a file of numbers. Finds columns by their names. Ignores other columns, and reports them in
+/// the notes. Numbers may have a decimal comma if another character separates the cells; a note reports it.
+/// Throws InputError with file and line if a column is missing or named twice, if a row has the wrong number of
 /// cells, if a cell is not a finite number, or if there are more than `max_rows` rows.
 NumberTable parse_number_table(std::string_view text, const std::filesystem::path& file,
-                               std::initializer_list<std::string_view> headers, std::size_t max_rows);
+                               std::span<const TableQuantity> quantities, std::size_t max_rows);
 
 }  // namespace hapbench

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <utility>
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/number_table.hpp"
@@ -18,30 +20,45 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCsvHeader = "x_m,y_m,z_m,nx,ny,nz";
 
-std::vector<SurfacePoint> parse_csv_points(std::string_view text, const fs::path& file) {
-  const NumberTable table = parse_number_table(text, file, {kCsvHeader}, static_cast<std::size_t>(kMaxSurfacePoints));
+/// Columns of a point shell in the order of kCsvHeader.
+const std::vector<TableQuantity> kColumns = {{.alternatives = {{"x_m", "y_m", "z_m"}}},
+                                             {.alternatives = {{"nx", "ny", "nz"}}}};
+
+/// Points of a file, with the line of each point.
+struct ReadPoints {
+  std::vector<SurfacePoint> points;
+  std::function<std::size_t(std::size_t)> line_of = {};  ///< null if the lines are not known
+};
+
+ReadPoints parse_csv_points(std::string_view text, const fs::path& file, std::vector<std::string>* notes) {
+  NumberTable table = parse_number_table(text, file, kColumns, static_cast<std::size_t>(kMaxSurfacePoints));
+  if (notes != nullptr) *notes = table.notes;
   std::vector<SurfacePoint> points;
   points.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
     points.push_back({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}});
   }
-  return points;
+  return {std::move(points), [table = std::move(table)](std::size_t i) { return table.line_of(i); }};
 }
 
 /// Checks the points and normalises their normals. Throws InputError that names the file and the point.
-void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file) {
+void check_and_normalise(ReadPoints& read, const fs::path& file) {
+  std::vector<SurfacePoint>& points = read.points;
   if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");
   if (static_cast<double>(points.size()) > kMaxSurfacePoints)
     fail_in_file(file, fmt::format("has {} points; allowed: at most {:.0g}", points.size(), kMaxSurfacePoints));
   for (std::size_t i = 0; i < points.size(); ++i) {
     SurfacePoint& point = points[i];
+    const auto refuse = [&](const std::string& problem) {
+      fail_in({.file = file, .line = read.line_of ? read.line_of(i) : 0, .entry = fmt::format("point {}", i)}, problem);
+    };
     const double largest = point.position.cwiseAbs().maxCoeff();
     if (!point.position.allFinite() || largest > kMaxCoordinate)
-      fail_in_file(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
+      refuse(fmt::format("got coordinate {}; allowed: finite, at most 1000 m", largest));
     const double length = point.normal.norm();
     if (!(std::abs(length - 1.0) <= 1e-3))
-      fail_in_file(file, fmt::format("point {}: got a normal of length {}; allowed: unit normals", i, length));
+      refuse(fmt::format("got a normal of length {}; allowed: unit normals", length));
     // A normal whose length is 1 up to rounding is not changed, so that an exported shell is read back exactly.
     if (std::abs(length - 1.0) > 1e-12) point.normal /= length;
   }
@@ -77,10 +94,12 @@ std::string shell_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::filesystem::path& file) {
-  auto points = shell_extension(file) == ".csv" ? parse_csv_points(text, file) : parse_ply_points(text, file);
-  check_and_normalise(points, file);
-  return points;
+std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::filesystem::path& file,
+                                            std::vector<std::string>* notes) {
+  ReadPoints read =
+      shell_extension(file) == ".csv" ? parse_csv_points(text, file, notes) : ReadPoints{parse_ply_points(text, file)};
+  check_and_normalise(read, file);
+  return std::move(read.points);
 }
 
 std::string format_point_shell(const std::vector<SurfacePoint>& points, const std::filesystem::path& file) {

@@ -13,11 +13,12 @@ namespace hapbench {
 /// Returns the extension of a point-shell file. Throws InputError unless it is .csv or .ply.
 std::string shell_extension(const std::filesystem::path& file);
 
-/// Parses the contents of a point-shell file: CSV with the header x_m,y_m,z_m,nx,ny,nz, or PLY with vertex
-/// normals. Coordinates must be finite and at most 1 km. Normals must have length 1 within 1e-3. They are
-/// normalised, unless their length is 1 within 1e-12. Throws InputError that names the file and the line or
-/// point.
-std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::filesystem::path& file);
+/// Parses the contents of a point-shell file: CSV with the columns x_m,y_m,z_m,nx,ny,nz (parse_number_table), or PLY
+/// with vertex normals. Coordinates must be finite and at most 1 km. Normals must have length 1 within 1e-3. They are
+/// normalised, unless their length is 1 within 1e-12. `notes`: gets NumberTable::notes. Throws InputError that names
+/// the file and the line or point.
+std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::filesystem::path& file,
+                                            std::vector<std::string>* notes = nullptr);
 
 /// Returns the contents of a file with these points. The extension of `file` selects the format. CSV has the
 /// shortest numbers that read back exactly. PLY has single precision, for viewers. Throws InputError for every

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/pipe_contents.hpp"
 
 namespace hapbench {
 
@@ -29,6 +30,8 @@ static void refuse_other_encodings(const std::string& text) {
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
   // The operating system would ignore the part of the name after the zero byte and open another file.
   if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
+  // A pipe gives its bytes only once.
+  if (const auto kept = pipe_contents().find(file)) return *kept;
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
   std::ifstream stream(file, std::ios::binary);
@@ -41,6 +44,7 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
     if (text.size() > largest) throw InputError(fmt::format("is larger than {} MiB", largest >> 20));
   }
   refuse_other_encodings(text);
+  pipe_contents().keep(file, text);
   return text;
 }
 

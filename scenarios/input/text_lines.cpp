@@ -9,7 +9,6 @@
 namespace hapbench {
 
 void split_at_blanks(std::string_view line, Words& words) {
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; };
   words.clear();
   for (auto start = std::ranges::find_if_not(line, is_blank); start != line.end();) {
     const auto end = std::find_if(start, line.end(), is_blank);
@@ -35,10 +34,9 @@ Words parts_of(std::string_view text, char separator) {
 }
 
 std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 std::optional<double> finite_number(std::string_view word) {

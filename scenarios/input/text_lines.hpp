@@ -17,6 +17,11 @@ namespace hapbench {
 /// Tokens of a text. They refer to the text, which must outlive them.
 using Words = std::vector<std::string_view>;
 
+/// Returns true for white space within a line.
+inline bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
 /// Splits a line into tokens at white space.
 Words words_of(std::string_view line);
 /// Replaces `words` by the tokens of a line, and keeps the memory of `words`.
@@ -25,7 +30,7 @@ void split_at_blanks(std::string_view line, Words& words);
 /// Splits a text at each separator. Parts may be empty. There is one part more than there are separators.
 Words parts_of(std::string_view text, char separator);
 
-/// Returns the text without blanks, tabs and carriage returns at both ends.
+/// Returns the text without white space at both ends.
 std::string_view trimmed(std::string_view text);
 
 /// Converts a token to a finite number. Returns nullopt if the token is anything else.

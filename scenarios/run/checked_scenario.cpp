@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <optional>
+#include <cstdint>
 #include <string>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/run/clock_coverage.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/named_files.hpp"
@@ -21,18 +22,6 @@ void check_force_reference(const LoadedScenario& loaded, NamedFile& file) {
   constexpr const char* kReference = "/record/force_reference";
   fail_in({.file = file_of(loaded, kReference), .pointer = kReference},
           fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file.path().string()));
-}
-
-/// Returns a warning if the stroke's times and the run's times do not overlap.
-std::optional<Warning> clock_warning(const Stroke& stroke, const TimeFields& time) {
-  const double start = stroke.motion.samples().front().time, stop = stroke.motion.samples().back().time;
-  const double end = time.step * static_cast<double>(time.steps - 1);
-  if (start <= end && stop >= 0.0) return std::nullopt;
-  return Warning{
-      "stroke_clock", std::string(kMotionFile),
-      fmt::format("the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool "
-                  "stays at the {} sample; let the stroke begin at 0 or adapt time",
-                  start, stop, end, start > end ? "first" : "last")};
 }
 
 }  // namespace
@@ -53,10 +42,15 @@ CheckedScenario checked(LoadedScenario loaded) {
     }
     for (Warning& warning : file->warnings()) warnings.push_back(std::move(warning));
   }
-  // Compare the stroke with the run.
+  // Compare the clocks of recordings with the clock of the run.
   if (NamedFile* const file = loaded.files.find(kMotionFile)) {
     check_force_reference(loaded, *file);
-    if (auto warning = clock_warning(*file->stroke(), scenario.time)) warnings.push_back(std::move(*warning));
+    if (auto warning = stroke_clock_warning(*file->stroke(), scenario.time)) warnings.push_back(std::move(*warning));
+  }
+  if (scenario.rendering.contact_source == kTrace) {
+    const std::int64_t every = scenario.rendering.late ? scenario.rendering.late->every : 1;
+    if (auto warning = trace_clock_warning(*loaded.files.at(kContactFile).trace(), scenario.time, every))
+      warnings.push_back(std::move(*warning));
   }
   return CheckedScenario(std::move(loaded), std::move(warnings));
 }

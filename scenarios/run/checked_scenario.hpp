@@ -20,8 +20,8 @@ class CheckedScenario {
   const LoadedScenario& loaded() const { return loaded_; }
   const Scenario& scenario() const { return loaded_.scenario; }
   const NamedFiles& files() const { return loaded_.files; }
-  /// Warnings about the files: a mesh that is open or was repaired, or a stroke whose times do not overlap the
-  /// run.
+  /// Warnings about the files: a mesh that is open or was repaired, columns of a table that are not used, or a
+  /// recording whose clock does not fit the run.
   const std::vector<Warning>& file_warnings() const { return file_warnings_; }
 
  private:

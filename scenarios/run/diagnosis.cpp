@@ -7,6 +7,7 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/impedance_device.hpp"
 #include "scenarios/input/rounding.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_distances.hpp"
@@ -65,6 +66,25 @@ struct DiagnosedRun {
 template <Outcome... kOutcomes>
 Number ended(const DiagnosedRun& run) {
   return run.ended(kOutcomes...) ? Number(1.0) : std::nullopt;
+}
+
+/// Returns 1 if the run ended because a law or module failed, or because a force is not finite.
+Number fault(const DiagnosedRun& run) {
+  return run.ended(Outcome::diverges) && is_fault(run.result.end.divergence) ? Number(1.0) : std::nullopt;
+}
+
+/// Returns 1 if the run left its bounds although all numbers are finite.
+Number diverged(const DiagnosedRun& run) {
+  return fault(run) ? std::nullopt : ended<Outcome::diverges>(run);
+}
+
+/// Returns the mean angle between the rendered force and the force that was measured with the stroke; empty if fewer
+/// than 10 steps have both.
+Number measured_force_angle(const DiagnosedRun& run) {
+  constexpr double kMinRows = 10.0;
+  const Number rows = run.metric("fidelity.direction_rows");
+  const bool is_measured = !run.scenario().reference_force && rows && *rows >= kMinRows;
+  return is_measured ? run.metric("fidelity.force_direction_error_rad") : std::nullopt;
 }
 
 Number longest_step(const DiagnosedRun& run) {
@@ -174,6 +194,10 @@ std::string other_laws(const DiagnosedRun& run, std::initializer_list<const char
 
 constexpr const char* kShorterStep = "a shorter time.step_s: in one step the tool moves by more than its half width";
 
+std::string fault_text(const DiagnosedRun& run) {
+  return ": " + divergence_text(run.result);
+}
+
 std::string against_sinking(const DiagnosedRun& run) {
   if (step_exceeds_half_width(run)) return kShorterStep;
   if (!run.is_free()) return "another motion.position, because the script moves the tool there";
@@ -228,7 +252,11 @@ struct Rule {
 };
 
 constexpr Rule kRules[] = {
-    {"diverged", "1 if the run diverged (left its bounds)", "1", 0.5, "the run diverged", ended<Outcome::diverges>,
+    {"fault", "1 if the law or a module failed, or gave a number that is not finite", "1", 0.5,
+     "a fault of the force law or of a module ended the run", fault,
+     "other code of this law or module, such as a test for a division by 0: neither the time step nor K is the cause",
+     fault_text},
+    {"diverged", "1 if the run diverged (left its bounds)", "1", 0.5, "the run diverged", diverged,
      "a shorter time.step_s or a smaller K; \"hapbench tune\" finds K and zeta"},
     {"sank", "1 if the tool passed through the surface", "1", 0.5, "the tool passed through the surface",
      ended<Outcome::went_through>, against_sinking},
@@ -323,6 +351,13 @@ constexpr Rule kRules[] = {
     {"energy", "net energy created by the rendering", "J", 1e-3, "the rendering created {} J of net energy",
      [](const DiagnosedRun& r) { return r.if_completed(r.metric("passivity.net_created_J")); },
      "a smaller K, or rendering.passivity_controller if it is off", "", true},
+    {"force_sign", "mean angle between the rendered force and the force measured with the stroke", "rad", 2.6,
+     "the measured force points against the rendered force (mean angle {} rad), as a force of the tool on the surface "
+     "does",
+     measured_force_angle,
+     "\"hapbench import stroke --set force_by_tool=true\", which reverses the measured force; if its sign is right, "
+     "the orientation of the tool or the normals of the surface may be reversed",
+     "", false, true},
     {"drift",
      "displacement across the force in the last quarter of the run, of a tool under a constant hand force, divided by "
      "the tool's half width",
@@ -336,6 +371,8 @@ std::vector<Diagnosed> diagnosed(const DiagnosedRun& run, bool Rule::*mark, bool
   std::vector<Diagnosed> found;
   for (const Rule& rule : kRules) {
     if (mark != nullptr && !(rule.*mark)) continue;
+    // Numbers of a run that ended by a fault say nothing about step and K.
+    if (beyond_threshold && rule.value != fault && fault(run)) continue;
     const Number value = rule.value(run);
     if (!value || (beyond_threshold && !(*value > rule.threshold))) continue;
     const std::string says = fmt::format(fmt::runtime(rule.says), fmt::format("{:.3g}", *value));

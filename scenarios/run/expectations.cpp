@@ -2,29 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <string_view>
+
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {
-namespace {
-
-/// Returns which quantity diverged and when, for a message; empty if the run did not diverge.
-std::string divergence_text(const RunEnd& result) {
-  if (result.outcome != Outcome::diverges) return "";
-  const Divergence& d = result.divergence;
-  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
-  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
+bool is_fault(const Divergence& divergence) {
+  const bool is_force = divergence.quantity == std::string_view("rendered force");
+  return !divergence.fault.empty() || (is_force && !std::isfinite(divergence.magnitude));
 }
 
-}  // namespace
+std::string divergence_text(const Result& run) {
+  if (run.end.outcome != Outcome::diverges) return "";
+  const Divergence& d = run.end.divergence;
+  if (!d.fault.empty()) return fmt::format("{}, at step {}", d.fault, d.step);
+  if (is_fault(d)) return fmt::format("{} gives a force that is not finite, at step {}", run.algorithm, d.step);
+  return fmt::format("{} reached {:.4g} at step {}, beyond {:.4g}", d.quantity, d.magnitude, d.step, d.bound);
+}
 
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {
   std::vector<std::string> unmet;
   // Check the outcome.
   if (!outcome_is_expected(expect, run.end.outcome)) {
+    const std::string divergence = divergence_text(run);
     unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.end.outcome),
-                                divergence_text(run.end), quoted_list(names_of(expect.outcomes, outcome_name))));
+                                divergence.empty() ? "" : " (" + divergence + ")",
+                                quoted_list(names_of(expect.outcomes, outcome_name))));
   }
   // Check the bounds of each metric.
   for (const auto& [name, bound] : expect.metrics) {

@@ -9,6 +9,12 @@
 
 namespace hapbench {
 
+/// Returns true if a diverged run ended because a law or a module failed, or gave a force that is not finite.
+bool is_fault(const Divergence& divergence);
+
+/// Returns which quantity diverged, or which law failed, and at which step; empty if the run did not diverge.
+std::string divergence_text(const Result& run);
+
 /// Returns one sentence for each expectation of the scenario that the run does not meet.
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);
 

@@ -69,9 +69,8 @@ std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Su
                   length_text(gap), gap / smaller, smaller == tool.reach() ? "the tool" : "the environment")};
 }
 
-/// Returns warnings about lengths and times of a stroke that probably have wrong units.
-std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& time, const ToolShape& tool,
-                                     const Box& environment) {
+/// Returns warnings about lengths of a stroke that probably have wrong units. stroke_clock_warning() checks the times.
+std::vector<Warning> stroke_warnings(const Stroke& stroke, const ToolShape& tool, const Box& environment) {
   // Compare the extent of the stroke with the environment and the tool.
   const auto samples = stroke.motion.samples();
   Box box = Box::nothing();
@@ -87,15 +86,6 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
   } else if (extent > 0.0 && kUnitFactor * extent < tool.half_width()) {
     warn(fmt::format("{}, a hundredth of the tool's half width, {}: are they in metres?", of,
                      length_text(tool.half_width())));
-  }
-  // Compare the sampling interval with the time step.
-  if (samples.size() < 2) return warnings;
-  const double interval = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
-  if (interval > kUnitFactor * time.step || interval * kUnitFactor < time.step) {
-    warn(fmt::format(
-        "the stroke has one sample per {:.3g} ms, the run one step per {:.3g} ms: are the stroke's times in seconds, "
-        "and is time.step_s right?",
-        1e3 * interval, 1e3 * time.step));
   }
   return warnings;
 }
@@ -173,7 +163,7 @@ void add_size_warnings(WarningList& warnings, const LoadedScenario& loaded, cons
   }
   warnings.add(start_warning(tool, surface));
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position))
-    warnings.add(stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box));
+    warnings.add(stroke_warnings(*loaded.files.at(kMotionFile).stroke(), tool, surface.box));
 }
 
 }  // namespace

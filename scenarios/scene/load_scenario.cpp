@@ -39,6 +39,7 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
     if (!loaded.layers.empty()) {
       for (const std::string& override : overrides) apply_override(loaded.layers.front().json, override);
     }
+    require_absolute_paths(text.file, json);
     // Read and check the fields.
     LoadedScenario read = read_scenario(json, text.file.parent_path());
     read.file = loaded.file;

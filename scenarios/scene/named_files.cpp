@@ -39,35 +39,36 @@ const NamedFile::Read& NamedFile::read() {
   if (content_.kind == FileContent::Kind::mesh) mesh_extension(path_);
   // Identify the contents by the file's time stamps or, if they are not reliable, by a hash. The time stamps are
   // taken before reading. If the file changes during reading, it will never have these time stamps again.
-  std::string bytes;
-  std::optional<std::string> state = stamp_of(path_);
+  std::optional<std::string> bytes, state = stamp_of(path_);
   if (!state) {
     bytes = read_named_file(path_);
-    state = hash_text(hash_of(bytes));
+    state = hash_text(hash_of(*bytes));
   }
   // Parse the contents, or take them from the cache.
   const std::string key = fmt::format("file {} as {}, scale {}, spacing {}, flip {}: {}", *state,
                                       static_cast<int>(content_.kind), content_.sampling.scale,
                                       content_.sampling.spacing.value_or(0.0), content_.sampling.flip, path_.string());
   const auto parse = [&] {
-    if (bytes.empty()) bytes = read_named_file(path_);
-    return std::make_shared<const Read>(Read{hash_text(hash_of(bytes)), parsed(bytes)});
+    if (!bytes) bytes = read_named_file(path_);
+    std::vector<std::string> notes;
+    Contents contents = parsed(*bytes, notes);
+    return std::make_shared<const Read>(Read{hash_text(hash_of(*bytes)), std::move(contents), std::move(notes)});
   };
   // A parsed mesh needs about 4 times the memory of its text.
-  read_ = shared_cache().get<Read>(key, parse, [&bytes](const Read&) { return 4 * bytes.size(); });
+  read_ = shared_cache().get<Read>(key, parse, [&bytes](const Read&) { return 4 * (bytes ? bytes->size() : 0); });
   return *read_;
 }
 
-NamedFile::Contents NamedFile::parsed(std::string_view bytes) const {
+NamedFile::Contents NamedFile::parsed(std::string_view bytes, std::vector<std::string>& notes) const {
   switch (content_.kind) {
     case FileContent::Kind::point_shell:
-      return parse_point_shell(bytes, path_);
+      return parse_point_shell(bytes, path_, &notes);
     case FileContent::Kind::mesh:
       return MeshFile(bytes, path_, content_.sampling);
     case FileContent::Kind::stroke:
-      return parse_stroke(bytes, path_);
+      return parse_stroke(bytes, path_, &notes);
     case FileContent::Kind::trace:
-      return parse_contact_trace(bytes, path_);
+      return parse_contact_trace(bytes, path_, &notes);
     case FileContent::Kind::library:
       break;
   }
@@ -76,6 +77,8 @@ NamedFile::Contents NamedFile::parsed(std::string_view bytes) const {
 
 std::vector<Warning> NamedFile::warnings() {
   std::vector<Warning> warnings;
+  for (const std::string& note : read().notes)
+    warnings.push_back({"table_file", pointer_, fmt::format("{}, {}", path_.filename().string(), note)});
   if (content_.kind != FileContent::Kind::mesh) return warnings;
   for (const std::string& text : mesh().warnings(path_)) warnings.push_back({"mesh_file", pointer_, text});
   return warnings;

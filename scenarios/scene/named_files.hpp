@@ -57,6 +57,7 @@ class NamedFile {
   struct Read {
     std::string hash;
     Contents contents;
+    std::vector<std::string> notes;  ///< what the reader of a table ignored or assumed (NumberTable::notes)
   };
 
   /// Returns the contents as a pointer that shares ownership of everything that was read.
@@ -67,7 +68,7 @@ class NamedFile {
   }
   /// Reads and parses the file on the first call. Returns the hash and the contents.
   const Read& read();
-  Contents parsed(std::string_view bytes) const;
+  Contents parsed(std::string_view bytes, std::vector<std::string>& notes) const;
 
   std::string pointer_;
   std::filesystem::path path_;

@@ -18,28 +18,41 @@ namespace {
 constexpr std::size_t kMaxSamples = 10'000'000;  ///< of a stroke
 /// Allowed deviation of a quaternion's norm from 1. Three decimals in the file suffice.
 constexpr double kMaxNormError = 1e-3;
-constexpr std::size_t kForceColumns = 3;  ///< columns of a measured force
-constexpr std::size_t kAxisPose = 7;      ///< columns of time, position and axis; with a quaternion there are 8 columns
+/// Quantities of a stroke: time, position, axis or orientation, measured force.
+const std::vector<TableQuantity> kStrokeColumns = {
+    {.alternatives = {{"time_s"}}},
+    {.alternatives = {{"px_m", "py_m", "pz_m"}}},
+    {.alternatives = {{"axis_x", "axis_y", "axis_z"}, {"qw", "qx", "qy", "qz"}}},
+    {.alternatives = {{"mfx_N", "mfy_N", "mfz_N"}}, .is_optional = true}};
+constexpr std::size_t kPoseQuantity = 2, kForceQuantity = 3;  ///< indices in kStrokeColumns
+constexpr std::size_t kForceColumns = 3;                      ///< columns of a measured force
 
-/// Throws InputError about a sample. `row` counts from 0, the sample in the message from 1.
-[[noreturn]] void fail(const std::filesystem::path& file, std::size_t row, const std::string& problem) {
-  fail_in({.file = file, .entry = fmt::format("sample {}", row + 1)}, problem);
-}
+/// Location of a row of a table, for messages. Rows count from 0, samples and contacts in a message from 1.
+struct RowLocation {
+  const std::filesystem::path& file;
+  const NumberTable& table;
+  const char* what;  ///< what a row holds, such as "sample"
+
+  /// Throws InputError about a row.
+  [[noreturn]] void fail(std::size_t row, const std::string& problem) const {
+    fail_in({.file = file, .line = table.line_of(row), .entry = fmt::format("{} {}", what, row + 1)}, problem);
+  }
+};
 
 /// Returns the normalised axis. Throws InputError if it is too short or too long.
-Vec3 axis_of(std::span<const double> cells, const std::filesystem::path& file, std::size_t row) {
+Vec3 axis_of(std::span<const double> cells, const RowLocation& rows, std::size_t row) {
   const Vec3 axis(cells[0], cells[1], cells[2]);
   const double length = axis.norm();
   if (length > 1e-12 && length < 1e12) return axis / length;
-  fail(file, row, fmt::format("got an axis of length {}; allowed: 1e-12 ... 1e12", length));
+  rows.fail(row, fmt::format("got an axis of length {}; allowed: 1e-12 ... 1e12", length));
 }
 
 /// Returns the normalised quaternion. Throws InputError if its norm is not 1.
-Eigen::Quaterniond orientation_of(std::span<const double> cells, const std::filesystem::path& file, std::size_t row) {
+Eigen::Quaterniond orientation_of(std::span<const double> cells, const RowLocation& rows, std::size_t row) {
   const Eigen::Quaterniond q(cells[0], cells[1], cells[2], cells[3]);
   const double norm = q.norm();
   if (std::abs(norm - 1.0) <= kMaxNormError) return q.normalized();
-  fail(file, row, fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError));
+  rows.fail(row, fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError));
 }
 
 constexpr std::size_t kMaxContacts = 20'000'000;      ///< of a recording
@@ -47,20 +60,21 @@ constexpr std::size_t kMaxContactsPerTime = 100'000;  ///< contacts with the sam
 /// Allowed deviation of a gradient's norm from 1. Three decimals in the file suffice.
 constexpr double kMaxLengthError = 1e-3;
 constexpr double kRounding = 1e-12;  ///< deviation of a unit gradient's norm from 1 by rounding
-constexpr std::string_view kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m";
+/// Quantities of a trace: time, position, gradient, depth.
+const std::vector<TableQuantity> kTraceColumns = {{.alternatives = {{"time_s"}}},
+                                                  {.alternatives = {{"x_m", "y_m", "z_m"}}},
+                                                  {.alternatives = {{"ux", "uy", "uz"}}},
+                                                  {.alternatives = {{"depth_m"}}}};
 
 }  // namespace
 
-Stroke parse_stroke(std::string_view text, const std::filesystem::path& file) {
+Stroke parse_stroke(std::string_view text, const std::filesystem::path& file, std::vector<std::string>* notes) {
   // Parse the table. The header says whether the pose has an axis or a quaternion, and whether there is a force.
-  const NumberTable table =
-      parse_number_table(text, file,
-                         {"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z", "time_s,px_m,py_m,pz_m,qw,qx,qy,qz",
-                          "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
-                          "time_s,px_m,py_m,pz_m,qw,qx,qy,qz,mfx_N,mfy_N,mfz_N"},
-                         kMaxSamples);
-  if (table.rows() == 0) fail(file, 0, "no samples; allowed: at least one");
-  const bool has_force = table.columns >= kAxisPose + kForceColumns;
+  const NumberTable table = parse_number_table(text, file, kStrokeColumns, kMaxSamples);
+  if (notes != nullptr) *notes = table.notes;
+  const RowLocation rows{file, table, "sample"};
+  if (table.rows() == 0) fail_in_file(file, "has a header and no samples; allowed: at least one row");
+  const bool has_axis = table.chosen[kPoseQuantity] == 0, has_force = table.chosen[kForceQuantity].has_value();
   const std::size_t pose = table.columns - (has_force ? kForceColumns : 0);
   // Convert each row to a pose and a force.
   std::vector<RecordedMotion::Sample> samples;
@@ -70,14 +84,13 @@ Stroke parse_stroke(std::string_view text, const std::filesystem::path& file) {
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
     RecordedMotion::Sample sample{row[0], {row[1], row[2], row[3]}};
-    if (pose == kAxisPose)
-      sample.axis = axis_of(row.subspan(4), file, i);
+    if (has_axis)
+      sample.axis = axis_of(row.subspan(4), rows, i);
     else
-      sample.orientation = orientation_of(row.subspan(4), file, i);
-    if (i > 0 && !(samples.back().time < row[0])) {
-      fail(file, i,
-           fmt::format("got time {} after {}; allowed: strictly increasing times", row[0], samples.back().time));
-    }
+      sample.orientation = orientation_of(row.subspan(4), rows, i);
+    if (i > 0 && !(samples.back().time < row[0]))
+      rows.fail(i,
+                fmt::format("got time {} after {}; allowed: strictly increasing times", row[0], samples.back().time));
     samples.push_back(sample);
     if (has_force) forces.push_back({row[0], {row[pose], row[pose + 1], row[pose + 2]}});
   }
@@ -86,15 +99,16 @@ Stroke parse_stroke(std::string_view text, const std::filesystem::path& file) {
   return stroke;
 }
 
-ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::path& file) {
-  const NumberTable table = parse_number_table(text, file, {kTraceHeader}, kMaxContacts);
+ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::path& file,
+                                 std::vector<std::string>* notes) {
+  const NumberTable table = parse_number_table(text, file, kTraceColumns, kMaxContacts);
+  if (notes != nullptr) *notes = table.notes;
+  const RowLocation rows{file, table, "contact"};
   ContactTrace trace;
   trace.contacts.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
-    const auto refuse = [&](const std::string& problem) {
-      fail_in({.file = file, .entry = fmt::format("contact {}", i + 1)}, problem);
-    };
+    const auto refuse = [&](const std::string& problem) { rows.fail(i, problem); };
     // Start a new time, or add the contact to the current time.
     if (trace.times.empty() || trace.times.back().time < row[0])
       trace.times.push_back({row[0], i});

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "results/observe/force_fidelity.hpp"
 #include "sim/contact/trace_source.hpp"
@@ -18,20 +20,22 @@ struct Stroke {
   std::optional<ReferenceForce> force;
 };
 
-/// Parses a stroke from the contents of a CSV file. Columns in this order:
+/// Parses a stroke from the contents of a CSV file (parse_number_table). Columns in any order:
 ///   - time_s,px_m,py_m,pz_m: time and position of the tip centre,
 ///   - axis_x,axis_y,axis_z or qw,qx,qy,qz: axis or orientation of the tool,
 ///   - optionally mfx_N,mfy_N,mfz_N: measured force.
 /// Times must increase strictly. Axes must not be zero, and quaternions must have norm 1 within 0.001; both are
 /// normalised. A quaternion rotates vectors from the tool frame, in which the tool's axis is -z, to the world
-/// frame. Throws InputError that names the sample.
-Stroke parse_stroke(std::string_view text, const std::filesystem::path& file);
+/// frame. `notes`: gets NumberTable::notes. Throws InputError that names the line and the sample.
+Stroke parse_stroke(std::string_view text, const std::filesystem::path& file,
+                    std::vector<std::string>* notes = nullptr);
 
-/// Parses contacts over time from the contents of a CSV file with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m.
-/// The columns are time, position, depth gradient (ux,uy,uz) and penetration depth. Times must not decrease,
-/// depths must be >= 0, and gradients must have norm 1 within 0.001. Gradients are normalised, unless their norm
-/// is 1 within 1e-12. At most 20 million contacts, and 100 000 contacts at one time, are allowed. Throws
-/// InputError that names the contact.
-ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::path& file);
+/// Parses contacts over time from the contents of a CSV file (parse_number_table) with the columns
+/// time_s,x_m,y_m,z_m,ux,uy,uz,depth_m. They are time, position, depth gradient (ux,uy,uz) and penetration depth. Times
+/// must not decrease, depths must be >= 0, and gradients must have norm 1 within 0.001. Gradients are normalised,
+/// unless their norm is 1 within 1e-12. At most 20 million contacts, and 100 000 contacts at one time, are allowed.
+/// `notes`: gets NumberTable::notes. Throws InputError that names the line and the contact.
+ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::path& file,
+                                 std::vector<std::string>* notes = nullptr);
 
 }  // namespace hapbench

@@ -8,6 +8,7 @@
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/fields.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/pipe_contents.hpp"
 #include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/merge_scenarios.hpp"
 
@@ -25,6 +26,22 @@ void rebase_relative_paths(Json& json, const fs::path& directory) {
       value = (directory / value.get<std::string>()).string();
     } else {
       rebase_relative_paths(value, directory);
+    }
+  }
+}
+
+/// Throws InputError at the first relative path in a field "file" of the value at `pointer`.
+void refuse_relative_paths(const Json& json, const std::string& pointer) {
+  if (!json.is_structured()) return;
+  for (const auto& entry : json.items()) {
+    const std::string at = member(pointer, entry.key());
+    const bool names_file = entry.key() == kFileField && entry.value().is_string();
+    if (!names_file) refuse_relative_paths(entry.value(), at);
+    if (names_file && fs::path(entry.value().get<std::string>()).is_relative()) {
+      fail_at(at, fmt::format(
+                      "got {}, a path from the folder of the scenario, which a scenario from a pipe does not have; "
+                      "allowed: an absolute path, such as {}",
+                      shown(entry.value()), shown((fs::current_path() / entry.value().get<std::string>()).string())));
     }
   }
 }
@@ -52,7 +69,7 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
     check_chain(layers, base);
     return base;
   } catch (const InputError& error) {
-    fail_at(at, error.problem());
+    fail_at(at, error.problem() + (has_no_folder(file) ? "; a scenario from a pipe needs an absolute path" : ""));
   }
 }
 
@@ -81,6 +98,10 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
 }
 
 }  // namespace
+
+void require_absolute_paths(const fs::path& file, const Json& json) {
+  if (has_no_folder(file)) refuse_relative_paths(json, "");
+}
 
 ScenarioText read_scenario_text(const fs::path& file) {
   std::vector<ScenarioLayer> layers;

@@ -41,4 +41,8 @@ struct ScenarioText {
 /// other files, is an error.
 ScenarioText read_scenario_text(const std::filesystem::path& file);
 
+/// Throws InputError if the scenario `json` was read from a file without a folder (has_no_folder), such as a pipe, and
+/// names a file by a relative path.
+void require_absolute_paths(const std::filesystem::path& file, const Json& json);
+
 }  // namespace hapbench

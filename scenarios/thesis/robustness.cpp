@@ -118,8 +118,8 @@ Json entry_of(const Readings& readings, const std::vector<ReadingVerdicts>& judg
 
 std::vector<std::vector<std::string>> read_readings(const fs::path& file, const Choices& choices) {
   const std::string text = read_named_file(file);
-  CsvReader csv{LineReader(text), file};
   const std::vector<std::string> ids = names_of(choices.all(), &OpenChoice::id);
+  CsvReader csv(LineReader(text), file, Words(ids.begin(), ids.end()));
   std::vector<std::size_t> choice_of_column;  // index of the choice of each column
   for (const std::string_view column : csv.columns()) {
     const std::string id(column);

@@ -22,6 +22,19 @@ def without_prose(target, text):
     return json.dumps(scene, separators=(",", ":")).encode() if isinstance(scene, dict) else None
 
 
+def tables(text):
+    """The first rows of a table in the other notations that the readers accept."""
+    lines = text.splitlines()[:5]
+    rows = b"\n".join(lines) + b"\n"
+    semicolons = rows.replace(b",", b";")
+    yield semicolons
+    yield semicolons.replace(b".", b",") if b"." in rows else rows.replace(b",", b"\t")
+    yield b"\xef\xbb\xbf% comment\r\n# " + rows.replace(b"\n", b"\r\n")
+    yield rows.replace(b",", b" ").replace(b"\n", b"\r")
+    yield b"\n".join(b'"' + line.replace(b",", b'","') + b'",' for line in lines)
+    yield b"\n".join(b",".join([b"other", *reversed(line.split(b","))]) for line in lines)
+
+
 def main(target, folder):
     pattern = PATTERNS.get(target, f"*.{target.rsplit('_', 1)[1]}" if "_" in target else "*.csv")
     seeds = {
@@ -30,6 +43,8 @@ def main(target, folder):
         for file in (ROOT / folder).rglob(pattern)
         if file.is_file()
     }
+    if pattern == "*.csv":
+        seeds |= {variant for text in seeds for variant in tables(text)}
     if pattern == "*.json":
         seeds = {without_prose(target, text) for text in seeds} - {None}
     for number, seed in enumerate(sorted(s for s in seeds if len(s) <= LARGEST)):

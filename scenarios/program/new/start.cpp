@@ -91,8 +91,10 @@ class Start {
                                       {"/tool/file", options_.from},
                                       {"/motion/position/file", options_.from}}) {
       const Json::json_pointer pointer(field);
-      if (scene_.contains(pointer))
-        scene_[pointer] = std::filesystem::proximate(file, directory_.empty() ? "." : directory_).generic_string();
+      if (!scene_.contains(pointer)) continue;
+      if (std::filesystem::is_fifo(file))
+        fail_in_file(file, "is a pipe; allowed: a file, because the scenario names it for later runs");
+      scene_[pointer] = std::filesystem::proximate(file, directory_.empty() ? "." : directory_).generic_string();
     }
   }
 

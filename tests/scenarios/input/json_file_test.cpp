@@ -37,11 +37,23 @@ TEST(ParseJson, SaysWhereTheSyntaxIsWrongAndWhatWasExpected) {
   EXPECT_EQ(
       refusal_of("{\n\"a\": 1,}"),
       "is not JSON: parse error at line 2, column 8: syntax error while parsing object key - unexpected '}'; expected "
-      "string literal");
+      "string literal; remove the comma before it");
   EXPECT_EQ(
       refusal_of("[1, \"\xff\"]").find("is not JSON: parse error at line 1, column 6: syntax error while parsing"), 0u);
   EXPECT_LT(refusal_of("\"" + std::string(1'000'000, 'x')).size(), 200u) << "cut";
   EXPECT_EQ(refusal_of(std::string("{\0}", 3)), "is not JSON: has a zero byte; allowed: UTF-8");
+}
+
+TEST(ParseJson, NamesTheCauseOfAFrequentMistake) {
+  for (const auto& [text, cause] : {std::pair("{\"a\": [1, 2,]}", "; remove the comma before it"),
+                                    {"{\"a\": 0,5}", "; a decimal comma? write a decimal point"},
+                                    {"{\"a\": 1, // one\n\"b\": 2}", "; JSON has no comments"},
+                                    {"# one\n{}", "; JSON has no comments"},
+                                    {"{'a': 1}", "; write double quotes around names and texts"},
+                                    {"{\"a\": NaN}", "; write null"},
+                                    {"{\"a\": nan}", "; write null"},
+                                    {"{\"a\": True}", "; write true"}})
+    EXPECT_TRUE(refusal_of(text).ends_with(cause)) << refusal_of(text);
 }
 
 TEST(ParseJson, RefusesNumbersBeyondDouble) {

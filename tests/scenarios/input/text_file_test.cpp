@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <fstream>
 #include <string>
+#include <thread>
 
 #include "scenarios/input/text_file.hpp"
 #include "tests/results/files.hpp"
@@ -23,6 +26,17 @@ TEST(ReadTextFile, ReadsUpToItsLimitAndNoFurther) {
   EXPECT_NE(refusal->problem().find("is larger than"), std::string::npos);
   // A device without end stops at the limit too.
   EXPECT_TRUE(test::input_error_of([] { read_text_file("/dev/zero", 1 << 20); }));
+}
+
+/// A second read would wait for a writer for ever.
+TEST(ReadTextFile, ReadsAPipeOnceAndKeepsItsContents) {
+  const test::TemporaryDirectory directory;
+  const auto pipe = directory / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe) << "contents"; });
+  EXPECT_EQ(read_text_file(pipe, 100), "contents");
+  writer.join();
+  EXPECT_EQ(read_text_file(pipe, 100), "contents");
 }
 
 }  // namespace

@@ -284,5 +284,15 @@ TEST(ScenarioHash, FollowsTheContentsOfFilesNotTheirPaths) {
   }
 }
 
+TEST(ScenarioFromAPipe, HasAbsolutePathsOnly) {
+  const auto relative = Json::parse(R"({"motion": {"position": {"type": "file", "file": "stroke.csv"}}})");
+  const auto absolute = Json::parse(R"({"motion": {"position": {"type": "file", "file": "/data/stroke.csv"}}})");
+  EXPECT_NO_THROW(require_absolute_paths("/dev/stdin", absolute));
+  EXPECT_NO_THROW(require_absolute_paths("folder/scene.json", relative));
+  const auto error = test::input_error_of([&] { require_absolute_paths("/dev/fd/63", relative); });
+  ASSERT_TRUE(error);
+  EXPECT_TRUE(std::string(error->what()).starts_with("/motion/position/file: got \"stroke.csv\"")) << error->what();
+}
+
 }  // namespace
 }  // namespace hapbench::load_scenario_test

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/scene/recordings.hpp"
@@ -60,6 +61,18 @@ std::string refusal(const std::string& rows) {
   return "";
 }
 
+TEST(StrokeFile, HasColumnsInAnyOrderAndNotesOnOthers) {
+  std::vector<std::string> notes;
+  const Stroke stroke = parse_stroke(
+      "mfz_N;qz;qy;qx;qw;temp_C;pz_m;py_m;px_m;mfx_N;mfy_N;time_s\n3;0;0;0;1;20;0,3;0,2;0,1;1;2;0\n", kFile, &notes);
+  EXPECT_EQ(stroke.motion.position_at(0.0), Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(stroke.motion.axis_at(0.0), Vec3(0, 0, -1));
+  ASSERT_TRUE(stroke.force);
+  EXPECT_EQ(stroke.force->at(0.0), Vec3(1, 2, 3));
+  EXPECT_EQ(notes, (std::vector<std::string>{"line 1: column 6 \"temp_C\" is not used",
+                                             "line 2: numbers are read with a decimal comma"}));
+}
+
 TEST(TraceFile, HasContactsByTime) {
   const ContactTrace trace =
       parse_contact_trace(kTraceHeader + "0,1,2,3,0,0,-1,0.5\n0,4,5,6,1,0,0,0\n\n0.25,7,8,9,0,0.6,0.8,1e-3\n", "t.csv");
@@ -85,15 +98,15 @@ TEST(TraceFile, NormalisesRoundedGradientsAlone) {
 
 TEST(TraceFile, IsRefusedWithItsRow) {
   EXPECT_EQ(refusal("0,0,0,0,0,0,1,1\n0.1,0,0,0,0,0,1,1\n0.05,0,0,0,0,0,1,1\n"),
-            "t.csv, contact 3: got time 0.05 after 0.1; allowed: ascending times");
+            "t.csv, line 4, contact 3: got time 0.05 after 0.1; allowed: ascending times");
   EXPECT_EQ(refusal("0,0,0,0,0,0,1.01,1\n"),
-            "t.csv, contact 1: got a gradient ux,uy,uz of length 1.01; allowed: 1 within 0.001");
+            "t.csv, line 2, contact 1: got a gradient ux,uy,uz of length 1.01; allowed: 1 within 0.001");
   EXPECT_EQ(refusal("0,0,0,0,0,0,1,-1e-9\n"),
-            "t.csv, contact 1: got depth -1e-09; allowed: >= 0, how deep the point is in the tool");
+            "t.csv, line 2, contact 1: got depth -1e-09; allowed: >= 0, how deep the point is in the tool");
   EXPECT_NE(refusal("0,0,0\n"), "");
   std::string many;
   for (int i = 0; i < 100'001; ++i) many += "0,0,0,0,0,0,1,1\n";
-  EXPECT_EQ(refusal(many), "t.csv, contact 100001: got more contacts at time 0; allowed: at most 100000");
+  EXPECT_EQ(refusal(many), "t.csv, line 100002, contact 100001: got more contacts at time 0; allowed: at most 100000");
   EXPECT_THROW(parse_contact_trace("time_s,x,y,z\n", "t.csv"), InputError);
   EXPECT_THROW(parse_contact_trace("", "t.csv"), InputError);
 }

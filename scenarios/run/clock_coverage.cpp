@@ -1,0 +1,220 @@
+#include "scenarios/run/clock_coverage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/scene/named_files.hpp"
+
+namespace hapbench {
+namespace {
+
+/// A unit in which a clock may count instead of seconds.
+struct ClockUnit {
+  double per_second;
+  const char* advice;
+};
+constexpr ClockUnit kClockUnits[] = {
+    {1e3, "its clock seems to be in milliseconds: divide the times by 10^3"},
+    {1e6, "its clock seems to be in microseconds: divide the times by 10^6"},
+    {1e9, "its clock seems to be in nanoseconds: divide the times by 10^9"},
+    {1e-3, "its clock seems to be too slow by 10^3: multiply the times by 10^3"},
+    {1e-6, "its clock seems to be too slow by 10^6: multiply the times by 10^6"},
+    {1e-9, "its clock seems to be too slow by 10^9: multiply the times by 10^9"},
+};
+constexpr double kUnlikelyRatio = 100.0;  ///< a larger ratio of two intervals indicates another unit
+
+/// Times of a run [s].
+struct RunTimes {
+  explicit RunTimes(const TimeFields& time)
+      : step(time.step), steps(static_cast<double>(time.steps)), end(time.step * static_cast<double>(time.steps - 1)) {}
+
+  double step, steps, end;
+};
+
+/// Returns the facts about both clocks, such as "the stroke has 201 samples from 0 to 0.4 s, one per 2 ms (500 Hz); the
+/// run has …".
+std::string facts(const std::string& recording, double first, double last, std::size_t count, const RunTimes& run) {
+  const double interval = count > 1 ? (last - first) / static_cast<double>(count - 1) : 0.0;
+  const std::string rate =
+      interval > 0.0 ? fmt::format(", one per {:.4g} ms ({:.4g} Hz)", 1e3 * interval, 1.0 / interval) : "";
+  return fmt::format("the {} from {:.6g} to {:.6g} s{}; the run has {} steps from 0 to {:.6g} s, one per {:.4g} ms",
+                     recording, first, last, rate, run.steps, run.end, 1e3 * run.step);
+}
+
+// ---- Strokes
+
+using Samples = std::span<const RecordedMotion::Sample>;
+
+double interval_of(Samples samples) {
+  return (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
+}
+
+bool is_unlikely_interval(double interval, const RunTimes& run) {
+  return interval > kUnlikelyRatio * run.step || interval * kUnlikelyRatio < run.step;
+}
+
+/// Returns the unit that gives the stroke the duration of the run, or a likely rate; null if there is none.
+const ClockUnit* unit_of_stroke(Samples samples, const RunTimes& run) {
+  const double interval = interval_of(samples), span = samples.back().time - samples.front().time;
+  const auto fits = [&](const ClockUnit& unit, double factor) {
+    const double ratio = span / unit.per_second / run.end;
+    return ratio > 1.0 / factor && ratio < factor;
+  };
+  for (const double factor : {1.1, 3.0})
+    for (const ClockUnit& unit : kClockUnits)
+      if (fits(unit, factor)) return &unit;
+  // The run may have been made as long as the stroke. Then a recording with a usual rate decides.
+  constexpr double kFastest = 2e-4, kSlowest = 0.05;  // intervals of samples [s]
+  constexpr std::size_t kMinSamples = 20;             // fewer samples may be waypoints
+  for (const ClockUnit& unit : kClockUnits) {
+    const double scaled = interval / unit.per_second;
+    if (samples.size() >= kMinSamples && scaled >= kFastest && scaled <= kSlowest) return &unit;
+  }
+  return nullptr;
+}
+
+/// Returns true if the run sees so little of the stroke that another unit of the clock is likely.
+bool sees_few_samples(Samples samples, const RunTimes& run) {
+  constexpr std::ptrdiff_t kFew = 3;
+  constexpr std::size_t kMinSamples = 10;
+  const auto end = std::ranges::upper_bound(samples, run.end, {}, &RecordedMotion::Sample::time);
+  return samples.size() >= kMinSamples && end - samples.begin() <= kFew && run.steps > 10.0;
+}
+
+// ---- Traces
+
+/// Coverage of a run by a trace.
+struct TraceCoverage {
+  std::uint64_t queries = 0;  ///< steps that look for contacts
+  std::uint64_t covered = 0;  ///< of them, steps that find a time of the trace
+  std::uint64_t times = 0;    ///< times of the trace within the run
+};
+
+/// Counts the steps that find a time of the trace within half a step. The trace's times are divided by `per_second`.
+TraceCoverage coverage_of(const ContactTrace& trace, const RunTimes& run, std::int64_t every, double per_second) {
+  TraceCoverage coverage;
+  coverage.queries = static_cast<std::uint64_t>((run.steps - 1.0) / static_cast<double>(every)) + 1;
+  const auto& times = trace.times;
+  std::int64_t last = -1;
+  auto at = std::partition_point(times.begin(), times.end(),
+                                 [&](const auto& t) { return t.time / per_second < -0.5 * run.step; });
+  for (; at != times.end() && at->time / per_second <= run.end + 0.5 * run.step; ++at, ++coverage.times) {
+    const auto step = static_cast<std::int64_t>(std::round(at->time / per_second / run.step));
+    if (step != last && step % every == 0 && static_cast<double>(step) < run.steps) ++coverage.covered;
+    last = step;
+  }
+  return coverage;
+}
+
+/// Returns the median time between successive times of the trace [s]; 0 for fewer than two times.
+double median_interval(const ContactTrace& trace) {
+  constexpr std::size_t kMaxIntervals = 1000;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < std::min(trace.times.size(), kMaxIntervals + 1); ++i)
+    intervals.push_back(trace.times[i].time - trace.times[i - 1].time);
+  if (intervals.empty()) return 0.0;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
+/// Returns the unit with which the trace covers much more of the run; null if there is none.
+const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
+                               const TraceCoverage& coverage) {
+  for (const ClockUnit& unit : kClockUnits) {
+    const TraceCoverage scaled = coverage_of(trace, run, every, unit.per_second);
+    if (scaled.covered >= 5 * std::max<std::uint64_t>(coverage.covered, 1) && 10 * scaled.covered >= scaled.queries)
+      return &unit;
+  }
+  return nullptr;
+}
+
+/// Returns what is wrong with the trace's clock; empty if nothing is.
+std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
+                          const TraceCoverage& coverage) {
+  const double first = trace.times.front().time, last = trace.times.back().time;
+  const double interval = median_interval(trace), query = run.step * static_cast<double>(every);
+  if (coverage.covered < coverage.queries) {
+    if (const ClockUnit* unit = unit_of_trace(trace, run, every, coverage)) return unit->advice;
+    if (coverage.covered == 0 && first > run.end)
+      return "let the times of the trace begin at 0: subtract the first time";
+    if (coverage.covered == 0)
+      return "the times are not those of the run: is time_s in seconds from the start of the run?";
+    if (interval > 1.5 * query)
+      return fmt::format(
+          "the trace is slower than the run: rendering.contacts.every={:.0f} plays the contacts of a slower loop",
+          std::max(2.0, std::round(interval / run.step)));
+    if (last + 1.5 * std::max(query, interval) < run.end)
+      return fmt::format("the trace ends before the run: if the tool is still in contact then, set time.steps={:.0f}",
+                         std::floor(last / run.step + 0.5) + 1.0);
+  }
+  if (interval > 0.0 && interval < 0.75 * run.step)
+    return fmt::format("the trace is faster than the run, which skips its other times: time.step_s={:.4g} plays all",
+                       interval);
+  return "";
+}
+
+}  // namespace
+
+std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFields& time) {
+  const RunTimes run(time);
+  const Samples samples = stroke.motion.samples();
+  const double start = samples.front().time, stop = samples.back().time;
+  const auto warning = [](std::string text) {
+    return Warning{"stroke_clock", std::string(kMotionFile), std::move(text)};
+  };
+  // No overlap.
+  if (start > run.end || stop < 0.0) {
+    const ClockUnit* unit = samples.size() > 1 ? unit_of_stroke(samples, run) : nullptr;
+    return warning(
+        fmt::format("the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool "
+                    "stays at the {} sample; let the stroke begin at 0 or adapt time{}{}",
+                    start, stop, run.end, start > run.end ? "first" : "last", unit != nullptr ? "; " : "",
+                    unit != nullptr ? unit->advice : ""));
+  }
+  if (samples.size() < 2) return std::nullopt;
+  const std::string both =
+      facts(fmt::format("stroke has {} samples", samples.size()), start, stop, samples.size(), run);
+  // Another unit.
+  const double interval = interval_of(samples);
+  const bool is_unlikely = is_unlikely_interval(interval, run), is_short = stop + 2.0 * interval < 0.95 * run.end;
+  const ClockUnit* unit =
+      is_unlikely || is_short || sees_few_samples(samples, run) ? unit_of_stroke(samples, run) : nullptr;
+  if (unit != nullptr && !(is_short && unit->per_second > 1.0))
+    return warning(fmt::format("{}: {}", both, unit->advice));
+  if (is_unlikely)
+    return warning(fmt::format("{}: are the stroke's times in seconds, and is time.step_s right?", both));
+  // The end is missing.
+  if (!is_short) return std::nullopt;
+  constexpr double kRounding = 1e-6;  // of a step
+  const double last_step = std::floor(stop / run.step + kRounding);
+  const double covered = last_step + 1.0 - std::max(0.0, std::ceil(start / run.step));
+  return warning(
+      fmt::format("{}: the stroke covers {:.3g} % of the steps, and the tool stays at the last sample after it; "
+                  "time.steps={:.0f} ends the run with the stroke",
+                  both, 100.0 * covered / run.steps, last_step + 1.0));
+}
+
+std::optional<Warning> trace_clock_warning(const ContactTrace& trace, const TimeFields& time, std::int64_t every) {
+  const RunTimes run(time);
+  const auto warning = [](std::string text) {
+    return Warning{"trace_clock", std::string(kContactFile), std::move(text)};
+  };
+  if (trace.times.empty()) return warning("the trace has no rows: no step has a contact");
+  const TraceCoverage coverage = coverage_of(trace, run, every, 1.0);
+  const std::string problem = trace_problem(trace, run, every, coverage);
+  if (problem.empty()) return std::nullopt;
+  const std::size_t count = trace.times.size();
+  return warning(fmt::format(
+      "{}: {} of the {} steps that look for contacts have no time of the trace within half a step; {}",
+      facts(fmt::format("trace has {} times", count), trace.times.front().time, trace.times.back().time, count, run),
+      coverage.queries - coverage.covered, coverage.queries, problem));
+}
+
+}  // namespace hapbench

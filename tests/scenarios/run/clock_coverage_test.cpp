@@ -1,0 +1,95 @@
+#include "scenarios/run/clock_coverage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hapbench::clock_coverage_test {
+namespace {
+
+/// A run of 0.1 s.
+TimeFields run_time() {
+  TimeFields time;
+  time.step = 0.0005;
+  time.steps = 200;
+  return time;
+}
+
+/// Times from `first` on, `interval` apart.
+std::vector<double> times(double first, double interval, std::size_t count) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < count; ++i) all.push_back(first + interval * static_cast<double>(i));
+  return all;
+}
+
+std::string stroke_warning(const std::vector<double>& at) {
+  std::vector<RecordedMotion::Sample> samples;
+  for (const double t : at) samples.push_back({t, Vec3::Zero()});
+  const auto warning = stroke_clock_warning(Stroke{RecordedMotion(std::move(samples)), {}}, run_time());
+  return warning ? warning->text : "";
+}
+
+std::string trace_warning(const std::vector<double>& at, std::int64_t every = 1) {
+  ContactTrace trace;
+  for (const double t : at) {
+    trace.times.push_back({t, trace.contacts.size()});
+    trace.contacts.push_back({Vec3::Zero(), Vec3(0, 0, -1), 1e-4});
+  }
+  const auto warning = trace_clock_warning(trace, run_time(), every);
+  return warning ? warning->text : "";
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(StrokeClock, IsAcceptedIfItCoversTheRun) {
+  for (const auto& at : {times(0, 0.002, 51), times(0, 0.01, 10), times(-1, 0.001, 2000), times(0, 0.0001, 1000),
+                         times(0, 0.002, 100'000)})
+    EXPECT_EQ(stroke_warning(at), "");
+}
+
+TEST(StrokeClock, IsNamedWithItsUnit) {
+  for (const auto& [scale, says] : {std::pair(1e3, "milliseconds"), {1e6, "microseconds"}, {1e9, "nanoseconds"}}) {
+    EXPECT_TRUE(contains(stroke_warning(times(0, 0.002 * scale, 51)), says))
+        << stroke_warning(times(0, 0.002 * scale, 51));
+    EXPECT_TRUE(contains(stroke_warning(times(scale, 0.002 * scale, 51)), says)) << "no overlap";
+  }
+  EXPECT_TRUE(contains(stroke_warning(times(0, 2e-6, 51)), "multiply the times by 10^3"));
+  EXPECT_TRUE(contains(stroke_warning(times(0, 2e-9, 51)), "multiply the times by 10^6"));
+}
+
+TEST(StrokeClock, IsNamedIfItEndsEarly) {
+  const std::string text = stroke_warning(times(0, 0.002, 26));
+  EXPECT_TRUE(contains(text, "covers 50.5 % of the steps")) << text;
+  EXPECT_TRUE(contains(text, "time.steps=101 ends the run with the stroke")) << text;
+}
+
+TEST(TraceClock, IsAcceptedIfStepsFindTheirTimes) {
+  EXPECT_EQ(trace_warning(times(0, 0.0005, 200)), "");
+  EXPECT_EQ(trace_warning(times(0.05, 0.0005, 100)), "") << "the tool comes from above";
+  EXPECT_EQ(trace_warning(times(0, 0.004, 25), 8), "") << "a slower loop";
+  EXPECT_EQ(trace_warning(times(0, 0.0005, 1000)), "") << "longer than the run";
+}
+
+TEST(TraceClock, IsNamedWithItsUnit) {
+  for (const auto& [scale, says] : {std::pair(1e3, "milliseconds"), {1e6, "microseconds"}, {1e9, "nanoseconds"}}) {
+    const std::string text = trace_warning(times(0, 0.0005 * scale, 200));
+    EXPECT_TRUE(contains(text, says)) << text;
+    EXPECT_TRUE(contains(text, "199 of the 200 steps")) << text;
+  }
+  EXPECT_TRUE(contains(trace_warning(times(0, 0.0005e-3, 200)), "multiply the times by 10^3"));
+}
+
+TEST(TraceClock, IsNamedIfTheTraceEndsEarlyOrHasAnotherRate) {
+  EXPECT_TRUE(contains(trace_warning(times(0, 0.0005, 20)), "the trace ends before the run"));
+  EXPECT_TRUE(contains(trace_warning(times(0, 0.004, 25)), "rendering.contacts.every=8"));
+  EXPECT_TRUE(contains(trace_warning(times(0, 0.000125, 800)), "the trace is faster than the run"));
+  EXPECT_TRUE(contains(trace_warning(times(1.7e9, 0.0005, 200)), "subtract the first time"));
+  EXPECT_TRUE(contains(trace_warning({}), "the trace has no rows"));
+}
+
+}  // namespace
+}  // namespace hapbench::clock_coverage_test
