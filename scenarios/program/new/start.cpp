@@ -12,6 +12,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/rounding.hpp"
+#include "scenarios/input/shell_words.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/new/drag_start.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -126,7 +127,7 @@ class Start {
     const double longest = box.size().maxCoeff() / 0.001;
     if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
       const std::string command = fmt::format("hapbench new {} {} {} --extent", options_.kind,
-                                              options_.on.empty() ? "--from" : "--on", mesh_file());
+                                              options_.on.empty() ? "--from" : "--on", shell_file(mesh_file()));
       throw InputError(fmt::format(
           "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} "
           "{:.7g}mm\" or \"{} {:.7g}m\"",
