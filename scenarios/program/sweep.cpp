@@ -193,7 +193,9 @@ int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& c
   std::vector<std::string> arguments = {context.program.string(), "run", scene.string()};
   for (const std::string& override : cases.overrides(command.row))
     arguments.insert(arguments.end(), {"--set", override});
-  for (const LoadedLaw& law : loaded_laws()) arguments.insert(arguments.end(), {"--module", law.file.string()});
+  for (const LoadedModule& module : loaded_modules())
+    arguments.insert(arguments.end(), {"--module", module.file.string()});
+  if (ModulePermission::allows_all()) arguments.emplace_back("--allow-modules");
   print(context, command.output, shell_line(arguments) + "\n", Json{{"row", command.row}, {"command", arguments}});
   return kSuccess;
 }

@@ -160,7 +160,7 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
         continue;
       }
       // Check the scenario, and report the facts about its scene.
-      const CheckedScenario scene = checked(load_scenario(file, options.overrides));
+      const CheckedScenario scene = checked(load_scenario(file, options.overrides), Libraries::inspected);
       const LoadedScenario& loaded = scene.loaded();
       print_warnings(context, scene);
       const SceneFacts facts = scene_facts(loaded);
