@@ -103,10 +103,24 @@ std::optional<double> Metric::tolerance() const {
   return if_any(number && bounded, relative * std::abs(number.value_or(0.0)) + absolute);
 }
 
+bool resembles_formula(std::string_view text) {
+  const std::size_t start = text.find_first_not_of('\'');
+  if (start == std::string_view::npos || std::string_view("=+-@\t\r").find(text[start]) == std::string_view::npos)
+    return false;
+  if (start > 0) return true;
+  // Numbers such as -1e-05 or +3 are no formulas, and neither is a single dash.
+  const std::string_view digits = text.substr(text[0] == '+' ? 1 : 0);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const bool is_number = end == digits.data() + digits.size() && error != std::errc::invalid_argument;
+  return !is_number && text != "-";
+}
+
 std::string csv_cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  const std::string cell = (resembles_formula(text) ? "'" : "") + std::string(text);
+  if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
   std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
 }
 

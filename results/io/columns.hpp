@@ -145,7 +145,14 @@ std::optional<double> number_of(const Cell& value);
 inline std::optional<double> number_of(const MetricList& list, std::string_view name) {
   return number_of(value_of(list, name));
 }
-/// Returns a text as a cell of a CSV file, in quotes if it contains a comma, a quote or a line break (RFC 4180).
+
+/// Returns true if a spreadsheet may take a cell with this text for a formula. Such a text begins with "=", "+", "-",
+/// "@", a tab or a carriage return, possibly after apostrophes. Numbers and a single "-" are no formulas.
+bool resembles_formula(std::string_view text);
+
+/// Returns the text of a cell in a CSV file. A text that resembles a formula gets an apostrophe in front, which
+/// spreadsheets take for the mark of a text; csv_cells() and the Python package remove the apostrophe. A text with a
+/// comma, quote or line break is in double quotes.
 std::string csv_cell(std::string_view text);
 
 /// Returns columns.json, which documents the results for other programs: name, unit and meaning of each column of

@@ -122,6 +122,7 @@ double Range::value_at(double part, double whole) const {
 
 std::string axis_value(std::string_view text) {
   if (text.empty()) throw InputError("got an empty value");
+  if (text.find_first_of("\r\n") != text.npos) throw InputError("got a value with a line break");
   if (const auto number = finite_number(text)) return cell_text(*number);
   return begins_json(text) ? parse_json(std::string(text)).dump() : std::string(text);
 }

@@ -71,6 +71,25 @@ fs::path Comparison::folder(std::size_t run) const {
   return seeds > 1 ? folder / fmt::format("seed_{}", run % seeds) : folder;
 }
 
+std::vector<fs::path> Comparison::scene_folders(const fs::path& out) const {
+  std::vector<fs::path> folders;
+  for (std::size_t scene = 0; scene < scenes.size(); ++scene) folders.push_back(out / scene_folder(scene));
+  return folders;
+}
+
+std::vector<fs::path> Comparison::run_folders(const fs::path& out) const {
+  std::vector<fs::path> folders;
+  std::error_code ignored;
+  for (const fs::path& scene : scene_folders(out)) {
+    for (const std::string& law : algorithm_names()) {
+      for (const auto& entry : fs::directory_iterator(scene / law, ignored))
+        if (entry.path().filename().string().starts_with("seed_")) folders.push_back(entry.path());
+      folders.push_back(scene / law);
+    }
+  }
+  return folders;
+}
+
 Comparison planned(const ComparisonQuestion& question) {
   const auto names = names_of_scenarios(question.scenarios);
   Comparison comparison{{}, names, question.algorithms, question.seeds};
@@ -87,20 +106,11 @@ Comparison planned(const ComparisonQuestion& question) {
 void remove_earlier_comparison(const fs::path& folder, const Comparison& comparison) {
   std::error_code ignored;
   fs::remove(folder / "ranking.csv", ignored);
-  for (std::size_t scene = 0; scene < comparison.scenes.size(); ++scene) {
-    const fs::path scene_folder = folder / comparison.scene_folder(scene);
-    fs::remove(scene_folder / "comparison.csv", ignored);
-    for (const std::string& law : algorithm_names()) {
-      std::vector<fs::path> runs;
-      for (const auto& entry : fs::directory_iterator(scene_folder / law, ignored))
-        if (entry.path().filename().string().starts_with("seed_")) runs.push_back(entry.path());
-      runs.push_back(scene_folder / law);
-      for (const fs::path& run : runs) {
-        if (!fs::is_directory(run, ignored)) continue;
-        remove_run(run);
-        fs::remove(run, ignored);  // fails if the folder is not empty
-      }
-    }
+  for (const fs::path& scene : comparison.scene_folders(folder)) fs::remove(scene / "comparison.csv", ignored);
+  for (const fs::path& run : comparison.run_folders(folder)) {
+    if (!fs::is_directory(run, ignored)) continue;
+    remove_run(run);
+    fs::remove(run, ignored);  // fails if the folder is not empty
   }
 }
 

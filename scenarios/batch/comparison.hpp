@@ -43,6 +43,11 @@ struct Comparison {
   /// Returns the folder of a run's files, relative to the folder of the comparison:
   /// [SCENARIO/]ALGORITHM[/seed_K]. Parts in brackets exist only if there are several scenes or seeds.
   std::filesystem::path folder(std::size_t run) const;
+  /// Folders of the scenes in the folder of a comparison.
+  std::vector<std::filesystem::path> scene_folders(const std::filesystem::path& out) const;
+  /// Folders of the runs of this comparison, and of every earlier comparison of these scenes with any algorithm.
+  /// Subfolders come before the folder that contains them.
+  std::vector<std::filesystem::path> run_folders(const std::filesystem::path& out) const;
 };
 
 /// Loads every scene with every algorithm and reads the files that they name. Throws the InputError of the

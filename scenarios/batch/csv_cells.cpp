@@ -1,5 +1,7 @@
 #include "scenarios/batch/csv_cells.hpp"
 
+#include "results/io/columns.hpp"
+
 namespace hapbench {
 
 std::vector<std::string> csv_cells(std::string_view line, char separator) {
@@ -17,6 +19,9 @@ std::vector<std::string> csv_cells(std::string_view line, char separator) {
       cells.back() += line[i];
     }
   }
+  // Remove the apostrophe that csv_cell() puts before a text that resembles a formula.
+  for (std::string& cell : cells)
+    if (cell.starts_with('\'') && resembles_formula(cell)) cell.erase(0, 1);
   return cells;
 }
 

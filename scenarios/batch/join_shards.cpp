@@ -14,6 +14,7 @@
 #include "scenarios/batch/table_file.hpp"
 #include "scenarios/batch/table_lines.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/run/folder_lock.hpp"
 
 namespace hapbench {
 namespace {
@@ -74,6 +75,8 @@ bool join_shards(const fs::path& folder) {
   TableLines first(shards[0], 0);
   first.next();
   title.header = first.line();
+  NewDirectories no_directories;
+  const FolderLock lock(no_directories, folder, whole.filename().string(), "sweep");
   if (const std::size_t found = write_sorted_table(title, shards, title.cases); found != title.cases) {
     throw InputError(fmt::format("{}: the shards have {} of {} rows; allowed: complete tables", folder.string(), found,
                                  title.cases));

@@ -27,7 +27,8 @@ std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
   for_each_job(runs.size(), jobs, [&](std::size_t position) {
     const auto& [cases, i, number] = runs[position];
     results[number] =
-        run_scenario(checked(cases.load(i)), folder ? std::optional(folder(number)) : std::nullopt, false);
+        run_scenario(checked(cases.load(i)),
+                     folder ? std::optional(RunOutput(folder(number), /*has_lock=*/true)) : std::nullopt, false);
     results[number].targets.clear();
   });
   return results;

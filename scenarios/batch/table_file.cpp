@@ -111,8 +111,9 @@ void TableFile::add(std::size_t i, std::string_view row) {
 
 void TableFile::finish() {
   out_.reset();
-  if (write_sorted_table(title_, {part_}, count()) != count())  // another process has restarted the table
-    throw IoError("read", part_, std::make_error_code(std::errc::io_error));
+  if (write_sorted_table(title_, {part_}, count()) != count())
+    throw IoError("complete, because another process has restarted it,", part_,
+                  std::make_error_code(std::errc::device_or_resource_busy));
   std::error_code ignored;
   for (const fs::path& part : {part_, about_part_}) fs::remove(part, ignored);
 }

@@ -8,6 +8,7 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/nearest_name.hpp"
+#include "scenarios/input/shell_words.hpp"
 
 namespace hapbench {
 
@@ -35,8 +36,8 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   const fs::path file = directory / argument;
   if (fs::exists(file, error)) {
     if (is_mesh_name(file) && !fs::is_directory(file, error))
-      throw InputError(
-          fmt::format("{0}: is a mesh; allowed: a scenario, as \"hapbench new mesh --from {0}\" writes one", argument));
+      throw InputError(fmt::format("{}: is a mesh; allowed: a scenario, as \"hapbench new mesh --from {}\" writes one",
+                                   argument, shell_file(argument)));
     return file;
   }
   // A bundled scenario.
@@ -49,7 +50,7 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   const std::string missing = argument + ": no such file and no bundled scenario";
   if (fs::exists(file.string() + ".json", error)) throw InputError(missing + "; there is " + argument + ".json");
   if (argument.find('=') != std::string::npos)
-    throw InputError(missing + "; a field is overridden by --set " + argument);
+    throw InputError(missing + "; a field is overridden by --set " + shell_word(argument));
   throw InputError(missing + nearest_name_hint(fs::path(argument).stem().string(), names) +
                    "; \"hapbench describe scenarios\" shows them");
 }

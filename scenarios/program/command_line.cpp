@@ -26,9 +26,9 @@ namespace {
 
 /// Loads the modules of --module, then the modules in the folders of HAPBENCH_MODULE_PATH.
 void load_modules(const std::vector<std::string>& files, const LoadingGuard& guard) {
-  for (const std::string& file : files) load_law(file, guard);
+  for (const std::string& file : files) load_module(file, guard);
   constexpr const char* kFolders = "HAPBENCH_MODULE_PATH";
-  if (const char* folders = std::getenv(kFolders)) load_laws_in(kFolders, folders, guard);
+  if (const char* folders = std::getenv(kFolders)) load_modules_in(kFolders, folders, guard);
 }
 
 /// Returns the exit status, changed from success to kUnexpectedOutcome if a module failed. A failed module
@@ -79,7 +79,8 @@ CommandLine::CommandLine(ProgramContext& context)
   }
 }
 
-/// The program and each command have the option --module, so that it may stand before or after the command.
+/// The program and each command have the options --module and --allow-modules, so that they may stand before or after
+/// the command.
 void CommandLine::add_module_option(CLI::App& app) {
   const auto add = [this](const std::vector<std::string>& files) {
     modules_.insert(modules_.end(), files.begin(), files.end());
@@ -88,6 +89,7 @@ void CommandLine::add_module_option(CLI::App& app) {
       ->type_name("<file.so>")
       ->allow_extra_args(false)
       ->take_all();
+  app.add_flag("--allow-modules", allow_modules_, shared_option_help("--allow-modules"));
 }
 
 Command CommandLine::add(const std::string& name, const std::string& summary, OutputOptions& output,
@@ -155,6 +157,7 @@ int CommandLine::parse_and_run(ProgramArguments arguments) {
     throw usage_error(error, *app_);
   }
   // Load the modules, then run the selected command.
+  const ModulePermission permission(allow_modules_);
   load_modules(modules_, context_.guard_loading);
   take_module_faults();  // discards failures of an earlier command of this process
   return status_with_faults(action_(), context_);

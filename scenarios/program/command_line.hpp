@@ -65,6 +65,7 @@ class CommandLine {
   std::string when_stopped_;
   std::vector<std::pair<CLI::App*, OutputOptions*>> outputs_;
   std::vector<std::string> modules_;
+  bool allow_modules_ = false;
 };
 
 }  // namespace hapbench

@@ -1,4 +1,5 @@
 #include "scenarios/program/converge.hpp"
+#include "scenarios/input/shell_words.hpp"
 
 #include <fmt/format.h>
 
@@ -267,7 +268,7 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
   require_names("--metric", metrics, plan.metrics, "hapbench describe metrics");
   print_warnings(context, plan.warnings);
-  Report report(options, "converge_" + file.stem().string(), context);
+  Report report(options, "converge", "converge_" + file.stem().string(), context);
   // Run all levels.
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(checked(plan.cases.load(i))); });
@@ -288,7 +289,8 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   report.write(kOrders, order_columns(), studies);
   report.write(kLevels, level_columns({}), rows);
   report.write(kTimes, time_columns(), studies.front().levels);
-  report.say(fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", report.folder().string()));
+  report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
+                         shell_file(report.folder())));
   return report.finish();
 }
 

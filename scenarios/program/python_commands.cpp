@@ -1,4 +1,5 @@
 #include "scenarios/program/python_commands.hpp"
+#include "scenarios/input/shell_words.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,13 +20,15 @@ namespace hapbench {
 /// text or the JSON.
 class Report {
  public:
+  /// Creates a report whose folder is locked by the caller.
   Report(const OutputOptions& output, std::filesystem::path folder, ProgramContext& context)
       : output_(output), folder_(std::move(folder)), context_(context) {}
-  /// Creates a report whose files go to the folder of --out, or to results/out/`name` without --out. Throws
-  /// InputError if the folder cannot be written to.
-  Report(const CommonOptions& options, const std::string& name, ProgramContext& context)
+  /// Creates a report of a command whose files go to the folder of --out, or to results/out/`name` without --out, and
+  /// locks the files of this command there. Throws InputError if the folder cannot be written to, and IoError if
+  /// another process has locked them.
+  Report(const CommonOptions& options, const std::string& command, const std::string& name, ProgramContext& context)
       : Report(options.output, results_directory(options.out, name), context) {
-    require_writable_directory(context_, folder_);
+    lock_.emplace(locked_results(context_, folder_, command, command));
   }
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -55,6 +58,7 @@ class Report {
   const OutputOptions& output_;
   std::filesystem::path folder_;
   ProgramContext& context_;
+  std::optional<FolderLock> lock_;
   FileSet files_;
   std::string text_;
   Json json_;

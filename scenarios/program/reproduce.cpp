@@ -74,6 +74,21 @@ struct ThesisRun : BundledScenario {
   std::vector<std::string> unmet = {};  ///< expectations of the scenario that the run does not meet
 };
 
+/// Returns the folders of the runs.
+std::vector<fs::path> run_folders(const ReproduceOptions& options, const std::vector<ThesisRun>& runs) {
+  std::vector<fs::path> folders;
+  for (const ThesisRun& run : runs) folders.push_back(options.runs() / run.name);
+  return folders;
+}
+
+/// Locks the ledger and the files next to it. Locks nothing if no ledger is written or its folder does not exist.
+std::optional<FolderLock> locked_ledger(const fs::path& ledger, ProgramContext& context) {
+  const fs::path folder = ledger.has_parent_path() ? ledger.parent_path() : ".";
+  std::error_code ignored;
+  if (ledger.empty() || !fs::is_directory(folder, ignored)) return std::nullopt;
+  return locked_results(context, folder, ledger.filename().string(), "reproduce", "--ledger");
+}
+
 /// Runs the scenario and writes its results to a subdirectory of `directory`. Does nothing if the scenario was
 /// run before. Keeps current results unless `rerun`.
 void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
@@ -171,19 +186,21 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
       choices.with_numbers(PublishedNumbers(reference / "published.json"), choices.values_on_record());
   Readings readings{choices, published, {}, {}};
   if (!options.readings.empty()) readings.values = read_readings(options.readings, choices);
-  Report report(options, "reproduce", context);
+  Report report(options, kReproduceFiles, "reproduce", context);
   std::vector<ThesisRun> runs;
   for (const BundledScenario& bundled : bundled_scenarios())
     if (bundled.group == "thesis") runs.push_back({bundled});
+  // With --only and without --ledger, no ledger is written: it would replace the ledger of all claims.
+  const fs::path ledger =
+      options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);
+  const std::optional<FolderLock> ledger_lock = locked_ledger(ledger, context);
+  require_unlocked(run_folders(options, runs), kRunFiles);
   // Without --only, make all runs first, in parallel. With --only, judge() makes the runs that the claims need.
   if (options.only.empty())
     for_each_job(runs.size(), job_options(options, "thesis", context),
                  [&](std::size_t i) { provide(runs[i], options.runs(), options.rerun); });
 
   const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options, context);
-  // With --only and without --ledger, no ledger is written: it would replace the ledger of all claims.
-  const fs::path ledger =
-      options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);
   // Use the stored robustness, or sample it anew with --choices.
   const fs::path on_record = reference / "robustness.json";
   Json robustness = fs::exists(on_record) ? read_json(on_record) : Json{{"claims", Json::array()}};

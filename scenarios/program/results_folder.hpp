@@ -2,9 +2,10 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "scenarios/program/program_context.hpp"
+#include "scenarios/run/folder_lock.hpp"
 
 namespace hapbench {
 
@@ -15,5 +16,19 @@ std::filesystem::path results_directory(const std::string& out, const std::strin
 /// with the option's name, if results cannot be written to it.
 void require_writable_directory(ProgramContext& context, const std::filesystem::path& directory,
                                 const std::string& option = "--out");
+
+/// Creates the directory like require_writable_directory() and locks a set of its files (folder_lock.hpp). `writer`:
+/// the command that writes the set. Prints a note if the file system has no locks. Throws InputError, and IoError if
+/// another command has locked the set.
+FolderLock locked_results(ProgramContext& context, const std::filesystem::path& directory, const std::string& set,
+                          const std::string& writer, const std::string& option = "--out");
+
+/// Locks the directory of a run. Throws also if a command that writes to all its subdirectories, such as `compare`, has
+/// locked a directory around it.
+FolderLock locked_run(ProgramContext& context, const std::filesystem::path& directory);
+
+/// Throws IoError if another command has locked the files of this set in one of the folders. Precondition: the caller
+/// has locked the outer folder, so that no such lock can start.
+void require_unlocked(const std::vector<std::filesystem::path>& folders, const std::string& set);
 
 }  // namespace hapbench

@@ -125,7 +125,8 @@ int run(const RunOptions& options, ProgramContext& context) {
     scenarios.push_back(checked(std::move(scene)));
     print_warnings(context, scenarios.back());
   }
-  for (const fs::path& directory : directories) require_writable_directory(context, directory);
+  std::vector<FolderLock> locks;
+  for (const fs::path& directory : directories) locks.push_back(locked_run(context, directory));
 
   // Run the scenarios one after the other.
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
@@ -133,8 +134,9 @@ int run(const RunOptions& options, ProgramContext& context) {
   std::vector<Result> results;
   std::string targets;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const Result& result = results.emplace_back(run_scenario(
-        scenarios[i], directories[i], {!options.output.quiet, context.progress}, nullptr, /*diagnose=*/true));
+    const Result& result =
+        results.emplace_back(run_scenario(scenarios[i], RunOutput(directories[i], /*has_lock=*/true),
+                                          {!options.output.quiet, context.progress}, nullptr, /*diagnose=*/true));
     // Tell users who try values of a field that the results of the previous value were replaced.
     if (result.replaces_other && options.out.empty() && !options.overrides.empty())
       print_note(context,
@@ -147,7 +149,7 @@ int run(const RunOptions& options, ProgramContext& context) {
     Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
     for (const std::string& unmet : result.unmet) {
-      report.fault(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} accepts this outcome))",
+      report.fault(fmt::format(R"({}: {} (field expect; --set 'expect={{"outcome":"{}"}}' accepts this outcome))",
                                scenarios[i].loaded().file.string(), unmet, outcome_name(result.end.outcome)),
                    kUnexpectedOutcome);
     }

@@ -32,7 +32,7 @@ Columns<StressCounts> stress_columns() {
 
 int stress(const StressOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
-  Report report(options, "stress", context);
+  Report report(options, "stress", "stress", context);
   const std::vector<StressCounts> all =
       stress_laws(options.count, options.seed, job_options(options, "stress", context));
   const Columns<StressCounts> columns = stress_columns();

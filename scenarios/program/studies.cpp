@@ -146,6 +146,11 @@ std::optional<StudyArguments> StudyArguments::in(const ProgramArguments& argumen
   for (const auto& [key, value] : study.items()) {
     if (std::ranges::find(kDescriptiveMembers, key) != std::end(kDescriptiveMembers)) continue;
     const std::string option = "--" + key;
+    if (key == "module" || key == "allow-modules")
+      fail_in_line(file, line_of(text, key),
+                   fmt::format("{}: cannot be in a study, because it causes code to be executed; allowed: {} on the "
+                               "command line",
+                               key, option));
     const auto is_given = [&](const std::string& argument) {
       return argument == option || argument.starts_with(option + "=");
     };

@@ -20,6 +20,7 @@
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/input/shell_words.hpp"
 #include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/columns.hpp"
@@ -192,7 +193,9 @@ int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& c
   std::vector<std::string> arguments = {context.program.string(), "run", scene.string()};
   for (const std::string& override : cases.overrides(command.row))
     arguments.insert(arguments.end(), {"--set", override});
-  for (const LoadedLaw& law : loaded_laws()) arguments.insert(arguments.end(), {"--module", law.file.string()});
+  for (const LoadedModule& module : loaded_modules())
+    arguments.insert(arguments.end(), {"--module", module.file.string()});
+  if (ModulePermission::allows_all()) arguments.emplace_back("--allow-modules");
   print(context, command.output, shell_line(arguments) + "\n", Json{{"row", command.row}, {"command", arguments}});
   return kSuccess;
 }
@@ -211,8 +214,8 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramCo
     text += fmt::format("{} of {} runs satisfy {}\n", table.kept.runs, table.counts.runs,
                         fmt::join(command.where, " and "));
   if (table.fields() > 1)
-    text +=
-        fmt::format("\"hapbench plot {} --metric {}\" draws the results\n", table.file.parent_path().string(), metric);
+    text += fmt::format("\"hapbench plot {} --metric {}\" draws the results\n", shell_file(table.file.parent_path()),
+                        shell_word(metric));
   print(context, command.output, text, {});
 }
 
@@ -252,7 +255,7 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
   const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking", context));
   chosen_metric(plan.metrics, command.metric);            // throws if the metric does not exist
   print_warnings(context, first_few(plan.warnings, 20));  // there may be a warning for each run
-  require_writable_directory(context, options.directory);
+  const FolderLock lock = locked_results(context, options.directory, options.table().filename().string(), "sweep");
 
   // Run the sweep, then print its table.
   const SweepReport report = run_sweep(plan, options);

@@ -13,10 +13,10 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/point_shell_file.hpp"
+#include "scenarios/input/shell_words.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/output.hpp"
-#include "scenarios/program/program_arguments.hpp"
 #include "scenarios/program/results_folder.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -177,13 +177,14 @@ bool is_device_file(const std::filesystem::path& file) {
 void write_points(const LoadedScenario& loaded, const std::filesystem::path& file, ProgramContext& context) {
   if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment))
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
-  const auto shell = make_shell(loaded.scenario, loaded.files);
-  throw_if_stopped();  // making the shell may have taken seconds
-  const std::string text = format_point_shell(shell->points(), file);
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
     fail_in({.about_options = {"--points"}}, fmt::format("--points {}: is a directory", file.string()));
-  require_writable_directory(context, file.has_parent_path() ? file.parent_path() : ".", "--points");
+  const FolderLock lock = locked_results(context, file.has_parent_path() ? file.parent_path() : ".",
+                                         file.filename().string(), "validate", "--points");
+  const auto shell = make_shell(loaded.scenario, loaded.files);
+  throw_if_stopped();  // making the shell may have taken seconds
+  const std::string text = format_point_shell(shell->points(), file);
   write_file_atomically(file, text);
 }
 
@@ -201,12 +202,12 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
       if (options.points.empty() && is_device_file(file)) {
         device_of_file(file);  // throws if the device is invalid
         text += fmt::format("{}: valid, but a device and not a scenario; use it with: {}\n", argument,
-                            shell_line({"hapbench", "limit", "tap_wall", "--device", argument}));
+                            "hapbench limit tap_wall --device " + shell_file(argument));
         verdict["kind"] = "device";
         continue;
       }
       // Check the scenario, and report the facts about its scene.
-      const CheckedScenario scene = checked(load_scenario(file, options.overrides));
+      const CheckedScenario scene = checked(load_scenario(file, options.overrides), Libraries::inspected);
       const LoadedScenario& loaded = scene.loaded();
       print_warnings(context, scene);
       const SceneFacts facts = scene_facts(loaded);

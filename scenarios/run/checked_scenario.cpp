@@ -26,12 +26,14 @@ void check_force_reference(const LoadedScenario& loaded, NamedFile& file) {
 
 }  // namespace
 
-CheckedScenario checked(LoadedScenario loaded) {
+CheckedScenario checked(LoadedScenario loaded, Libraries libraries) {
   const Scenario& scenario = loaded.scenario;
   std::vector<Warning> warnings;
-  // Load the library of contacts.
-  if (scenario.rendering.contact_source == kContactPlugin)
-    with_file(loaded, [&] { require_contacts_in(scenario.directory / scenario.rendering.contact_file); });
+  // Load or inspect the library of contacts.
+  if (scenario.rendering.contact_source == kContactPlugin) {
+    const auto use = libraries == Libraries::loaded ? require_contacts_in : inspect_module;
+    with_file(loaded, [&] { use(scenario.directory / scenario.rendering.contact_file); });
+  }
   // Read and parse each file, and collect its warnings.
   for (const auto& file : loaded.files.all()) {
     try {

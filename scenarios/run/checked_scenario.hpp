@@ -8,6 +8,10 @@
 
 namespace hapbench {
 
+/// What checked() does with the library of contacts that a scenario names. An inspected library is not loaded; the
+/// scenario can then not be run.
+enum class Libraries { loaded, inspected };
+
 /// A scenario whose named files are known to be usable. Only checked() creates an instance. A function that
 /// takes a CheckedScenario therefore cannot be called with an unchecked scenario, and no scenario is checked
 /// twice.
@@ -27,7 +31,7 @@ class CheckedScenario {
  private:
   CheckedScenario(LoadedScenario loaded, std::vector<Warning> file_warnings)
       : loaded_(std::move(loaded)), file_warnings_(std::move(file_warnings)) {}
-  friend CheckedScenario checked(LoadedScenario loaded);
+  friend CheckedScenario checked(LoadedScenario loaded, Libraries libraries);
 
   LoadedScenario loaded_;
   std::vector<Warning> file_warnings_;
@@ -35,7 +39,8 @@ class CheckedScenario {
 
 /// Reads and parses the files that the scenario names, and loads its library of contacts, so that errors are
 /// found before any result is written. Cost: reading the files; a few microseconds for each file that this
-/// process has already read and that has not changed since. Throws InputError.
-CheckedScenario checked(LoadedScenario loaded);
+/// process has already read and that has not changed since. Throws InputError, also for a library without permission
+/// (load_module.hpp).
+CheckedScenario checked(LoadedScenario loaded, Libraries libraries = Libraries::loaded);
 
 }  // namespace hapbench

@@ -4,13 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cfenv>
+#include <fstream>
 #include <map>
 #include <mutex>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "algorithms/module/module.hpp"
+#include "scenarios/input/shell_words.hpp"
 #include "scenarios/input/text_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/scene/field_files.hpp"
@@ -33,15 +37,17 @@ constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL;
 constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #endif
 
-std::vector<LoadedLaw> laws;  ///< laws of this process; load_module.hpp explains why they are not per context
+// State of this process; load_module.hpp explains why it is not per context.
+std::vector<LoadedModule> modules;  ///< in the order of loading
+std::atomic<int> allowing = 0;      ///< number of existing ModulePermission objects that allow all modules
+
+/// Tables of the libraries of contacts by file. The mutex protects the map.
+std::mutex contacts_mutex;
+std::map<fs::path, const HapbenchModule*> contacts;
 
 /// Returns the hash of a file. Throws InputError for a directory or a pipe, before it is opened as a library.
 std::string hash_of_file(const fs::path& file) {
   return with_file(file, [&] { return hash_text(hash_of(read_text_file(file, kMaxModuleBytes))); });
-}
-
-const char* kind_name(std::uint32_t kind) {
-  return kind == HAPBENCH_LAW ? "law" : "source of contacts";
 }
 
 /// Returns the function with which a module returns its table. Throws InputError if the library has no such
@@ -58,8 +64,8 @@ decltype(&hapbench_module) entry_point(const fs::path& file, void* library) {
 }
 
 /// Opens a library and returns its table. The library stays open, because its functions may be called until the
-/// program ends. Throws InputError if the library is not a module of this kind and interface version.
-const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
+/// program ends. Throws InputError if the library is not a module of this interface version.
+const HapbenchModule& opened(const fs::path& file) {
   // Loading a library that was linked with -ffast-math switches off subnormal numbers for the whole program,
   // which would change the results of every algorithm. The floating-point environment is therefore restored on
   // return.
@@ -92,18 +98,14 @@ const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
                                    HAPBENCH_MODULE_VERSION));
   if (table->kind != HAPBENCH_LAW && table->kind != HAPBENCH_CONTACTS)
     fail_in_file(file, fmt::format("its kind is {}; allowed: HAPBENCH_LAW or HAPBENCH_CONTACTS", table->kind));
-  if (table->kind != kind)
-    fail_in_file(file,
-                 fmt::format("holds a {}, not a {}; name it in {}", kind_name(table->kind), kind_name(kind),
-                             table->kind == HAPBENCH_LAW ? "--module" : "rendering.contact_source of a scenario"));
   return *table;
 }
 
 /// Returns the canonical path of a file, so that different links to a file give the same path.
-fs::path found_file(const fs::path& given, std::uint32_t kind) {
+fs::path found_file(const fs::path& given) {
   std::error_code error;
   fs::path file = fs::canonical(given, error);
-  if (error) fail_in_file(given, fmt::format("cannot be loaded as a {}: {}", kind_name(kind), error.message()));
+  if (error) fail_in_file(given, fmt::format("cannot be loaded as a module: {}", error.message()));
   return file;
 }
 
@@ -112,44 +114,76 @@ Module module_of(const HapbenchModule& table, const fs::path& file) {
   return {{std::shared_ptr<void>(), &table}, file.filename().string()};
 }
 
-/// Returns the table of a library of contacts, and loads the library at the first call. Thread-safe.
+/// Returns the table of a library of contacts, and loads the library at the first call. Throws InputError without
+/// permission. Thread-safe.
 const HapbenchModule& contacts_table(const fs::path& file) {
-  static std::mutex mutex;
-  static std::map<fs::path, const HapbenchModule*> loaded;
-  const std::lock_guard lock(mutex);
-  const auto found = loaded.find(file);
-  if (found != loaded.end()) return *found->second;
+  require_module_permission(file);
+  const std::lock_guard lock(contacts_mutex);
+  const auto found = contacts.find(file);
+  if (found != contacts.end()) return *found->second;
   hash_of_file(file);
-  const HapbenchModule& table = opened(file, HAPBENCH_CONTACTS);
+  const HapbenchModule& table = opened(file);
+  if (table.kind != HAPBENCH_CONTACTS)
+    fail_in_file(file, "holds a law, not a source of contacts; name it in --module and in rendering.algorithm");
   if (table.name == nullptr || table.step == nullptr)
     fail_in_file(file, "is not a source of contacts that can be used: its name or its function \"step\" is missing");
-  loaded.emplace(file, &table);
+  contacts.emplace(file, &table);
   return table;
 }
 
-}  // namespace
-
-void load_law(const fs::path& given, const LoadingGuard& guard) {
-  const fs::path file = found_file(given, HAPBENCH_LAW);
-  if (std::ranges::find(laws, file, &LoadedLaw::file) != laws.end()) return;
-  // Load the library while no other thread reads the table of algorithms.
-  const std::shared_ptr<void> guarded = guard ? guard() : nullptr;
-  std::string hash = hash_of_file(file);
-  const HapbenchModule& table = opened(file, HAPBENCH_LAW);
+/// Registers the law of a loaded library under its name, which must be new, and returns the name. Throws InputError.
+std::string registered_law(const HapbenchModule& table, const fs::path& file, std::string hash) {
   try {
-    // Register the law under its name, which must be new.
     AlgorithmEntry entry = law_entry(module_of(table, file), std::move(hash));
     const std::string name = entry.info->name;
-    if (const auto other = std::ranges::find(laws, name, &LoadedLaw::algorithm); other != laws.end())
+    if (const auto other = std::ranges::find(modules, name, &LoadedModule::algorithm); other != modules.end())
       throw std::invalid_argument(fmt::format("\"{}\" is the name of the law in {}", name, other->file.string()));
     add_algorithm(std::move(entry));
-    laws.push_back({file, name});
+    return name;
   } catch (const std::invalid_argument& problem) {
     fail_in_file(file, fmt::format("is not a law that can be used: {}", problem.what()));
   }
 }
 
-void load_laws_in(const std::string& what, const std::string& folders, const LoadingGuard& guard) {
+}  // namespace
+
+ModulePermission::ModulePermission(bool all) : all_(all) {
+  if (all_) ++allowing;
+}
+
+ModulePermission::~ModulePermission() {
+  if (all_) --allowing;
+}
+
+bool ModulePermission::allows_all() {
+  return allowing > 0;
+}
+
+void allow_all_modules() {
+  ++allowing;
+}
+
+void require_module_permission(const fs::path& given) {
+  const fs::path file = found_file(given);
+  if (ModulePermission::allows_all() || std::ranges::find(modules, file, &LoadedModule::file) != modules.end()) return;
+  fail_in_file(given, fmt::format("is a library whose code would be executed; allowed: with --module {}, or with "
+                                  "--allow-modules for every library that a scenario names",
+                                  shell_file(file)));
+}
+
+void load_module(const fs::path& given, const LoadingGuard& guard) {
+  const fs::path file = found_file(given);
+  if (std::ranges::find(modules, file, &LoadedModule::file) != modules.end()) return;
+  // Load the library while no other thread reads the table of algorithms.
+  const std::shared_ptr<void> guarded = guard ? guard() : nullptr;
+  std::string hash = hash_of_file(file);
+  const HapbenchModule& table = opened(file);
+  // A source of contacts is used by the scenarios that name it.
+  const bool is_law = table.kind == HAPBENCH_LAW;
+  modules.push_back({file, is_law ? registered_law(table, file, std::move(hash)) : ""});
+}
+
+void load_modules_in(const std::string& what, const std::string& folders, const LoadingGuard& guard) {
   for (const fs::path folder : parts_of(folders, ':')) {
     if (folder.empty()) continue;
     std::error_code error;
@@ -158,21 +192,31 @@ void load_laws_in(const std::string& what, const std::string& folders, const Loa
       if (entry->path().extension() == ".so") files.push_back(entry->path());
     if (error) throw InputError(fmt::format("{}: {}: {}", what, folder.string(), error.message()));
     std::sort(files.begin(), files.end());
-    for (const fs::path& file : files) load_law(file, guard);
+    for (const fs::path& file : files) load_module(file, guard);
   }
 }
 
-const std::vector<LoadedLaw>& loaded_laws() {
-  return laws;
+const std::vector<LoadedModule>& loaded_modules() {
+  return modules;
 }
 
 void require_contacts_in(const fs::path& file) {
-  contacts_table(found_file(file, HAPBENCH_CONTACTS));
+  contacts_table(found_file(file));
+}
+
+void inspect_module(const fs::path& file) {
+  require_module_permission(file);
+  constexpr std::string_view kElf =
+      "\x7f"
+      "ELF";
+  std::string start(kElf.size(), '\0');
+  std::ifstream(found_file(file), std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start != kElf) fail_in_file(file, "is not a shared library: it does not begin with the mark of an ELF file");
 }
 
 std::unique_ptr<ContactSource> module_contacts(const fs::path& given, const std::string& config,
                                                const HapbenchRun& run) {
-  const fs::path file = found_file(given, HAPBENCH_CONTACTS);
+  const fs::path file = found_file(given);
   const HapbenchModule& table = contacts_table(file);
   try {
     return std::make_unique<ModuleContacts>(module_of(table, file), config, run);

@@ -18,11 +18,32 @@
 /// and would load the same law again.
 namespace hapbench {
 
-/// A force law that was loaded from a shared library.
-struct LoadedLaw {
-  std::filesystem::path file;  ///< absolute path
-  std::string algorithm;
+/// A module that the user named, by --module or HAPBENCH_MODULE_PATH.
+struct LoadedModule {
+  std::filesystem::path file;  ///< absolute path without symbolic links
+  std::string algorithm;       ///< name of its force law; empty for a source of contacts
 };
+
+/// Permission to load the libraries that scenarios name, for the lifetime of the object. A scenario alone never causes
+/// a library to be loaded, because the library's code could do anything: the user must name the library (load_module)
+/// or allow all libraries.
+class ModulePermission {
+ public:
+  /// With `all`, allows all libraries; without, has no effect.
+  explicit ModulePermission(bool all);
+  ~ModulePermission();
+  ModulePermission(const ModulePermission&) = delete;
+  ModulePermission& operator=(const ModulePermission&) = delete;
+
+  /// Returns true if all libraries are allowed.
+  static bool allows_all();
+
+ private:
+  bool all_;
+};
+
+/// Allows all libraries until the process ends, for Python and for tests.
+void allow_all_modules();
 
 /// Function called before a new law is loaded. Its result is kept alive until loading has finished. If several
 /// threads may load laws, the function must throw InputError while another thread reads the table of
@@ -30,23 +51,30 @@ struct LoadedLaw {
 /// laws.
 using LoadingGuard = std::function<std::shared_ptr<void>()>;
 
-/// Loads a law from `file` and registers it as an algorithm until the program ends. Does nothing if the file is
-/// already loaded. Must not be called while another thread reads the table of algorithms. Throws InputError if
-/// the file is not a usable law.
-void load_law(const std::filesystem::path& file, const LoadingGuard& guard = {});
+/// Loads a module that the user named. Registers a law as an algorithm until the program ends. Allows scenarios to name
+/// a source of contacts. Does nothing if the file is already loaded. Must not be called while another thread reads the
+/// table of algorithms. Throws InputError if the file is not a usable module.
+void load_module(const std::filesystem::path& file, const LoadingGuard& guard = {});
 
 /// Loads every *.so file in the given folders, in the order of file names. `folders` are separated by colons.
 /// `what` names the list in error messages. Throws InputError.
-void load_laws_in(const std::string& what, const std::string& folders, const LoadingGuard& guard = {});
+void load_modules_in(const std::string& what, const std::string& folders, const LoadingGuard& guard = {});
 
-/// Returns the laws that this process has loaded, in the order of loading.
-const std::vector<LoadedLaw>& loaded_laws();
+/// Returns the modules that load_module() has loaded in this process, in the order of loading.
+const std::vector<LoadedModule>& loaded_modules();
 
-/// Loads a library with a source of contacts. Thread-safe. Throws InputError if it cannot be used.
+/// Throws InputError, with the option that gives permission, unless the user has named this library or allowed all.
+void require_module_permission(const std::filesystem::path& file);
+
+/// Checks that a library may be loaded and is an ELF file, without loading it. Throws InputError.
+void inspect_module(const std::filesystem::path& file);
+
+/// Loads a library with a source of contacts. Thread-safe. Throws InputError without permission, or if the library
+/// cannot be used.
 void require_contacts_in(const std::filesystem::path& file);
 
 /// Creates the contact source of a library for one run. `config`: the scenario's configuration for the library,
-/// as JSON text. Thread-safe. Throws InputError.
+/// as JSON text. Thread-safe. Throws InputError, also without permission.
 std::unique_ptr<ContactSource> module_contacts(const std::filesystem::path& file, const std::string& config,
                                                const HapbenchRun& run);
 

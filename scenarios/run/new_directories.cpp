@@ -5,6 +5,18 @@ namespace hapbench {
 namespace fs = std::filesystem;
 
 std::error_code NewDirectories::create(const fs::path& directory) {
+  constexpr int kMaxAttempts = 1000;
+  std::error_code error;
+  // Another process may remove a new parent, which is still empty, before its child exists; then create it again.
+  for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
+    error = create_missing(directory);
+    if (error != std::errc::no_such_file_or_directory) break;
+  }
+  return error;
+}
+
+/// Creates the missing directories of a path once, and records the directories that this call created.
+std::error_code NewDirectories::create_missing(const fs::path& directory) {
   std::vector<fs::path> missing;
   std::error_code error, unknown;
   // Find the missing parents, innermost first.
@@ -12,8 +24,12 @@ std::error_code NewDirectories::create(const fs::path& directory) {
        path = path.parent_path()) {
     missing.push_back(path);
   }
-  created_.insert(created_.end(), missing.rbegin(), missing.rend());
-  fs::create_directories(directory, error);
+  for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
+    // A path that ends with a slash has its last directory twice.
+    if (fs::create_directory(*path, error)) created_.push_back(*path);
+    if (error) return error;
+  }
+  fs::create_directories(directory, error);  // reports a file of this name
   return error;
 }
 

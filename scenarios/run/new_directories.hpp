@@ -7,7 +7,8 @@
 namespace hapbench {
 
 /// Creates directories for results. The destructor removes the created directories that are still empty, so
-/// that failed work leaves no empty directories.
+/// that failed work leaves no empty directories. The directory of another process stays if that process has locked
+/// it (folder_lock.hpp), because it then holds a file.
 class NewDirectories {
  public:
   NewDirectories() = default;
@@ -20,6 +21,8 @@ class NewDirectories {
   std::error_code create(const std::filesystem::path& directory);
 
  private:
+  std::error_code create_missing(const std::filesystem::path& directory);
+
   std::vector<std::filesystem::path> created_;  ///< created directories, parents first
 };
 

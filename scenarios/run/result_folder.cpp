@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -59,15 +55,9 @@ void remove_empty_trials(const fs::path& directory) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(const fs::path& directory) : directory_(directory) {
-  create(directories_, directory);
-  // Lock the directory; a file system without locks is accepted.
-  const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  lock_ = {nullptr, [descriptor](void*) { ::close(descriptor); }};
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  throw IoError("write, because another run writes to", directory,
-                std::make_error_code(std::errc::device_or_resource_busy));
+ResultFolder::ResultFolder(const RunOutput& output) : directory_(output.directory) {
+  create(directories_, directory_);
+  if (!output.is_locked) lock_.emplace(directories_, directory_, kRunFiles, "run");
 }
 
 fs::path ResultFolder::trial_directory(Trial trial, std::size_t trials) {

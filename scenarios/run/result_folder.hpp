@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
+#include <optional>
+#include <utility>
 
 #include "results/summary/summary.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/run/folder_lock.hpp"
 #include "scenarios/run/new_directories.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/scene/load_scenario.hpp"
@@ -14,14 +16,22 @@
 
 namespace hapbench {
 
-/// The directory of a run's results, protected by a lock: no other process or thread can create a ResultFolder
-/// for the same directory while this object exists. This keeps two runs from writing into one folder. File
-/// systems without locks are not protected.
+/// Where a run writes its results.
+struct RunOutput {
+  RunOutput(std::filesystem::path folder, bool has_lock = false)  // NOLINT: implicit on purpose
+      : directory(std::move(folder)), is_locked(has_lock) {}
+
+  std::filesystem::path directory;
+  bool is_locked;  ///< true if the caller has excluded other writers by a FolderLock
+};
+
+/// The directory of a run's results, protected by a lock (folder_lock.hpp): no other process or thread can create a
+/// ResultFolder for the same directory while this object exists.
 class ResultFolder {
  public:
-  /// Creates the directory and locks it. The destructor removes created directories that are still empty.
-  /// Throws IoError if the directory cannot be created or another run holds the lock.
-  explicit ResultFolder(const std::filesystem::path& directory);
+  /// Creates the directory and locks it, unless it is locked. The destructor removes created directories that are
+  /// still empty. Throws IoError if the directory cannot be created or another run holds the lock.
+  explicit ResultFolder(const RunOutput& output);
 
   /// Creates and returns the directory into which a trial records. `trials`: number of trials of the run; for a
   /// single trial, this is the run's directory. Throws IoError.
@@ -35,7 +45,7 @@ class ResultFolder {
  private:
   std::filesystem::path directory_;
   NewDirectories directories_;
-  std::shared_ptr<void> lock_;  ///< closes the file descriptor that holds the lock
+  std::optional<FolderLock> lock_;  ///< empty if the caller holds a lock
 };
 
 /// Removes the files that a run wrote from a directory, and keeps all other files. Does nothing if the

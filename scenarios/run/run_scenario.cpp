@@ -232,7 +232,7 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
 
 }  // namespace
 
-Result run_scenario(const CheckedScenario& checked, const std::optional<fs::path>& output, Progress progress,
+Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutput>& output, Progress progress,
                     RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell) {
   const Scenario& scenario = checked.scenario();
   const auto start = Clock::now();
@@ -269,7 +269,7 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<fs::path
   result.provenance = provenance();
   result.provenance.plugin = origin.file;
   result.provenance.plugin_hash = origin.hash;
-  const Json effective = effective_scenario(scenario, output ? *output : fs::current_path());
+  const Json effective = effective_scenario(scenario, output ? output->directory : fs::current_path());
   result.scenario_hash = scenario_hash(effective, checked.files());
   if (folder) result.replaces_other = folder->write(scenario.record, effective, result, run.recorders());
   if (tables != nullptr) tables->write(effective, result, run.recorders());

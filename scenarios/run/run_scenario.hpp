@@ -12,6 +12,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/run_tables.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/trials.hpp"
@@ -32,9 +33,8 @@ namespace hapbench {
 /// Throws InputError before anything is written if the point shell or tool cannot be built from the files.
 /// Throws IoError if writing fails, and Stopped if a signal ends the run. No partial results remain after an
 /// error.
-Result run_scenario(const CheckedScenario& checked, const std::optional<std::filesystem::path>& output,
-                    Progress progress, RunTables* tables = nullptr, bool diagnose = false,
-                    std::shared_ptr<const PointShell> shell = {});
+Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutput>& output, Progress progress,
+                    RunTables* tables = nullptr, bool diagnose = false, std::shared_ptr<const PointShell> shell = {});
 
 /// Runs a scenario with an existing point shell and returns its result. Writes no files and shows no progress.
 inline Result run_with_shell(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell) {

@@ -191,7 +191,10 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
     facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().open_edges().empty();
 
   // The path of a drag.
-  const SimulationParts parts = assemble(scenario, loaded.files, shell, {});
+  Scenario assembled = scenario;
+  if (scenario.rendering.contact_source == kContactPlugin)
+    assembled.rendering.contact_source = kComputedContacts;  // loads no library; the contacts do not matter here
+  const SimulationParts parts = assemble(assembled, loaded.files, shell, {});
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
     const double duration = step * static_cast<double>(scenario.time.steps);
     warnings.add(short_path_warning(std::get<DragHandFields>(scenario.hand), *hand, duration, tool));

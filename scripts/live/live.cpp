@@ -221,6 +221,9 @@ std::filesystem::path find_scenario(const std::string& name, const std::filesyst
 void require_contacts_in(const std::filesystem::path&) {
   refuse_library();
 }
+void inspect_module(const std::filesystem::path&) {
+  refuse_library();
+}
 std::unique_ptr<ContactSource> module_contacts(const std::filesystem::path&, const std::string&, const HapbenchRun&) {
   refuse_library();
 }

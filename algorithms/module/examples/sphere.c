@@ -2,7 +2,9 @@
  *
  *     gcc -std=c11 -O2 -fPIC -shared -Ialgorithms/module algorithms/module/examples/sphere.c -lm -o sphere.so
  *
- * Use in a scenario: "contact_source": {"type": "plugin", "file": "sphere.so", "config": {"radius_m": 0.002}}. */
+ * Use in a scenario: "contact_source": {"type": "plugin", "file": "sphere.so", "config": {"radius_m": 0.002}}. Run:
+ *
+ *     hapbench run scene.json --module sphere.so */
 #include <hapbench_module.h>
 #include <math.h>
 #include <stdio.h>

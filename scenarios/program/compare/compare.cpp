@@ -128,9 +128,12 @@ int compare(const CompareOptions& options, ProgramContext& context) {
   // True if there are several scenes or seeds to rank over, or metrics to rank by.
   const bool ranks = several || comparison.seeds > 1 || !options.metrics.empty();
   print_warnings(context, comparison.warnings);
-  Report report(options, several ? "compare" : "compare_" + comparison.names[0], context);
+  Report report(options, kCompareFiles, several ? "compare" : "compare_" + comparison.names[0], context);
   const std::filesystem::path& out = report.folder();
-  // Prepare the folders of the results.
+  // Prepare the folders of the results, unless another command writes to one of them.
+  require_unlocked_parents(out, kCompareFiles, 1);
+  if (several) require_unlocked(comparison.scene_folders(out), kCompareFiles);
+  require_unlocked(comparison.run_folders(out), kRunFiles);
   remove_earlier_comparison(out, comparison);
   for (std::size_t run = 0; run < comparison.size(); ++run)
     require_writable_directory(context, out / comparison.folder(run));

@@ -69,7 +69,7 @@ int limit(const LimitOptions& options, ProgramContext& context) {
   for (std::size_t i = 0; i < table.cases.size(); ++i)
     table.rows.push_back(make_limit_row(options, table, i, warnings));
   print_warnings(context, warnings);
-  Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene(), context);
+  Report report(options, "limit", options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene(), context);
   find_limits(options, table.rows, context);
   add_ratios(table);
   report_limits(table, layout, report);

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "results/io/atomic_file.hpp"
+#include "scenarios/input/shell_words.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/columns.hpp"
 #include "scenarios/program/exit_status.hpp"
@@ -31,12 +33,10 @@ int list_kinds(const OutputOptions& output, ProgramContext& context) {
   return kSuccess;
 }
 
-/// Runs the scene and draws it. The run is written to the folder that `run` uses by default.
-void draw_preview(const std::filesystem::path& scenario, const std::filesystem::path& picture, bool quiet,
-                  ProgramContext& context) {
-  const std::filesystem::path run = results_directory("", scenario.stem().string());
-  require_writable_directory(context, run);
-  run_scenario(checked(load_scenario(scenario)), run, {!quiet, context.progress});
+/// Runs the scene and draws it. The run is written to a folder that the caller has locked.
+void draw_preview(const std::filesystem::path& scenario, const std::filesystem::path& run,
+                  const std::filesystem::path& picture, bool quiet, ProgramContext& context) {
+  run_scenario(checked(load_scenario(scenario)), RunOutput(run, /*has_lock=*/true), {!quiet, context.progress});
   draw_run(context, run, picture, quiet);
 }
 
@@ -49,13 +49,17 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   const std::filesystem::path source = options.from;
   const std::filesystem::path out =
       !options.out.empty() ? options.out : (source.empty() ? "" : source.stem().string() + "_") + kind.name + ".json";
+  const std::filesystem::path directory = out.parent_path();
+  const FolderLock lock = locked_results(context, directory.empty() ? "." : directory, out.filename().string(), "new");
   std::error_code ignored;
   const std::filesystem::path picture = std::filesystem::path(out).replace_extension(".svg");
   if (options.preview && std::filesystem::exists(picture, ignored))
     throw InputError(fmt::format("{} exists; choose another name with --out", picture.string()));
   if (std::filesystem::exists(out, ignored))
     throw InputError(fmt::format("{} exists; choose another with --out", out.string()));
-  const std::filesystem::path directory = out.parent_path();
+  const std::filesystem::path run = results_directory("", out.stem().string());
+  std::optional<FolderLock> run_lock;
+  if (options.preview) run_lock.emplace(locked_run(context, run));
   // Make the scene and check it before anything is written.
   const StartedScene start = [&] {
     const WaitNotice notice("simulating the scene", !options.output.quiet);
@@ -65,20 +69,19 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   loaded.file = out;
   const CheckedScenario scene = checked(std::move(loaded));
   print_warnings(context, with_files(scene.loaded(), scene.file_warnings()));
-  require_writable_directory(context, directory.empty() ? "." : directory);
   // Write the scene, draw it with --preview, and explain its fields.
   write_file_atomically(out, json_text(start.scene));
 
   print_warnings(context, start.warnings);
-  if (options.preview) draw_preview(out, picture, options.output.quiet || options.output.json, context);
+  if (options.preview) draw_preview(out, run, picture, options.output.quiet || options.output.json, context);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
   for (const std::string& note : start.notes) text += note + "\n";
   if (options.preview) text += fmt::format("picture of a run: {}\n", picture.string());
   text += "\n";
   const Json fields = field_meanings(start.scene);
   for (const auto& [path, meaning] : fields.items()) text += layout.entry(path, meaning.get<std::string>(), 0, 34);
-  text +=
-      fmt::format("\n\"hapbench describe scenario\" explains all fields; next step: hapbench run {}\n", out.string());
+  text += fmt::format("\n\"hapbench describe scenario\" explains all fields; next step: hapbench run {}\n",
+                      shell_file(out));
   Json json = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
   if (options.preview) json["picture"] = picture.string();
   print(context, options.output, text, json);

@@ -12,6 +12,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/rounding.hpp"
+#include "scenarios/input/shell_words.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/new/drag_start.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -133,7 +134,7 @@ class Start {
   /// Returns the command that repeats this start with an option, as an error message shows it.
   std::string command_with(const std::string& option) const {
     return fmt::format("\"hapbench new {} {} {} {}\"", options_.kind, options_.on.empty() ? "--from" : "--on",
-                       mesh_file(), option);
+                       shell_file(mesh_file()), option);
   }
 
   /// Returns the scale of an object: its stated unit, the factor that gives it its stated size, or 1 for a file in

@@ -9,6 +9,7 @@
 #include "scenarios/analysis/stability/compared_devices.hpp"
 #include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/shell_words.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
@@ -56,7 +57,7 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   print_warnings(context, scene);
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
-  Report report(options, "tune_" + file.stem().string(), context);
+  Report report(options, "tune", "tune_" + file.stem().string(), context);
   const std::filesystem::path& out = report.folder();
   // Tune the laws and write their tables.
   tune_laws(algorithms, options.output.quiet, tuning, context);
@@ -66,14 +67,16 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   report.write("tune_trials.csv", trial_columns(), trials);
   report.say(tuning_text(tuning, layout));
   if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
-  // Write the scenario with the best choice.
+  // Write the scenario with the best choice. Remove the scenario of an earlier tune if nothing is feasible.
+  const std::filesystem::path tuned_file = out / (file.stem().string() + "_tuned.json");
   std::filesystem::path tuned;
+  if (tuning.ranking.empty()) report.files().remove(tuned_file);
   if (!tuning.ranking.empty()) {
-    tuned = out / (file.stem().string() + "_tuned.json");
+    tuned = tuned_file;
     report.files().write(tuned, json_text(tuned_scenario(tuning, *tuning.ranking[0], out)));
-    report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", tuned.string()));
+    report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
   }
-  report.say(fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", out.string()));
+  report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", out.string(), shell_file(out)));
   report.json() = tuning_json(tuning, tuned);
   return report.finish();
 }

@@ -397,6 +397,7 @@ PYBIND11_MODULE(_hapbench, module) {
   module.def("main", run_main, py::arg("words"), "Be the program: print on the terminal and return the exit status.");
   module.def(
       "algorithms", [] { return algorithm_names(); }, "The names of all algorithms there are.");
+  module.def("allow_modules", allow_all_modules, "Allow all libraries that scenarios name, as --allow-modules does.");
   bind_force_laws(module);
   bind_simulation(module);
 }

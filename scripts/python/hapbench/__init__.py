@@ -21,6 +21,7 @@ __all__ = [
     "Table",
     "Trial",
     "algorithms",
+    "allow_modules",
     "command",
     "compare",
     "force_law",

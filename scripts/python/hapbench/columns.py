@@ -74,11 +74,16 @@ def is_number(text):
     return True
 
 
+def plain_text(text):
+    """A cell's text without the apostrophe that hapbench writes before a text that resembles a formula."""
+    return text[1:] if text[:1] == "'" and text.lstrip("'")[:1] in tuple("=+-@\t\r") else text
+
+
 def read_rows(file):
     """The names in the first line, and the other rows as lists of texts."""
     try:
         with file.open(encoding="utf-8", newline="") as stream:
-            rows = [row for row in csv.reader(stream) if row]
+            rows = [[plain_text(text) for text in row] for row in csv.reader(stream) if row]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise ResultError(f"{file}: cannot be read: {error}") from error
     if not rows:

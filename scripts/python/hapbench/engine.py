@@ -190,10 +190,19 @@ def algorithms() -> list[str]:
 
 
 def load_plugin(file: str | os.PathLike) -> None:
-    """Take a law from a shared object with hapbench's C interface, as --module does; it then stands beside the others.
+    """Load a module with hapbench's C interface, as the option --module does.
 
-    Raises ScenarioError for what is not a law, and while another thread computes."""
+    A force law joins the other laws. A source of contacts may then be used by scenarios that name its file. Raises
+    ScenarioError if the file is not a module, and while another thread computes."""
     command("--module", os.fspath(file), "describe", "--quiet")
+
+
+def allow_modules() -> None:
+    """Allow scenarios to load every library that they name, until Python ends, as the option --allow-modules does.
+
+    The code of a library can do anything that you can. Without this call, a scenario that names a library is refused
+    unless load_plugin has loaded the library."""
+    _hapbench.allow_modules()
 
 
 def main(words: Sequence[str] | None = None) -> int:

@@ -454,6 +454,9 @@ def commands_section(runs, words):
 
 
 def plugin_option(run):
-    """The option that loads a plugin's law; results know it by its file's name."""
-    file = at(run.summary, "/provenance/plugin/file")
-    return f" --module {shell_line(file)}" if file else ""
+    """Options that load the run's modules: a law, known by its file's name, and a source of contacts."""
+    files = [at(run.summary, "/provenance/plugin/file")]
+    source = at(run.scenario, "/rendering/contact_source")
+    if isinstance(source, dict) and source.get("type") == "plugin":
+        files.append(run.folder / source["file"])
+    return "".join(f" --module {shell_line(file)}" for file in files if file)

@@ -304,7 +304,7 @@ fs::path module(const std::string& name) {
 
 /// Behind the file's name.
 std::string problem_of_file(const fs::path& file) {
-  const auto error = test::input_error_of([&] { load_law(file); });
+  const auto error = test::input_error_of([&] { load_module(file); });
   if (!error) return "";
   const std::string what = error->what(), start = file.string() + ": ";
   EXPECT_TRUE(what.starts_with(start)) << what;
@@ -314,7 +314,7 @@ std::string problem_of_file(const fs::path& file) {
 
 TEST(LoadModule, SaysWhatIsWrongWithAFile) {
   const std::size_t before = algorithms().size();
-  EXPECT_EQ(problem_of_file("no/such.so"), "cannot be loaded as a law: No such file or directory");
+  EXPECT_EQ(problem_of_file("no/such.so"), "cannot be loaded as a module: No such file or directory");
   EXPECT_EQ(problem_of_file(fs::canonical(HAPBENCH_TEST_MODULES)), "is a directory, not a file");
   const test::TemporaryDirectory directory;
   std::ofstream(directory / "text.so") << "no library";
@@ -326,8 +326,7 @@ TEST(LoadModule, SaysWhatIsWrongWithAFile) {
     EXPECT_EQ(problem_of_file(module(std::string("old_") + old)),
               "is built for " + header + " of an earlier version; compile it anew against hapbench_module.h");
   }
-  EXPECT_EQ(problem_of_file(module("sphere")),
-            "holds a source of contacts, not a law; name it in rendering.contact_source of a scenario");
+  EXPECT_EQ(problem_of_file(module("sphere")), "") << "a source of contacts";
   EXPECT_EQ(algorithms().size(), before);
 }
 
@@ -353,9 +352,9 @@ TEST(LoadModule, SaysWhatIsWrongWithALaw) {
 }
 
 TEST(LoadModule, LoadsAFileOnceAndALawOnce) {
-  load_law(module("hostile"));
+  load_module(module("hostile"));
   const std::size_t after = algorithms().size();
-  load_law(module("hostile"));
+  load_module(module("hostile"));
   EXPECT_EQ(algorithms().size(), after);
   EXPECT_EQ(find_algorithm("hostile")->origin.file, "hostile.so");
   EXPECT_EQ(find_algorithm("hostile")->origin.hash.size(), 16u);
@@ -367,7 +366,7 @@ TEST(LoadModule, LoadsAFileOnceAndALawOnce) {
 }
 
 TEST(LoadModule, LeavesTheArithmeticAlone) {
-  load_law(module("hostile"));
+  load_module(module("hostile"));
   volatile double least = std::numeric_limits<double>::min();
   EXPECT_GT(least / 2.0, 0.0);
 }
@@ -377,11 +376,11 @@ TEST(LoadModule, LoadsFoldersInTheOrderOfNames) {
   fs::copy_file(module("depth_weighted"), directory / "b.so");
   fs::copy_file(module("capped_summation"), directory / "a.so");
   std::ofstream(directory / "readme.txt") << "no module";
-  load_laws_in("PATH", ":" + directory.path().string() + ":");
+  load_modules_in("PATH", ":" + directory.path().string() + ":");
   ASSERT_GE(algorithm_names().size(), 2u);
   EXPECT_EQ(algorithm_names().back(), "depth_weighted");
   EXPECT_EQ(algorithm_names()[algorithm_names().size() - 2], "capped_summation");
-  const auto error = test::input_error_of([] { load_laws_in("PATH", "/no/such/folder"); });
+  const auto error = test::input_error_of([] { load_modules_in("PATH", "/no/such/folder"); });
   ASSERT_TRUE(error);
   EXPECT_STREQ(error->what(), "PATH: /no/such/folder: No such file or directory");
 }
@@ -396,7 +395,7 @@ LoadedScenario scenario_with(const std::string& rendering) {
 }
 
 TEST(OwnParameters, AreWrittenWithTheirAlgorithmCheckedAndInTheSchema) {
-  load_law(module("hostile"));
+  load_module(module("hostile"));
   const auto rendering_of = [](const std::string& text) {
     return effective_scenario(scenario_with(text).scenario, "")["rendering"];
   };

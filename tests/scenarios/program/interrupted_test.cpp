@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "scenarios/batch/table_file.hpp"
+#include "scenarios/run/folder_lock.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
@@ -88,13 +89,13 @@ TEST(FailedWrite, OfStandardOutputIsAFailure) {
 TEST(FailedWrite, OfAFolderThatAnotherRunWritesTo) {
   const test::TemporaryDirectory directory;
   fs::create_directory(directory / "out");
-  const int folder = ::open((directory / "out").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  ASSERT_EQ(::flock(folder, LOCK_EX), 0);
+  NewDirectories directories;
+  auto lock = std::make_optional<FolderLock>(directories, directory / "out", "run", "run");
   const ProgramRun run = hapbench({"run", "poke_plane", "--out", (directory / "out").string()});
   EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.err.find("another run writes to"), std::string::npos) << run.err;
+  lock.reset();
   EXPECT_TRUE(fs::is_empty(directory / "out"));
-  ::close(folder);
 }
 
 /// A program that reads a pipe to which nobody writes, and so does not ask whether to stop.

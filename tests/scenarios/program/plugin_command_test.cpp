@@ -89,9 +89,18 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
 /// It fails even where the scenario expects that a run diverges.
 TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   const EnvironmentVariable how("HOSTILE", "contacts");
-  const ProgramRun run = hapbench({"run", "plane_wiped_round", "--set",
-                                   R"(rendering.contact_source={"type":"plugin","file":")" + plugin("hostile") + "\"}",
-                                   "--set", "expect={\"outcome\":\"diverges\"}", "--out", out("run")});
+  const std::string source =
+      R"(rendering.contact_source={"type":"plugin","file":")" + fs::canonical(plugin("hostile")).string() + "\"}";
+  std::vector<std::string> command = {
+      "run", "plane_wiped_round", "--set", source, "--set", "expect={\"outcome\":\"diverges\"}", "--out", out("run")};
+  for (const char* name : {"run", "validate", "sweep", "compare", "converge", "tune", "limit"}) {
+    const ProgramRun refused = hapbench({name, "plane_wiped_round", "--set", source});
+    EXPECT_EQ(refused.status, 2) << name;
+    if (std::string(name) != "sweep")
+      EXPECT_NE(refused.err.find("allowed: with --module "), std::string::npos) << name << refused.err;
+  }
+  command.push_back("--allow-modules");
+  const ProgramRun run = hapbench(command);
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("hostile (hostile.so) gives 10001 contacts; allowed: at most 10000"), std::string::npos)
       << run.err;

@@ -1,15 +1,19 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "algorithms/registry.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/run/load_module.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/bundled.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::contacts_test {
 namespace {
@@ -123,6 +127,7 @@ TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
 // A library.
 
 TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
+  const ModulePermission permission(true);
   const std::string source = R"(rendering.contact_source={"type":"plugin","file":")" HAPBENCH_TEST_MODULES
                              R"(/sphere.so","config":{"radius_m":0.002}})";
   const Scenario scenario =
@@ -142,7 +147,34 @@ TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
   EXPECT_GT(in_contact, 500u);
 }
 
+/// The code of a library that the user has not named must not be executed, not even for a check.
+TEST(ContactPlugin, IsRefusedWithoutPermission) {
+  const std::string file = HAPBENCH_TEST_MODULES "/sphere.so";
+  const auto named = [](const std::string& library) {
+    return load_scenario(find_scenario("plane_wiped_round"), {R"(rendering.contact_source={"type":"plugin","file":")" +
+                                                              library + R"(","config":{"radius_m":0.002}})"});
+  };
+  for (const Libraries use : {Libraries::loaded, Libraries::inspected}) {
+    const auto error = test::input_error_of([&] { checked(named(file), use); });
+    ASSERT_TRUE(error);
+    EXPECT_NE(std::string(error->what()).find("allowed: with --module "), std::string::npos) << error->what();
+  }
+  EXPECT_THROW(assemble(named(file).scenario), InputError);
+  const ModulePermission none(false);
+  EXPECT_THROW(checked(named(file)), InputError);
+  const ModulePermission all(true);
+  checked(named(file), Libraries::inspected);
+  checked(named(file));
+  const test::TemporaryDirectory directory;
+  std::ofstream(directory / "text.so") << "no library";
+  const auto error =
+      test::input_error_of([&] { checked(named((directory / "text.so").string()), Libraries::inspected); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("is not a shared library"), std::string::npos) << error->what();
+}
+
 TEST(ContactPlugin, SaysWhatItMisses) {
+  const ModulePermission permission(true);
   const auto said = [](const std::string& file, const std::string& config) -> std::string {
     try {
       assemble(bundled("plane_wiped_round", {"rendering.contact_source={\"type\":\"plugin\",\"file\":\"" + file +
@@ -155,10 +187,10 @@ TEST(ContactPlugin, SaysWhatItMisses) {
   const std::string folder = HAPBENCH_TEST_MODULES "/";
   EXPECT_EQ(said(folder + "sphere.so", "{\"radius\":1}"),
             "sphere (sphere.so) fails in create: its config has no number radius_m");
-  EXPECT_NE(said(folder + "none.so", "{}").find("cannot be loaded as a source of contacts: No such file"),
-            std::string::npos);
-  EXPECT_NE(said(folder + "depth_weighted.so", "{}").find("holds a law, not a source of contacts; name it in --module"),
-            std::string::npos);
+  EXPECT_NE(said(folder + "none.so", "{}").find("cannot be loaded as a module: No such file"), std::string::npos);
+  EXPECT_NE(
+      said(folder + "depth_weighted.so", "{}").find("holds a law, not a source of contacts; name it in --module and"),
+      std::string::npos);
   EXPECT_NE(said(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
 }
 
