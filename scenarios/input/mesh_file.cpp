@@ -153,7 +153,7 @@ void warn_of_copies(const MeshFindings& found, const Warn& warn) {
 }  // namespace
 
 std::size_t components_above_speck_size(const MeshFindings& found) {
-  if (!found.crowded_edges.empty()) return found.component_count;
+  if (!found.non_manifold_edges.empty()) return found.component_count;
   const auto is_speck = [&found](const MeshComponent& component) {
     return component.diameter() <= kSpeckSize * found.components.front().diameter();
   };

@@ -42,8 +42,8 @@ std::vector<LoadedModule> modules;  ///< in the order of loading
 std::atomic<int> allowing = 0;      ///< number of existing ModulePermission objects that allow all modules
 
 /// Tables of the libraries of contacts by file. The mutex protects the map.
-std::mutex contacts_mutex;
-std::map<fs::path, const HapbenchModule*> contacts;
+std::mutex contact_modules_mutex;
+std::map<fs::path, const HapbenchModule*> contact_modules;
 
 /// Returns the hash of a file. Throws InputError for a directory or a pipe, before it is opened as a library.
 std::string hash_of_file(const fs::path& file) {
@@ -118,16 +118,16 @@ Module module_of(const HapbenchModule& table, const fs::path& file) {
 /// permission. Thread-safe.
 const HapbenchModule& contacts_table(const fs::path& file) {
   require_module_permission(file);
-  const std::lock_guard lock(contacts_mutex);
-  const auto found = contacts.find(file);
-  if (found != contacts.end()) return *found->second;
+  const std::lock_guard lock(contact_modules_mutex);
+  const auto found = contact_modules.find(file);
+  if (found != contact_modules.end()) return *found->second;
   hash_of_file(file);
   const HapbenchModule& table = opened(file);
   if (table.kind != HAPBENCH_CONTACTS)
     fail_in_file(file, "holds a law, not a source of contacts; name it in --module and in rendering.algorithm");
   if (table.name == nullptr || table.step == nullptr)
     fail_in_file(file, "is not a source of contacts that can be used: its name or its function \"step\" is missing");
-  contacts.emplace(file, &table);
+  contact_modules.emplace(file, &table);
   return table;
 }
 

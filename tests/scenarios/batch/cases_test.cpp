@@ -40,11 +40,12 @@ TEST(Cases, AreThePointsOfAFile) {
   EXPECT_EQ(cases.changes(0), (Values{"environment.spacing_m=0.002", R"(device={"type":"ideal"})"}));
   EXPECT_EQ(cases.values(2), (Values{"0.002", "x"}));
   EXPECT_EQ(cases.at(1), 2u) << "neighbours share an environment";
+  EXPECT_EQ(read("a\n1\n\n2,\n").size(), 2u) << "an empty line and a separator at the end of a row";
   for (const auto& [text, says] :
        {std::pair{"a,b\n1\n", "points.csv, line 2: got 1 values"},
-        std::pair{"a\n1\n,\n", "points.csv, line 3: got 2 values"},
-        std::pair{"a\n1\n\n", "points.csv, line 3: got an empty value"}, std::pair{"a\n", "points.csv: has no rows"},
-        std::pair{"", "has no rows"}, std::pair{"a,a\n1,2\n", "got \"a\" twice"}}) {
+        std::pair{"a\n1\n,\n", "points.csv, line 3: a: got an empty value"},
+        std::pair{"a,b\n1,2,3\n", "points.csv, line 2: got 3 values"}, std::pair{"a\n", "points.csv: has no rows"},
+        std::pair{"", "has no rows"}, std::pair{"a,a\n1,2\n", "columns 1 and 2 are both named \"a\""}}) {
     const auto error = test::input_error_of([&, bad = text] { read(bad); });
     ASSERT_TRUE(error) << text;
     EXPECT_NE(std::string(error->what()).find(says), std::string::npos) << error->what();

@@ -151,8 +151,9 @@ TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
 TEST(ContactPlugin, IsRefusedWithoutPermission) {
   const std::string file = HAPBENCH_TEST_MODULES "/sphere.so";
   const auto named = [](const std::string& library) {
-    return load_scenario(find_scenario("plane_wiped_round"), {R"(rendering.contact_source={"type":"plugin","file":")" +
-                                                              library + R"(","config":{"radius_m":0.002}})"});
+    const std::vector<std::string> overrides{R"(rendering.contact_source={"type":"plugin","file":")" + library +
+                                             R"(","config":{"radius_m":0.002}})"};
+    return load_scenario(find_scenario("plane_wiped_round"), overrides);
   };
   for (const Libraries use : {Libraries::loaded, Libraries::inspected}) {
     const auto error = test::input_error_of([&] { checked(named(file), use); });

@@ -1,27 +1,36 @@
 #include <gtest/gtest.h>
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
 #include "algorithms/registry.hpp"
 #include "results/observe/metrics.hpp"
+#include "scenarios/batch/csv_cells.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/diagnosis_observer.hpp"
 #include "scenarios/run/expectations.hpp"
+#include "scenarios/run/load_module.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/tools.hpp"
+#include "tests/results/files.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 
 namespace hapbench::outcome_test {
 namespace {
+
+namespace fs = std::filesystem;
 
 // The outcomes of runs that miss or lose their object, whether they were expected, and the warnings about them.
 
@@ -260,9 +269,38 @@ std::vector<Pair> pairs() {
   };
 }
 
+/// Writes the stroke of recorded_wipe with the opposite sign of the measured force.
+void write_reversed_force(const fs::path& file) {
+  std::ifstream stroke(find_scenario("recorded_wipe").parent_path() / "data/wipe.csv");
+  std::string text, line;
+  for (bool is_header = true; std::getline(stroke, line); is_header = false) {
+    Words cells = csv_cells(line);
+    for (std::size_t i = cells.size() - 3; !is_header && i < cells.size(); ++i)
+      cells[i] = cells[i].starts_with('-') ? cells[i].substr(1) : "-" + cells[i];
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  test::write_plainly(file, text);
+}
+
 TEST(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout) {
-  std::set<std::string> tested;
-  for (const Pair& pair : pairs()) {
+  const test::TemporaryDirectory directory;
+  write_reversed_force(directory / "reversed.csv");
+  std::vector<Pair> all = pairs();
+  all.push_back({"force_sign",
+                 {"recorded_wipe", {"motion.position.file=" + fs::absolute(directory / "reversed.csv").string()}},
+                 {"recorded_wipe"}});
+  // A law that returns NaN, and the same law that returns the mean.
+  load_module(fs::canonical(HAPBENCH_TEST_MODULES) / "hostile.so");
+  std::set<std::string> tested = {"fault"};
+  const Scene hostile = {"single_spring", {"rendering.algorithm=hostile"}};
+  EXPECT_EQ(finding(run(hostile), "fault"), nullptr);
+  {
+    const test::EnvironmentVariable nan("HOSTILE", "nan");
+    const Result faulty = run(hostile);
+    EXPECT_NE(finding(faulty, "fault"), nullptr);
+    EXPECT_EQ(faulty.diagnosis->size(), 1u) << "advice about step and K does not fit a fault of the law";
+  }
+  for (const Pair& pair : all) {
     const Diagnosed* found = finding(run(pair.with), pair.rule);
     EXPECT_NE(found, nullptr) << pair.rule << " in " << pair.with.name;
     EXPECT_EQ(finding(run(pair.without), pair.rule), nullptr) << pair.rule << " in " << pair.without.name;
