@@ -53,7 +53,7 @@ void require_name(const std::string& what, const char* text) {
   const bool is_name = !name.empty() && name.size() <= kLongest && name[0] >= 'a' && name[0] <= 'z';
   if (!is_name ||
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") != name.npos)
-    refuse(what, " is called \"", name, "\"; allowed: letters, digits and \"_\", a small letter first, at most 64");
+    refuse(what, R"( is called ")", name, R"("; allowed: letters, digits and "_", a small letter first, at most 64)");
 }
 
 void require_text(const char* text, const std::string& what) {

@@ -97,8 +97,8 @@ class VirtualCoupling final : public SeriesLaw {
   }
 
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
-    return along_sum_ ? Vec3(transmitted_ * ForceLaw::turning_velocity(contacts, S, tool))
-                      : SeriesLaw::turning_velocity(contacts, S, tool);
+    if (!along_sum_) return SeriesLaw::turning_velocity(contacts, S, tool);
+    return transmitted_ * ForceLaw::turning_velocity(contacts, S, tool);  // NOLINT(bugprone-parent-virtual-call)
   }
 
  private:

@@ -11,9 +11,9 @@ namespace {
 /// Mean gradient below which the direction is rounding noise and the force is zero.
 constexpr double kMinMeanGradient = 1e-9;
 
-/// A law with one spring, compressed by d_r = Depth(contacts, |sum u_i|) [m]. Sets all weights to 1, because
+/// A law with one spring, compressed by d_r = depth(contacts, |sum u_i|) [m]. Sets all weights to 1, because
 /// these laws define no point of application.
-template <double (*Depth)(const ContactBuffer&, double) noexcept>
+template <double (*depth)(const ContactBuffer&, double) noexcept>
 class AveragedDirection final : public SingleSpringLaw {
  public:
   using SingleSpringLaw::SingleSpringLaw;
@@ -24,7 +24,7 @@ class AveragedDirection final : public SingleSpringLaw {
     const double length = gradients.norm();
     if (length <= kMinMeanGradient * static_cast<double>(contacts.size())) return {};
     const Vec3 u = gradients / length;
-    return {-K_ * Depth(contacts, length) * u, u * u.transpose()};
+    return {-K_ * depth(contacts, length) * u, u * u.transpose()};
   }
 };
 

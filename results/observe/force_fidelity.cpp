@@ -87,7 +87,8 @@ std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector
                                double max_lag) {
   const std::size_t n = std::min(early.size(), late.size());
   // At least half of the samples must overlap.
-  const auto reach = static_cast<std::ptrdiff_t>(std::min(std::round(max_lag / dt), static_cast<double>(n / 2)));
+  const std::size_t half = n / 2;
+  const auto reach = static_cast<std::ptrdiff_t>(std::min(std::round(max_lag / dt), static_cast<double>(half)));
   // Compute the correlation at each shift.
   std::vector<double> found;
   for (std::ptrdiff_t shift = -reach; shift <= reach; ++shift) {

@@ -90,6 +90,7 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
   }
   // Average over the subjects.
   std::vector<PlaceMetrics> metrics;
+  metrics.reserve(places.size());
   for (const auto& [place, at] : places) {
     metrics.push_back(
         {place, over_subjects(at.success), over_subjects(at.time), over_subjects(at.force), over_subjects(at.speed)});

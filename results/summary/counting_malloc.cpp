@@ -23,10 +23,12 @@ const int hooks_installed = __sanitizer_install_malloc_and_free_hooks(
 
 // The internal names of glibc's allocator. free is not replaced, because all blocks still come from glibc.
 extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 void* malloc(std::size_t size) noexcept {
   ++allocations_of_thread;

@@ -63,9 +63,9 @@ struct DiagnosedRun {
 
 // ---- Numbers that the rules compare with their thresholds
 
-template <Outcome... kOutcomes>
+template <Outcome... outcomes>
 Number ended(const DiagnosedRun& run) {
-  return run.ended(kOutcomes...) ? Number(1.0) : std::nullopt;
+  return run.ended(outcomes...) ? Number(1.0) : std::nullopt;
 }
 
 /// Returns 1 if the run ended because a law or module failed, or because a force is not finite.

@@ -71,7 +71,7 @@ ProgressBar::~ProgressBar() {
   if (drawn_) hide_status();
 }
 
-void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
+void ProgressBar::show(std::uint64_t done, bool counts) {
   if (label_.empty()) return;
   if (listener_ != nullptr) return (*listener_)(label_, done, total_);
   const auto now = Clock::now();

@@ -37,7 +37,7 @@ class ProgressBar {
 
   /// Reports `done` of the total number of items. Redraws at most five times a second. With `counts`, also
   /// shows both numbers and the estimated remaining time, which assumes the mean time an item so far.
-  void show(std::uint64_t done, bool counts = false) noexcept;
+  void show(std::uint64_t done, bool counts = false);
 
  private:
   using Clock = std::chrono::steady_clock;

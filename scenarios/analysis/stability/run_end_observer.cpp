@@ -34,7 +34,7 @@ void RunEndObserver::on_step(const StepRecord& record) noexcept {
 }
 
 bool RunEndObserver::has_left(const PointShell& shell, double reach) const {
-  const Box bounds = shell.bounds();
+  const Box& bounds = shell.bounds();
   const Vec3 beyond = (bounds.min - tip_).cwiseMax(tip_ - bounds.max);
   return !touches_ && beyond.maxCoeff() > reach;
 }

@@ -83,7 +83,7 @@ std::vector<std::string> Trials::overrides(const TuneSetting& setting, double st
   std::vector<std::string> fields = question_.overrides;
   fields.push_back("rendering.algorithm=" + algorithm_);
   if (setting.damping_ratio) {
-    fields.push_back("rendering.damping_N_s_per_m=null");
+    fields.emplace_back("rendering.damping_N_s_per_m=null");
     fields.push_back(fmt::format("rendering.damping_ratio={}", *setting.damping_ratio));
   }
   if (setting.mass) fields.push_back(fmt::format("rendering.mass_kg={}", *setting.mass));
