@@ -20,7 +20,7 @@ double between(double a, double b, double k, double n) {
   return k == n ? b : a + (b - a) * (k / n);
 }
 
-/// Adds the points of an edge strictly between a and b.
+/// Adds the points of the edge from a to b, without a and b.
 void add_face(std::vector<SurfacePoint>& points, const Vec3& a, const Vec3& b, const Vec3& normal, double spacing) {
   const double n = intervals((b - a).norm(), spacing);
   for (double k = 1; k < n; ++k) {

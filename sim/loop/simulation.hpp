@@ -16,8 +16,8 @@
 
 namespace hapbench {
 
-/// How the stepping of a run ended. The meaning of a run for the tool is judged from its recorded rows
-/// (results/summary/outcome.hpp).
+/// How the stepping of a run ended. Whether the tool got stuck, lost contact or passed through the surface is judged
+/// afterwards from the recorded steps (results/summary/outcome.hpp).
 enum class Ending {
   completed,        ///< all steps are done, or the hand has finished its task
   left_hole,        ///< stopped by a StopRule
@@ -79,7 +79,7 @@ struct Divergence {
 
 struct SimulationResult {
   Ending ending = Ending::completed;
-  std::uint64_t rows = 0;  ///< steps passed to the observers
+  std::uint64_t rows = 0;  ///< number of steps passed to the observers
   Divergence divergence;   ///< set if the run diverged
 };
 

@@ -41,7 +41,8 @@ struct Segment {
   double fraction;  ///< elapsed part of the duration, 0 to 1
 };
 
-/// Returns the segment at time t; before the first and after the last waypoint a constant one.
+/// Returns the segment at time t. Before the first and after the last waypoint, this is a segment with a constant
+/// value.
 Segment segment_at(const Profile::Waypoints& w, double t) {
   const auto& p = w.points;
   if (p.empty()) return {0.0, 0.0, 1.0, 0.0};

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kEdge = 16;  ///< cells along an edge of the cube of directions
 constexpr std::size_t kCells = 6 * kEdge * kEdge;
-/// Relative to the size of the body, distances below this value are rounding.
+/// Differences of distance below this fraction of the body's size are treated as rounding.
 constexpr double kTie = 1e-9;
 
 /// Returns the cell index along one coordinate in [-1, 1] of a cube face.
