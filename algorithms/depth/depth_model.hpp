@@ -60,7 +60,7 @@ class ShellSource final : public ContactSource {
   std::unique_ptr<ContactQuery> search_;
   std::unique_ptr<DepthModel> depth_model_;
   Skips skips_;
-  bool model_knows_of_no_contacts_ = false;  ///< the last call of the depth model had no contacts
+  bool model_knows_of_no_contacts_ = false;  ///< true if the depth model was last called without contacts
 };
 
 }  // namespace hapbench
