@@ -56,7 +56,7 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
   for (const std::string& path : csv_cells(lines.next().value_or(""))) axes.push_back({path});
   Sampling sampling{kPointsOfFile, 0, 0, std::vector<std::vector<double>>(axes.size())};
   std::vector<std::map<std::string, std::size_t>> value_indices(axes.size());
-  // Collect the different values of each field. A coordinate is first the index of the value.
+  // Collect the distinct values of each field. In this loop a coordinate holds the index of its value.
   while (const auto line = lines.next()) {
     const std::vector<std::string> cells = csv_cells(*line);
     if (cells.size() != axes.size() || sampling.count == kMaxRuns) {
@@ -77,7 +77,7 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
     }
   }
   if (sampling.count == 0) fail_in_file(file, "has no rows; allowed: a header of fields, and rows of their values");
-  // Convert indices to coordinates in the middle of the value's share of [0, 1) (Axis::index_at).
+  // Replace each index by a coordinate: the middle of the part of [0, 1) that belongs to the value (Axis::index_at).
   for (std::size_t a = 0; a < axes.size(); ++a)
     for (double& coordinate : sampling.of_file[a])
       coordinate = (coordinate + 0.5) / static_cast<double>(axes[a].size());

@@ -74,7 +74,7 @@ CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const Mes
   const auto* format = std::ranges::find(kMeshFormats, mesh_extension(file), &MeshFormat::extension);
   if (bytes.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
   TriangleSoup soup = format->read(bytes, file);
-  // Check and scale them.
+  // Check the triangles and scale their vertices.
   check_indices(soup, file);
   scale_and_check(soup, sampling.scale, file);
   // Reverse the winding, and with it the normals.

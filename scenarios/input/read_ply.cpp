@@ -88,7 +88,7 @@ class PlyHeader {
     while (read_line()) {
     }
     if (!format_) fail("allowed: a header with \"format\"");
-    // Drop the elements after the wanted element.
+    // Drop the elements after the last element that is needed.
     const std::string_view name = wanted == Wanted::points ? "vertex" : "face";
     const auto last = std::ranges::find(elements_, name, &Element::name);
     if (last == elements_.end()) fail(fmt::format("has no {}; allowed: \"element {} COUNT\"", name, name));
@@ -101,7 +101,7 @@ class PlyHeader {
     }
   }
 
-  /// Returns the elements up to and including the wanted element. Later elements are not read.
+  /// Returns the elements up to the vertices (for points) or the faces (for a surface). Later elements are not read.
   const std::vector<Element>& elements() const { return elements_; }
   bool is_text() const { return format_ == "ascii"; }
   /// Returns the byte order of a binary file. Precondition: !is_text().

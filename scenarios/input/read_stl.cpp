@@ -66,7 +66,7 @@ TriangleSoup read_stl_binary(ByteReader reader, std::size_t triangles, const fs:
 }  // namespace
 
 TriangleSoup read_stl(std::string_view text, const fs::path& file) {
-  // Read the number of triangles as if the file was binary.
+  // Read the number of triangles as if the file were binary.
   const std::string first_word = lower_case(text.substr(0, text.find_first_of(" \t\r\n")));
   ByteReader reader(text, std::endian::little);
   std::size_t triangles = 0;

@@ -38,7 +38,8 @@ const NamedFile::Read& NamedFile::read() {
   if (content_.kind == FileContent::Kind::point_shell) shell_extension(path_);
   if (content_.kind == FileContent::Kind::mesh) mesh_extension(path_);
   // Identify the contents by the file's time stamps or, if they are not reliable, by a hash. The time stamps are
-  // taken before reading. If the file changes during reading, it will never have these time stamps again.
+  // taken before reading. If the file changes while it is read, it gets other time stamps, so the result is never
+  // taken from the cache by mistake.
   std::string bytes;
   std::optional<std::string> state = stamp_of(path_);
   if (!state) {

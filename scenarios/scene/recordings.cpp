@@ -15,7 +15,7 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kMaxSamples = 10'000'000;  ///< of a stroke
+constexpr std::size_t kMaxSamples = 10'000'000;  ///< maximum number of samples of a stroke
 /// Allowed deviation of a quaternion's norm from 1. Three decimals in the file suffice.
 constexpr double kMaxNormError = 1e-3;
 constexpr std::size_t kForceColumns = 3;  ///< columns of a measured force
@@ -42,8 +42,8 @@ Eigen::Quaterniond orientation_of(std::span<const double> cells, const std::file
   fail(file, row, fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError));
 }
 
-constexpr std::size_t kMaxContacts = 20'000'000;      ///< of a recording
-constexpr std::size_t kMaxContactsPerTime = 100'000;  ///< contacts with the same time
+constexpr std::size_t kMaxContacts = 20'000'000;      ///< maximum number of contacts of a recording
+constexpr std::size_t kMaxContactsPerTime = 100'000;  ///< maximum number of contacts with the same time
 /// Allowed deviation of a gradient's norm from 1. Three decimals in the file suffice.
 constexpr double kMaxLengthError = 1e-3;
 constexpr double kRounding = 1e-12;  ///< deviation of a unit gradient's norm from 1 by rounding
@@ -52,7 +52,7 @@ constexpr std::string_view kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m";
 }  // namespace
 
 Stroke parse_stroke(std::string_view text, const std::filesystem::path& file) {
-  // Parse the table. The header says whether the pose has an axis or a quaternion, and whether there is a force.
+  // Parse the table. Its header shows whether the pose has an axis or a quaternion, and whether there is a force.
   const NumberTable table =
       parse_number_table(text, file,
                          {"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z", "time_s,px_m,py_m,pz_m,qw,qx,qy,qz",
