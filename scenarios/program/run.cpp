@@ -89,8 +89,8 @@ Columns<Result> latency_columns() {
   return columns;
 }
 
-/// Returns the diagnosis of runs, with what to try for a single run. Several runs have a line each, with the
-/// names of the rules. Empty if no rule applies.
+/// Returns the diagnosis of runs. For a single run it includes advice. For several runs it has one line for each,
+/// with the names of the rules. Empty if no rule applies.
 std::string diagnosis_text(std::span<const Result> reports, const Layout& layout) {
   std::string text;
   for (const Result& report : reports) {
@@ -135,7 +135,7 @@ int run(const RunOptions& options, ProgramContext& context) {
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const Result& result = results.emplace_back(run_scenario(
         scenarios[i], directories[i], {!options.output.quiet, context.progress}, nullptr, /*diagnose=*/true));
-    // Tell users who try values of a field that the results of the previous value were replaced.
+    // If a user tries several values of a field, print a note that the results of the previous value were replaced.
     if (result.replaces_other && options.out.empty() && !options.overrides.empty())
       print_note(context,
                  fmt::format("replaced the results of a run with other fields in {}; --out DIRECTORY keeps both",

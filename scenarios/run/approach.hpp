@@ -51,8 +51,8 @@ class Approach {
   };
   std::shared_ptr<const PointShell> shell_;
   Box environment_;
-  Vec3 position_ = Vec3::Zero();  ///< of the tip centre in the last step [m]
-  double time_ = 0.0;             ///< of the last step [s]
+  Vec3 position_ = Vec3::Zero();  ///< position of the tip centre in the last step [m]
+  double time_ = 0.0;             ///< time of the last step [s]
   double distance_ = std::numeric_limits<double>::infinity(), longest_step_ = 0.0;
   std::uint64_t interval_;
   std::vector<Candidate> candidates_;

@@ -26,7 +26,8 @@ struct RunObservations {
     std::uint64_t rows = 0;
     bool always_in_contact = true;                     ///< true if every step of the quarter is in contact
     Vec3 start = Vec3::Zero();                         ///< tip position in the first step of the quarter [m]
-    Vec3 high_squares = Vec3::Zero();                  ///< sum of the squared force above 30 Hz, per axis [N^2]
+    Vec3 high_squares = Vec3::Zero();                  ///< sum over the steps of the squared force above 30 Hz, for
+                                                       ///< each axis [N^2]
     std::array<std::uint64_t, 3> high_sign_changes{};  ///< number of sign changes of the force above 30 Hz, per axis
   } last_quarter;
   Vec3 tip = Vec3::Zero();  ///< tip position in the last step [m]
@@ -56,7 +57,7 @@ class DiagnosisObserver final : public Observer {
   std::optional<double> force_limit_, input_limit_;
   std::optional<HighPass> high_pass_;
   std::uint64_t quarter_ = 0;
-  bool was_in_contact_ = false;  ///< in contact in the previous step
+  bool was_in_contact_ = false;  ///< true if the tool was in contact in the previous step
   Vec3 high_ = Vec3::Zero();     ///< force above 30 Hz in the previous step [N]
   RunObservations observations_;
 };

@@ -33,7 +33,7 @@ constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL;
 constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #endif
 
-std::vector<LoadedLaw> laws;  ///< laws of this process; load_module.hpp explains why they are not per context
+std::vector<LoadedLaw> laws;  ///< laws of this process; load_module.hpp explains why there is no list for each context
 
 /// Returns the hash of a file. Throws InputError for a directory or a pipe, before it is opened as a library.
 std::string hash_of_file(const fs::path& file) {
@@ -74,7 +74,7 @@ const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
     if (problem.starts_with(again)) problem.erase(0, again.size());
     fail_in_file(file, "is not a module: " + problem);
   }
-  // Ask the module for its table.
+  // Get the table of the module.
   const auto entry = entry_point(file, library);
   const HapbenchModule* table = nullptr;
   try {

@@ -15,7 +15,7 @@ using ProgressListener = std::function<void(std::string_view label, std::uint64_
 
 /// Selects whether progress is shown: as a bar on the terminal, or through a listener.
 struct Progress {
-  /// Not explicit, so that `false` can be passed for work without progress.
+  /// Implicit conversion is allowed, so that a caller can pass `false` for work without a progress bar.
   Progress(bool shown = false, const ProgressListener* other = nullptr) : is_shown(shown), listener(other) {}
 
   bool is_shown;
@@ -36,7 +36,7 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   /// Reports `done` of the total number of items. Redraws at most five times a second. With `counts`, also
-  /// shows both numbers and the estimated remaining time, which assumes the mean time an item so far.
+  /// shows both numbers and the estimated remaining time, computed from the mean time of an item so far.
   void show(std::uint64_t done, bool counts = false) noexcept;
 
  private:

@@ -40,7 +40,7 @@ inline constexpr const char* kNotJudged = "";
 /// The verdicts on all claims under one reading.
 struct ReadingVerdicts {
   std::vector<std::string> verdicts;  ///< verdict_name(), kNotMeasured or kNotJudged, by claim
-  std::vector<std::string> problems;  ///< why claims could not be measured, as text
+  std::vector<std::string> problems;  ///< texts that explain why claims could not be measured
 };
 
 /// Judges the claims under one reading. Runs each scenario once, when a claim first needs it. Writes results into

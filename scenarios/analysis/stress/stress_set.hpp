@@ -9,7 +9,7 @@
 #include "sim/tool/cylinder.hpp"
 
 /// Random contact sets, most of them degenerate, for which an algorithm may compute a force that is not finite. All
-/// tools
+/// tools are cylinders: their gradients are undefined on the axis and the rims.
 namespace hapbench {
 
 /// A tool, surface points in contact with it, and the settings of the rendering.

@@ -9,10 +9,8 @@
 namespace hapbench {
 
 /// Names of the variant sets, which add runs to the run of the scene itself:
-///   hands   hand stiffnesses of 100 and 1000 N/m (the extremes of typical_hands()) with the scene's damping; a hand
-///   with
-///   a
-///           mass also gets masses of 0.1 and 0.5 kg
+///   hands   hand stiffnesses of 100 and 1000 N/m (the extremes of typical_hands()) with the scene's damping;
+///           a hand with a mass also gets masses of 0.1 and 0.5 kg
 ///   seeds   four further seeds, with start positions shifted by 10 um, less than the repeatability of a hand
 ///   speeds  the scripts of hand and tool at half and twice their speed
 inline constexpr const char* kFamilies[] = {"hands", "seeds", "speeds"};

@@ -27,7 +27,7 @@
 namespace hapbench {
 namespace {
 
-constexpr double kClearance = 0.001;    ///< distance of tool and surface at the start [m]
+constexpr double kClearance = 0.001;    ///< distance between tool and surface at the start [m]
 constexpr double kDragSpeed = 5.0;      ///< speed of a drag [tool diameters per second]
 constexpr double kPressDepth = 0.0035;  ///< depth of a pressing hand's target below the surface [m]; gives 1 N
 
@@ -119,9 +119,9 @@ class Start {
     return points;
   }
 
-  /// Returns the scale that gives an object its stated size. `box`: the object's bounds, read as millimetres.
-  /// Without a stated size, the file is in metres. Throws InputError if the object then is shorter than 1 mm or
-  /// longer than 1 m, with its length in both units.
+  /// Returns the scale at which an object has the size that the user stated. `box`: the object's bounds, read as
+  /// millimetres. Without a stated size, the file is in metres. Throws InputError if the object would be shorter than
+  /// 1 mm or longer than 1 m; the message has its length in both units.
   double choose_scale(const Box& box, const char* object) {
     const double longest = box.size().maxCoeff() / 0.001;
     if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
@@ -158,8 +158,8 @@ class Start {
       if (scene_.contains("tool") && scene_["tool"].contains(field)) scene_["tool"][field] = size;
   }
 
-  /// Returns the points of the surface. Flips the normals of an open mesh if they point away from the side
-  /// around its highest point. Throws InputError for point shells with such normals.
+  /// Returns the points of the surface. If, around the highest point, the normals of an open mesh point away from the
+  /// side, flips all its normals. Throws InputError for a point shell with such normals.
   std::vector<SurfacePoint> points_facing_side() {
     std::vector<SurfacePoint> shell = points();
     const Box box = bounds_of(shell);
@@ -284,7 +284,7 @@ class Start {
     start_at({0.0, 0.0, to_micrometres(-box.min.z() + kClearance)});
   }
 
-  /// Chooses the start and direction of a drag, over four fifths of the path up to the end of the surface.
+  /// Chooses the start and direction of a drag. The drag covers four fifths of the path to the end of the surface.
   void choose_drag_path(const PointShell& shell, const std::vector<Vec3>& starts) {
     // Search a path of at least a quarter of the surface's extent.
     const double min_length = 0.25 * shell.bounds().size().maxCoeff();
