@@ -76,14 +76,15 @@ struct RenderingConfig {
   std::optional<double> virtual_coupling;  ///< K_vc, stiffness of the coupling spring [N/m]; nullopt: K
   double regularisation = 0.01;            ///< eps of the law least_squares
 
-  bool angular_damping = false;  ///< damping and friction use the tool's velocity at each contact
+  bool angular_damping = false;  ///< true: damping and friction use the velocity of the tool's material at each
+                                 ///< contact; false: of the tip centre
   /// Cut-off frequency of the low-pass filter of the tool's angular velocity, for `angular_damping` [Hz]; nullopt: no
   /// filter.
   std::optional<double> angular_velocity_cutoff = 20.0;
 
   /// Applied after the algorithm; nullopt: the algorithm's force is rendered.
   std::optional<ForceStageConfig> force_stage;
-  bool passivity_controller = false;  ///< applied around algorithm and force stage
+  bool passivity_controller = false;  ///< true: a passivity controller wraps algorithm and force stage
 
   /// Values of the parameters that belong to one algorithm only (AlgorithmParameter), by algorithm and name. A
   /// parameter that is missing here has its default value.

@@ -170,7 +170,7 @@ class ElasticMotion : public HandleMotionBase {
     State z;
     double motors;          ///< force of the motors, without friction [N]
     double friction = 0.0;  ///< Coulomb friction on the motors [N]; 0 while they stick
-    bool sticks = false;    ///< the motors are at rest, held by friction
+    bool sticks = false;    ///< true if friction holds the motors at rest
   };
 
   Matrix rates(bool sticking) const;

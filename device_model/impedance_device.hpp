@@ -55,7 +55,7 @@ class SampledLowPass {
     Vec3 real = Vec3::Zero(), imaginary = Vec3::Zero();  ///< parts of the mode's state
   };
   std::vector<Term> terms_;
-  bool is_identity_ = true;  ///< the cutoff is so high that the output equals the input
+  bool is_identity_ = true;  ///< true if the cutoff is so high that the output equals the input
 };
 
 /// Velocity by the difference of positions, v_k = (x_k - x_(k-1)) / T, with the sampling period T.

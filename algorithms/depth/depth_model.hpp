@@ -36,7 +36,7 @@ struct DepthModelEntry {
 
 /// Returns the table of depth models.
 std::span<const DepthModelEntry> depth_models();
-/// Returns null if no model has this name.
+/// Returns the entry of the depth model with this name; null if there is none.
 const DepthModelEntry* find_depth_model(std::string_view name);
 /// Creates the model with this name. Throws std::invalid_argument if there is none.
 std::unique_ptr<DepthModel> make_depth_model(std::string_view name);

@@ -23,7 +23,8 @@ constexpr double kEps = kExactShapingEpsilon;
 constexpr int kDirectSteps = 6;
 /// Decreasing values of epsilon that are used one after the other if kDirectSteps are not enough (see solve).
 constexpr double kPath[] = {1e-2, 1e-4, kEps};
-constexpr int kMaxNewtonSteps = 1000;  ///< for each epsilon; never reached in exact arithmetic
+constexpr int kMaxNewtonSteps = 1000;  ///< maximum number of Newton steps for each epsilon; never reached in exact
+                                       ///< arithmetic
 constexpr int kMaxLineSearchSteps = 40;
 constexpr int kMaxRefinements = 5;
 /// Residual of the optimality condition, below which the residual is only rounding: S is computed from up to n terms
@@ -58,7 +59,7 @@ struct TensorPack {
 struct TensorSums {
   Mat6 G;            ///< sum a_i a_i^T over the active tensors (c_i > 0)
   Vec6 S;            ///< sum c_i a_i
-  bool same_active;  ///< no tensor changed between active and inactive
+  bool same_active;  ///< true if no tensor changed between active and inactive
 };
 
 /// Sets the weight of every tensor to c_i = max(0, weight_of(a_i, previous c_i)) and returns the sums.

@@ -77,13 +77,13 @@ class TrackingHand final : public Hand {
 
   std::vector<Display> seen_;  ///< ring buffer of the displays within the reaction delay
   std::size_t next_ = 0;
-  bool started_ = false;  ///< intended_ has been set to the handle's initial position
+  bool started_ = false;  ///< true after intended_ has been set to the handle's initial position
   Random random_;
   Vec3 intended_ = Vec3::Zero();
   double wrist_ = 0.0;  ///< tilt without noise [rad]
   double tilt_ = 0.0;
-  Vec3 force_noise_ = Vec3::Zero();  ///< in units of its standard deviation
-  double tilt_noise_ = 0.0;          ///< in units of its standard deviation
+  Vec3 force_noise_ = Vec3::Zero();  ///< noise of the force, in units of its standard deviation
+  double tilt_noise_ = 0.0;          ///< noise of the tilt, in units of its standard deviation
 };
 
 /// Orientation of a tool whose tilt a tracking hand controls. The position is free.

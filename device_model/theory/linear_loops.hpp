@@ -96,7 +96,7 @@ double worst_hand_stability_limit(SampledLoop loop);
 /// damping of the handle, m the moving mass, B the wall's damping, T the period and t_d = d T the delay.
 struct StiffnessLimit {
   const char* name;     ///< name of the table column and of the curve
-  const char* formula;  ///< in terms of the symbols above
+  const char* formula;  ///< formula with the symbols defined above
   const char* source;   ///< citation, or "derived"
   const char* applies;  ///< conditions under which the limit is valid
   /// Returns the largest K [N/m]; the loop's stiffness is ignored. Returns nothing if the limit does not apply,

@@ -100,7 +100,7 @@ struct Metric {
   Cell value;           ///< a count or a number; empty if it does not exist (such as a ratio without contact)
   Better better = Better::none;
   double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance that `within` sets
-  bool bounded = false;                   ///< `within` has set a tolerance
+  bool bounded = false;                   ///< true if `within` has set a tolerance
 
   /// Sets the tolerance: `relative` |value| + `absolute` [unit of the value].
   Metric& within(double relative_part, double absolute_part) {

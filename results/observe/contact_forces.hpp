@@ -149,7 +149,7 @@ struct SettlingRule {
 /// Difference between the forces of a step and of the step before.
 struct ForceChange {
   double squared = 0.0;   ///< ||f_k - f_(k-1)||^2 [N^2]; 0 in the first step
-  bool reverses = false;  ///< the inner product of f_k and f_(k-1) is negative
+  bool reverses = false;  ///< true if the inner product of f_k and f_(k-1) is negative
 };
 
 /// Classifies the steps of a run as landing, settled contact or away, and accumulates force statistics of each

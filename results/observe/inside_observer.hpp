@@ -28,7 +28,7 @@ struct InsideDepths {
   /// Upper bound of the depth in the searched steps [m]. The search has a relative tolerance, so the true depth may
   /// exceed `max` by this fraction.
   double max_bound() const { return (1.0 + InsideSearch::kTolerance) * max.value_or(0.0); }
-  /// Merges the depths of another trial into these.
+  /// Merges the depths of another trial into this object.
   void add(const InsideDepths& trial);
   /// Reports the metrics. `has_settled`: settled contact was long enough for its metrics.
   void report(Section& section, bool has_settled) const;
@@ -108,7 +108,7 @@ class CorePassage {
     /// Normal of the face by which the segment entered, position of the entry, and the part [m] that entered there.
     Vec3 normal = Vec3::Zero(), entered = Vec3::Zero();
     double entered_low = 0.0, entered_high = 0.0;
-    bool continued = false;  ///< a segment of the next check overlaps this segment
+    bool continued = false;  ///< true if a segment of the next check overlaps this segment
   };
 
   void check_core(const ToolPose& pose, double deepest_contact, double time) noexcept;

@@ -29,7 +29,7 @@ struct TrajectoryExtras {
 struct TrajectoryGroup {
   bool TrajectoryExtras::*is_wanted;
   const char* field;   ///< name of the field
-  const char* effect;  ///< what the field does, for the documentation
+  const char* effect;  ///< effect of the field, for the documentation
   std::span<const Column> columns;
   /// Writes a value for each column to `cells`. `inside` must observe before the recorder; null if the depth inside
   /// is not observed.

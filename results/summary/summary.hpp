@@ -74,7 +74,7 @@ struct Result {
   std::string name;                ///< name of the scenario
   std::string algorithm;           ///< registered name of the algorithm
   RunEnd end;                      ///< after several trials: the worst outcome, and the number of steps of all trials
-  bool expected = false;           ///< the run met all expectations of the scenario
+  bool expected = false;           ///< true if the run met all expectations of the scenario
   std::vector<std::string> unmet;  ///< expectations that the run did not meet
   double duration = 0.0;           ///< simulated time: number of steps times dt [s]
   /// All metrics, in the order of the columns of a sweep's table. A scenario's `expect` can bound them. First the
@@ -95,7 +95,7 @@ struct Result {
   RunTiming timing;
   Provenance provenance;
   std::string scenario_hash;    ///< hash of the effective scenario
-  bool replaces_other = false;  ///< the output directory contained results of another scenario
+  bool replaces_other = false;  ///< true if the output directory contained results of another scenario
 };
 
 /// Returns summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct PlyType {
   std::string_view name, alias;
   std::size_t size;  ///< size of a number in a binary file [bytes]
-  bool is_real;      ///< floating-point type
+  bool is_real;      ///< true for a floating-point type
   /// Reads the next number of a binary file. A double represents every PLY number exactly. Precondition: at least
   /// `size` bytes are left.
   double (*take)(ByteReader& reader);

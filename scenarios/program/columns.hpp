@@ -23,7 +23,7 @@ namespace hapbench {
 /// The outputs that include a column of a table.
 struct Shown {
   bool csv = true, json = true, printed = false;
-  bool wide = false;         ///< printed only with --wide
+  bool wide = false;         ///< true if the column is printed only with --wide
   std::string heading = {};  ///< heading of the printed column, at most two lines; empty: the name of the column
   int digits = 4;            ///< significant digits of a number without a tolerance
 };

@@ -112,7 +112,7 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
   std::vector<std::string> kinds, texts;
   for (const Result& report : reports) {
     for (const auto& [kind, pointer, text] : report.warnings) {
-      if (!pointer.empty()) continue;  // the warning was printed before the run
+      if (!pointer.empty()) continue;  // a warning about a field was printed before the run
       // Add a text for a new kind of warning; otherwise append the algorithm to the text of this kind.
       const auto known = std::ranges::find(kinds, kind) - kinds.begin();
       if (known == std::ssize(kinds)) {

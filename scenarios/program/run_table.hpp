@@ -16,7 +16,7 @@ namespace hapbench {
 struct RunHeading {
   const char *title, *metric;
   double factor = 1.0;  ///< conversion factor from the metric's unit to the unit in the heading
-  bool wide = true;     ///< printed only with --wide
+  bool wide = true;     ///< true if the column is printed only with --wide
 };
 
 /// The metrics in which algorithms differ most visibly.

@@ -25,7 +25,10 @@ class Approach {
   /// earlier step.
   void add(const StepRecord& record, bool before_contact) noexcept;
 
-  double longest_step() const { return longest_step_; }  ///< as defined at OutcomeObserver::longest_step() [m]
+  double longest_step() const {
+    return longest_step_;
+  }  ///< longest displacement of the tip in a step; see
+     ///< OutcomeObserver [m]
   /// Distance of the tip centre from the environment's bounding box in the last step [m]; 0 inside the box.
   double distance() const { return distance_; }
   const Box& environment() const { return environment_; }

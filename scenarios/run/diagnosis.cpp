@@ -225,8 +225,9 @@ struct Rule {
   Number (*value)(const DiagnosedRun& run);
   Sentence attempt;
   Sentence more = "";          ///< further facts, appended to the problem
-  bool low_vibration = false;  ///< included in diagnosis_rules(true)
-  bool warns = false;          ///< reported as a warning for runs without a diagnosis; such a rule uses metrics only
+  bool low_vibration = false;  ///< true if diagnosis_rules(true) includes the rule
+  bool warns = false;          ///< true if the rule gives a warning for runs without a diagnosis; such a rule uses
+                               ///< metrics only
 };
 
 constexpr Rule kRules[] = {

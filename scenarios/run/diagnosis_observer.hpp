@@ -20,7 +20,8 @@ struct RunObservations {
   std::uint64_t at_force_limit = 0;
   std::uint64_t at_input_limit = 0;  ///< steps in contact whose hand force reaches the input limit of the device
   double path_in_contact = 0.0;      ///< path length of the tip in contact [m]
-  double longest_step = 0.0;         ///< as defined at OutcomeObserver::longest_step() [m]
+  double longest_step = 0.0;         ///< longest displacement of the tip in a step, as defined at
+                                     ///< OutcomeObserver::longest_step() [m]
   Vec3 last_force = Vec3::Zero();    ///< rendered force in the last step [N]
   struct Quarter {
     std::uint64_t rows = 0;

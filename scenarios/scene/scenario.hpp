@@ -75,14 +75,14 @@ struct MeshEnvironment {
   double scale = 1.0;             ///< length of the file's unit [m]
   std::optional<double> spacing;  ///< spacing after resampling [m]; empty: no resampling
   std::optional<double> grid;     ///< cell size of the local average [m]; empty: no cells
-  bool flip = false;              ///< reverses the normals of an open surface
+  bool flip = false;              ///< true: the normals of an open surface are reversed
 };
 using Environment = std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment,
                                  MeshEnvironment, ConicalHole>;
 
 /// State at t = 0.
 struct InitialFields {
-  Vec3 position = Vec3::Zero();  ///< of the tip centre [m]
+  Vec3 position = Vec3::Zero();  ///< position of the tip centre [m]
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
@@ -240,7 +240,7 @@ struct MetricBound {
 /// Expectations of a run. A run meets them if it has one of `outcomes` and every metric is within its bounds.
 struct ExpectFields {
   std::vector<Outcome> outcomes = {Outcome::completes, Outcome::leaves_hole, Outcome::tool_horizontal};
-  std::map<std::string, MetricBound> metrics;  ///< by the name of the metric
+  std::map<std::string, MetricBound> metrics;  ///< bounds by the name of the metric
 };
 
 struct Scenario {

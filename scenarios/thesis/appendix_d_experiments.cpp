@@ -75,8 +75,8 @@ double half_a_digit(double printed) {
 
 /// Comparison of a measure with the published values.
 struct Compared {
-  bool agrees = false;    ///< significance and direction of the difference are as published
-  bool near = false;      ///< both means are near the published means; always true for the force
+  bool agrees = false;    ///< true if significance and direction of the difference are as published
+  bool near = false;      ///< true if both means are near the published means; always true for the force
   double t = 0.0;         ///< paired t statistic of original minus shaped
   double farthest = 0.0;  ///< larger of the differences from the two published means [standard errors of the
                           ///< difference]

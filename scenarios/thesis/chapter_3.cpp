@@ -88,9 +88,9 @@ std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts,
 
 /// Agreement of the counts of one density with a published recording, from section 3.3 or from appendix C.3.
 struct CountsAgree {
-  bool raw = false;    ///< mean and spread of the raw counts agree
-  bool mean = false;   ///< in addition, the mean after the reduction agrees
-  bool whole = false;  ///< in addition, the spread after the reduction agrees, and no step exceeds the bound
+  bool raw = false;    ///< true if mean and spread of the raw counts agree
+  bool mean = false;   ///< true if, in addition, the mean after the reduction agrees
+  bool whole = false;  ///< true if, in addition, the spread after the reduction agrees and no step exceeds the bound
 };
 
 /// Compares the counts of one density with both published recordings of a task: the counts of 3.3 and of appendix C.3

@@ -148,8 +148,8 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
     fs::remove_all(directory, ignored);
   });
   // Run each scenario when its results are first needed.
-  std::map<std::string, std::string> problems;  // one entry for each scenario that was run; the text is empty if its
-                                                // results can be used
+  std::map<std::string, std::string> problems;  // for each scenario that was run: why its results cannot be used;
+                                                // empty if they can
   Evidence evidence{
       readings.choices.with_numbers(readings.published, values), directory, {}, [&](const Scenario& scenario) {
         return readings.choices.overrides(scenario, values);

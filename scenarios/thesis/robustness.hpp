@@ -18,8 +18,8 @@ namespace hapbench {
 struct Readings {
   Choices choices;
   PublishedNumbers published;
-  std::vector<JudgedClaim> claims;               ///< with the verdicts of the ledger
-  std::vector<std::vector<std::string>> values;  ///< by reading, then by choice, as texts for --set
+  std::vector<JudgedClaim> claims;               ///< the claims with the verdicts of the ledger
+  std::vector<std::vector<std::string>> values;  ///< values[reading][choice], as texts for --set
 
   /// Returns the number of readings for costly claims, which are judged in the first quarter of the readings only.
   std::size_t costly() const { return (values.size() + 3) / 4; }

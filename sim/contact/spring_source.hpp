@@ -22,7 +22,7 @@ struct SpringSet {
   /// Unit vectors u_j.
   std::vector<Vec3> gradients;
   bool bilateral = true;
-  bool signed_depths = true;  ///< for bilateral springs; see above
+  bool signed_depths = true;  ///< false: depths are |<p, u_j>|; used for bilateral springs only
 };
 
 /// Contact source of a spring set: each spring is a contact at the tool's position.

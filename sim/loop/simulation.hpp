@@ -94,7 +94,7 @@ struct StepRecord {
   Vec3 hand_force = Vec3::Zero();  ///< force of the hand on the handle [N]
   MeasuredForce hand;              ///< hand_force as measured by the device
   HandleState handle;
-  bool handle_moves_tool = false;           ///< the tool follows the measured handle; there is no virtual mass
+  bool handle_moves_tool = false;           ///< true if the tool follows the handle; there is then no virtual mass
   const TargetTask* task = nullptr;         ///< target task of the hand; null if there is none
   std::size_t colliding = 0;                ///< number of colliding points before any point stage
   const ContactBuffer* rendered = nullptr;  ///< contacts that the law used; valid during on_step only
@@ -177,11 +177,14 @@ class Simulation {
   /// Copy of the contacts before any point stage; null unless an observer reads them.
   std::unique_ptr<ContactBuffer> found_;
   bool position_is_free_ = false;
-  bool tool_rolls_ = false;                        ///< the tool is not round, so its pose includes the roll
-  bool turn_rolls_ = false;                        ///< the angular velocity includes the rotation about the tool's axis
-  bool roll_wanted_ = false;                       ///< an observer or the tool needs the roll angle
-  bool handle_is_separate_ = false;                ///< the handle is a body separate from the tool
-  bool handle_moves_tool_ = false;                 ///< the tool follows the handle; there is no virtual mass
+  bool tool_rolls_ = false;                        ///< true if the tool is not a solid of revolution, so that its pose
+                                                   ///< includes the roll
+  bool turn_rolls_ = false;                        ///< true if the angular velocity includes the rotation about the
+                                                   ///< tool's axis
+  bool roll_wanted_ = false;                       ///< true if an observer or the tool needs the roll angle
+  bool handle_is_separate_ = false;                ///< true if the handle is a body separate from the tool
+  bool handle_moves_tool_ = false;                 ///< true if the tool follows the handle; there is then no virtual
+                                                   ///< mass
   std::optional<double> angular_velocity_cutoff_;  ///< [Hz]; nullopt if nothing reads the angular velocity
   ContactBuffer contacts_;
 

@@ -100,7 +100,7 @@ struct NearestNodes {
 
 struct FieldValue {
   double value;   ///< phi_h [m]
-  Vec3 gradient;  ///< with respect to the coordinates of the nodes [m]
+  Vec3 gradient;  ///< gradient with respect to the coordinates of the nodes [m]
 };
 
 /// Evaluates the field phi_h at eight points in the grid. The weights are computed for all points at once, the sums

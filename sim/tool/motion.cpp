@@ -189,7 +189,7 @@ RecordedMotion::Segment RecordedMotion::segment_at(double t) const noexcept {
 
 Eigen::Quaterniond RecordedMotion::orientation_in(const Segment& segment) noexcept {
   const Eigen::Quaterniond turn = segment.from->orientation->conjugate() * *segment.to->orientation;
-  const double sine = turn.vec().norm();  // of half the angle
+  const double sine = turn.vec().norm();  // sine of half the rotation angle
   if (sine == 0.0) return *segment.from->orientation;
   return *segment.from->orientation * turn_about(turn.vec() / sine, segment.fraction * angle_of(turn, sine));
 }

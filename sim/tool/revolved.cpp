@@ -134,7 +134,7 @@ struct AxialRay {
 /// computed without cancellation near the axis and the cone.
 struct ConeCrossing {
   double k, m, a, b, c, root;
-  bool meets;  ///< not read for a ray from inside a convex cone, which always intersects it
+  bool meets;  ///< true if the ray meets the cone; not read for a ray from inside a convex cone, which always does
 
   ConeCrossing(const HalfPlane& cone, const AxialRay& ray) : k(cone.offset - cone.ns * ray.s), m(cone.ns * ray.slope) {
     const double nr = cone.nr;

@@ -59,7 +59,8 @@ class FinerRuns {
   const Comparison& comparison_;
   std::span<const Result> reports_;
   std::vector<Scene> scenes_;
-  std::vector<Result> finer_;  ///< by refinement, then by level, then in the order of the comparison
+  std::vector<Result> finer_;  ///< refined runs, sorted by refinement, then by level, then in the order of the
+                               ///< comparison
 };
 
 }  // namespace hapbench

@@ -72,7 +72,7 @@ class MotionClassifier final : public Observer {
   Interval all_;                        ///< the whole run, filtered
   std::optional<std::uint64_t> still_;  ///< first step at which the script no longer moves the tool
   Interval held_;                       ///< steps from `still_` on, unfiltered
-  double largest_speed_ = 0.0;          ///< over all steps so far [m/s]
+  double largest_speed_ = 0.0;          ///< largest speed over all steps so far [m/s]
   int rows_at_rest_ = 0;
 };
 

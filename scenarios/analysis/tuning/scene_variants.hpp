@@ -17,7 +17,7 @@ inline constexpr const char* kFamilies[] = {"hands", "seeds", "speeds"};
 
 /// A variant of a scene.
 struct SceneVariant {
-  std::string name;                         ///< for the user, such as "a hand of 0.5 kg and 1000 N/m"
+  std::string name;                         ///< name for the user, such as "a hand of 0.5 kg and 1000 N/m"
   std::vector<std::string> overrides = {};  ///< overrides that make the variant; empty: the scene itself
 };
 

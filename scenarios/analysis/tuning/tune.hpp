@@ -22,7 +22,7 @@ struct TunedLaw {
   /// nearest trial violates.
   std::string binding;
   std::string why;    ///< reason of the violation, for the user
-  std::string relax;  ///< without a choice: which limit to relax, and by how much
+  std::string relax;  ///< if there is no choice: the limit to relax, and its new value, for the user
   TuneMargins margins;
   FieldLimit edge;  ///< stability limits of K in the scene with the choice and the scene's hand
   /// Error estimates: largest change of each metric of the scene's run if the step is halved, the point spacing is
