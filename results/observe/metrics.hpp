@@ -88,7 +88,7 @@ class MetricsObserver final : public MetricObserver {
   void on_step(const StepRecord& record) noexcept override;
   /// Reports all metrics except those of `report_end`.
   void report(Section& section) const override;
-  /// Reports the metrics that follow the metrics of an InsideObserver.
+  /// Reports the remaining metrics, which come after the metrics of an InsideObserver in summary.json.
   void report_end(Section& section) const;
 
   /// Returns true if the last step was in settled contact.

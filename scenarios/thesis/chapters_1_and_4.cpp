@@ -26,7 +26,7 @@ namespace {
 // ---- V1, V2: a hand presses a drill with a constant tilt, in the direction of the hand of task 2.
 
 constexpr double kPressedTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
-/// Steps between evaluations of the depth, 4 ms.
+/// Number of steps between two evaluations of the depth; they take 4 ms of simulated time.
 constexpr std::uint64_t kStepsBetweenEvaluations = 8;
 /// Time from which on the depth is measured [s]. Before it, at some tilts, the drill has not yet reached its resting
 /// position.

@@ -101,7 +101,7 @@ class Start {
       scene_["motion"] = {{"orientation", {{"up", list_of(up)}, {"lean", list_of(lean)}}}};
   }
 
-  /// Returns the mesh file of the environment, or of a tool.
+  /// Returns the mesh file of the environment; if the mesh is a tool, the file of the tool.
   const std::string& mesh_file() const { return options_.on.empty() ? options_.from : options_.on; }
 
   LoadedScenario scenario() const { return read_scenario(scene_, directory_); }
