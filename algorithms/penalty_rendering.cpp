@@ -46,7 +46,7 @@ void PenaltyRendering::render(const ToolState& tool, ContactBuffer& contacts, Re
   if (contacts.empty() && skips_ == Skips::on) return;
 
   const LawForce& law = law_force_ = law_->evaluate(contacts);
-  // -K times an empty sum is -0; adding zero gives the 0 of a step that skips the law.
+  // Without contacts, -K times an empty sum is -0. Adding zero gives 0, as in a step that skips the law.
   out.spring = contacts.empty() ? Vec3(law.spring + Vec3::Zero()) : law.spring;
   out.S = law.S;
   // Stop here without contacts, also with Skips::off: S is zero, so the whole velocity would count as

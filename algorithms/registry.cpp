@@ -7,8 +7,8 @@
 #include "algorithms/stages/controllers.hpp"
 #include "sim/tool/refuse.hpp"
 
-/// The built-in algorithms, in the order of lists. For each name, a source file in laws/ or proxy/ defines
-/// `AlgorithmEntry <name>_entry()`.
+/// The built-in algorithms, in the order in which they are listed. For each name, a source file in laws/ or proxy/
+/// defines `AlgorithmEntry <name>_entry()`.
 #define HAPBENCH_ALGORITHMS(entry)                                                                       \
   entry(original_averaging) entry(summation) entry(mean) entry(virtual_coupling) entry(shaped_stiffness) \
       entry(tandpasta) entry(normal_projection) entry(exact_shaping) entry(continuous_normal_projection) \

@@ -19,7 +19,8 @@
 /// of the list in registry.cpp. `add_algorithm` adds an external algorithm while the program runs.
 ///
 /// The table belongs to the process. Reader, schema, help and factories look names up in it, and a module, whose code a
-/// process loads once, adds to it. A table per run would have to be passed through every visitor of fields.
+/// process loads once, adds to it. If each run had its own table, every visitor of fields would have to receive it as
+/// an argument.
 namespace hapbench {
 
 /// A numeric parameter that belongs to one algorithm only and is not a member of RenderingConfig. In a scenario
@@ -34,8 +35,8 @@ struct AlgorithmParameter {
 /// Returns the parameter's value in `config`, or its default.
 double parameter_value(const RenderingConfig& config, const char* algorithm, const AlgorithmParameter& parameter);
 
-/// AlgorithmEntry::force_bound of a law whose force is at most the force of `count` springs, all at the largest
-/// depth. Without `count`: at most the force of all n springs.
+/// A value for AlgorithmEntry::force_bound: returns the force divided by K of `count` parallel springs at the largest
+/// depth, or of all n springs if there are fewer. Without `count`, all n springs count.
 template <int count = std::numeric_limits<int>::max()>
 double bound_of_springs(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return std::min<double>(count, static_cast<double>(n)) * depth;
@@ -62,11 +63,12 @@ struct AlgorithmEntry {
   std::string_view fixed_depth_model = {};
   /// False if the algorithm's definition excludes the reduction.
   bool may_reduce = true;
-  /// Depth model for an algorithm that does not render depths but reports them; empty if it renders them.
+  /// Depth model whose depths are reported in the results, for an algorithm that does not use depths for its force;
+  /// empty if the algorithm uses the depths.
   std::string_view reported_depth_model = {};
   std::span<const AlgorithmParameter> algorithm_parameters = {};
   AlgorithmOrigin origin = {};  ///< empty for a built-in algorithm
-  /// Owner of the targets of `info` and `algorithm_parameters` of an external algorithm.
+  /// Keeps alive the texts to which `info` and `algorithm_parameters` of an external algorithm point.
   std::shared_ptr<const void> texts = {};
 };
 
@@ -83,7 +85,7 @@ std::vector<std::string> algorithm_names();
 /// Returns the documentation of the optional stages of the penalty pipeline.
 std::span<const ModelInfo* const> stages();
 
-/// Returns null if no algorithm has this name.
+/// Returns the entry of the algorithm with this name; null if there is none.
 const AlgorithmEntry* find_algorithm(std::string_view name);
 
 /// Returns a copy of the entry that owns copies of all its texts except `info->parameters`. Throws

@@ -43,7 +43,8 @@ struct EnergyTankConfig {
   double initial = 0.0;   ///< energy at the start, in addition to the energy of the springs in the first step [J]
 };
 struct ActuatorLimitedPassivityConfig {
-  std::optional<Vec3> max_force;      ///< F, limit of the actuator along each world axis [N]; nullopt: no limit
+  std::optional<Vec3> max_force;      ///< F, largest force of the actuators along each world axis [N]; nullopt: no
+                                      ///< limit
   std::optional<double> max_damping;  ///< b, largest damping [N s/m]; nullopt: M / dt of the virtual tool
 };
 using ForceStageConfig = std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig>;
@@ -75,25 +76,28 @@ struct RenderingConfig {
   std::optional<double> virtual_coupling;  ///< K_vc, stiffness of the coupling spring [N/m]; nullopt: K
   double regularisation = 0.01;            ///< eps of the law least_squares
 
-  bool angular_damping = false;  ///< damping and friction use the tool's velocity at each contact
-  /// Cut-off of the low-pass on this velocity's rotation [Hz]; nullopt: none.
+  bool angular_damping = false;  ///< true: damping and friction use the velocity of the tool's material at each
+                                 ///< contact; false: of the tip centre
+  /// Cut-off frequency of the low-pass filter of the tool's angular velocity, for `angular_damping` [Hz]; nullopt: no
+  /// filter.
   std::optional<double> angular_velocity_cutoff = 20.0;
 
   /// Applied after the algorithm; nullopt: the algorithm's force is rendered.
   std::optional<ForceStageConfig> force_stage;
-  bool passivity_controller = false;  ///< applied around algorithm and force stage
+  bool passivity_controller = false;  ///< true: a passivity controller wraps algorithm and force stage
 
-  /// Given values of the parameters that belong to one algorithm only (AlgorithmParameter), by algorithm and name.
+  /// Values of the parameters that belong to one algorithm only (AlgorithmParameter), by algorithm and name. A
+  /// parameter that is missing here has its default value.
   std::map<std::string, std::map<std::string, double>> parameters;
 
   bool has_friction() const { return mu_s != 0.0 || mu_f != 0.0 || dry_friction; }
 
   /// Whether to skip work that changes nothing: stages without contacts, the reduction of a single contact,
-  /// friction with coefficients of zero. The run uses the same value for its search and its records.
+  /// friction with coefficients of zero. The contact search and the observers of a run use the same value.
   Skips skips = Skips::on;
 };
 
-/// The scenario fields that set these parameters, with unit and range.
+/// The scenario fields that set the members of RenderingConfig, with unit and range.
 namespace parameter {
 
 inline constexpr NumberRange kSwitch = {0, 1, "1"};

@@ -206,7 +206,8 @@ struct AdmittanceDeviceConfig {
 ///
 ///   hand -> sensor -> limiter -> [ virtual mass ] -> position servo -> carriage -> structure -> handle -> hand
 ///
-/// The simulation integrates the virtual mass; the servo follows it one step behind the force that moved it.
+/// The simulation integrates the virtual mass. The servo gets the state of the virtual mass one step after the force
+/// that moved it.
 class AdmittanceDevice final : public Device {
  public:
   explicit AdmittanceDevice(const AdmittanceDeviceConfig& config)

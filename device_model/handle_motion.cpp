@@ -42,7 +42,8 @@ FreeMotion by_series(const MotionLaw& law, double time) noexcept {
 /// Returns the solution after twice the time of `m`.
 FreeMotion doubled(const MotionLaw& law, const FreeMotion& m) noexcept {
   const double k = law.stiffness, S2 = m.S * m.S;
-  const double left = 1.0 - k * m.P;  // fraction of g that remains at the position P g
+  const double left = 1.0 - k * m.P;  // at the position P g the spring takes the part k P of the force g; this part
+                                      // of g is left
   return {.time = 2.0 * m.time,
           .S = m.S * (m.V + left),
           .P = m.P * (1.0 + left) + S2,
@@ -141,10 +142,11 @@ void HandleMotion::move(Eigen::Index axis, double motors, double friction, const
 
 using TransitionMatrix = ElasticMotion::Matrix;
 
-// The longest step of the search for stops is kMaxStep radians of the fastest mode.
-constexpr std::size_t kChangeHalvings = 40;  ///< halvings of this step, to locate the time of a change
-constexpr std::size_t kSkipHalvings = 12;    ///< halvings that give the shortest time between two changes
-constexpr std::size_t kMaxHalvings = 52;     ///< of a period: the bits of a double's mantissa
+// In the longest step of the search for stops, the phase of the fastest mode advances by kMaxStep radians.
+constexpr std::size_t kChangeHalvings = 40;  ///< number of halvings of the longest step, to locate the time of a change
+constexpr std::size_t kSkipHalvings = 12;    ///< number of halvings that give the shortest time between two changes
+constexpr std::size_t kMaxHalvings = 52;     ///< number of halvings of a period: the number of bits in a double's
+                                             ///< mantissa
 
 /// Returns the matrix M of z^T M z, the integral of u^T form u over `time`, where u(0) = z and u' = rates u. Power
 /// series in time.
@@ -258,7 +260,8 @@ double ElasticMotion::force_on_resting_motors(const Axis& axis, const State& z) 
   return axis.motors - transmission_.stiffness * (z[kMotor] - z[kHandle]) + transmission_.damping * z[kHandleSpeed];
 }
 
-/// Decides whether the motors stick, which requires `may_stick`, and sets the direction of their friction.
+/// Decides whether the motors stick, and sets the direction of their friction. They stick only if `may_stick` is
+/// true.
 void ElasticMotion::set_friction(Axis& axis, bool may_stick) const noexcept {
   const double v = axis.z[kMotorSpeed], force = force_on_resting_motors(axis, axis.z);
   axis.sticks = may_stick && v == 0.0 && std::abs(force) <= coulomb_;
@@ -285,8 +288,8 @@ void ElasticMotion::apply(Axis& axis, const Transition& transition) noexcept {
 }
 
 /// Advances by at most the fraction `left` of the interval, until the motors stop or start to move. Returns the
-/// fraction that remains then. If `skip` > 0, a first step of `skip` halvings of the search step is taken without a
-/// check, so that a change is not found again at once.
+/// fraction of the interval that remains after this. If `skip` > 0, a first step of `skip` halvings of the search
+/// step is taken without a check, so that a change is not found again at once.
 double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept {
   const std::vector<Transition>& transitions = axis.sticks ? stretch.sticking : stretch.moving;
   const auto fraction_of = [](std::size_t level) { return std::ldexp(1.0, -static_cast<int>(level)); };

@@ -44,8 +44,8 @@ struct FreeMotion {
 };
 
 /// Returns the solution of `law` after `time` [s]: a power series for a small fraction of the time, which is then
-/// doubled repeatedly. The relative error is a few roundings for any damping, stiffness and time, in oscillation
-/// and in creep. Takes about 0.1 us.
+/// doubled repeatedly. The relative error is a few units in the last place for any damping, stiffness and time,
+/// whether the motion oscillates or creeps. Takes about 0.1 us.
 FreeMotion free_motion(const MotionLaw& law, double time) noexcept;
 
 /// Returns the first time after the start at which the velocity is zero [s]; infinity if there is none. `v`:
@@ -126,8 +126,9 @@ struct Transmission {
 /// Indices m and h denote motors and handle: m_m = motor_share handle_mass, m_h is the remaining mass. Friction (b,
 /// c) and the motors' force f act on the motors' side, the hand's force on the handle, as in HandleMotion. With
 /// Coulomb friction the motors stop, stick as long as the sum of the other forces is at most c, and then start to
-/// move. No closed form gives these instants. They are located to rounding accuracy by bisection between points
-/// that are a quarter radian of the fastest mode apart, so two changes between neighbouring points may be missed.
+/// move. No closed form gives these instants. They are located to rounding accuracy by bisection between points in
+/// time at which the phase of the fastest mode differs by a quarter radian, so two changes between neighbouring
+/// points may be missed.
 class ElasticMotion : public HandleMotionBase {
  public:
   /// (x_m, v_m, x_h, v_h, force on the motors, force on the handle). Positions are relative to the handle's
@@ -144,7 +145,7 @@ class ElasticMotion : public HandleMotionBase {
   /// sticking motors. Takes about a millisecond to compute.
   struct Stretch {
     std::vector<Transition> moving, sticking;
-    std::size_t first = 0;  ///< index of the longest step that the search for stops takes
+    std::size_t first = 0;  ///< index of the longest step in the search for instants at which the motors stop
   };
 
   ElasticMotion(const ImpedanceDeviceConfig& device, const Transmission& transmission, const AttachedHand& hand);
@@ -169,7 +170,7 @@ class ElasticMotion : public HandleMotionBase {
     State z;
     double motors;          ///< force of the motors, without friction [N]
     double friction = 0.0;  ///< Coulomb friction on the motors [N]; 0 while they stick
-    bool sticks = false;    ///< the motors are at rest, held by friction
+    bool sticks = false;    ///< true if friction holds the motors at rest
   };
 
   Matrix rates(bool sticking) const;
@@ -191,7 +192,7 @@ struct LoggedHandle {
   double mass = 1.0;      ///< m, total moving mass [kg]
   double viscous = 0.0;   ///< b [N s/m]
   double coulomb = 0.0;   ///< c [N]
-  double delay = 0.0;     ///< from the time of a command to its force [s]
+  double delay = 0.0;     ///< time from a command to its force [s]
   double offset = 0.0;    ///< constant force in addition to the commands [N]
   double velocity = 0.0;  ///< initial velocity [m/s]
 };

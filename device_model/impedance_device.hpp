@@ -20,13 +20,13 @@ namespace hapbench {
 struct LowPassFilter {
   double cutoff = 100.0;  ///< half-power frequency [Hz]
   std::size_t order = 1;  ///< 1 to kMaxOrder
-  /// Largest order; up to it, the sum of modes loses less than 1e-12 of the input to rounding.
+  /// Largest order. Up to this order, the rounding error of the sum of the modes is less than 1e-12 of the input.
   static constexpr int kMaxOrder = 8;
 };
 
 /// One mode of a sampled low-pass: a term of the partial fractions of its transfer function. Its state is updated
-/// by y += gain (residue u - y) for each sample u, which is exact for an input held at u over the period before.
-/// The filter's output is the sum of the real parts of all states.
+/// by y += gain (residue u - y) for each sample u, which is exact for an input that was constant at u over the
+/// preceding period. The filter's output is the sum of the real parts of all states.
 struct LowPassMode {
   /// A pair of complex poles has one mode with twice its residue; the mode of a real pole is real.
   std::complex<double> residue, gain;
@@ -55,7 +55,7 @@ class SampledLowPass {
     Vec3 real = Vec3::Zero(), imaginary = Vec3::Zero();  ///< parts of the mode's state
   };
   std::vector<Term> terms_;
-  bool is_identity_ = true;  ///< the cutoff is so high that the output equals the input
+  bool is_identity_ = true;  ///< true if the cutoff is so high that the output equals the input
 };
 
 /// Velocity by the difference of positions, v_k = (x_k - x_(k-1)) / T, with the sampling period T.
@@ -68,8 +68,8 @@ struct DifferenceFilter {};
 /// straight line through the window's ends.
 struct AdaptiveWindowFilter {
   double noise = 1e-5;  ///< largest error of a sample [m]; half the encoder's resolution for a rounded position
-  /// Longest window [samples] (our choice). It reduces the effect of one encoder step to 1/15 of the effect on the
-  /// simple difference, and delays the velocity by half the window, 7.5 ms at 1 kHz.
+  /// Longest window [samples] (our choice). It reduces the effect of one encoder step on the velocity to 1/15 of its
+  /// effect on a simple difference, and delays the velocity by half the window, 7.5 ms at 1 kHz.
   static constexpr std::size_t kLongest = 15;
 };
 
@@ -110,14 +110,15 @@ struct ImpedanceDeviceConfig {
   double coulomb = 0.0;        ///< Coulomb friction c of each axis [N]
   double encoder_step = 0.0;   ///< resolution q of the measured position [m]; 0: exact
   double delay_samples = 0.0;  ///< delay d from the sample to the force [periods], may be fractional
-  /// The delay [s], if it was given in seconds. The code that knows the period converts it to delay_samples;
-  /// nothing in this file reads it.
+  /// The delay [s], if the scenario gives it in seconds. The code that knows the period converts it to delay_samples.
+  /// The device reads only delay_samples.
   std::optional<double> delay = {};
   VelocityFilterConfig velocity_filter = {};
   std::optional<double> force_max = {};   ///< norm of the force at which the motors saturate [N]; empty: no limit
   double force_step = 0.0;                ///< resolution of each force component [N]; 0: exact
   std::optional<double> force_slew = {};  ///< largest rate of change of the force (norm) [N/s]; empty: no limit
-  std::optional<LowPassFilter> position_filter = {};  ///< filter of the measured positions that are rendered
+  std::optional<LowPassFilter> position_filter = {};  ///< filter of the measured positions from which the force is
+                                                      ///< computed
   double position_noise = 0.0;  ///< standard deviation of the noise of each axis, added before rounding [m]
   std::uint64_t seed = 0;       ///< seed of the noise's random numbers
   std::optional<Transmission> transmission = {};  ///< between motors and handle; empty: rigid
@@ -141,8 +142,8 @@ class ForcePath {
   void reset() noexcept;
   /// Adds the force rendered at the beginning of a period [N] and returns the motors' force during this period.
   HeldForce hold(const Vec3& rendered) noexcept;
-  /// Returns the fraction of a period after which the motors change their force, in [0, 1): the fractional part of
-  /// the delay.
+  /// Returns the fractional part of the delay, in [0, 1). After this fraction of each period the motors change their
+  /// force.
   double switch_fraction() const noexcept { return switch_fraction_; }
 
  private:
@@ -163,12 +164,12 @@ class ForcePath {
 ///     -> delay d T -> hold -> motors -> handle <- hand
 ///
 /// There is no virtual mass: the tool is at the measured position of the handle, and f_in is zero. x_k is the
-/// position with noise, rounded to the resolution q in each axis. A position filter changes the rendered x_k, but
-/// not the x_k of the velocity v_k; v_0 = 0. The motors give no force before the first rendered force arrives, at t
-/// = d T; a fractional d changes the force within the period. Between samples the handle moves exactly
-/// (HandleMotion). With a transmission, motors and handle move as two bodies (ElasticMotion), and x_k is measured
-/// at the motors. In the energy balance, `actuator` is the motors' work. Allocates only in the constructor; a step
-/// without Coulomb friction takes about 50 ns.
+/// position with noise, rounded to the resolution q in each axis. A position filter changes the position that
+/// f_render gets, but the velocity v_k is computed from unfiltered positions; v_0 = 0. The motors give no force
+/// before the first rendered force arrives, at t = d T; a fractional d changes the force within the period. Between
+/// samples the handle moves exactly (HandleMotion). With a transmission, motors and handle move as two bodies
+/// (ElasticMotion), and x_k is measured at the motors. In the energy balance, `actuator` is the motors' work.
+/// Allocates only in the constructor; a step without Coulomb friction takes about 50 ns.
 class ImpedanceDevice final : public Device {
  public:
   /// `dt`: sampling period T [s]. `hand`: all zero for a hand whose force is held from sample to sample.
@@ -229,14 +230,14 @@ struct DevicePreset {
   SourcedNumber max_damping;    ///< largest stable damping of a wall that the source states [N s/m]
 };
 
-/// Returns all presets, in the order of their makers.
+/// Returns all presets, grouped by manufacturer.
 std::span<const DevicePreset> device_presets() noexcept;
 /// Returns the preset with this name, null if there is none.
 const DevicePreset* find_device_preset(std::string_view name) noexcept;
 
-/// Selects the values of a preset's unpublished parameters: the estimates themselves (own); the end of each range
-/// at which a wall starts to vibrate at a lower stiffness (soft: little friction and mass, a coarse encoder); or
-/// the opposite end (stiff).
+/// Selects the values of a preset's unpublished parameters: own: the estimates themselves. soft: the end of each
+/// range that lowers the stability limit of a wall (little friction and mass, a coarse encoder). stiff: the opposite
+/// end.
 enum class PresetVariant { own, soft, stiff };
 inline constexpr const char* kPresetRanges =
     "dry friction 0 to twice our value, viscous friction 1 to 10 times, mass smaller or larger by a factor of 1.3, "

@@ -87,17 +87,18 @@ constexpr ModelInfo kContinuousNormalProjectionInfo = {
 /// step. d_sd is the shortest distance to the tool's surface, d_np the normal projection, u the gradient, and
 /// dx the displacement of the tool at the point in one step.
 ///
-///  - No depth grows by more than |dx| in a step. This includes entry: relative to the tool, the point has
-///    moved by dx, so d_sd <= |dx|. The depths of a tool at rest do not drift.
+///  - No depth grows by more than |dx| in a step. This also holds for the step in which a point enters: relative to
+///    the tool, the point has moved by dx, so d_sd <= |dx|. The depths of a tool at rest do not drift.
 ///  - A motion of the tool along u changes d_np by the same amount. A point that the tool has pressed along u
 ///    since first contact therefore has d = d_np, also beyond the median line, where d_sd saturates.
-///  - The increase by <dx, u> equals work done against the force -K d u. Only d_sd creates energy, as in the
-///    depth model surface_normal. Some energy is lost where a point leaves sideways.
+///  - The increase by <dx, u> equals work done against the force -K d u. Only d_sd creates energy, as in the depth
+///    model surface_normal. If a point leaves the tool sideways, some energy is lost.
 ///
 /// No function of the pose alone is both continuous and free of saturation. Continuity at entry requires depth
-/// 0 everywhere on the tool's surface. Without saturation, a point that was pressed across the tool would have
-/// the whole diameter as depth on the same surface. Subtracting the depth at entry is no solution: a tool that
-/// slides over a flat, where points keep entering from the side, would lose its support. O(n).
+/// 0 everywhere on the tool's surface. Without saturation, a point that was pressed through the whole tool to the
+/// opposite surface would have the diameter as depth on this surface. Subtracting the depth at entry is no solution:
+/// points enter a tool that slides over a flat surface from the side all the time, and the tool would lose its
+/// support. O(n).
 class ContinuousNormalProjection final : public DepthModel {
  public:
   void prepare(const PointShell& shell) override {
@@ -121,7 +122,7 @@ class ContinuousNormalProjection final : public DepthModel {
       Memory& point = memory_[contacts.index[i]];
       const bool stays = point.step + 1 == step_;
       const double pressed = stays ? point.depth + (moved + turned.cross(x - pose.position)).dot(u) : 0.0;
-      // Rounding may put a point on the surface slightly outside
+      // Rounding may move a point on the surface slightly outside.
       const double shortest = std::max(contacts.depth[i], 0.0);
       point = {std::min(std::max(shortest, pressed), exit_[i]), step_};
       contacts.depth[i] = point.depth;

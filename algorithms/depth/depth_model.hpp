@@ -36,7 +36,7 @@ struct DepthModelEntry {
 
 /// Returns the table of depth models.
 std::span<const DepthModelEntry> depth_models();
-/// Returns null if no model has this name.
+/// Returns the entry of the depth model with this name; null if there is none.
 const DepthModelEntry* find_depth_model(std::string_view name);
 /// Creates the model with this name. Throws std::invalid_argument if there is none.
 std::unique_ptr<DepthModel> make_depth_model(std::string_view name);
@@ -60,7 +60,7 @@ class ShellSource final : public ContactSource {
   std::unique_ptr<ContactQuery> search_;
   std::unique_ptr<DepthModel> depth_model_;
   Skips skips_;
-  bool model_knows_of_no_contacts_ = false;  ///< the last call of the depth model had no contacts
+  bool model_knows_of_no_contacts_ = false;  ///< true if the depth model was last called without contacts
 };
 
 }  // namespace hapbench

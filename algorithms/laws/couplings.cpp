@@ -47,7 +47,7 @@ class SeriesLaw : public ForceLaw {
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling transmits velocities like depths.
+  /// The coupling transmits velocities by the same matrix as depths.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return series_.solve(ForceLaw::turning_velocity(contacts, S, tool));
   }
@@ -115,7 +115,7 @@ double virtual_coupling_bound(const RenderingConfig&, const ToolShape&, std::siz
 
 /// Mechanical equivalent: penalty springs of stiffness K / eps in series with one coupling spring of stiffness
 /// K. The energy is E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2. Its gradient by the
-/// tool's position is K x = -f. Depths and velocities are transmitted alike.
+/// tool's position is K x = -f. Depths and velocities are transmitted by the same matrix.
 class LeastSquares final : public SeriesLaw {
  public:
   explicit LeastSquares(const RenderingConfig& config) : SeriesLaw(config.stiffness, config.regularisation, 1.0) {}
@@ -138,12 +138,12 @@ constexpr AlgorithmParameter kSaturation[] = {
      30.0,
      "F_s: largest force of the coupling spring; default: the force limit of the trainer"}};
 
-/// Limits of Newton's method: number of steps and smallest fraction of a step. If it ends before the balance is
-/// reached, the force is still the coupling's force.
+/// Limits of Newton's method: number of steps and smallest fraction of a step. If the method ends before the balance
+/// is reached, the rendered force is still the force of the coupling at the last displacement.
 constexpr int kMaxSteps = 30;
 constexpr double kMinFraction = 1e-6;
 /// Smallest stiffness of the coupling along its force, relative to the stiffness across. Far beyond saturation,
-/// rounding would make it zero or negative.
+/// rounding would make this stiffness zero or negative.
 constexpr double kMinStiffnessRatio = 1e-12;
 /// Tolerated imbalance, relative to K sqrt(sum p_i^2). The rounding of a sum of n forces is below 1e-16 sqrt(n)
 /// of this.
@@ -191,7 +191,7 @@ class StaticCoupling final : public ForceLaw {
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling transmits velocities like depths.
+  /// The coupling transmits velocities by the same matrix as depths.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return transmission_ * ForceLaw::turning_velocity(contacts, S, tool);
   }
@@ -221,7 +221,7 @@ class StaticCoupling final : public ForceLaw {
         if (residual.norm() < before) break;
       }
       if (residual.norm() < before) continue;
-      displacement_ = from;  // only rounding is left, or the balance cannot be reached
+      displacement_ = from;  // the imbalance is only rounding, or the balance cannot be reached
       force_on_copy(contacts, displacement_);
       return;
     }
@@ -263,7 +263,7 @@ class StaticCoupling final : public ForceLaw {
   double K_vc_;                       ///< stiffness of the coupling before saturation [N/m]
   double F_s_;                        ///< saturation force of the coupling [N]
   Vec3 displacement_ = Vec3::Zero();  ///< displacement s of the copy for the last contacts [m]
-  Mat3 transmission_ = Mat3::Zero();  ///< maps a displacement of the tool to the fraction that reaches the contacts
+  Mat3 transmission_ = Mat3::Zero();  ///< maps a displacement of the tool to the part of it that reaches the contacts
 };
 
 /// Bound of |f_spring| / K: the coupling force balances the contacts, at most n K d, and is below F_s.

@@ -79,7 +79,8 @@ AlgorithmEntry mean_entry() {
           "parallel",
       .parameters = kStiffnessAlone,
   };
-  // |sum c d u| <= d sum c with c = 1 / n, so at most one spring.
+  // |sum c d_i u_i| <= d sum c with the largest depth d and c = 1 / n, so the force is at most the force of one
+  // spring.
   return {.info = &kInfo, .make_law = law_of<Mean>, .force_bound = bound_of_springs<1>};
 }
 

@@ -19,15 +19,16 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kEps = kExactShapingEpsilon;
-/// Newton steps with the final epsilon before the path below is used; nearly all scenes need one or two.
+/// Number of Newton steps with the final epsilon before kPath is used; nearly all scenes need one or two.
 constexpr int kDirectSteps = 6;
-/// Decreasing values of epsilon that are used if these steps are not enough (see solve).
+/// Decreasing values of epsilon that are used one after the other if kDirectSteps are not enough (see solve).
 constexpr double kPath[] = {1e-2, 1e-4, kEps};
-constexpr int kMaxNewtonSteps = 1000;  ///< for each epsilon; never reached in exact arithmetic
+constexpr int kMaxNewtonSteps = 1000;  ///< maximum number of Newton steps for each epsilon; never reached in exact
+                                       ///< arithmetic
 constexpr int kMaxLineSearchSteps = 40;
 constexpr int kMaxRefinements = 5;
-/// Residual of the optimality condition below which only rounding is left: S sums up to n terms of at most 1 in
-/// eight partial sums.
+/// Residual of the optimality condition, below which the residual is only rounding: S is computed from up to n terms
+/// of at most 1 in eight partial sums.
 constexpr double kResidualRounding = 1e-14;
 
 /// The identity tensor in the basis of TensorPack.
@@ -58,7 +59,7 @@ struct TensorPack {
 struct TensorSums {
   Mat6 G;            ///< sum a_i a_i^T over the active tensors (c_i > 0)
   Vec6 S;            ///< sum c_i a_i
-  bool same_active;  ///< no tensor changed between active and inactive
+  bool same_active;  ///< true if no tensor changed between active and inactive
 };
 
 /// Sets the weight of every tensor to c_i = max(0, weight_of(a_i, previous c_i)) and returns the sums.
@@ -93,7 +94,7 @@ TensorSums update_weights(const Tensors& tensors, WeightOf weight_of) noexcept {
   return sums;
 }
 
-/// Sets the weights of the point w of the dual problem, c_i = max(0, a_i . w), and returns the sums.
+/// Sets the weights c_i = max(0, a_i . w) that belong to the point w of the dual problem, and returns the sums.
 template <class Tensors>
 TensorSums evaluate_at(const Tensors& tensors, const Vec6& w) noexcept {
   return update_weights(tensors, [&w](const TensorPack& u, const simd::Pack&) { return u.dot(w); });
@@ -111,9 +112,9 @@ Vec6 dual_gradient(const Vec6& w, double eps, const TensorSums& sums) noexcept {
 }
 
 /// Line search by bisection: moves w towards `target` until the slope of the dual function along the path has
-/// halved. The function is convex and piecewise quadratic, so its slope is monotone, this decreases it, and
-/// Newton's method converges from any start. On entry `sums` holds the sums at `target`, on return at w.
-/// Returns false if the slope is only rounding.
+/// halved. The function is convex and piecewise quadratic, so its slope is monotone. The line search decreases the
+/// function, and Newton's method therefore converges from any start. On entry `sums` holds the sums at `target`, on
+/// return at w. Returns false if the slope is only rounding.
 template <class Tensors>
 bool line_search(const Tensors& tensors, const Vec6& target, double eps, double slope_at_w, Vec6& w,
                  TensorSums& sums) noexcept {
@@ -132,8 +133,8 @@ bool line_search(const Tensors& tensors, const Vec6& target, double eps, double 
   return false;
 }
 
-/// Newton's method for one epsilon, starting at w, where `sums` holds the sums; updates both. Adds the number
-/// of steps to `steps`. Returns true if it has converged to rounding.
+/// Newton's method for one epsilon. On entry `sums` holds the sums at w; updates w and `sums`. Adds the number of
+/// steps to `steps`. Returns true if it has converged to rounding.
 template <class Tensors>
 bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, TensorSums& sums, int& steps) noexcept {
   const double n = static_cast<double>(tensors.size);
@@ -147,7 +148,7 @@ bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, TensorSu
     // target.
     const double rounding = 1e-15 * (1.0 + n) * (1.0 + target.norm());
     const bool flickers_only = sums.same_active || dual_gradient(target, eps, sums).norm() <= rounding;
-    // In exact arithmetic the slope is negative before the optimum. Otherwise only rounding is left.
+    // In exact arithmetic the slope is negative before the optimum. A slope >= 0 is therefore only rounding.
     if (flickers_only || slope >= 0.0) {
       w = target;
       return true;
@@ -183,10 +184,10 @@ int solve(const Tensors& tensors) noexcept {
   TensorSums sums = evaluate_at(tensors, w);
   int steps = 0;
   if (!newton(tensors, kEps, kDirectSteps, w, sums, steps)) {
-    // Dense clusters of nearly equal gradients: the optimum keeps a few of hundreds, and Newton's method would
-    // find them one by one. Following the optimum from a large epsilon to a small one takes a few steps for
-    // each epsilon. Measured: at most 32 steps in total for 6e6 adversarial sets instead of a hundred, and 135
-    // for the worst of 1e6 mixtures of such sets.
+    // This happens with dense clusters of nearly equal gradients. The optimum gives positive weights to a few of
+    // hundreds of contacts, and Newton's method would find these contacts one by one. Following the optimum from a
+    // large epsilon to a small one takes a few steps for each epsilon. Measured: at most 32 steps in total for 6e6
+    // adversarial sets instead of a hundred, and 135 for the worst of 1e6 mixtures of such sets.
     double eps = kPath[0];
     w = identity6() / eps;
     sums = evaluate_at(tensors, w);
@@ -364,8 +365,8 @@ class MergedShaping final : public ForceLaw {
   Groups groups_;
 };
 
-/// Bound of |f_spring| / K: |f| / K <= sum c d = tr S d, and tr S <= 3, because tr S >= |S|^2_F >= (tr S)^2 / 3
-/// at the optimum.
+/// Bound of |f_spring| / K: |f| / K <= sum c_i d_i <= d sum c_i = d tr S with the largest depth d. At the optimum tr
+/// S >= |S|^2_F, and always |S|^2_F >= (tr S)^2 / 3, so tr S <= 3.
 constexpr auto* kBound = bound_of_springs<3>;
 
 }  // namespace

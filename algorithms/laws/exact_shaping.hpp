@@ -4,8 +4,8 @@
 
 namespace hapbench {
 
-/// Weight epsilon of the regularisation below. It is small enough that rho_i = 1 - epsilon c_i is 1 to six
-/// digits. It is large enough that the weights are unique and the solver's six equations can be solved to
+/// Weight epsilon of the regularisation in solve_exact_shaping(). It is small enough that rho_i = 1 - epsilon c_i is
+/// 1 to six digits. It is large enough that the weights are unique and the solver's six equations can be solved to
 /// rounding.
 inline constexpr double kExactShapingEpsilon = 1e-6;
 

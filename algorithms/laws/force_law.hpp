@@ -55,8 +55,8 @@ class ForceLaw {
   std::uint64_t iterations_ = 0;
 };
 
-/// A law that defines force and S but no individual springs. For energy and moment it counts as one spring of
-/// stiffness K along the force, which acts at the weighted mean of the contacts.
+/// A law that defines force and S but no individual springs. Energy and moment are computed as for one spring of
+/// stiffness K that pushes along the force at the weighted mean position of the contacts.
 class SingleSpringLaw : public ForceLaw {
  public:
   using ForceLaw::ForceLaw;
@@ -66,7 +66,8 @@ class SingleSpringLaw : public ForceLaw {
   bool gives_weights() const noexcept override { return gives_weights_; }
 
  protected:
-  bool gives_weights_ = false;  ///< true if the last `evaluate` gave weighted springs, for laws that may do either
+  bool gives_weights_ = false;  ///< true if the last `evaluate` returned weighted springs; for a law that returns
+                                ///< weighted springs in some steps only
 };
 
 /// Sets the weight of every contact to c; the padding stays zero. O(n).

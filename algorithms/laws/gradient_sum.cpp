@@ -39,13 +39,13 @@ double highest_depth(const ContactBuffer& contacts, double) noexcept {
   return *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
 }
 
-/// Bound of |f_spring| / K: sum d_i / |sum u_i|, where |sum u_i| > kMinMeanGradient n, or the force is zero.
+/// Bound of |f_spring| / K = sum d_i / |sum u_i|. The force is zero unless |sum u_i| > kMinMeanGradient n.
 double original_averaging_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 1e9 * std::min(1.0, static_cast<double>(n)) * depth;
 }
 
-/// Ratio of scaled to unscaled energy below which every spring is cancelled by another spring. Dividing by it
-/// would amplify rounding noise.
+/// Smallest ratio of scaled to unscaled energy. Below this value, the springs cancel each other, and a division by
+/// the ratio would amplify rounding noise.
 constexpr double kMinEnergyRatio = 1e-12;
 
 class Tandpasta final : public ForceLaw {
@@ -89,8 +89,8 @@ class Tandpasta final : public ForceLaw {
 };
 
 /// Bound of |f_spring| / K. c = beta / sigma preserves the energy: sum c d_i^2 = sum d_i^2 <= n d^2. Also sum c
-/// <= n / sigma, since beta <= 1. By Cauchy and Schwarz, sum c d_i <= n d / sqrt(sigma), where sigma >
-/// kMinEnergyRatio, or the force is zero.
+/// <= n / sigma, since beta <= 1. By Cauchy and Schwarz, sum c d_i <= n d / sqrt(sigma). The force is zero unless
+/// sigma > kMinEnergyRatio.
 double tandpasta_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 1e6 * static_cast<double>(n) * depth;
 }

@@ -85,9 +85,9 @@ class ModuleContacts final : public ContactSource {
   /// scenario's JSON object as text.
   ModuleContacts(Module module, const std::string& config, const HapbenchRun& run);
 
-  /// Returns no contacts after a fault, until the next reset. The following are faults as well: more contacts
-  /// than capacity(), a value that is not finite, a gradient whose length differs from 1 by more than 0.001,
-  /// and a negative depth.
+  /// Returns no contacts after a fault, until the next reset. Each of these results counts as a fault: more contacts
+  /// than capacity(), a value that is not finite, a gradient whose length differs from 1 by more than 0.001, or a
+  /// negative depth.
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return capacity_; }
   void reset() noexcept override;
@@ -103,8 +103,8 @@ class ModuleContacts final : public ContactSource {
 /// Returns the pose in the form that modules receive, for a tool with HapbenchRun::tool_length [m].
 HapbenchPose module_pose(const ToolPose& pose, double tool_length) noexcept;
 
-/// Returns the table entry for a module's law. `hash` is the hash of its file's content. Throws
-/// std::invalid_argument if functions or documentation of the module are missing.
+/// Returns the entry of the algorithm table for a module's law. `hash`: hash of the content of the module's file.
+/// Throws std::invalid_argument if functions or documentation of the module are missing.
 AlgorithmEntry law_entry(Module module, std::string hash);
 
 /// Faults of modules in runs, collected over all threads.

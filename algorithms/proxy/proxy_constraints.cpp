@@ -16,8 +16,8 @@ namespace {
 using simd::load, simd::Pack;
 
 /// Squared sine of the angle between a gradient and the span of other gradients below which the gradient counts
-/// as part of the span. Gradients on one flat face of the tool, or along one line of its side, differ by
-/// rounding only, 1e-15. Other neighbouring gradients differ by far more than this angle of 3e-8.
+/// as part of the span. Gradients on one flat face of the tool, or along one line of its side, differ only by
+/// rounding (1e-15). The threshold is an angle of 3e-8 rad. Other neighbouring gradients differ by far more.
 constexpr double kInSpan = 1e-15;
 constexpr int kMaxIterations = 100;
 
@@ -74,7 +74,7 @@ class ActiveSet {
   }
   Split split(const Vec3& u) const {
     Split parts{.remainder = u};
-    // The second round removes the rounding of the first, which matters if the remainder is short.
+    // The second round removes the rounding errors of the first round, which matter if the remainder is short.
     for (int round = 0; round < 2; ++round) {
       for (int k = 0; k < size_; ++k) {
         const double part = Q_.col(k).dot(parts.remainder);
@@ -169,7 +169,8 @@ bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts
     if (++out.iterations > kMaxIterations) return false;
     if (!satisfy(worst.contact, worst.amount, contacts.gradient(worst.contact), out.move, active)) return false;
   }
-  // A contact that is only just reached holds nothing; rounding would decide whether it is active.
+  // A contact that the move only just reaches does not hold the tool back. Make it inactive, because otherwise
+  // rounding would decide whether it is active.
   for (int k = active.size() - 1; k >= 0; --k) {
     if (active.lambda(k) <= tolerance) active.remove(k);
   }
@@ -226,16 +227,17 @@ void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& co
   out.held = 0.5 * (out.held + out.held.transpose()).eval();
 }
 
-/// Factor on the margin of the search, which must exceed the proxy's move by the rounding of both.
+/// Factor on the margin of the search. The margin must exceed the largest move of the proxy by the rounding errors of
+/// margin and move.
 constexpr double kQueryMargin = 1.0 + 1e-6;
-/// Distance by which a point may lie inside one face of an edge and still count as outside the edge, relative
-/// to the spacing.
+/// Distance, relative to the spacing, by which a point may lie inside one of the two faces at an edge and still count
+/// as beyond the edge.
 constexpr double kEdgeSlack = 1e-3;
 
 /// Number of points whose spacing is measured.
 constexpr std::size_t kSpacingSamples = 100;
-/// Radius of a patch relative to the spacing. It covers the centre of four points of a square lattice, at 0.707
-/// spacings.
+/// Radius of a patch relative to the spacing. In a square lattice of points, the patches cover the centre between
+/// four points, which is 0.707 spacings away from each.
 constexpr double kPatch = 0.75;
 /// Largest depth at which an edge constraint applies, relative to the spacing.
 constexpr double kMaxPatchDepth = 0.1;

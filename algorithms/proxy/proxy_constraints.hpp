@@ -23,7 +23,7 @@ struct AllowedMove {
   /// I - dx/dt: projector onto the span of the gradients of the contacts that hold the tool back.
   Mat3 held = Mat3::Zero();
   bool feasible = true;  ///< false: no move satisfies all contacts, so x is the least-squares compromise
-  /// If infeasible: <u_i, share> is the contribution of contact i to the residual t - x [m].
+  /// Only set if `feasible` is false: <u_i, share> is the contribution of contact i to the residual t - x [m].
   Vec3 share = Vec3::Zero();
   int iterations = 0;
 };
@@ -44,18 +44,19 @@ struct AllowedMove {
 ///
 ///   1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,   epsilon = 1e-6,
 ///
-/// so that opposite walls are violated equally. The weights are then the violations w_i = max(0, d_i + <u_i,
-/// x>). The multipliers are lambda_i = w_i + <u_i, share> and may be negative. They satisfy the same identity
-/// up to epsilon: violations of opposite walls cancel, and share = H^-1 (t - x) distributes the rest, with H =
-/// sum u u^T + epsilon I over the violated contacts. These lambda_i are the derivatives by d_i of 1/2 |x - t|^2
-/// + 1/2 sum w^2, so forces and moments computed from them create no energy.
+/// so that the tool enters opposite walls equally deep. The weights are then the violations w_i = max(0, d_i + <u_i,
+/// x>). The multipliers are lambda_i = w_i + <u_i, share> and may be negative. They satisfy the same identity up to
+/// epsilon: violations of opposite walls cancel, and share = H^-1 (t - x) distributes the rest, with H = sum u u^T +
+/// epsilon I over the violated contacts. These lambda_i are the derivatives by d_i of 1/2 |x - t|^2 + 1/2 sum w^2, so
+/// forces and moments computed from them create no energy.
 ///
 /// O(n) for each iteration, usually one to five iterations. Allocates nothing. Preconditions: the contacts are
 /// padded, and the gradients are unit vectors. Without unit vectors the result is still finite.
 AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept;
 
-/// Margin around the tool within which constraints are computed, in half widths of the tool. A wider margin
-/// includes more points in each pass. A narrower margin needs more passes for a fast tool.
+/// Margin around the tool within which constraints are computed, in half widths of the tool. With a wider margin,
+/// each computation of the constraints includes more points. With a narrower margin, a fast tool needs more
+/// computations per step.
 inline constexpr double kProxyMargin = 0.2;
 
 /// Keeps a proxy of the tool out of an environment by linear constraints on its next move x: d_i + <u_i, x> <=
@@ -78,7 +79,7 @@ class ProxyConstraints {
   virtual const SearchWork& work() const noexcept { return work_; }
 
  protected:
-  SearchWork work_;  ///< for constraints without a search
+  SearchWork work_;  ///< counters of constraints that have no contact search
 };
 
 /// Constraints from the shell points within the margin of the tool (ToolShape::surface_constraints), and from

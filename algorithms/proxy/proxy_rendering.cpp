@@ -14,16 +14,16 @@ namespace {
 
 /// Eigenvalue of sum u u^T below which its eigenvector counts as outside the span of the gradients.
 constexpr double kNoSpan = 1e-6;
-/// A pass that moves the proxy by less than this fraction of the margin is the last pass. Its constraints are
-/// exact at its start, so the error at its end is the squared length of the move over the width of the tool: 9
-/// nm for a drill of 1 mm.
+/// A pass that moves the proxy by less than this fraction of the margin is the last pass. The constraints are exact
+/// at the start of the move. At its end the error is the squared length of the move divided by the width of the tool:
+/// 9 nm for a drill of 1 mm.
 constexpr double kConverged = 0.03;
 /// Longest cycle of proxy positions that is recognised, in passes.
 constexpr std::size_t kLongestCycle = 4;
 /// Positions closer than this fraction of the margin count as equal.
 constexpr double kEqualPositions = 1e-3;
-/// Maximum number of times that the move of a proxy with points inside is shortened. Its length is then right
-/// to a few per cent, unless the tool itself pulls the proxy away.
+/// Maximum number of times that the move of a proxy with points inside is shortened. After these shortenings the
+/// length of the move is right to a few per cent, unless the tool itself pulls the proxy away.
 constexpr int kMaxShortenings = 3;
 
 constexpr AlgorithmParameter kDampingTime[] = {
@@ -65,16 +65,16 @@ constexpr double kRecoverySpeed = 40.0;
 /// the proxy takes the least-squares compromise, and each wall that it enters counts as one more spring of
 /// stiffness K.
 ///
-/// Points may be inside the proxy if it was placed on them or if walls leave no room. Moving it out at once
-/// would throw the tool out. The depths are therefore scaled so that the deepest point leaves at
+/// Points may be inside the proxy if the proxy was placed on them, or if walls leave no room for it. Moving the proxy
+/// out in one step would throw the tool out. The depths are therefore scaled so that the deepest point leaves at
 /// kRecoverySpeed. A proxy without points inside keeps the guarantee, however fast the tool rotates. Planes of
 /// springs have no inside.
 ///
 /// With multi-rate contacts (ContactSchedule), the proxy follows the tool and searches points only in steps in
-/// which a query returns, for the tool's pose in the query. Held: the spring force stays constant until then.
-/// Linear: the constraints of the last pass become planes in space that rotate with the tool's material, and in
-/// every step the proxy moves to the allowed position nearest to the tool, without passes. Points beyond the
-/// margin are not found before the next query.
+/// which a query returns, for the tool's pose in the query. If contacts are held, the spring force stays constant
+/// until the next query returns. If they are linear (MultiRateSchedule), the constraints of the last pass become
+/// planes in space that rotate with the tool's material, and in every step the proxy moves to the allowed position
+/// nearest to the tool, without passes. Points beyond the margin are not found before the next query.
 ///
 /// f_spring = K (x - p) with the tool's position p. S is the projector onto the span of the gradients that hold
 /// the proxy back. With angular damping, v_n is S v plus the shortest velocity in this span whose components
@@ -180,7 +180,7 @@ class ProxyRendering final : public ForceAlgorithm {
     spring_ = K_ * (proxy_ - tool.position);
   }
 
-  /// `find` for multi-rate contacts.
+  /// Does the work of update_proxy() for multi-rate contacts.
   void update_with_schedule(const ToolPose& tool, bool free) noexcept {
     const ContactSchedule::Query* query = schedule_->used();
     if (query == nullptr) {
@@ -212,8 +212,8 @@ class ProxyRendering final : public ForceAlgorithm {
           constraint_depth_[i] + planes.gradient(i).dot(turned * (planes.point(i) - constraint_position_));
   }
 
-  /// Low-pass filters S for damping and friction. Further states of an integrator within a step start from the
-  /// previous step, like the first. The first contact takes effect at once.
+  /// Low-pass filters S for damping and friction. If an integrator evaluates several states within a step, the filter
+  /// starts from the previous step for each of them. The first contact takes effect at once.
   void filter_directions() noexcept {
     damping_S_ = allowed_.held;
     if (damping_time_ == 0.0) return;
@@ -261,7 +261,8 @@ class ProxyRendering final : public ForceAlgorithm {
     near_contacts_->clear();
   }
 
-  /// Returns the allowed move nearest to the wanted move, or a slow move out if points are inside the proxy.
+  /// Returns the allowed move nearest to the wanted move. If points are inside the proxy, returns a slow move out of
+  /// them.
   AllowedMove next_move(const Vec3& wanted) noexcept {
     depth_scale_ = 1.0;
     const double deepest = clear_ ? 0.0 : near_contacts_->largest_depth();
@@ -331,7 +332,7 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   /// Replaces the colliding points by the contacts that hold the proxy back, up to the buffer's capacity. In a
-  /// compromise, points and patches may exceed it; force and energy still include all of them.
+  /// compromise, more points and patches than this may hold the proxy; force and energy still include all of them.
   void copy_holding_contacts(ContactBuffer& contacts) const noexcept {
     contacts.clear();
     for_each_holding(*near_contacts_, [&](std::size_t i) {
@@ -355,18 +356,18 @@ class ProxyRendering final : public ForceAlgorithm {
   std::optional<std::uint64_t> last_query_row_;  ///< step of the last query whose points were searched
   /// Proxy position for which the constraints of the last pass were computed [m].
   Vec3 constraint_position_ = Vec3::Zero();
-  AlignedDoubles constraint_depth_;  ///< depths of these constraints, if planes rotate [m]
+  AlignedDoubles constraint_depth_;  ///< depths of the constraints at constraint_position_ [m], if planes rotate
 
   bool has_proxy_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();
   AllowedMove allowed_;            ///< result of the last pass
   Mat3 damping_S_ = Mat3::Zero();  ///< S for normal damping and friction
-  /// This filtered S at the end of this step and of the previous step.
+  /// The filtered S at the end of this step and of the previous step.
   Mat3 damping_S_row_ = Mat3::Zero(), previous_S_ = Mat3::Zero();
   std::optional<std::uint64_t> last_row_;
   const std::uint64_t* row_ = nullptr;  ///< null if no Simulation steps the algorithm; then each call counts as a step
   double dt_ = 0.0;
-  bool clear_ = false;        ///< no points are inside the proxy after the last pass
+  bool clear_ = false;        ///< true if no points are inside the proxy after the last pass
   double recovery_ = 0.0;     ///< distance by which the deepest point may leave in a step [m]
   double depth_scale_ = 1.0;  ///< factor on the depths of points inside the proxy in the last pass
   Vec3 spring_ = Vec3::Zero();

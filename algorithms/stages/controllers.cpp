@@ -86,8 +86,8 @@ Vec3 ActuatorLimitedPassivity::force(const StageStep& step) noexcept {
   double owed = f.dot(v) - step.energy / dt_;  // power to dissipate [W]
   if (size == 0.0 || !(owed > 0.0)) return f;
   const Vec3 limit = config_.max_force.value_or(Vec3::Constant(std::numeric_limits<double>::infinity()));
-  // Applies the smallest damping a <= b that dissipates the power owed, on the velocity component `part`. Keeps
-  // the force within the limits, |g - a part|_j <= F_j for each axis j.
+  // Damps the velocity component `part`. The damping a is the smallest that dissipates the power `owed`, but at most
+  // b. Keeps the force within the limits, |g - a part|_j <= F_j for each axis j.
   const auto damped = [&](const Vec3& g, const Vec3& part) -> Vec3 {
     double a = std::min(max_damping_, owed / part.squaredNorm());
     for (int j = 0; j < 3; ++j) {
@@ -123,7 +123,7 @@ void StagedRendering::reset() noexcept {
 
 void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   algorithm_->compute(tool, contacts, out);
-  // A state within a step gets the change of the step's force.
+  // For a state within a step, add the change that the stage made in this step.
   const std::uint64_t row = scene_.row != nullptr ? *scene_.row : row_ ? *row_ + 1 : 0;
   if (row_ == row) {
     if (!change_.isZero(0.0)) out.rendered += change_;
@@ -159,7 +159,7 @@ AlgorithmWork StagedRendering::work() const noexcept {
   return work;
 }
 
-/// Returns the largest s in [0, 1] with a s^2 + b s <= c, where a >= 0. If there is none, returns the s that
+/// Returns the largest s in [0, 1] with a s^2 + b s <= c, where a >= 0. If there is no such s, returns the s that
 /// comes closest.
 static double largest_scale(double a, double b, double c) noexcept {
   if (a + b <= c) return 1.0;
@@ -203,7 +203,7 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   last_row_ = *row_;
   observed_.move(tool);
   if (!observed_.first()) {
-    // The largest change of the rotation so far bounds how much the hand is expected to change it again.
+    // The largest change of the rotation so far is the largest change that is expected in the coming step.
     const Vec3 turn = observed_.turned();
     if (last_turn_) largest_change_ = std::max(largest_change_, (turn - *last_turn_).norm());
     last_turn_ = turn;
@@ -241,7 +241,7 @@ void PassivityController::control(const ToolState& tool, const Vec3& force) noex
   if (scale_ == 1.0) return;
   ++steps_controlled_;
   double spring_scale = scale_;
-  // A force cut by the force limit absorbs less energy, so less is left for the moment.
+  // If the force limit cuts the force, the force absorbs less energy, and less energy is left for the moment.
   const Vec3 whole = scale_ * force - alpha_ * w;
   if (const Vec3 rendered = limited_to(whole, max_force_); rendered != whole && taken > 0.0) {
     const Vec3 after = w + rendered * (dt_ / mass_);

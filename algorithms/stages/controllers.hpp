@@ -60,15 +60,15 @@ class EnergyTank final : public ForceStage {
   bool begun_ = false;
 };
 
-/// A passivity controller (Hannaford and Ryu, 2002) that respects the limits of the actuators. A force f would
-/// exceed the observed energy E over the coming step by <f, v> dt - E. If this is positive, damping must
-/// dissipate it: first damping along the force, which relieves the actuators, then damping at right angles to
-/// the force for the remainder. This prioritised dissipation follows the abstract of Porcini and Frisoli; the
-/// formulas are ours (kActuatorLimitedPassivityInfo).
+/// A passivity controller (Hannaford and Ryu, 2002) that respects the limits of the actuators. Over the coming step,
+/// a force f would return the energy <f, v> dt. If this is more than the observed energy E, damping must dissipate
+/// the excess <f, v> dt - E: first damping along the force, which relieves the actuators, then damping at right
+/// angles to the force for the remainder. This prioritised dissipation follows the abstract of Porcini and Frisoli;
+/// the formulas are ours (kActuatorLimitedPassivityInfo).
 ///
-/// Each damping is the smallest that dissipates the remainder, but at most `max_damping`, beyond which a step
-/// would reverse the velocity, and at most the damping that keeps the force within the actuators' limits along
-/// the world axes. Energy that is not dissipated remains as a debt, E < 0, and is dissipated in later steps
+/// Each of the two dampings is the smallest that dissipates the remaining excess. It is at most `max_damping`, beyond
+/// which a step would reverse the velocity, and at most the damping that keeps the force within the actuators' limits
+/// along the world axes. Energy that is not dissipated remains as a debt, E < 0, and is dissipated in later steps
 /// that render a force. In free air the stage renders nothing.
 class ActuatorLimitedPassivity final : public ForceStage {
  public:
@@ -83,8 +83,9 @@ class ActuatorLimitedPassivity final : public ForceStage {
   double max_damping_ = 0.0;  ///< largest damping b [N s/m]
 };
 
-/// An algorithm followed by a force stage. The stage's force is limited to max_force again. For a state within
-/// a step, the change of the step's force is added to the algorithm's force.
+/// An algorithm followed by a force stage. The stage's force is limited to max_force again. The stage computes its
+/// change of the force once per step. If an integrator asks for the force within the step, the same change is added
+/// to the algorithm's force there.
 class StagedRendering final : public ForceAlgorithm {
  public:
   StagedRendering(std::unique_ptr<ForceAlgorithm> algorithm, std::unique_ptr<ForceStage> stage,
@@ -129,17 +130,17 @@ class StagedRendering final : public ForceAlgorithm {
 /// nearest to f. The controller is adaptive damping: at s = 0 it stops the tool, and it never reverses the
 /// velocity.
 ///
-/// Before that, the springs are weakened if the scripted rotation would draw more energy than E from their
-/// moment. The rotation of the coming step is predicted as the last step's rotation, plus or minus twice the
+/// Before this computation, the springs are weakened if the scripted rotation would take more energy than E from
+/// their moment. The rotation of the coming step is predicted as the last step's rotation, plus or minus twice the
 /// largest change of rotation between two steps so far. The work of half the moment over this change is kept in
 /// reserve. In free air the controller renders nothing.
 ///
 /// Guarantee for the leapfrog integrator and a free position: E is never negative, up to rounding, while no
-/// change of the rotation exceeds twice the largest earlier change. (The first rotation of a run that starts in
-/// contact does.) The force is bitwise unchanged for a law whose observed energy stays >= 0 without the
-/// controller, if the axis is fixed; if the axis turns, it is unchanged while this energy stays above the
-/// reserve. Energy that another integrator or a jerk beyond the reserve takes remains as a debt and is
-/// dissipated in the next steps in contact.
+/// change of the rotation exceeds twice the largest earlier change. (In a run that starts in contact, the first
+/// rotation exceeds it.) The force is bitwise unchanged for a law whose observed energy stays >= 0 without the
+/// controller, if the axis is fixed; if the axis turns, it is unchanged while this energy stays above the reserve.
+/// Another integrator, or a jerk for which the reserve is too small, may make E negative; the next steps in contact
+/// then dissipate this debt.
 class PassivityController final : public ForceAlgorithm {
  public:
   PassivityController(std::unique_ptr<ForceAlgorithm> algorithm, const RenderingConfig& config)
@@ -170,7 +171,7 @@ class PassivityController final : public ForceAlgorithm {
   ObservedEnergy observed_{0.0};
   const std::uint64_t* row_ = nullptr;     ///< Scene::row
   const Vec3* input_ = nullptr;            ///< Scene::input, f_in [N]
-  std::optional<std::uint64_t> last_row_;  ///< step of the last `compute`; empty before the first
+  std::optional<std::uint64_t> last_row_;  ///< step of the last call of `compute`; empty before the first call
   SpringState springs_;                    ///< energy and moment of the springs after scaling
   double scale_ = 1.0;                     ///< s, rendered fraction of the algorithm's force
   double alpha_ = 0.0;                     ///< alpha, damping [N s/m]

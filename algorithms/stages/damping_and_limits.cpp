@@ -135,7 +135,7 @@ Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const C
   } else if (config_.mu_s != 0.0 || config_.mu_f != 0.0) {
     force -= tangential();
   } else if (config_.skips == Skips::off) {
-    // The sum is 0 and never -0; subtracting -0 would turn a -0 of the force into 0
+    // Adding zero turns -0 into 0. Subtracting -0 would turn a force of -0 into 0.
     force -= tangential() + Vec3::Zero();
   }
   return limited_to(force, config_.max_force);

@@ -20,10 +20,11 @@ SpringDamper bristle_of(const DryFrictionConfig& config, const RenderingConfig& 
 /// mu N, and slides above it. N = sum N_i is the sum of the contact loads N_i = K c_i d_i > 0. Formula:
 /// kDampingAndLimitsInfo.
 ///
-/// One face, a slot of two faces and the line of a wedge give Coulomb's friction force; a corner never gives
-/// more. Guarantee: passive for any motion, loads and normals, -<f, p_k - p_k-1> >= K_t/2 (||e_k||^2 -
-/// ||e_k-1||^2) where v is (p_k - p_k-1) / dt. Known failure: an explicit step is stable only up to a K_t of
-/// about the limit of K. Beyond it, a sticking tool chatters with forces of at most mu N.
+/// On one face, between the two faces of a slot and along the line of a wedge, the result is Coulomb's friction
+/// force; in a corner it is never larger. Guarantee: passive for any motion, loads and normals, -<f, p_k - p_k-1> >=
+/// K_t/2 (||e_k||^2 - ||e_k-1||^2) if the velocity v passed to `force` is (p_k - p_k-1) / dt. Known failure: an
+/// explicit step is stable only up to a K_t of about the limit of K. Beyond it, a sticking tool chatters with forces
+/// of at most mu N.
 class DryFriction {
  public:
   DryFriction(const DryFrictionConfig& config, const RenderingConfig& rendering);
@@ -61,7 +62,8 @@ class DryFriction {
 
 extern const ModelInfo kDampingAndLimitsInfo;
 
-/// Velocity of the tool at its contacts [m/s]. For a tool that does not rotate: v and S v.
+/// Velocity of the tool at its contacts [m/s]. For a tool that translates with velocity v, `mean` is v and `normal`
+/// is S v.
 struct ContactVelocity {
   Vec3 mean = Vec3::Zero();    ///< mean velocity of the tool's material at the contacts
   Vec3 normal = Vec3::Zero();  ///< v_n, velocity for normal damping
@@ -79,22 +81,23 @@ inline Vec3 limited_to(const Vec3& force, const std::optional<double>& limit) no
   return limit && length > *limit ? Vec3(force * (*limit / length)) : force;
 }
 
-/// Damping, friction and limits, identical for all laws (thesis 2.5, 2.6, A.2.1, B.2, C.4.3). Formulas:
-/// kDampingAndLimitsInfo. The friction coefficients mu_s and mu_f are viscous, although the thesis calls them
-/// Coulomb friction.
+/// Damping, friction and limits, identical for all laws (thesis 2.5, 2.6, A.2.1, B.2, C.4.3). Formulas and symbols:
+/// kDampingAndLimitsInfo. The friction coefficients mu_s and mu_f are viscous, although the thesis calls them Coulomb
+/// friction.
 ///
 /// Without angular damping, a tool that only rotates is not damped (thesis 4.4). With angular damping, the
 /// velocity is that of the tool's material at contact i, v_i = v + omega x r_i, with r_i from the tip centre.
 /// omega is the angular velocity of the previous step after a low-pass filter, because a trembling hand rotates
-/// the tool much faster than it translates it. The mean arm r_mean is weighted by c_i. Laws that are not
-/// weighted springs define v_n by ForceLaw::turning_velocity. Guarantee: the dampers of weighted springs take
-/// the power B sum c_i <v_i, u_i>^2 >= 0 from the motion of the tool. Known failure: a rotation pushes the tip
-/// sideways with energy from the rotating hand, which the hand does not feel, because the device renders
-/// translation only.
+/// the tool much faster than it translates it. `ContactVelocity::mean` uses the mean of the arms r_i with the weights
+/// c_i. For a law that is not made of weighted springs, ForceLaw::turning_velocity defines the normal velocity.
+/// Guarantee: the dampers of weighted springs take the power B sum c_i <v_i, u_i>^2 >= 0 from the motion of the tool.
+/// Known failure: if the hand rotates the tool, the damping pushes the tip sideways. The energy comes from the hand's
+/// rotation, but the hand feels no torque against it, because the device renders no torque.
 ///
 /// Hunt and Crossley's damping and DryFriction (our additions) use the loads N_i = K c_i d_i > 0 of the
 /// contacts. For algorithms without weights they use one load ||f_spring|| along f_spring. Hunt and Crossley's
-/// damping keeps the force continuous at contact onset and release, and never pulls while |<v, u_i>| < 1 / chi.
+/// damping keeps the force continuous at contact onset and release, and never pulls while |<v, u_i>| < 1 / chi, with
+/// the coefficient chi.
 class DampingAndLimits {
  public:
   explicit DampingAndLimits(const RenderingConfig& config);

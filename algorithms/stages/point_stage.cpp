@@ -155,10 +155,10 @@ class GradientReduction final : public PointStage {
   }
 
  private:
-  /// Visits the `n` <= 8 contacts from i on. The loops are exchanged: each kept contact in turn is compared
-  /// with all contacts of the pack that no earlier kept contact has absorbed. The result is unchanged, because
-  /// a kept contact depends only on the contacts that are not similar to the earlier kept contacts, and on
-  /// their order.
+  /// Visits the `n` <= 8 contacts from i on. The loops over contacts and kept contacts are exchanged: one kept
+  /// contact after the other is compared with all contacts of the pack that are not similar to an earlier kept
+  /// contact. The result is unchanged, because a kept contact depends only on the contacts that are not similar to
+  /// the earlier kept contacts, and on their order.
   void visit_pack(ContactBuffer& c, std::size_t i, std::size_t n, std::size_t& kept) noexcept {
     using simd::load, simd::Pack;
     const Pack x = load(&c.ux[i]), y = load(&c.uy[i]), z = load(&c.uz[i]), depth = load(&c.depth[i]);

@@ -9,9 +9,9 @@ namespace hapbench {
 
 /// Number of projections onto the local plane; see SmoothedSurface::nearest.
 constexpr int kProjections = 3;
-/// A path ends where the sine of the angle between its direction and the normal falls below this value. A step must
-/// also advance by at least the square of this value, as a fraction of the step's length: beyond the border of a
-/// surface, all projections coincide with the border.
+/// A path ends where the sine of the angle between its direction and the normal falls below this value. The path also
+/// ends if a step advances by less than this value squared times the length of the step: beyond the border of a
+/// surface, all projections lie on the border.
 constexpr double kMinProgress = 0.1;
 
 /// Calls visit(i) for the points i in those grid cells that intersect the cube with the given centre and half width

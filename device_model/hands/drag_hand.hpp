@@ -29,8 +29,8 @@ class SmoothedSurface {
   double radius() const { return radius_; }
   /// Returns the projection of `at` [m] onto the surface, and the outward normal there. Starts at the nearest shell
   /// point and projects `at` three times onto the plane near the last position. Stops before a position without
-  /// neighbours, for example further than R beyond the surface's border. Visits all points within about `at`'s
-  /// distance from the shell once, and the points within R three times.
+  /// neighbours, for example further than R beyond the surface's border. If `at` is a distance a from the shell,
+  /// visits the points within about a once, and the points within R three times.
   SurfacePoint nearest(const Vec3& at) const;
 
  private:
@@ -86,7 +86,7 @@ class SurfacePath {
   double radius_;
   double spacing_;                     ///< distance between entries [m]
   std::vector<SurfacePoint> entries_;  ///< positions and normals on the path, at least one
-  std::vector<Normals> normals_;       ///< for each entry, normals across the path from right to left
+  std::vector<Normals> normals_;       ///< for each entry, normals on a line across the path, from right to left
 };
 
 /// Parameters of a DragHand.
@@ -131,8 +131,8 @@ class DragHand final : public Hand {
 /// the path. The position is free. Allocates nothing.
 class DragOrientation final : public Motion {
  public:
-  /// The tool leans by `tilt` [rad] from the outward normal, towards the direction of travel turned by `azimuth`
-  /// [rad] about the normal. `speed` [m/s] as in Drag.
+  /// The tool leans by `tilt` [rad] away from the outward normal. It leans towards the direction of travel, rotated
+  /// by `azimuth` [rad] about the normal. `speed` [m/s] as in Drag.
   DragOrientation(std::shared_ptr<const SurfacePath> path, double speed, double tilt, double azimuth)
       : path_(std::move(path)), speed_(speed), tilt_(tilt), azimuth_(azimuth) {}
 

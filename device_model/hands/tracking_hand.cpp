@@ -9,7 +9,8 @@
 namespace hapbench {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-/// Range of the tilt from vertical [rad]: the wrist does not turn the tool past upright and does not lay it flat.
+/// Range of the tilt from vertical [rad]. The wrist does not turn the tool beyond the vertical, and does not lay it
+/// flat.
 constexpr double kMinTilt = 0.0, kMaxTilt = 1.4;
 
 TrackingHand::TrackingHand(const Subject& subject, TargetTask task, double initial_tilt, double dt, std::uint64_t seed)

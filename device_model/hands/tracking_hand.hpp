@@ -26,7 +26,8 @@ struct Subject {
   double height_per_tilt = 0.004;  ///< rise of the tip per tilt that the subject expects [m/rad]
   double max_speed = 0.02;         ///< largest speed of the intended position [m/s]
   double max_turn = 1.0;           ///< largest angular speed of the wrist [rad/s]
-  double max_force = 6.0;  ///< limit of the spring force in each axis; the intended position yields beyond it [N]
+  double max_force = 6.0;  ///< limit of the force k (x_e - x_handle) in each axis; the intended position x_e yields to
+                           ///< keep it [N]
 };
 
 /// A simulated subject who follows one target after the other on a display and presses the tool down. The subject
@@ -39,8 +40,8 @@ struct Subject {
 ///   height: dtilt/dt = 2 pi f_v (target - tip) / height_per_tilt, by the wrist; x_e rests in x and y
 ///   both:   dz_e/dt = -2 pi f_p (press - gauge) / k
 ///
-/// Each rate is limited by the subject's speed and strength. f_v and f_p are the bandwidths of Subject. Allocates
-/// only in the constructor.
+/// The rates of x_e and of the tilt are limited by the subject's speed and strength. f_v and f_p are the bandwidths
+/// of Subject. Allocates only in the constructor.
 class TrackingHand final : public Hand {
  public:
   /// `initial_tilt`: tilt of the wrist [rad], which changes only with the height display. `dt`: sampling interval
@@ -72,17 +73,17 @@ class TrackingHand final : public Hand {
   double initial_tilt_;
   double dt_;
   std::uint64_t seed_;
-  double noise_memory_;  ///< correlation of the noise between consecutive samples
+  double noise_memory_;  ///< coefficient of correlation of the noise between consecutive samples
 
   std::vector<Display> seen_;  ///< ring buffer of the displays within the reaction delay
   std::size_t next_ = 0;
-  bool started_ = false;  ///< intended_ has been set to the handle's initial position
+  bool started_ = false;  ///< true after intended_ has been set to the handle's initial position
   Random random_;
   Vec3 intended_ = Vec3::Zero();
   double wrist_ = 0.0;  ///< tilt without noise [rad]
   double tilt_ = 0.0;
-  Vec3 force_noise_ = Vec3::Zero();  ///< in units of its standard deviation
-  double tilt_noise_ = 0.0;          ///< in units of its standard deviation
+  Vec3 force_noise_ = Vec3::Zero();  ///< noise of the force, in units of its standard deviation
+  double tilt_noise_ = 0.0;          ///< noise of the tilt, in units of its standard deviation
 };
 
 /// Orientation of a tool whose tilt a tracking hand controls. The position is free.

@@ -46,8 +46,8 @@ Eigen::MatrixXd elastic_motion_rate(const SampledLoop& loop, const Transmission&
 }
 
 /// Returns the matrix A of the motion dz/ds = A z, where s is time in periods, z = (x, T v, T^2/m f) and the force
-/// f is constant. Sizes here and below are dynamic, so that the compiler instantiates the matrix exponential only
-/// once.
+/// f is constant. All matrices in this file have dynamic sizes, so that the compiler instantiates the matrix
+/// exponential only once.
 Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
   if (loop.device.transmission) return elastic_motion_rate(loop, *loop.device.transmission);
   const double m = loop.moving_mass(), T = loop.period;
@@ -71,7 +71,7 @@ void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, doubl
   for (Eigen::Index i = 0; i < n; ++i) A.row(body[static_cast<std::size_t>(i)]) = next.row(i);
 }
 
-/// Return the modes of the low-pass filters of velocity and position; empty without such a filter.
+/// Return the modes of the low-pass filter of the velocity, and of the position; empty if there is no such filter.
 std::vector<LowPassMode> velocity_modes(const SampledLoop& loop) {
   const auto* filter = std::get_if<LowPassFilter>(&loop.device.velocity_filter);
   return filter != nullptr ? low_pass_modes(*filter, loop.period) : std::vector<LowPassMode>{};
@@ -274,7 +274,8 @@ double minimum(Function f, double low, double high, int points) {
   return smallest;
 }
 
-/// Passivity with a delay: the condition bounds K from above at angles where p > 0 and from below where p < 0.
+/// Passivity with a delay: the condition gives an upper bound of K at angles where p > 0, and a lower bound where p <
+/// 0.
 std::optional<double> passive_with_delay(const SampledLoop& loop) {
   const double d = loop.device.delay_samples;
   if (d != std::floor(d)) return std::nullopt;

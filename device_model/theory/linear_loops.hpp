@@ -72,31 +72,31 @@ struct SampledLoop {
 
   /// Returns the matrix that maps the state at sample k to the state at sample k + 1. The state is
   ///   (x_k, T v_k, y'_{k-1}, modes of T w_{k-1} and of y_{k-1}, T^2/m f_{k-1}, T^2/m f_{k-2}, …),
-  /// with the true velocity v of the handle, the moving mass m and the forces that are still delayed. A pair of
-  /// complex poles has two state components, a real pole or a missing filter one component (velocity) or none
-  /// (position). With a transmission, x and v belong to the motors, and the handle's x and T v are the last two
-  /// components. All components are in metres, so that rounding does not disturb the eigenvalues. The motion
-  /// between samples is exact (matrix exponential).
+  /// with the true velocity v of the handle, the moving mass m and the forces that are still delayed. For each
+  /// filter, a pair of complex poles has two state components and a real pole one. A missing velocity filter also has
+  /// one component, a missing position filter none. With a transmission, x and v belong to the motors, and the
+  /// handle's x and T v are the last two components. All components are in metres, so that rounding does not disturb
+  /// the eigenvalues. The motion between samples is exact (matrix exponential).
   Eigen::MatrixXd state_matrix() const;
 };
 
-/// Returns the largest wall stiffness K [N/m] up to which the loop is stable (first_stability_limit), with its other
-/// parameters. Returns zero if this K is below 1e-8 m / T^2. Takes about 0.5 ms.
+/// Returns the largest wall stiffness K [N/m] up to which `loop` is stable (first_stability_limit); all other
+/// parameters of `loop` are kept. Returns zero if this K is below 1e-8 m / T^2. Takes about 0.5 ms.
 double linear_stability_limit(SampledLoop loop);
 
 /// Returns a set of typical hands (100 to 1000 N/m, 0.1 to 0.5 kg); the first entry is no hand. The hands have no
 /// damping, because damping of the hand only raises the limit.
 std::span<const AttachedHand> typical_hands();
 
-/// Returns the smallest linear_stability_limit over typical_hands(), with each hand in turn in place of the loop's own
-/// hand.
+/// Returns the smallest linear_stability_limit over typical_hands(), where each typical hand in turn replaces the
+/// hand of `loop`.
 double worst_hand_stability_limit(SampledLoop loop);
 
 /// A limit from the literature on the stiffness K that an impedance device can render. In the texts, b is the
 /// damping of the handle, m the moving mass, B the wall's damping, T the period and t_d = d T the delay.
 struct StiffnessLimit {
   const char* name;     ///< name of the table column and of the curve
-  const char* formula;  ///< in terms of the symbols above
+  const char* formula;  ///< formula with the symbols defined above
   const char* source;   ///< citation, or "derived"
   const char* applies;  ///< conditions under which the limit is valid
   /// Returns the largest K [N/m]; the loop's stiffness is ignored. Returns nothing if the limit does not apply,

@@ -41,8 +41,8 @@ class AtomicFile {
   void append(std::string_view bytes) noexcept;
 
   /// Completes the file and renames it, which replaces an existing target. With `together`, hands the file over to
-  /// this set, which does both later. Throws IoError with the first error so far (such as a full disk) and removes
-  /// the temporary file then. Call once, last.
+  /// this set instead; FileSet::commit then completes and renames it. Throws IoError with the first error so far
+  /// (such as a full disk) and removes the temporary file in this case. Call once, last.
   void commit(FileSet* together = nullptr);
 
  private:
@@ -50,7 +50,7 @@ class AtomicFile {
 
   /// Writes the buffered bytes, so that only the renaming can still fail. Throws IoError like `commit`.
   void complete();
-  /// Throws the first error, if any, and removes the temporary file then.
+  /// If there was an error, removes the temporary file and throws the first error.
   void throw_error();
   void rename();
   void discard() noexcept;

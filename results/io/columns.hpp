@@ -88,8 +88,8 @@ nlohmann::ordered_json cell_json(const Cell& cell);
 /// Returns the text of a cell in a CSV file before quoting (see csv_cell); an empty string for an empty cell.
 std::string cell_text(const Cell& cell);
 
-/// Direction in which a metric improves, all else equal. Most metrics have none, such as a position, a count or a
-/// work.
+/// Direction in which a metric improves, all else equal. Metrics such as a position, a count or a work have no such
+/// direction.
 enum class Better { none, less, more };
 
 /// A named number that describes a run.
@@ -99,8 +99,8 @@ struct Metric {
   const char* meaning;  ///< definition and computation; ||.|| is the Euclidean norm, f is f_render
   Cell value;           ///< a count or a number; empty if it does not exist (such as a ratio without contact)
   Better better = Better::none;
-  double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance; see `within`
-  bool bounded = false;                   ///< `within` has set a tolerance
+  double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance that `within` sets
+  bool bounded = false;                   ///< true if `within` has set a tolerance
 
   /// Sets the tolerance: `relative` |value| + `absolute` [unit of the value].
   Metric& within(double relative_part, double absolute_part) {

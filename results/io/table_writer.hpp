@@ -41,8 +41,9 @@ class CsvWriter {
   }
 
   /// Writes one row. Arguments: a number, a Vec3 (three cells), a text (quoted if necessary), a
-  /// std::optional<double> (an empty cell if it has no value), or a std::span of numbers or optionals (a cell each;
-  /// may be empty). Precondition: as many cells as the header has columns. `finish` throws the first error.
+  /// std::optional<double> (an empty cell if it has no value), or a std::span of numbers or optionals (one cell for
+  /// each entry; the span may be empty). Precondition: as many cells as the header has columns. `finish` throws the
+  /// first error.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
     (put(cells), ...);
@@ -55,8 +56,8 @@ class CsvWriter {
     end_row();
   }
 
-  /// Gives the table its final name; with `together`, this set of files does so later. Throws IoError, also for
-  /// errors in earlier rows.
+  /// Gives the table its final name; with `together`, FileSet::commit of this set gives the name later. Throws
+  /// IoError, also for errors in earlier rows.
   void finish(FileSet* together = nullptr) { file_.commit(together); }
 
  private:
@@ -126,7 +127,7 @@ class MemoryTable {
   double* data_ = nullptr;
   std::size_t size_ = 0;      ///< count of numbers in the table
   std::size_t capacity_ = 0;  ///< numbers that fit into the pages
-  bool complete_ = true;      ///< no row was lost
+  bool complete_ = true;      ///< true if no row was lost
 };
 
 /// Destination of a table of numbers: a CSV file, or a table in memory (never null, outlives the writer).

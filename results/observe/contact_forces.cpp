@@ -52,7 +52,7 @@ Vec3 HighPass::filter(const Vec3& sample) noexcept {
 }
 
 // In steady state the first section maps the constant x to 0, so b0 x + s1 = 0 and s2 = b2 x; the input of the
-// second section is zero. Only doublings and sign changes are involved, so the output is exactly zero.
+// second section is zero. These equations only double numbers and change their signs, so the output is exactly zero.
 void HighPass::settle_at(const Vec3& value) noexcept {
   biquads_[0].s1 = -(biquads_[0].b0 * value);
   biquads_[0].s2 = biquads_[0].b0 * value;

@@ -11,8 +11,8 @@
 namespace hapbench {
 
 /// Histogram for quantiles of numbers >= 0, in constant memory. A bin is given by the exponent and the first five
-/// bits of the mantissa of the number's square, so there are 32 bins per factor of two of the square. Squares,
-/// because norms are computed as squares.
+/// bits of the mantissa of the number's square, so there are 32 bins per factor of two of the square. Bins use
+/// squares, because the caller computes norms as squares.
 class MagnitudeHistogram {
  public:
   /// Largest relative error of a quantile between kLeast and kMost: half a bin width of sqrt(33 / 32) - 1 = 1.55 %.
@@ -82,8 +82,8 @@ class Vibration {
   void add(std::uint64_t row, const Vec3& signal, bool counts = true) noexcept;
   /// Restarts the mean, but keeps the filter's state.
   void restart_count() noexcept { rows_ = 0, sum_ = 0.0; }
-  /// Return the mean square and its root. The sum is divided by the number of counted samples, or by `rows` if
-  /// given. Nothing at 60 Hz or less, and nothing without samples.
+  /// Return the mean square and its root. The sum is divided by the number of counted samples, or by `rows` if given.
+  /// Return nothing at sampling rates of 60 Hz or less, and nothing without samples.
   std::optional<double> mean_square(std::optional<std::uint64_t> rows = {}) const noexcept;
   std::optional<double> rms(std::optional<std::uint64_t> rows = {}) const noexcept;
 
@@ -101,8 +101,8 @@ class LastQuarterVibration {
   /// Begins the next trial of the run.
   void begin() noexcept;
   void add(std::uint64_t step, const Vec3& velocity) noexcept;
-  /// Returns the root mean square over the current quarter of the run; the largest value if there were several
-  /// trials. Nothing at 60 Hz or less, and nothing without samples.
+  /// Returns the root mean square over the current quarter of the run; after several trials, the largest of their
+  /// values. Returns nothing at sampling rates of 60 Hz or less, and nothing without samples.
   std::optional<double> value() const noexcept;
 
  private:
@@ -111,9 +111,9 @@ class LastQuarterVibration {
   std::optional<double> of_earlier_trials_;
 };
 
-/// The steps by which the end of a run is evaluated. They end with the run and begin after the first quarter of the
-/// time between first touch and end. If the script repeats, they begin later, so that they contain whole periods
-/// only (if at least one whole period fits).
+/// The steps over which the end of a run is evaluated. The window ends with the run. It begins when a quarter of the
+/// time from the first touch to the end has passed. If the script repeats, the window is shortened at its beginning
+/// to whole periods, provided that at least one period fits.
 class EvaluationWindow {
  public:
   /// The run has `steps` steps. `period`: period of the script [steps]; 0: it does not repeat.
@@ -149,7 +149,7 @@ struct SettlingRule {
 /// Difference between the forces of a step and of the step before.
 struct ForceChange {
   double squared = 0.0;   ///< ||f_k - f_(k-1)||^2 [N^2]; 0 in the first step
-  bool reverses = false;  ///< the inner product of f_k and f_(k-1) is negative
+  bool reverses = false;  ///< true if the inner product of f_k and f_(k-1) is negative
 };
 
 /// Classifies the steps of a run as landing, settled contact or away, and accumulates force statistics of each
@@ -180,15 +180,19 @@ class ContactForces {
   std::uint64_t settling_rows_;
   std::optional<std::uint64_t> settled_from_;  ///< the rule's `from` as a step number
   std::optional<HighPass> high_pass_;          ///< empty if the sampling rate is too low
-  bool filtering_ = false, touched_ = false;   ///< in this trial: the high-pass filter is running; there was contact
-  std::uint64_t row_ = 0, landing_end_ = 0;    ///< next step; first step after the last landing
+  bool filtering_ = false, touched_ = false;   ///< in this trial: true while the high-pass filter runs; true after the
+                                               ///< first contact
+  std::uint64_t row_ = 0, landing_end_ = 0;    ///< number of the next step; number of the first step after the last
+                                               ///< landing
   std::uint64_t rows_away_;                    ///< steps since the last contact
 
   std::uint64_t landings_ = 0, landing_rows_ = 0, settled_rows_ = 0;
-  double landing_max_squared_ = 0.0, landing_step_max_squared_ = 0.0;  ///< as below, for landings
-  /// In settled contact: largest ||f||^2, ||f_k - f_(k-1)||^2 [N^2].
+  double landing_max_squared_ = 0.0, landing_step_max_squared_ = 0.0;  ///< during landings: largest ||f||^2 and largest
+                                                                       ///< ||f_k - f_(k-1)||^2 [N^2]
+  /// In settled contact: largest ||f||^2 and largest ||f_k - f_(k-1)||^2 [N^2].
   double max_squared_ = 0.0, step_max_squared_ = 0.0;
-  double sum_ = 0.0, above_cutoff_squares_ = 0.0;  ///< sums of ||f|| [N] and ||high-passed f||^2 [N^2]
+  double sum_ = 0.0, above_cutoff_squares_ = 0.0;  ///< sums of ||f|| [N] and of ||f||^2 after the high-pass filter
+                                                   ///< [N^2]
   MagnitudeHistogram steps_;                       ///< ||f_k - f_(k-1)||
   std::uint64_t reversals_ = 0;                    ///< steps whose f_k has a negative inner product with f_(k-1)
 };

@@ -71,7 +71,8 @@ EnergyLedger::Works EnergyLedger::works_until(const StepRecord& now) const noexc
 }
 
 void EnergyLedger::add_step(const StepRecord& now) noexcept {
-  // Add the works on the tool; what they do not explain belongs to integrator, script or rounding.
+  // Add the works on the tool. The change of energy that they do not explain is assigned to the integrator, the
+  // script or rounding.
   EnergyBalance& b = balance_;
   const Works w = works_until(now);
   b.input += w.input;
@@ -185,7 +186,7 @@ void PassivityObserver::on_step(const StepRecord& record) noexcept {
   observed_.move(record.tool, record.handle_moves_tool);
   observed_.answer(record.tool, record.force.rendered, record.springs);
   const double energy = observed_.energy();
-  // The negated comparison keeps a NaN as the minimum.
+  // The comparison is negated so that a NaN becomes and stays the minimum.
   if (now_.rows && !(energy < now_.energy_min) && !std::isnan(energy)) return;
   if (std::isnan(now_.energy_min)) return;
   now_.energy_min = energy;

@@ -36,27 +36,31 @@ struct EnergyBalance {
   /// Work of f_render - f_spring: damping, friction and the force limit. With angular damping, part of it may come
   /// from the tool's rotation, which has no energy balance.
   double damping = 0.0;
-  double rotation = 0.0;  ///< work of the tool's rotation on the springs, by the torque that the device cannot render
+  double rotation = 0.0;  ///< work that the tool's rotation does on the springs, against their torque; the device does
+                          ///< not render this torque
   /// Energy stored in the springs beyond the work done on them by translation and rotation (trapezoidal rule).
   /// Contacts that appear, vanish or change their weight create it; it is zero for linear springs in lasting
   /// contact.
   double created = 0.0;
-  /// Energy created by the integrator, or by holding a device's force. With leapfrog or held forces it is `spring`
-  /// plus the work of the translation on the springs.
+  /// Energy created by the integrator, or by the zero-order hold of a device's force. If the force is held over a
+  /// step (leapfrog, or a device), it is the sum of two works: the work of f_spring on the tool (`spring`), and the
+  /// work of the tool's translation on the springs (trapezoidal rule).
   double integration = 0.0;
   double script = 0.0;    ///< work of the prescribed motion, or of the handle that moves the tool
-  double residual = 0.0;  ///< kinetic energy not explained by the terms above (free position): rounding errors
+  double residual = 0.0;  ///< change of kinetic energy that no other term explains, if the position is free: rounding
+                          ///< errors
   double hand = 0.0, actuator = 0.0;   ///< works of the hand on the handle and of the actuators on handle or carriage
   std::optional<DeviceEnergy> device;  ///< empty for devices without mechanics
 };
 
 /// A step in which the rendered springs created energy.
 struct EnergyEvent {
-  std::uint64_t step = 0;                              ///< step at whose contacts the energy appeared
+  std::uint64_t step = 0;                              ///< step in which the energy appeared
   double time = 0.0;                                   ///< [s]
   double created = 0.0;                                ///< [J], > 0
   std::array<std::size_t, 2> colliding{}, rendered{};  ///< number of contacts in the step before and in this step
-  std::size_t appeared = 0, vanished = 0;  ///< rendered contacts of this step only, and of the step before only
+  std::size_t appeared = 0, vanished = 0;  ///< number of rendered contacts that exist only in this step; only in the
+                                           ///< step before
 };
 
 /// Updates the energy balance in every step. Allocates only in the constructor and in `begin`; about 100 ns a step.
@@ -99,7 +103,8 @@ class EnergyLedger final : public MetricObserver {
   void add_event(const StepRecord& now, double created) noexcept;
 
   double mass_, dt_;
-  /// True if the position is not prescribed; true if the integrator holds the force of a step until the next step.
+  /// position_is_free_: true if the position is not prescribed. holds_force_: true if the integrator holds the force
+  /// of a step until the next step.
   bool position_is_free_, holds_force_;
   bool has_row_ = false;
   StepRecord last_;  ///< the step before, without its contacts
@@ -112,8 +117,8 @@ class EnergyLedger final : public MetricObserver {
 };
 
 /// Reports whether the rendering was passive: extremes of the observed energy E (sim/loop/observed_energy.hpp). Of
-/// several trials, it reports the trial that created the most energy, and the first of these. Constant memory;
-/// about 100 ns a step with a moment and a turning tool, 4 ns without force.
+/// several trials, it reports the trial that created the most energy; the first such trial if several created the
+/// same energy. Constant memory; about 100 ns a step with a moment and a turning tool, 4 ns without force.
 class PassivityObserver final : public MetricObserver {
  public:
   /// `dt`: time step [s]; `position_is_free`: the motion is not prescribed. `begin` sets both.
@@ -130,17 +135,17 @@ class PassivityObserver final : public MetricObserver {
 
  private:
   struct Extremes {
-    bool rows = false;  ///< there was a step with a force or a moment
+    bool rows = false;  ///< true if there was a step with a force or a moment
     /// Smallest E of a step [J]; negative if the rendering gave more energy than it had received.
     double energy_min = 0.0;
-    double time_of_min = 0.0;  ///< time of the first step with this E [s]
+    double time_of_min = 0.0;  ///< time of the first step with E = energy_min [s]
     double energy_end = 0.0;   ///< E of the last step [J], valid after the end of the trial
     double net_created() const noexcept { return energy_min >= 0.0 ? 0.0 : -energy_min; }
   };
   Extremes worst() const noexcept;
 
   ObservedEnergy observed_;
-  Extremes now_, worst_before_;  ///< of this trial, and of the worst earlier trial
+  Extremes now_, worst_before_;  ///< extremes of this trial, and of the earlier trial that created the most energy
 };
 
 }  // namespace hapbench

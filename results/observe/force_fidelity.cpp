@@ -21,10 +21,10 @@ std::optional<Vec3> ReferenceForce::at(double t) const noexcept {
 
 namespace {
 
-/// Largest number of kept samples. It limits the correlation to about 1e8 products, so that it does not take longer
-/// than the run.
+/// Largest number of kept samples. It limits the correlation to about 1e8 products, so that computing the lag does
+/// not take longer than the run.
 constexpr std::uint64_t kMaxKept = 1u << 17;
-constexpr double kKeptInterval = 5e-4;  ///< time between kept samples, about this or longer [s]
+constexpr double kKeptInterval = 5e-4;  ///< shortest time between kept samples, approximately [s]
 
 /// Returns Pearson's correlation coefficient over all components of two signals of equal length; nothing if one of
 /// them does not vary.
@@ -49,7 +49,7 @@ std::optional<double> correlation(std::span<const Vec3> early, std::span<const V
 struct Peak {
   double shift = 0.0;  ///< shift at the maximum [samples]
   double value = 0.0;
-  bool inside = false;  ///< not at an end of the range
+  bool inside = false;  ///< true if the maximum is not at an end of the range
 };
 
 /// Returns the peaks of the correlations at the shifts -m … m whose height is within kSamePeak of the highest peak.

@@ -13,8 +13,8 @@
 
 namespace hapbench {
 
-/// Reference for the rendered force on the tool [N]: measured together with a stroke, or the force of an ideal
-/// rendering.
+/// Force with which the rendered force on the tool is compared [N]: a force that was measured together with a
+/// recorded motion of the tool (a stroke), or the force that an ideal rendering would give.
 class ReferenceForce {
  public:
   struct Sample {
@@ -53,7 +53,7 @@ struct Lag {
 std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
                                double max_lag);
 
-/// Measures the deviation of the rendered force f from the reference force f_m in the steps that have one
+/// Measures the deviation of the rendered force f from the reference force f_m, in the steps with a reference force
 /// (evaluation of Ruffaldi et al. 2006). The normal n of a step is the direction of f_spring, the force before
 /// damping and friction; if f_spring is zero, the direction of f_m. Allocates nothing during the run; about 50 ns a
 /// step.
@@ -69,13 +69,13 @@ class ForceFidelityObserver final : public MetricObserver {
   void on_step(const StepRecord& record) noexcept override;
   void report(Section& section) const override;
 
-  /// f_m in the last step [N]; empty if none was measured.
+  /// Reference force f_m in the last step [N]; empty if the step has no reference force.
   const std::optional<Vec3>& reference() const noexcept { return at_row_; }
 
  private:
   const ReferenceForce* force_ = nullptr;
   double dt_ = 0.0;
-  std::uint64_t every_ = 1;  ///< every_-th steps are kept for the lag
+  std::uint64_t every_ = 1;  ///< to compute the lag, the forces of one step out of every_ steps are kept
   std::optional<Vec3> at_row_;
   std::uint64_t rows_ = 0, direction_rows_ = 0;
   double direction_error_ = 0.0;  ///< sum of the angles between f and f_m [rad]
@@ -83,7 +83,7 @@ class ForceFidelityObserver final : public MetricObserver {
   /// the error f - f_m, and of the error's components along n and perpendicular to n.
   double reference_ = 0.0, rendered_ = 0.0, across_ = 0.0, error_ = 0.0, normal_ = 0.0, tangential_ = 0.0;
   double loads_ = 0.0, drag_ = 0.0;  ///< sums of N^2 and N |f_t| [N^2]; N, f_t: normal and tangential part of f_m
-  std::vector<Vec3> kept_reference_, kept_rendered_;  ///< f_m and f of every every_-th step, for the lag
+  std::vector<Vec3> kept_reference_, kept_rendered_;  ///< f_m and f of the kept steps, to compute the lag
 };
 
 }  // namespace hapbench

@@ -78,7 +78,7 @@ class Side {
 
 /// Returns the maximum of f in [low, high], if f has a single maximum there, by Brent's method (R. P. Brent,
 /// Algorithms for Minimization without Derivatives, 1973, chapter 5). A step goes to the vertex of the parabola
-/// through the three best points so far, or, if the vertex is not well inside the interval, by golden section.
+/// through the three best points so far. If the vertex is not well inside the interval, the step is a golden section.
 /// `best`: start point in the interval; `top`: its value.
 template <class Function>
 double maximum_in(const Function& f, double low, double high, double best, double top) {

@@ -17,12 +17,13 @@ namespace hapbench {
 ///
 /// Method: near the hole the depth is min(D, -z), where D is the signed distance from the hole without its mouth. D
 /// is a convex function, equal to rho - R above the hole's bottom (rho: distance from the hole's axis, R: hole
-/// radius). Along each straight line on the tool's side, going up from the tip, -z falls. So the deepest point of a
-/// line is its end at the tip, or the point with D = -z, on the 45-degree cone that opens downwards from the rim.
-/// (The deepest point is never inside the tip's flat face: a horizontal displacement keeps z, and D does not fall
-/// in both directions.) The depths of two lines differ by at most radius * angle between them. Of 64 lines around
-/// the tool, the angles near lines deeper than their neighbours are searched to 1e-8 rad, which gives a depth
-/// accurate to about 1e-11 m. Takes about 2 us. Precondition: the tool does not point upwards, axis.z <= 0.
+/// radius). Along each straight line on the side of the cylinder, upwards from the tip, -z decreases. So the deepest
+/// point of a line is its end at the tip, or its point with D = -z. All points with D = -z lie on the 45-degree cone
+/// that opens downwards from the rim. (The deepest point is never inside the tip's flat face: in a horizontal
+/// displacement z is constant, and D decreases in one direction at most.) The depths of two lines differ by at most
+/// radius * angle between them. 64 lines around the tool are evaluated. Near each line that is deeper than both of
+/// its neighbours, the angle of the deepest line is searched to 1e-8 rad. This gives a depth accurate to about 1e-11
+/// m. Takes about 2 us. Precondition: the tool does not point upwards, axis.z <= 0.
 double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose);
 
 /// Position of the tip centre in the vertical plane through the hole's axis in which the tool leans.
@@ -103,7 +104,7 @@ class IdealTrajectoryObserver final : public MetricObserver {
   Cylinder tool_;
   std::uint64_t every_;
   std::optional<TrajectoryError> error_;
-  Errors gentle_, firm_;                  ///< of hand forces below kGentleForce, and of the others
+  Errors gentle_, firm_;                  ///< errors at hand forces below kGentleForce, and at all other hand forces
   std::uint64_t rows_without_ideal_ = 0;  ///< compared steps at whose tilt the ideal trajectory does not exist
 };
 

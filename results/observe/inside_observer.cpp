@@ -12,11 +12,11 @@
 namespace hapbench {
 namespace {
 
-/// kMinStep: smallest step in which the path of the front point is followed, in half widths of the tool.
-/// kDepthWithin: relative error of the tip centre's depth.
+/// kMinStep: smallest distance between two checked positions on the path of the front point (struct Passage), in half
+/// widths of the tool. kDepthWithin: relative error of the tip centre's depth.
 constexpr double kMinStep = 2e-3, kDepthWithin = 0.02;
-/// Blocks of a run of which a pose is kept for the search after the run; poses in settled contact that are
-/// searched.
+/// kMaxBlocks: largest number of blocks into which a run is divided; one pose of each block is kept for the search
+/// after the run. kSettledSamples: number of poses in settled contact that are searched.
 constexpr std::size_t kMaxBlocks = 16384, kSettledSamples = 12;
 /// Largest number of distance evaluations in the search for the deepest step. A solid in closed form is ten times
 /// as fast, so it gets more.
@@ -26,18 +26,19 @@ constexpr std::size_t kMaxEvaluations = 8000, kMaxClosedFormEvaluations = 100000
 constexpr double kSharedBound = 0.1, kSamePose = 0.01;
 
 /// kDeepContact: contact depth [half widths] from which on the tip centre is part of the core. At smaller depths it
-/// is not, because the tip centre of a flat tip is in the surface at any depth. kCoreStep: smallest step along the
-/// core and along its path [half widths].
+/// is not, because the tip centre of a flat tip is in the surface at any depth. kCoreStep: smallest distance between
+/// two checked points on the core, and between two checked positions of the core on its path [half widths].
 constexpr double kDeepContact = 0.9, kCoreStep = 5e-3;
-/// Contact depth from which on the core is checked, relative to the smallest radius of the tool, such as at a neck.
-/// It is a little less than kDeepContact because the points of a surface are some fifths of this radius apart and
-/// may miss the core.
+/// Contact depth from which on the core is checked, relative to the smallest radius of the tool, such as the radius
+/// of a neck. It is a little smaller than kDeepContact, because surface points may be some fifths of this radius
+/// apart and miss the core.
 constexpr double kCheckDepth = 0.8;
 /// The core ends where the axis is closer than this to the body's surface [half widths], as in a bent body.
 constexpr double kThinnest = 0.05;
-constexpr std::size_t kCoreSamples = 256;  ///< samples of the tool's thickness along the axis
-constexpr std::size_t kMaxSegments = 8;    ///< segments of the core inside the solid at one time
-constexpr double kMaxSteps = 256.0;        ///< steps in which the path of one time step is followed through a solid
+constexpr std::size_t kCoreSamples = 256;  ///< number of positions on the axis at which the tool's thickness is
+                                           ///< computed
+constexpr std::size_t kMaxSegments = 8;    ///< maximum number of segments of the core inside the solid at one time
+constexpr double kMaxSteps = 256.0;        ///< maximum number of checked positions on the path of one time step
 
 SolidSide side_of(const SurfaceDistance& phi) noexcept {
   return !phi.known ? SolidSide::unknown : phi.value < 0.0 ? SolidSide::inside : SolidSide::outside;
@@ -109,7 +110,8 @@ CorePassage::CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> sol
   for (std::size_t i = 0; i < kCoreSamples; ++i) axis.push(0, axial_position(i) * pose.axis, Vec3::UnitZ());
   tool.surface_constraints(pose, Vec3::Zero(), 0.0, axis);
   double thinnest = width_;
-  const double end = far_end_ + width_;  // beyond it, the tool's far end is the nearest surface
+  const double end = far_end_ + width_;  // for larger distances from the tip, the tool's far end is the nearest
+                                         // surface
   for (std::size_t i = 0; i < kCoreSamples; ++i) {
     const double s = axial_position(i);
     if (s > -back || s < end) continue;
@@ -129,7 +131,8 @@ Vec3 CorePassage::normal_at(const Vec3& point) const noexcept {
   return solid_->gradient(point, kGradientStep * width_);
 }
 
-/// Follows the core from the pose of the step before, in steps in which it cannot meet the surface.
+/// Checks the core at positions along its path from the pose of the step before. Between two checked positions the
+/// core cannot meet the surface.
 void CorePassage::check_core(const ToolPose& pose, double deepest_contact, double time) noexcept {
   const Vec3 displacement = began_ ? Vec3(pose.position - position_) : Vec3::Zero();
   const Vec3 axis_change = began_ ? Vec3(pose.axis - axis_) : Vec3::Zero();
@@ -194,8 +197,8 @@ double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double
   return 0.5 * nearest;  // between two evaluated points the surface may be half as far
 }
 
-/// Matches the segments inside now with the segments of the last check, from which they inherit the face of entry,
-/// and detects a passage.
+/// Detects a passage. Matches each segment that is inside now with a segment of the last check, from which it
+/// inherits the face of entry.
 void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) noexcept {
   const auto through = [this, time](const Vec3& entered, const Vec3& left, bool at_once) {
     if (!event_) event_ = {time, entered, left, at_once};
@@ -220,8 +223,8 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) n
     }
     next.entered = previous->entered;
     next.normal = previous->normal;
-    // An end that leaves by a face opposed to the face of entry has passed through, unless that end entered by this
-    // face.
+    // A segment whose end leaves by a face opposed to the face of entry has passed through, unless the same end had
+    // entered by this opposed face.
     const bool away_low = next.face_low && are_opposed(*next.face_low, next.normal);
     const bool away_high = next.face_high && are_opposed(*next.face_high, next.normal);
     if (away_low && next.low > previous->entered_low) through(next.entered, position_at(next.low), false);
@@ -277,7 +280,7 @@ void InsideObserver::on_step(const StepRecord& record) noexcept {
     ++depths_.rows;
     if (tip_phi_.value < 0.0) ++depths_.centre_inside;
   }
-  // Follow the front point and the rest of the core.
+  // Check whether the front point or the rest of the core (struct Passage) has passed through the surface.
   const Vec3 core = pose.position - back_ * pose.axis;
   const double length = (core - core_).norm();
   core_passage_.add(pose, record.force.depth_max, began_ ? length : 0.0, record.time);
@@ -307,8 +310,8 @@ void InsideObserver::check_tip(const StepRecord& record) noexcept {
   tip_checked_ = tip;
   passage_.last_depth = tip_phi_.known ? -tip_phi_.value : 0.0;
   const double width = tool_->half_width(), size = std::abs(tip_phi_.value);
-  // The depth of a deep tool is reported, and the border of the surface may be passed: then evaluate more often,
-  // after a motion of 2 % of the depth.
+  // The depth of a deep tip centre is reported, and beyond the border of the surface the distance is not reliable. In
+  // both cases evaluate more often: after a motion of 2 % of the distance.
   const double near = kDepthWithin * size;
   const bool below = tip_phi_.value < 0.0;
   tip_free2_ = tip_phi_.known && !(below && size > width) ? size * size : near * near;
@@ -318,7 +321,8 @@ void InsideObserver::check_tip(const StepRecord& record) noexcept {
   if (!passage_.deep && size > width) passage_.deep = {record.time, tip};
 }
 
-/// Follows the front point from its last position in steps in which it cannot meet the surface.
+/// Checks the front point at positions along its path from its last position. Between two checked positions it cannot
+/// meet the surface.
 void InsideObserver::march(const Vec3& point, double length, double time) noexcept {
   const Vec3 from = std::exchange(core_, point);
   const Vec3 displacement = point - from;
@@ -371,10 +375,10 @@ InsideDepths InsideObserver::depths() {
   return depths;
 }
 
-/// Branch and bound over the run for the deepest step. Ranges of blocks that may be deeper than the deepest known
-/// step are halved, the largest bound first, down to ranges of nearly equal poses, of which one is searched.
-/// Returns the largest depth that an unsearched step may have [m]; 0 if no step is deeper than the deepest known
-/// step within its tolerance.
+/// Branch and bound over the run for the deepest step. Halves the range of blocks with the largest bound, as long as
+/// the bound is larger than the deepest known depth. In a range of nearly equal poses, searches one pose. Returns an
+/// upper bound of the depth in steps that were not searched [m]; 0 if, within the tolerance, no such step is deeper
+/// than the deepest known step.
 double InsideObserver::find_deepest(InsideDepths& depths) {
   struct Segment {
     std::size_t first, end;

@@ -25,17 +25,19 @@ struct InsideDepths {
   std::uint64_t centre_inside = 0;  ///< steps with the tip centre inside
 
   std::optional<double> settled_median() const;
-  /// Largest depth that a searched step can have, given `max` and the search's tolerance [m].
+  /// Upper bound of the depth in the searched steps [m]. The search has a relative tolerance, so the true depth may
+  /// exceed `max` by this fraction.
   double max_bound() const { return (1.0 + InsideSearch::kTolerance) * max.value_or(0.0); }
-  /// Merges the depths of another trial into these.
+  /// Merges the depths of another trial into this object.
   void add(const InsideDepths& trial);
   /// Reports the metrics. `has_settled`: settled contact was long enough for its metrics.
   void report(Section& section, bool has_settled) const;
 };
 
-/// Passage of the tool through the surface in a run, detected by two points: the tip centre, and the core's front
-/// point, which lies within the body half the tool's width behind the tip (the tip centre of a ball; half a width
-/// behind the tip centre of a flat tip). CorePassage detects passages of the rest of the core.
+/// Passage of the tool through the surface in a run, detected by two points: the tip centre, and the front point of
+/// the core (the part of the tool's axis within the body). The front point is half the tool's width away from the
+/// surface of the tip: for a ball it is the tip centre, for a flat tip it lies half the width behind the tip centre.
+/// CorePassage detects passages of the rest of the core.
 struct Passage {
   struct Event {
     double time;  ///< [s]
@@ -44,7 +46,8 @@ struct Passage {
   std::optional<Event> deep;  ///< first step with the tip centre deeper than half the tool's width
   /// Depth of the tip centre [m]: largest of all steps (within 2 %), and in the last step.
   double deepest = 0.0, last_depth = 0.0;
-  bool began_inside = false, ends_inside = false;  ///< front point inside, in the first and in the last step
+  bool began_inside = false, ends_inside = false;  ///< true if the front point was inside in the first step; in the
+                                                   ///< last step
   /// First step in which the front point left the solid on another side than it had entered: the surface normals at
   /// entry and exit differ by more than 90 degrees. `entered` is the position of the entry.
   std::optional<Event> left;
@@ -65,8 +68,9 @@ enum class SolidSide { unknown, outside, inside };
 /// flat tip begins 0.9 half widths behind the tip centre, because the tip centre is in the surface at any depth.
 /// The core has passed if it crosses the solid from face to face at one time, with faces of opposed normals, or if
 /// a part of it leaves by a face opposed to the face by which it entered. A step needs a check (about 20 distances
-/// along the axis) only before the first passage, while a contact is deeper than check_depth_ or the tool moves
-/// far, and once the core has moved by its distance from the surface. Allocates only in the constructor.
+/// along the axis) only if no passage has been found yet, if a contact is deeper than check_depth_ or the tool moved
+/// by more than check_displacement_, and if the core has moved by at least its distance from the surface. Allocates
+/// only in the constructor.
 class CorePassage {
  public:
   struct Event {
@@ -104,7 +108,7 @@ class CorePassage {
     /// Normal of the face by which the segment entered, position of the entry, and the part [m] that entered there.
     Vec3 normal = Vec3::Zero(), entered = Vec3::Zero();
     double entered_low = 0.0, entered_high = 0.0;
-    bool continued = false;  ///< a segment of the next check overlaps this segment
+    bool continued = false;  ///< true if a segment of the next check overlaps this segment
   };
 
   void check_core(const ToolPose& pose, double deepest_contact, double time) noexcept;
@@ -116,17 +120,20 @@ class CorePassage {
   double width_;                             ///< half width of the tool [m]
   double far_end_;                           ///< coordinate of the core's far end on the axis [m]
   double shallow_start_;                     ///< coordinate at which the core begins while no contact is deep [m]
-  double check_depth_, check_displacement_;  ///< a check needs a contact this deep or a step this long [m]
+  double check_depth_, check_displacement_;  ///< a step is checked if it has a contact of this depth [m], or if the
+                                             ///< tool moves farther than this [m]
 
   Vec3 position_ = Vec3::Zero(), axis_ = Vec3::Zero();  ///< tip centre and axis in the step before
-  bool began_ = false, continues_ = false;         ///< there was a step before; the last check was in the step before
+  bool began_ = false, continues_ = false;         ///< true if there was a step before; true if the step before was
+                                                   ///< checked
   double free_distance_ = 0.0;                     ///< distance that the core can move without meeting the surface [m]
   std::vector<Segment> segments_, last_segments_;  ///< segments of this check and of the last check
   std::optional<Event> event_;
 };
 
-/// Keeps a fixed number of poses of a run. The run is divided into blocks of equally many steps. Each block keeps
-/// the pose with the largest key, and a bound on the distance of the block's other poses from it.
+/// Keeps a fixed number of poses of a run. The run is divided into blocks of equally many steps. Each block keeps the
+/// pose with the largest key, which is a number that the caller gives (such as a depth), and a bound on the distance
+/// of the block's other poses from the kept pose.
 class PoseSamples {
  public:
   struct Sample {
@@ -159,18 +166,19 @@ class PoseSamples {
   void begin_block(const ToolPose& pose, double key) noexcept;
 
   std::vector<Sample> samples_;
-  std::uint64_t rows_left_ = 0, rows_of_block_ = 1;  ///< steps still to come in the last block; steps of a block
+  std::uint64_t rows_left_ = 0, rows_of_block_ = 1;  ///< number of steps that the last block still lacks; number of
+                                                     ///< steps of a block
 };
 
-/// Observes how deep the tool is in the environment in one trial. A step costs about ten nanoseconds: a point
-/// cannot pass the surface before it has moved by its distance from it, so few steps need a check. The deepest
+/// Observes how deep the tool is in the environment in one trial. A step costs about ten nanoseconds: a point cannot
+/// pass the surface before it has moved by its distance from the surface, so few steps need a check. The deepest
 /// point of the tool is searched after the run: in the steps with the deepest contact or tip centre, in the steps
-/// that may be deeper (InsideBound), and in some steps in settled contact. With `every` > 0 it is instead searched
-/// in each `every`-th step. Does not allocate during the run.
+/// that may be deeper (InsideBound), and in some steps in settled contact. With `every` > 0 it is instead searched in
+/// each `every`-th step. Does not allocate during the run.
 class InsideObserver final : public Observer {
  public:
-  /// `metrics`: if given, observes before this observer and knows which steps are in settled contact. `every`: 0:
-  /// no search during the run. `steps`: number of steps of the run.
+  /// `metrics`: if not null, must observe before this observer; it knows which steps are in settled contact. `every`:
+  /// see the class; 0: no search during the run. `steps`: number of steps of the run.
   InsideObserver(std::shared_ptr<const ToolShape> tool, std::shared_ptr<const Solid> solid,
                  const MetricsObserver* metrics = nullptr, std::uint64_t every = 0, std::uint64_t steps = 0);
 
@@ -201,11 +209,11 @@ class InsideObserver final : public Observer {
 
   bool began_ = false;
   Vec3 tip_checked_ = Vec3::Zero();  ///< position of the tip centre when its distance was last evaluated [m]
-  /// Squared distance from tip_checked_ within which no new evaluation is needed [m^2], with the core outside and
-  /// inside.
+  /// Squared distance from tip_checked_ within which no new evaluation is needed [m^2]: while the front point is
+  /// outside (tip_free2_), and while it is inside (tip_free2_inside_).
   double tip_free2_ = 0.0, tip_free2_inside_ = 0.0;
   SurfaceDistance tip_phi_;
-  Vec3 core_ = Vec3::Zero();    ///< the core's front point in the step before [m]
+  Vec3 core_ = Vec3::Zero();    ///< front point of the core in the step before [m]
   double free_distance_ = 0.0;  ///< distance that the front point can move without meeting the surface [m]
   SolidSide side_ = SolidSide::unknown;
   Vec3 outside_ = Vec3::Zero();       ///< last position of the front point outside [m]

@@ -34,8 +34,8 @@ class Section {
     if (!prefix_.empty()) prefix_ += '.';
   }
 
-  /// Appends a metric; the arguments are as in Metric. Name, unit and meaning must not depend on the run. A value
-  /// that is not finite is stored as no value.
+  /// Appends a metric; the arguments are as in Metric. Name, unit and meaning must not depend on the run. For a value
+  /// that is not finite, the metric gets no value.
   template <class Given>
   Metric& metric(const std::string& name, const char* unit, const char* meaning, const Given& value,
                  Better better = Better::none) {
@@ -50,8 +50,8 @@ class Section {
   std::string prefix_;
 };
 
-/// An observer that reports metrics of summary.json. `tell` is the only place that names and documents them: an
-/// observer without data reports the same list, which serves as documentation.
+/// An observer that reports metrics of summary.json. Only its function `report` names and documents the metrics:
+/// without data, an observer reports the same list with empty values, which serves as documentation.
 class MetricObserver : public Observer {
  public:
   /// Called before the first step of each trial. Differences between the last step of a trial and the first step of

@@ -40,7 +40,7 @@ class ReductionJumps {
 
   /// Number of steps whose set of kept points differs from the set of the step before.
   std::uint64_t changes() const noexcept { return changes_; }
-  /// Largest force step [N] of such steps in settled contact; nothing if there are none.
+  /// Largest force step [N] among the steps in settled contact that changes() counts; nothing if there are none.
   std::optional<double> step_max() const noexcept {
     return step_max_squared_ ? std::optional(std::sqrt(*step_max_squared_)) : std::nullopt;
   }
@@ -69,7 +69,8 @@ struct TrialContact {
 struct MetricsConfig {
   std::optional<double> friction_limit = {};  ///< explicit_friction_limit [N]; empty: no limit
   SettlingRule settling = {};
-  std::uint64_t steps = 0;  ///< number of counted steps; 0: unknown, no vibration of the last quarter
+  std::uint64_t steps = 0;  ///< number of counted steps; 0: unknown, so that the vibration of the last quarter is not
+                            ///< measured
   std::optional<std::size_t> reduction_capacity = {};  ///< largest number of contacts in a step; empty: no reduction
   std::uint64_t stride = 1;                            ///< only every `stride`-th step counts; the others are ignored
 };
@@ -87,7 +88,7 @@ class MetricsObserver final : public MetricObserver {
   void on_step(const StepRecord& record) noexcept override;
   /// Reports all metrics except those of `report_end`.
   void report(Section& section) const override;
-  /// Reports the metrics that follow the metrics of an InsideObserver.
+  /// Reports the remaining metrics, which come after the metrics of an InsideObserver in summary.json.
   void report_end(Section& section) const;
 
   /// Returns true if the last step was in settled contact.
@@ -97,8 +98,8 @@ class MetricsObserver final : public MetricObserver {
   std::uint64_t rows() const noexcept { return before_.rows + now_.rows; }
   /// Contact statistics of the current trial, since the last `begin`.
   const TrialContact& trial() const noexcept { return now_; }
-  /// Hash of the bit patterns of position, velocity and f_render of every step; for several trials, the hash of the
-  /// trials' hashes.
+  /// Hash of the bit patterns of position, velocity and f_render of every step; for several trials, a hash of the
+  /// hashes of the trials.
   std::uint64_t state_hash() const noexcept;
 
  private:
@@ -133,7 +134,8 @@ class MetricsObserver final : public MetricObserver {
   std::uint64_t colliding_sum_ = 0, colliding_max_ = 0, rendered_sum_ = 0, rendered_max_ = 0;
   std::optional<double> friction_limit_;  ///< [N]; empty if friction cannot become unstable
   std::uint64_t rows_beyond_friction_ = 0;
-  std::optional<std::uint64_t> first_beyond_friction_;  ///< step number within its trial
+  std::optional<std::uint64_t> first_beyond_friction_;  ///< number, within its trial, of the first step in which
+                                                        ///< |f_spring| exceeds friction_limit_; empty if there is none
   ContactForces contact_forces_;
   std::optional<ReductionJumps> reduction_;  ///< empty without a reduction
 };

@@ -8,7 +8,7 @@
 namespace hapbench {
 namespace {
 
-/// Number of empty steps timed to measure the time of a clock reading. There are enough that the first ones, with
+/// Number of empty steps timed to measure the time of a clock reading. They are so many that the first steps, with
 /// cold caches, do not affect the median.
 constexpr std::size_t kEmptySteps = 501;
 

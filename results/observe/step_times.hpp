@@ -58,8 +58,8 @@ class StepSampler final : public Observer {
  private:
   std::uint64_t every_;
   StepTimes times_;
-  bool runs_ = false;       ///< a sample has started and not ended
-  bool observing_ = false;  ///< the first of the two calls in a step has happened
+  bool runs_ = false;       ///< true between the start and the end of a sample
+  bool observing_ = false;  ///< true after the first of the two calls of on_step in a step
 };
 
 /// Deadlines of a haptic loop [s]: the thesis's simulations run at 2 kHz, its device at 2048 Hz.

@@ -32,7 +32,8 @@ class TargetMetricsObserver final : public MetricObserver {
   void on_step(const StepRecord& record) noexcept override;
   void report(Section& section) const override;
 
-  /// Marks the current trial as failed: its targets that have not ended count as not removed, with the time limit.
+  /// Marks the current trial as failed: its targets that have not ended count as not removed, and their time is the
+  /// time limit.
   void fail_rest();
 
   /// Measurements of each target that has ended, trial by trial.
@@ -57,12 +58,12 @@ struct SubjectMean {
   double standard_error = 0.0;  ///< 0 for one subject
 };
 
-/// Measurements at one target position over all subjects. Each subject counts with the mean over its targets there,
-/// as in Table A.1. Force and speed exclude targets that the tip never reached.
+/// Measurements at one target position over all subjects. Each subject contributes the mean over its targets at this
+/// position, as in Table A.1. Force and speed exclude targets that the tip never reached.
 struct PlaceMetrics {
   std::size_t place = 0;
   SubjectMean success_rate;
-  SubjectMean completion_time;  ///< [s]; a target that was not removed counts with the time limit
+  SubjectMean completion_time;  ///< [s]; for a target that was not removed, the time limit
   SubjectMean model_force;      ///< [N]
   SubjectMean speed;            ///< [m/s]
 };

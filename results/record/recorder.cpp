@@ -123,7 +123,8 @@ constexpr TrajectoryGroup kGroups[] = {
        *cells = inside != nullptr ? inside->depth() : std::nullopt;
      }}};
 
-/// Returns the columns of trajectory.csv with these fields.
+/// Returns the columns that trajectory.csv has with these extras: the common columns, followed by the columns of each
+/// requested group.
 std::vector<Column> trajectory_columns(const TrajectoryExtras& extras) {
   std::vector<Column> columns;
   const auto add = [&columns](const auto& more) { columns.insert(columns.end(), more.begin(), more.end()); };
@@ -334,7 +335,7 @@ RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std
     ContactBuffer& contacts = *copy;
     assert(record.rendered->size() <= contacts.capacity());
     contacts.assign(*record.rendered);
-    // Continue the updates to each requested number and write the ratios.
+    // For each requested number of updates, make the missing updates and write the ratios.
     Mat3 S = shaping.start(contacts);
     int done = 0;
     for (const int m : iterations) {

@@ -29,10 +29,10 @@ struct TrajectoryExtras {
 struct TrajectoryGroup {
   bool TrajectoryExtras::*is_wanted;
   const char* field;   ///< name of the field
-  const char* effect;  ///< what the field does, for the documentation
+  const char* effect;  ///< effect of the field, for the documentation
   std::span<const Column> columns;
-  /// Writes a value for each column to `cells`. `inside` observes before the recorder; null if the inside is
-  /// unknown.
+  /// Writes a value for each column to `cells`. `inside` must observe before the recorder; null if the depth inside
+  /// is not observed.
   void (*fill)(const StepRecord& record, const InsideObserver* inside, std::optional<double>* cells);
   bool wants_roll = false, wants_springs = false;  ///< see the functions of Observer with the same names
 };
@@ -43,7 +43,7 @@ std::span<const TrajectoryGroup> trajectory_groups();
 /// Makes the lines of a table from the steps of a run.
 struct RowSource {
   std::vector<Column> columns;
-  /// Writes the lines of one step, which may be none. Allocates nothing.
+  /// Writes the lines of one step, if it has any. Allocates nothing.
   std::function<void(const StepRecord& record, TableWriter& table)> write;
   /// See the functions of Observer with the same names.
   bool wants_ratio = false, wants_roll = false, wants_springs = false, wants_found = false;

@@ -1,4 +1,4 @@
-// Replaces malloc in the program that links this file by a version that counts.
+// In the program that links this file, replaces malloc by a version that counts allocations.
 #include <cerrno>
 #include <cstddef>
 

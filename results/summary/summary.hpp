@@ -55,7 +55,7 @@ struct Diagnosed {
 struct RunTiming {
   double shell = 0.0;                  ///< time to compute or load the environment's point shell [s]
   double loop = 0.0;                   ///< time of the step loop, including observers [s]
-  std::optional<StepLatency> latency;  ///< of single steps, including observers; empty if not measured
+  std::optional<StepLatency> latency;  ///< times of single steps, including observers; empty if not measured
   /// Median and 99th percentile of the time of a step without observers and recorders [s] (StepSampler). Both are
   /// empty without steps; the 99th percentile is empty for fewer than 100 steps.
   std::optional<double> step_p50 = {}, step_p99 = {};
@@ -73,8 +73,8 @@ struct RunEnd {
 struct Result {
   std::string name;                ///< name of the scenario
   std::string algorithm;           ///< registered name of the algorithm
-  RunEnd end;                      ///< of several trials: the worst outcome, and the steps of all trials
-  bool expected = false;           ///< the run met all expectations of the scenario
+  RunEnd end;                      ///< after several trials: the worst outcome, and the number of steps of all trials
+  bool expected = false;           ///< true if the run met all expectations of the scenario
   std::vector<std::string> unmet;  ///< expectations that the run did not meet
   double duration = 0.0;           ///< simulated time: number of steps times dt [s]
   /// All metrics, in the order of the columns of a sweep's table. A scenario's `expect` can bound them. First the
@@ -87,14 +87,15 @@ struct Result {
   nlohmann::ordered_json sections;
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
   nlohmann::ordered_json tool;                      ///< tool_json of a tool that is not a cylinder; null for a cylinder
-  std::vector<Warning> warnings;                    ///< first about the scenario's files, then about the run
+  std::vector<Warning> warnings;                    ///< warnings about the scenario's files, followed by warnings about
+                                                    ///< the run
   std::optional<std::vector<Diagnosed>> diagnosis;  ///< empty if the diagnosis was not requested
   RunWork work;
   std::vector<TargetRow> targets;  ///< targets of all subjects and trials of a tracking hand
   RunTiming timing;
   Provenance provenance;
   std::string scenario_hash;    ///< hash of the effective scenario
-  bool replaces_other = false;  ///< the output directory contained results of another scenario
+  bool replaces_other = false;  ///< true if the output directory contained results of another scenario
 };
 
 /// Returns summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers

@@ -22,9 +22,9 @@ constexpr double kMaxRangeEnd = 1e300;
   throw InputError(problem + "; allowed: " + allowed);
 }
 
-/// Returns value i of the equally spaced values 0 … last from a to b, and returns both ends exactly. It is a
-/// weighted mean of the ends, because adding steps accumulates rounding errors: the weighted mean gives 0.3,
-/// not 0.30000000000000004, for the third of ten steps from 0 to 1.
+/// Returns number i of the equally spaced values with the numbers 0 … last from a to b. Both ends are exact. The
+/// result is a weighted mean of the ends, because adding steps accumulates rounding errors: the weighted mean gives
+/// 0.3, not 0.30000000000000004, for the third of ten steps from 0 to 1.
 double linear_value(double a, double b, double i, double last) {
   if (i == 0.0 || i == last) return i == 0.0 ? a : b;
   return std::clamp((a * (last - i) + b * i) / last, std::min(a, b), std::max(a, b));
@@ -136,7 +136,7 @@ Axis parse_axis(const std::string& text, bool sampled) {
     const std::string shown = text.size() > kMaxShownLength ? text.substr(0, kMaxShownLength) + "..." : text;
     fail_in({.about_options = {"--vary"}}, fmt::format("--vary \"{}\": {}", shown, error.problem()));
   }
-  // The schema of the field decides about integers and about "all".
+  // The schema of the field tells whether its values are integers, and which names "all" stands for.
   const std::vector<ScenarioField> fields = scenario_fields();
   const auto field = std::ranges::find(fields, axis.path, &ScenarioField::path);
   if (field == fields.end()) return axis;

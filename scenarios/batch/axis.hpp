@@ -33,8 +33,8 @@ struct Axis {
   bool whole = false;                    ///< true: numbers of the range are rounded to integers
   bool named = false;                    ///< true: values are labels for the caller and do not override a field
 
-  /// Further changes that are made together with one value of the axis. `stride` multiplies TimeFields::stride
-  /// of the runs with this value.
+  /// Further changes that a case with one value of the axis makes. `stride` multiplies TimeFields::stride of the runs
+  /// with this value.
   struct Along {
     std::vector<std::string> overrides;
     std::int64_t stride = 1;

@@ -40,9 +40,9 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, st
 }
 
 /// Sorts the cases so that cases with the same environment follow each other and can share a point shell.
-/// Sampled ranges are ignored: each case of a sample has a different value.
+/// Ignores axes that are sampled ranges, because each case of a sample has a different value.
 void Cases::sort_runs() {
-  std::vector<std::size_t> slow;  // axes that the point shell depends on, the scene first
+  std::vector<std::size_t> slow;  // indices of the axes that the point shell depends on; the scene is the first
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     const std::string& path = axes_[a].path;
     if (axes_[a].size() == 0) continue;

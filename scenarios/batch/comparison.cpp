@@ -40,9 +40,8 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
   }
 }
 
-/// Returns the cases of a scene and appends its warnings. Of the warnings about unused fields, it appends only
-/// warnings that all algorithms have: a field that at least one algorithm reads has an effect in the
-/// comparison.
+/// Returns the cases of a scene and appends its warnings. Appends a warning about an unused field only if it occurs
+/// with every algorithm: a field that at least one algorithm reads has an effect in the comparison.
 Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::vector<std::string>& warnings) {
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
@@ -53,7 +52,7 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   check_seeds_and_jitter(question, first);
   if (question.seeds > 1 || question.jitter != 0.0)
     axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
-  // Keep the warnings that occur with every algorithm.
+  // Keep only the warnings that occur with every algorithm.
   std::vector<Warning> common = first.warnings;
   for (std::size_t a = 1; a < alone.size(); ++a) {
     const std::vector<Warning> others = alone.load(a).warnings;

@@ -101,7 +101,7 @@ std::size_t Ranking::failures(std::size_t scenario, std::size_t algorithm) const
 
 void Ranking::rank() {
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
-    // Does the seed change any run?
+    // Find out whether the seed changes any run.
     bool matter = false;
     for (std::size_t a = 0; a < algorithms.size(); ++a)
       for (const Result& run : runs.subspan(first_run(s, a), seeds))
@@ -140,16 +140,16 @@ Ranking rank_comparison(const Comparison& comparison, std::span<const Result> re
       have_reference(reports) ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
   Ranking ranking{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, reports, {}};
   if (metrics.empty()) ranking.metrics.assign(defaults.begin(), defaults.end());
-  // For which metrics are smaller or larger values better?
+  // Find out for each metric whether smaller or larger values are better.
   for (const std::string& name : ranking.metrics) {
     const Metric* metric = find_metric(all_metrics(), name);
     ranking.better.push_back(metric == nullptr ? Better::none : metric->better);
   }
-  // Which runs failed?
+  // Find the runs that failed.
   for (const Result& summary : reports) {
     const Outcome outcome = summary.end.outcome;
     const Scenario scenario = comparison.load(ranking.failed.size()).scenario;
-    // A script that leads the tool through the surface is not a failure: no force law can prevent it, and the
+    // If a script leads the tool through the surface, the run has not failed: no force law can prevent this, and the
     // forces on the path are still comparable.
     const bool is_led = outcome == Outcome::went_through && !position_is_free(scenario.motion);
     const bool failed = is_failure(outcome_name(outcome)) || !outcome_is_expected(scenario.expect, outcome);

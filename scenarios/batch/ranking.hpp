@@ -21,14 +21,15 @@ struct RankingEntry {
   std::uint64_t seeds = 1, failed = 0;
   std::string outcome;              ///< outcome of its runs: "completes", or with counts "completes 3; diverges 2"
   std::optional<double> mean = {};  ///< mean of the metric; empty if all runs failed or no run has the metric
-  /// Sample standard deviation; empty for a single seed, or if the seed does not affect the run.
+  /// Sample standard deviation of the metric over the seeds; empty for a single seed, or if the seed does not affect
+  /// the run.
   std::optional<double> spread = {};
   /// Error of the mean: mean of the errors of the runs' numbers; empty if no error is known.
   std::optional<double> tolerance = {};
-  /// 1 + the number of algorithms that did better. Algorithms without failures come first, in the order of
-  /// their means (is_less()). Among them, algorithms without a mean come last: for example, a tool that is
-  /// thrown out at once has no settled force. Algorithms with failures follow, in the order of their number of
-  /// failed seeds. Empty if no algorithm has the metric, or if neither smaller nor larger values are better.
+  /// 1 + the number of better algorithms. Algorithms without failures come first, in the order of their means
+  /// (is_less()). Algorithms without failures and without a mean come after them: for example, a tool that is thrown
+  /// out at once has no settled force. Algorithms with failures follow, in the order of their number of failed seeds.
+  /// Empty if no algorithm has the metric, or if neither smaller nor larger values are better.
   std::optional<std::uint64_t> rank = {};
   std::uint64_t common_seeds = 1;
   Better better = Better::less;

@@ -47,7 +47,7 @@ std::vector<std::size_t> remaining_runs(const SweepPlan& plan, const Shard& shar
   return remaining;
 }
 
-/// The row of a run; if the run ended with an exception, the exception's message and an empty row.
+/// Result of a run: its row; or, if the run ended with an exception, an empty row and the message of the exception.
 struct RunRow {
   std::string row, problem;
 };
@@ -59,7 +59,7 @@ RunRow row_of_run(const SweepPlan& plan, const SweepOptions& options, std::size_
     const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
     result.row = finished_row(plan, run, run_scenario(checked(plan.cases.load(run)), output, false));
   } catch (const IoError&) {
-    throw;  // results of further runs could not be written either; --resume continues the sweep
+    throw;  // results of further runs could not be written either; the user can continue the sweep with --resume
   } catch (const std::exception& error) {
     result.problem = error.what();
   }

@@ -200,7 +200,7 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
   }
   faults.throw_if_any(file);
   if (sampling.count == 0) fail_in_file(file, "has no rows; allowed: a header of fields, and rows of their values");
-  // Convert indices to coordinates in the middle of the value's share of [0, 1) (Axis::index_at).
+  // Replace each index by a coordinate: the middle of the part of [0, 1) that belongs to the value (Axis::index_at).
   for (std::size_t a = 0; a < axes.size(); ++a)
     for (double& coordinate : sampling.of_file[a])
       coordinate = (coordinate + 0.5) / static_cast<double>(axes[a].size());

@@ -22,7 +22,7 @@ inline constexpr std::string_view kPointsOfFile = "points";
 
 /// A sample of the unit cube. Equal samples have bit-identical points on every machine.
 struct Sampling {
-  std::string_view method = kLatinHypercube;      ///< one of the names above
+  std::string_view method = kLatinHypercube;      ///< kLatinHypercube, kRandomPoints or kPointsOfFile
   std::size_t count = 1;                          ///< number of points
   std::uint64_t seed = 1;                         ///< seed of the random points
   std::vector<std::vector<double>> of_file = {};  ///< coordinates of points from a file, by axis, then by point

@@ -27,7 +27,8 @@ namespace {
 struct CheckedRun {
   std::vector<std::string> warnings;
   MetricList metrics;
-  std::string files;  ///< identifies the named files: folder of the scenario, and the JSON objects that name files
+  std::string files;  ///< text that identifies the named files: the folder of the scenario, and the JSON objects that
+                      ///< name files
   AlgorithmOrigin origin;
 };
 
@@ -72,8 +73,7 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& m
   return hashes;
 }
 
-/// Returns the values of an axis for the plan's content. Of a long range or a sampled range, returns only the
-/// ends.
+/// Returns the values of an axis for SweepPlan::content. For a long range or a sampled range, returns only both ends.
 Json axis_content(const Axis& axis, bool from_file) {
   constexpr std::size_t kMaxListed = 10'000;
   Json content = {{"path", axis.path}};
@@ -129,13 +129,13 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 }  // namespace
 
 std::vector<std::size_t> runs_to_check(const Cases& cases) {
-  // All runs of a small batch, or the first runs of a sample.
+  // Of a small batch, check all runs. Of a sample, check the first runs.
   if (cases.size() <= kMaxChecked || cases.sampling()) {
     std::vector<std::size_t> runs(std::min(cases.size(), kMaxChecked));
     std::iota(runs.begin(), runs.end(), std::size_t{0});
     return runs;
   }
-  // Check only the lines through the first and the last run of a large grid.
+  // Of a large grid, check only the runs on the lines through the first and the last run.
   std::set<std::size_t> runs;
   std::size_t stride = 1;
   for (std::size_t a = cases.axes().size(); a-- > 0;) {

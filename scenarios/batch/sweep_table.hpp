@@ -43,7 +43,8 @@ struct SweepTable {
   std::filesystem::path file;
   Json about;  ///< content of sweep.json
   std::vector<std::string> columns;
-  std::vector<SweepRow> rows;  ///< rows that satisfy the conditions; empty if there are more than kMaxRows
+  std::vector<SweepRow> rows;  ///< rows that satisfy the conditions of read_sweep(); empty if there are more than
+                               ///< kMaxRows
   SweepCounts counts;          ///< counts of all rows
   SweepCounts kept;            ///< counts of the rows that satisfy the conditions
 
@@ -68,8 +69,8 @@ struct SweepTable {
 /// `conditions`, which are the texts of --where (row_condition.hpp). Throws InputError.
 SweepTable read_sweep(const std::filesystem::path& file, const std::vector<std::string>& conditions = {});
 
-/// Returns the numbers of the runs whose rows in the table meet all `conditions`, in the table's order, however many
-/// these are. Does not read the JSON file. Throws InputError.
+/// Returns the numbers of the runs whose rows in the table meet all `conditions`, in the table's order, also if there
+/// are more than SweepTable::kMaxRows. Does not read the JSON file. Throws InputError.
 std::vector<std::size_t> runs_that_meet(const std::filesystem::path& file, const std::vector<std::string>& conditions);
 
 }  // namespace hapbench

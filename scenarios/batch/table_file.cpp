@@ -45,7 +45,8 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
   // Start a new .part file, or append to it.
   const bool is_new = !keep || !fs::exists(part_, error) || fs::file_size(part_, error) == 0;
   if (is_new) {
-    // First: if the process is killed here, old rows must not remain next to another description.
+    // Remove the old rows before the description is replaced: if the process is killed between the two, old rows must
+    // not remain next to a new description.
     fs::remove(part_, error);
     write_file_atomically(about_part_, json_text(title_.about));
   }
@@ -78,7 +79,7 @@ void TableFile::resume(const Keep& keep) {
     fs::copy_file(title_.file, part_, error);
     if (error) throw IoError("write", part_, error);
   }
-  // Ask `keep` about each complete row.
+  // Call `keep` for each complete row.
   TableLines lines(part_, title_.cases);
   if (lines.next() && lines.line() != title_.header) lines.refuse();
   while (lines.next()) {
@@ -119,7 +120,8 @@ void TableFile::finish() {
 }
 
 std::size_t write_sorted_table(const TableTitle& title, const std::vector<fs::path>& parts, std::size_t rows) {
-  // Offset of each row, counted as if the files followed each other; 0 means no row, because a header is at 0.
+  // Offset of the row of each case, counted as if all files were concatenated. 0 means that there is no row, because
+  // the offset 0 belongs to a header.
   std::vector<std::uintmax_t> offsets(title.cases), file_starts = {0};
   for (const fs::path& part : parts) {
     TableLines lines(part, title.cases);

@@ -21,7 +21,7 @@ struct TableTitle {
   std::filesystem::path file;
   std::string header;     ///< header line without newline; the first column is the number of the case
   Json about;             ///< description, written next to the table as NAME.json
-  std::size_t cases = 0;  ///< number of cases; the numbers of rows are smaller
+  std::size_t cases = 0;  ///< number of cases; a row number is smaller than this
 };
 
 /// A table with a row for each case. Rows are appended to FILE.part, one at a time and in any order, with the

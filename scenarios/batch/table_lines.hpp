@@ -27,7 +27,7 @@ class TableLines {
   std::size_t row() const;
   /// Throws InputError with `problem`, the file and the number of this line.
   [[noreturn]] void refuse(const std::string& problem) const;
-  /// Throws InputError, which says that this line is not a row of the table.
+  /// Throws InputError with the message that this line is not a row of the table.
   [[noreturn]] void refuse() const;
 
  private:

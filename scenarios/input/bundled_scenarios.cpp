@@ -46,7 +46,7 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
     if (bundled.name == argument) return bundled.file;
     names.push_back(bundled.name);
   }
-  // Neither: report a likely mistake.
+  // The argument names neither a file nor a scenario: report the most likely mistake.
   const std::string missing = argument + ": no such file and no bundled scenario";
   if (fs::exists(file.string() + ".json", error)) throw InputError(missing + "; there is " + argument + ".json");
   if (argument.find('=') != std::string::npos)
@@ -58,7 +58,7 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
 std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {
   std::vector<fs::path> files;
   for (const std::string& argument : arguments) {
-    // Not the name of a group, or a file has that name.
+    // The argument is not the name of a group, or a file has this name.
     std::error_code error;
     if (std::ranges::find(kScenarioGroups, argument) == std::end(kScenarioGroups) || fs::exists(argument, error)) {
       files.push_back(find_scenario(argument));

@@ -24,7 +24,7 @@
 ///   - guide_to builds the JSON Schema and the documentation.
 namespace hapbench {
 
-/// Parameter type for a function that is only called during the call and not stored.
+/// Type of a parameter that is itself a function. The callee may only call it, and must not store it.
 template <class... Arguments>
 using FunctionRef = const std::function<void(Arguments...)>&;
 
@@ -51,7 +51,7 @@ enum class Presence {
 /// Treatment of an object without the field "type", if the type determines the object's other fields.
 enum class Untyped {
   refused,  ///< an error
-  first     ///< the object has the first type; writers omit the field "type" for the first type
+  first     ///< an object without the field has the first type of the list; writers omit the field for this type
 };
 
 /// Field that selects one alternative of a variant.
@@ -104,13 +104,13 @@ class Fields {
   /// the entry at an index. The index `length` stands for an example entry, from which the schema is made.
   virtual void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
                        FunctionRef<Fields&, std::size_t> entry) = 0;
-  /// null, or the value that `value` describes.
+  /// A value that is either null or described by `value`.
   virtual void or_null(bool is_null, FunctionRef<> set_null, Body value) = 0;
-  /// Either an object, or a plain value: a number or a name.
+  /// A value that is either an object or plain. A plain value is a number or a name.
   virtual void plain_or_object(bool is_object, Body plain, Body object) = 0;
   /// An arbitrary JSON object, kept as JSON text. The program passes it on without interpreting it.
   virtual void any_object(std::string& json) = 0;
-  /// Either a single value or a list.
+  /// A value that is either a single value or a list.
   virtual void one_or_list(bool is_list, Body one, Body list) = 0;
   /// An object whose field "type" is one of `types` and determines the other fields. `what` is the kind of object
   /// for messages, such as "device". `held` is the index of the type that the C++ object has now. `fields`
@@ -229,7 +229,7 @@ class Fields {
             Presence presence = Presence::has_default) {
     field(name, doc, presence, [&](Fields& f) { f.text(value, max_length); });
   }
-  /// The required field kFileField. `content` is made from the fields that were described before.
+  /// The required field kFileField. The caller makes `content` from fields that it described before.
   void file(std::string& path, const FileContent& content, const char* doc) {
     field(kFileField, doc, Presence::required, [&](Fields& f) { f.file(path, content); });
   }

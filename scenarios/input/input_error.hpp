@@ -19,16 +19,18 @@ inline constexpr std::size_t kMaxFaults = 20;
 struct ErrorLocation {
   std::string option = {};  ///< faulty command-line option as typed, such as "--set time.step_s=0"
   std::vector<std::filesystem::path> outer =
-      {};  ///< files that lead to `file`, the outermost first: a scenario that names a mesh
+      {};  ///< files that lead to `file`, such as a scenario that names a mesh; the outermost file first
   std::filesystem::path file = {};
   std::size_t line = 0;      ///< line in `file`, from 1; 0: not known
   std::string entry = {};    ///< entry of `file`, such as "sample 3"
   std::string pointer = {};  ///< JSON pointer of the field
-  /// Names of the options that the problem is about, the option at fault first: "--between". They are no part of the
-  /// text, which the problem words; a study finds the line by them that gave an option.
+  /// Names of the options that the problem is about, such as "--between"; the option at fault comes first. text()
+  /// does not contain them, because the text of the problem does. A study uses them to find the line of its file that
+  /// gave the option.
   std::vector<std::string> about_options = {};
 
-  /// Returns the location as a message begins with it, such as "scene.json: /time/step_s" or "mesh.obj, line 3".
+  /// Returns the location in the form in which a message begins with it, such as "scene.json: /time/step_s" or
+  /// "mesh.obj, line 3".
   std::string text() const;
 };
 
@@ -76,7 +78,7 @@ class InputError : public std::runtime_error {
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
 /// The fault is in a line of a file. Lines count from 1.
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
-/// The fault is at any location.
+/// The fault is at the given location.
 [[noreturn]] void fail_in(ErrorLocation location, const std::string& problem);
 /// Throws an InputError about the value of an option, whose name begins the message: "--between: got …".
 [[noreturn]] void fail_in_option(const std::string& option, const std::string& problem);

@@ -7,8 +7,8 @@
 
 #include "scenarios/input/input_error.hpp"
 
-// Share folder, defined in .cmake/share_folder.cpp, which projects that use find_package link. Null in other
-// programs. A static library cannot find out where it was installed.
+// Path of the share folder. Defined in .cmake/share_folder.cpp, which is linked by projects that use find_package.
+// Null in other programs. A static library cannot find out where it was installed.
 extern "C" [[gnu::weak]] const char hapbench_share_folder[];
 
 namespace hapbench {
@@ -37,8 +37,8 @@ std::vector<fs::path> candidate_paths(const std::string& name) {
   Dl_info object;
   const fs::path library = dladdr(&kHere, &object) != 0 ? fs::canonical(object.dli_fname, error) : program;
   std::vector<fs::path> candidates;
-  // A shared library searches near itself first. The Python interpreter that loads it may be next to the files of
-  // another version.
+  // A shared library searches near itself first. Near the program, which may be the Python interpreter, there may be
+  // files of another version.
   if (library != program)
     for (fs::path above = library.parent_path(); above != above.root_path(); above = above.parent_path())
       candidates.push_back(above / wanted);

@@ -17,7 +17,7 @@ namespace hapbench {
 namespace {
 
 constexpr int kMaxNesting = 64;           ///< levels of objects and lists; bounds the recursion
-constexpr std::size_t kMaxKeys = 10'000;  ///< of one object
+constexpr std::size_t kMaxKeys = 10'000;  ///< maximum number of keys of one object
 
 [[noreturn]] void refuse_syntax(const std::string& problem) {
   throw InputError(InputError::Kind::shape, "", "is not JSON: " + problem);
@@ -60,7 +60,7 @@ std::string cause_of_syntax_error(std::string_view text, std::size_t byte) {
 /// the JSON pointer of the current value.
 class Guard {
  public:
-  /// Handles one event. Returns true to keep the parsed value. Throws InputError.
+  /// Handles one event of the parser. Returns true, so that the parser keeps the value. Throws InputError.
   bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
     using Event = Json::parse_event_t;
     switch (event) {

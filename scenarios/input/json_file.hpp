@@ -25,7 +25,7 @@ Json parse_json(const std::string& text);
 /// than kMaxJsonFileBytes or is not valid for parse_json.
 Json read_json(const std::filesystem::path& file);
 
-/// Returns the value as an error message shows it: JSON on one line, truncated if it is long.
+/// Returns the value in the form for error messages: JSON on one line, truncated if it is long.
 std::string shown(const Json& json);
 
 /// Returns the JSON pointer of a member of the object at the pointer `at`, escaped by RFC 6901.

@@ -19,8 +19,8 @@ struct ValueGuide {
   std::vector<FieldGuide> fields;  ///< fields of an object without alternatives, or of one alternative
   /// Alternatives from which the field "type" selects; empty if the value is not such an object.
   std::vector<ValueGuide> choices;
-  std::string type, summary;    ///< of an alternative: its value of "type", and a short description
-  bool may_be_untyped = false;  ///< of an alternative: true if its field "type" may be omitted
+  std::string type, summary;    ///< only for an alternative: its value of the field "type", and a short description
+  bool may_be_untyped = false;  ///< only for an alternative: true if the field "type" may be omitted
 };
 
 /// Documentation of a field of an object.

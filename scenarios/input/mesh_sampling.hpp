@@ -9,7 +9,7 @@ struct MeshSampling {
   double scale = 1.0;  ///< length of the file's unit [m]
   std::optional<double>
       spacing;        ///< largest distance of neighbouring points [m]; empty: the points are the mesh's vertices
-  bool flip = false;  ///< reverses all normals; allowed for an open surface only
+  bool flip = false;  ///< true: all normals are reversed; allowed for an open surface only
 };
 
 }  // namespace hapbench

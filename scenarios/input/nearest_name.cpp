@@ -20,7 +20,8 @@ namespace {
 /// counts as one edit.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1), before(row),
-      row_before_previous(row);  // of the distance matrix; row[j]: first i letters of `a` to first j of `b`
+      row_before_previous(row);  // rows of the distance matrix; row[j]: distance from the first i letters of `a` to
+                                 // the first j letters of `b`
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
     row_before_previous.swap(before);
@@ -52,8 +53,8 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
   if (const std::string_view now = valid_new_name(given, valid); !now.empty()) return std::string(now);
   const std::string lower = lower_case(given);
   std::string best;
-  // Accept a distance of up to a third of the letters, at least 2. Names of up to 4 letters: at most 1, because
-  // they would match almost any name otherwise.
+  // Accept a distance of up to a third of the number of letters, or 2 if this is more. For names of up to 4 letters
+  // accept at most 1, because they would otherwise match almost any name.
   std::size_t best_distance = std::max<std::size_t>(given.size() > 4 ? 2 : 1, given.size() / 3) + 1;
   for (const std::string& name : valid) {
     // Skip names whose difference in length alone exceeds the distance. A name from an untrusted file may be

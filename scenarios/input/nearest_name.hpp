@@ -8,8 +8,8 @@
 namespace hapbench {
 
 /// Returns the valid name with the smallest edit distance to `given`, or an empty text if no name is near enough to be
-/// suggested. The new name of a renamed name (renamed_names.hpp) is the nearest. The comparison ignores case. The part
-/// of a valid name after an underscore, such as a unit, may be missing in `given`.
+/// suggested. If `given` is a name that was renamed (renamed_names.hpp), its new name counts as the nearest. The
+/// comparison ignores case. The part of a valid name after an underscore, such as a unit, may be missing in `given`.
 std::string nearest_name(std::string_view given, std::span<const std::string> valid);
 
 /// Returns `; nearest valid name: "x"`, or `; version 0.4.0 renamed it to "x"`, or an empty text if no name is near

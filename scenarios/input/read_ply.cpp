@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct PlyType {
   std::string_view name, alias;
   std::size_t size;  ///< size of a number in a binary file [bytes]
-  bool is_real;      ///< floating-point type
+  bool is_real;      ///< true for a floating-point type
   /// Reads the next number of a binary file. A double represents every PLY number exactly. Precondition: at least
   /// `size` bytes are left.
   double (*take)(ByteReader& reader);
@@ -88,7 +88,7 @@ class PlyHeader {
     while (read_line()) {
     }
     if (!format_) fail("allowed: a header with \"format\"");
-    // Drop the elements after the wanted element.
+    // Drop the elements after the last element that is needed.
     const std::string_view name = wanted == Wanted::points ? "vertex" : "face";
     const auto last = std::ranges::find(elements_, name, &Element::name);
     if (last == elements_.end()) {
@@ -106,7 +106,7 @@ class PlyHeader {
     }
   }
 
-  /// Returns the elements up to and including the wanted element. Later elements are not read.
+  /// Returns the elements up to the vertices (for points) or the faces (for a surface). Later elements are not read.
   const std::vector<Element>& elements() const { return elements_; }
   /// Returns true if the file has elements after elements().
   bool has_more_elements() const { return has_more_elements_; }

@@ -46,7 +46,7 @@ class Reader final : public Fields {
     const auto min = static_cast<double>(range.min), max = static_cast<double>(range.max);
     if (!(given >= min && given <= max) || given != std::floor(given)) refuse();
     const auto whole = static_cast<std::int64_t>(given);
-    // Reject integers that a double cannot represent: 2^53 + 1 was rounded to 2^53.
+    // Reject integers that a double cannot represent, such as 2^53 + 1, which was rounded to 2^53.
     if (json_.is_number_integer() && json_ != Json(whole)) refuse();
     value = whole;
   }
@@ -133,7 +133,7 @@ class Reader final : public Fields {
     if (names_ != nullptr) return names_->push_back(name);
     const auto entry = json_.find(name);
     if (entry != json_.end()) return collect([&] { read_value(*entry, member(at_, std::string(name)), value); });
-    // If an unknown field resembles this field, the misspelt name has been reported already.
+    // If an unknown field has a similar name, the unknown field has been reported with this name as the suggestion.
     if (presence != Presence::required || std::ranges::count(suggested_, name) > 0) return;
     collect([&] { fail(fmt::format("missing field \"{}\"; allowed: {}", name, guide_to(value).allowed)); });
   }
@@ -178,8 +178,8 @@ class Reader final : public Fields {
     if (!errors_.empty()) throw InputError::all(errors_);
   }
 
-  /// Reads the fields of an object. `names` are allowed fields that `body` does not describe. `root` is the name of
-  /// the object in "hapbench describe" if the object is the whole file.
+  /// Reads the fields of an object. `names` are allowed fields that `body` does not describe. `root`: if the object
+  /// is the whole file, the name by which "hapbench describe" explains it.
   void read_fields(Body body, std::vector<std::string_view> names, std::string_view root) {
     // Collect the names of the allowed fields.
     names_ = &names;
@@ -206,7 +206,7 @@ class Reader final : public Fields {
   std::string described_by(std::string_view root) const {
     std::string section;
     for (const std::string_view key : parts_of(at_, '/')) {
-      if (whole_number(key)) break;  // entries are documented with their list
+      if (whole_number(key)) break;  // the documentation of a list includes its entries
       if (!key.empty()) section += fmt::format("{}{}", section.empty() ? "" : ".", key);
     }
     return fmt::format("hapbench describe {}", section.empty() ? root : section);

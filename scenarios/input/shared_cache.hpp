@@ -47,8 +47,9 @@ class SharedCache {
     std::mutex mutex;
     Made made;
   };
-  static constexpr std::size_t kMaxEntries = 128;                   ///< limit unless there are many threads
-  static constexpr std::size_t kMaxBytes = std::size_t{512} << 20;  ///< limit of all values together
+  static constexpr std::size_t kMaxEntries = 128;                   ///< largest number of values, unless the machine
+                                                                    ///< has many threads
+  static constexpr std::size_t kMaxBytes = std::size_t{512} << 20;  ///< largest size of all values together [bytes]
 
   std::shared_ptr<const void> get_untyped(const std::string& key, const std::function<Made()>& make);
   /// Returns the entry of a key and marks it as most recently used. Adds an entry without a value if the key is

@@ -36,8 +36,8 @@ std::string_view trimmed(std::string_view text);
 /// Converts a token to a finite number. Returns nullopt if the token is anything else.
 std::optional<double> finite_number(std::string_view word);
 
-/// Converts a token to a number of type Number. Returns nullopt if the token, in whole or in part, is anything
-/// else or out of range.
+/// Converts a token to a number of type Number. Returns nullopt if a part of the token does not belong to the number,
+/// or if the number is out of range.
 template <class Number>
 std::optional<Number> parse_number(std::string_view word) {
   Number value = 0;
@@ -51,7 +51,7 @@ inline std::optional<std::size_t> whole_number(std::string_view word) {
   return parse_number<std::size_t>(word);
 }
 
-/// Returns a token as an error message shows it: in quotes, with escaped control characters, truncated if it is
+/// Returns a token in the form for error messages: in quotes, with escaped control characters, truncated if it is
 /// long.
 std::string quoted_token(std::string_view word);
 

@@ -8,8 +8,8 @@
 namespace hapbench {
 namespace {
 
-/// Selects the fields to write: all fields that have a value, or only fields that are required or have a fixed
-/// default.
+/// Selects the fields to write. all: the fields that have a value. with_default: only fields that are required or
+/// have a fixed default.
 enum class Which { all, with_default };
 
 /// Visitor that writes a value as JSON and calls a callback for each file that the value names.

@@ -12,7 +12,8 @@
 namespace hapbench {
 namespace {
 
-constexpr const char *kPresets = "impedance", *kFile = ".json";  ///< the type of all presets, and the end of files
+constexpr const char *kPresets = "impedance", *kFile = ".json";  ///< kPresets: the type of all presets; kFile:
+                                                                 ///< extension of a file
 
 /// Returns the devices that a name, a type or a file selects; empty for an unknown name.
 std::vector<ComparedDevice> devices_named(const std::string& name) {

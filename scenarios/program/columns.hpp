@@ -23,8 +23,8 @@ namespace hapbench {
 /// The outputs that include a column of a table.
 struct Shown {
   bool csv = true, json = true, printed = false;
-  bool wide = false;         ///< printed only with --wide
-  std::string heading = {};  ///< above the printed column, in two lines at most; empty: its name
+  bool wide = false;         ///< true if the column is printed only with --wide
+  std::string heading = {};  ///< heading of the printed column, at most two lines; empty: the name of the column
   int digits = 4;            ///< significant digits of a number without a tolerance
 };
 inline const Shown kOnlyJson = {.csv = false}, kOnlyCsv = {.json = false};
@@ -34,7 +34,7 @@ Shown under(std::string heading, int digits = 4, Shown where = {});
 /// Returns the outputs of a column that is in no file and not in the JSON. It is printed unless its heading and
 /// name are empty. `wide`: printed only with --wide.
 Shown only_printed(bool wide = false);
-/// Returns `where` if the table has the column; otherwise the column is in no output.
+/// Returns `where` if `has_it` is true, otherwise no output at all.
 Shown when(bool has_it, Shown where = {});
 
 /// Returns a cell as text. A number has the digits that are significant at its tolerance, or `shown.digits`

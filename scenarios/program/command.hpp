@@ -18,8 +18,9 @@ namespace hapbench {
 /// Rules for the values of an option or argument. The type of the bound variable sets the type of the value.
 struct ValueRules {
   bool required = false;
-  bool several = false;          ///< may be given several times, each time with one value
-  bool comma_separated = false;  ///< has several values between commas; spaces around them are removed
+  bool several = false;          ///< true if the option may be given several times, each time with one value
+  bool comma_separated = false;  ///< true if the value is a list separated by commas; spaces around its entries are
+                                 ///< removed
   std::optional<std::pair<std::int64_t, std::int64_t>> range = {};  ///< smallest and largest allowed number
   std::vector<std::string> one_of = {};                             ///< allowed values; empty: every value
 };

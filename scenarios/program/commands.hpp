@@ -10,12 +10,12 @@ class CommandLine;
 
 using AddCommand = void(CommandLine& line);
 
-/// A command in the program's help, and in its own.
+/// Texts about a command for the help of the program and of the command itself.
 struct CommandGuide {
   std::string_view group, name, purpose;
-  AddCommand* add;                 ///< null: of a Python package
-  std::string_view examples = {};  ///< a line each
-  std::string_view manual = {};    ///< page and section of the manual with the rest
+  AddCommand* add;                 ///< null if a Python package implements the command
+  std::string_view examples = {};  ///< one example per line
+  std::string_view manual = {};    ///< page and section of the manual that explains the command in full
 };
 
 /// Returns all commands in the order of the program's help.

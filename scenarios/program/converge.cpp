@@ -119,8 +119,8 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
        under("run s", 2, kOnlyJson)}};
 }
 
-/// Returns the columns of the times. They have a file of their own, because all other files are identical in
-/// every run.
+/// Returns the columns of the times. They have a separate file, because the other files are identical if the command
+/// is repeated.
 Columns<LevelRow> time_columns() {
   return {{"value", "unit of the field", "value of the refined field at this level", &LevelRow::value},
           {"seconds", "s", "processor time of the level's run", &LevelRow::seconds}};
@@ -168,7 +168,7 @@ Json study_json(const ConvergeStudy& study) {
   return json;
 }
 
-/// States how far an observed order is reliable.
+/// Returns a sentence on how reliable an observed order is.
 std::string order_text(const ConvergeStudy& study) {
   const auto is_known = [](const auto& error) { return error.has_value(); };
   if (std::ranges::count_if(study.errors, is_known) == 3) return "from three levels only";
@@ -188,7 +188,8 @@ std::string verdict_text(const ConvergeStudy& study) {
                      number_text(high, high - low));
 }
 
-/// Names the coarsest level from which on the relative errors of all levels are below `max_error`, and its cost.
+/// Returns a sentence that names the coarsest level for which it and all finer levels have relative errors below
+/// `max_error`, and the cost of this level.
 std::string sufficient_level_text(const ConvergeStudy& study, double max_error) {
   // Find the first level from which on all errors are below the bound.
   const std::vector<LevelRow>& levels = study.levels;

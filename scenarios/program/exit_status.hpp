@@ -8,7 +8,7 @@ enum ExitStatus : int {
   kInternalFault = 1,
   kBadInput = 2,
   kUnexpectedOutcome = 3,  ///< a simulation diverged, or missed another expectation of its scenario
-  kStopped = 128,          ///< plus the number of the signal, like shells: 130 for Ctrl-C, 143 for SIGTERM
+  kStopped = 128,          ///< the number of the signal is added, as shells do: 130 for Ctrl-C, 143 for SIGTERM
 };
 
 }  // namespace hapbench

@@ -28,7 +28,7 @@ std::string kind_of_value(const CLI::Option& option) {
   return kind;
 }
 
-/// An argument is shown by its placeholder.
+/// Returns the name of an argument in the help: its placeholder.
 std::string argument_name(const CLI::Option& option) {
   const std::string kind = kind_of_value(option);
   if (kind.starts_with('<')) return kind;
@@ -59,7 +59,7 @@ std::string option_entry(const CLI::Option& option, const std::string& name, con
   return layout.entry(kind.empty() ? name : name + " " + kind, help, 2, kHelpColumn);
 }
 
-/// Returns the arguments or the options. Options that all commands share stand in one line.
+/// Returns the arguments or the options. Options that all commands share are listed in one line.
 std::string options_text(const CLI::App& app, bool arguments, const Layout& layout) {
   std::string text, shared;
   for (const CLI::Option* option : app.get_options()) {

@@ -18,7 +18,7 @@ inline constexpr const char* kProgramSummary = "an offline bench for haptic rend
 std::string front_text(const Layout& layout);
 /// Returns the text of `hapbench --help`.
 std::string program_help(const Layout& layout);
-/// Returns the help of a command in the layout's width of prose.
+/// Returns the help of a command, wrapped to Layout::prose_width().
 std::string command_help(const CLI::App& command, const Layout& layout);
 
 }  // namespace hapbench

@@ -21,7 +21,7 @@ class Layout {
   std::size_t prose_width() const;
   bool in_full() const { return in_full_; }
 
-  /// These call hapbench::wrapped() and hapbench::entry() with prose_width().
+  /// wrapped() and entry() call the functions of the same name in text.hpp with the width prose_width().
   std::string wrapped(std::string_view text, std::size_t indent = 2) const;
   std::string entry(std::string_view name, std::string_view meaning, std::size_t indent = 2,
                     std::size_t column = 26) const;

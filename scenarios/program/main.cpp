@@ -59,9 +59,9 @@ void limit_memory() {
 #endif
 }
 
-/// Makes glibc keep freed memory for later allocations. By default it returns blocks of megabytes, with which
-/// meshes grow, to the system and requests them again page by page. This would cost a tenth of the time of a
-/// short run on a mesh.
+/// Makes glibc keep freed memory for later allocations. By default glibc returns blocks of some megabytes to the
+/// system and requests them again page by page. Growing meshes use such blocks, and this would cost a tenth of the
+/// time of a short run on a mesh.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   ::mallopt(M_MMAP_THRESHOLD, 32 << 20);  // [B], the largest value that glibc accepts
@@ -72,8 +72,8 @@ void keep_freed_memory() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Without this, exceeding the file size limit would terminate the process; it should be an ordinary write
-  // error.
+  // If SIGXFSZ were not ignored, a file larger than the limit would terminate the process. It should only cause a
+  // write error.
   std::signal(SIGXFSZ, SIG_IGN);
   std::atexit(refuse_exit);
   std::set_terminate(report_uncaught_exception);

@@ -21,7 +21,7 @@ constexpr SharedOption kSharedOptions[] = {
     {"--wide", "", "print all columns, also beyond the width of the terminal"},
     {"--help", "", "explain the command, with examples"}};
 
-/// Shared options that every help nevertheless explains, because users need them all the time.
+/// Shared options that the help of every command explains all the same, because users need them often.
 constexpr std::string_view kExplained[] = {"--set", "--jobs"};
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace hapbench {
 
 /// The options --quiet and --json, which every command has. --wide is in ProgramContext::in_full.
 struct OutputOptions {
-  bool quiet = false;  ///< prints nothing on standard output and shows no progress bar
-  bool json = false;   ///< prints JSON instead of tables on standard output
+  bool quiet = false;  ///< true: prints nothing on standard output and shows no progress bar
+  bool json = false;   ///< true: prints JSON instead of tables on standard output
 };
 
 /// An option with one meaning in every command that has it.
@@ -27,13 +27,13 @@ std::span<const SharedOption> shared_options();
 /// Returns the help text of a shared option; empty for other options.
 std::string shared_option_help(const std::string& name);
 
-/// Returns true for a shared option that the help of a command names without explaining it.
+/// Returns true for a shared option that the help of a command only names. Other options are explained there.
 bool is_listed_briefly(const std::string& name);
 
 /// Options that most commands have.
 struct CommonOptions {
   std::vector<std::string> overrides;
-  unsigned jobs = 0;  ///< simulations at once; 0: as many as this process may use threads
+  unsigned jobs = 0;  ///< number of simulations at the same time; 0: the number of threads that this process may use
   std::string out;
   OutputOptions output;
 };

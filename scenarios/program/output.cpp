@@ -13,7 +13,7 @@ namespace hapbench {
 namespace {
 
 void write_line(std::string_view head, std::string_view text) {
-  std::fflush(stdout);  // keeps the order of the output if both streams go to one pipe
+  std::fflush(stdout);  // keeps the output in order if both streams go to the same pipe
   fmt::print(stderr, "{} {}\n", head, text);
 }
 

@@ -16,7 +16,8 @@ namespace {
 void name_override(ErrorLocation& location, const std::string& override, const std::string& pointer) {
   constexpr std::size_t kMaxTypedLength = 60;
   const bool is_long = override.size() > kMaxTypedLength;
-  const bool has_option = !location.option.empty();  // another typed option, such as --device
+  const bool has_option = !location.option.empty();  // true if the location already has an option that the user
+                                                     // typed, such as --device
   location.option +=
       fmt::format("{}--set {}{}", has_option ? ": " : "", override.substr(0, kMaxTypedLength), is_long ? "…" : "");
   location.about_options.emplace_back("--set");

@@ -25,7 +25,7 @@ struct CapturedOutput {
 struct ProgramContext {
   std::filesystem::path program;       ///< executable file, named in printed commands and called by Python packages
   CapturedOutput* captured = nullptr;  ///< receives printed text for a host without a terminal; null: text is printed
-  bool in_full = false;                ///< true with the option --wide
+  bool in_full = false;                ///< true if the option --wide was given
   const ProgressListener* progress = nullptr;  ///< receives progress instead of the terminal; null: draws bars
   LoadingGuard guard_loading = {};             ///< called before a module is loaded, for a host with threads of its own
   NewDirectories directories = {};  ///< created result folders; the destructor removes those that are still empty

@@ -77,7 +77,7 @@ int run_captured(CapturedOutput& host, const std::string& line) {
       faults.emplace_back(std::string(said->substr(kError.size())));
     } else if (said->starts_with(kWarning)) {
       host.warnings.emplace_back(said->substr(kWarning.size()));
-    } else if (!said->starts_with("hapbench: ")) {  // skips notes on progress, which are for people
+    } else if (!said->starts_with("hapbench: ")) {  // skips notes on progress
       host.text.append(*said).append("\n");
     }
   }
@@ -127,7 +127,7 @@ int print_runs_where(const ProgramArguments& given, ProgramContext& context) {
 
 /// Blocks Ctrl-C until the Python of the command handles it (stop_on_ctrl_c in hapbench_command.py). A blocked signal
 /// stays pending across exec. Otherwise the shell would lose the signal, or Python would print a traceback of its
-/// imports. Throws Stopped if the signal came before.
+/// imports. Throws Stopped if the signal came before this function was called.
 void leave_ctrl_c_to_python() {
   sigset_t ctrl_c;
   sigemptyset(&ctrl_c);

@@ -70,7 +70,7 @@ bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
 
 /// A scenario of the thesis, and its run by this command.
 struct ThesisRun : BundledScenario {
-  std::optional<double> seconds = {};   ///< duration of the run [s]; empty before it
+  std::optional<double> seconds = {};   ///< duration of the run [s]; empty before the run
   std::vector<std::string> unmet = {};  ///< expectations of the scenario that the run does not meet
 };
 
@@ -109,7 +109,8 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   for (const Claim& claim : claims) {
     bar.show(judged.size());
     std::set<std::string> used, provided;   // scenarios
-    double providing = 0.0, running = 0.0;  // [s]: time for runs that claims share; time for the runs of this claim
+    double providing = 0.0, running = 0.0;  // [s]: providing: time for runs that claims share; running: time for the
+                                            // runs of this claim
     const auto note = [&](const std::string& scenario) { used.insert(scenario); };
     const auto provide_run = [&](const std::string& scenario) {
       note(scenario);
@@ -127,8 +128,8 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   return judged;
 }
 
-/// Judges the claims again under each reading, a set of values for the thesis's unstated choices. Writes
-/// robustness.csv and robustness.json next to the ledger, if there is one. Returns the content of
+/// Judges the claims again under each reading. A reading is a set of values for the choices that the thesis leaves
+/// open. Writes robustness.csv and robustness.json next to the ledger, if there is one. Returns the content of
 /// robustness.json.
 Json judge_readings(const ReproduceOptions& options, const Readings& readings, const fs::path& ledger, FileSet& files,
                     ProgramContext& context) {
@@ -144,7 +145,7 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings, c
   for (const ReadingVerdicts& reading : judged)
     for (const std::string& problem : reading.problems) problems.push_back("not measured: " + one_line(problem));
   for (const std::string& problem : first_few(problems, 10)) print_error(context, problem);
-  // With --only, keep what robustness.json has of the other claims.
+  // With --only, keep the entries of robustness.json for the other claims.
   const fs::path file = ledger.parent_path() / "robustness.json";
   const bool some = !ledger.empty() && !options.only.empty() && fs::exists(file);
   const Json record = robustness_json(readings, judged, some ? read_json(file) : Json::object());

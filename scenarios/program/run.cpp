@@ -89,8 +89,8 @@ Columns<Result> latency_columns() {
   return columns;
 }
 
-/// Returns the diagnosis of runs, with what to try for a single run. Several runs have a line each, with the
-/// names of the rules. Empty if no rule applies.
+/// Returns the diagnosis of runs. For a single run it includes advice. For several runs it has one line for each,
+/// with the names of the rules. Empty if no rule applies.
 std::string diagnosis_text(std::span<const Result> reports, const Layout& layout) {
   std::string text;
   for (const Result& report : reports) {

@@ -26,14 +26,14 @@ std::string Result::*distinct_name(std::span<const Result> reports) {
   return reports.front().name == reports.back().name ? &Result::algorithm : &Result::name;
 }
 
-/// Returns how a run ended, and when if it ended before its last row.
+/// Returns the outcome of a run, with the time if the run ended before its last row.
 std::string ending_text(const Result& report) {
   const std::string name(outcome_name(report.end.outcome));
   const auto last = number_of(report.metrics, "last_contact_s");
   switch (report.end.outcome) {
     case Outcome::leaves_hole:
     case Outcome::tool_horizontal:
-      // Several trials have no common time.
+      // With several trials there is no common time.
       return !report.sections.contains("targets") ? fmt::format("{} at {:.3g} s", name, report.duration) : name;
     case Outcome::diverges:
       return fmt::format("{} at {:.3g} s", name, report.end.divergence.time);
@@ -76,7 +76,8 @@ Columns<Result> run_columns(bool of_scenes) {
   return columns;
 }
 
-/// Columns of runs with a reference force, which is measured with the stroke or ideal.
+/// Columns of runs with a reference force, which is either measured with the stroke or the force of an ideal
+/// rendering.
 constexpr RunHeading kFidelityHeadings[] = {
     {"force\nerror [%]", "fidelity.force_error_relative", 100.0, false},
     {"normal\n[N rms]", "fidelity.force_error_normal_rms_N", 1.0, false},
@@ -111,7 +112,7 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
   std::vector<std::string> kinds, texts;
   for (const Result& report : reports) {
     for (const auto& [kind, pointer, text] : report.warnings) {
-      if (!pointer.empty()) continue;  // was printed before the run
+      if (!pointer.empty()) continue;  // a warning about a field was printed before the run
       // Add a text for a new kind of warning; otherwise append the algorithm to the text of this kind.
       const auto known = std::ranges::find(kinds, kind) - kinds.begin();
       if (known == std::ssize(kinds)) {

@@ -16,10 +16,10 @@ namespace hapbench {
 struct RunHeading {
   const char *title, *metric;
   double factor = 1.0;  ///< conversion factor from the metric's unit to the unit in the heading
-  bool wide = true;     ///< printed only with --wide
+  bool wide = true;     ///< true if the column is printed only with --wide
 };
 
-/// The figures that separate algorithms.
+/// The metrics in which algorithms differ most visibly.
 inline constexpr RunHeading kRunHeadings[] = {
     {"largest\nforce [N]", "force_max_N", 1.0, false}, {"in contact\n[%]", "contact_share", 100.0},
     {"landing\nforce [N]", "landing_force_max_N"},     {"mean\nforce [N]", "force_mean_in_contact_N", 1.0, false},
@@ -45,8 +45,8 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
 
 /// Returns the printed table of runs: names, outcome with its time, and the columns of kRunHeadings without
 /// `wide`. With --wide the table has all columns of kRunHeadings, the range of stiffness ratios and the median
-/// time of a step. `of_scenes`: the first column has the scenario. Without it, all runs belong to one scenario,
-/// and the table also has the vibration of the tool, which is defined for runs without settled contact too.
+/// time of a step. `of_scenes`: true if the first column has the scenario. If false, all runs belong to one scenario.
+/// The table then also has the vibration of the tool, which is defined for runs without settled contact too.
 std::string run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
 
 /// Metric whose square root is the vibration of the tool.

@@ -140,7 +140,7 @@ std::optional<StudyArguments> StudyArguments::in(const ProgramArguments& argumen
     fail_in_line(
         file, line_of(text, kAsk),
         fmt::format("is a question for \"hapbench {} {}\"", study[kAsk].get<std::string>(), arguments[study_index]));
-  // Scenarios first, then the options of the study, then the other arguments of the command line.
+  // Put the scenarios first, then the options of the study, then the other arguments of the command line.
   StudyArguments found{file, {arguments[0]}, {}};
   for (const Json& scenario : study["scenarios"]) found.arguments.push_back(scenario_beside(file, text_of(scenario)));
   for (const auto& [key, value] : study.items()) {

@@ -42,8 +42,8 @@ struct StudyArguments {
   /// which may name a study. Returns empty without a study. Throws InputError for a study of another command.
   static std::optional<StudyArguments> in(const ProgramArguments& arguments, std::span<const std::size_t> positions);
 
-  /// Returns the error with the study's file and line in front. The line is where the study gives the first of
-  /// ErrorLocation::about_options that it has. Returns the error unchanged if the study has none of these
+  /// Returns the error with the study's file and line in front. The line is that of the first option in
+  /// ErrorLocation::about_options that the study gives. Returns the error unchanged if the study has none of these
   /// options.
   InputError located(const InputError& error) const;
 

@@ -45,7 +45,7 @@ namespace fs = std::filesystem;
 /// for the metric if none of them has it.
 Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric) {
   Columns<SweepRow> columns;
-  // Begin with the varied fields; several fields also have the index of the run. Sampled numbers are rounded.
+  // Begin with the varied fields. If several fields vary, add the index of the run. Round sampled numbers.
   const bool single = table.fields() == 1, sampled = table.about.contains("sample");
   for (std::size_t c = single ? 1 : 0; c <= table.fields(); ++c) {
     std::string title = table.columns[c];

@@ -22,7 +22,7 @@ std::array<std::string, 2> title_lines(const std::string& title) {
   return {title.substr(0, end), title.substr(end + 1)};
 }
 
-/// Returns the width of each column: of its title or widest cell.
+/// Returns the width of each column: the width of its title or of its widest cell, whichever is larger.
 std::vector<std::size_t> widths_of(const Table& table) {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
@@ -34,8 +34,8 @@ std::vector<std::size_t> widths_of(const Table& table) {
   return widths;
 }
 
-/// Returns the columns with these indices side by side, under their header. Wraps the last column if it is
-/// wider than its width.
+/// Returns the columns with these indices side by side, under their header. Wraps the cells of the last column to its
+/// width.
 std::string block_text(const Table& table, const std::vector<std::size_t>& widths,
                        const std::vector<std::size_t>& indices) {
   const auto line = [&](auto cell_of) {
@@ -74,8 +74,7 @@ std::string Table::text(std::size_t max_width) const {
   std::vector<std::size_t> widths = widths_of(*this);
   const std::size_t others = std::accumulate(widths.begin(), widths.end() - 1, kGap * (widths.size() - 1));
   if (others + widths.back() > max_width && columns.size() > 1 && !columns.back().number) {
-    // If the last column does not fit beside the others, it stands beside the first column in a block of its
-    // own.
+    // If the last column does not fit beside the others, print it beside the first column in a separate block.
     const std::size_t beside = others + kMinProseWidth <= max_width ? others : widths[0] + kGap;
     const std::size_t rest = std::max(kMinProseWidth, max_width - std::min(max_width, beside));
     widths.back() = std::min(widths.back(), rest);

@@ -25,7 +25,10 @@ class Approach {
   /// earlier step.
   void add(const StepRecord& record, bool before_contact) noexcept;
 
-  double longest_step() const { return longest_step_; }  ///< as defined at OutcomeObserver::longest_step() [m]
+  double longest_step() const {
+    return longest_step_;
+  }  ///< longest displacement of the tip in a step; see
+     ///< OutcomeObserver [m]
   /// Distance of the tip centre from the environment's bounding box in the last step [m]; 0 inside the box.
   double distance() const { return distance_; }
   const Box& environment() const { return environment_; }
@@ -51,8 +54,8 @@ class Approach {
   };
   std::shared_ptr<const PointShell> shell_;
   Box environment_;
-  Vec3 position_ = Vec3::Zero();  ///< of the tip centre in the last step [m]
-  double time_ = 0.0;             ///< of the last step [s]
+  Vec3 position_ = Vec3::Zero();  ///< position of the tip centre in the last step [m]
+  double time_ = 0.0;             ///< time of the last step [s]
   double distance_ = std::numeric_limits<double>::infinity(), longest_step_ = 0.0;
   std::uint64_t interval_;
   std::vector<Candidate> candidates_;

@@ -23,9 +23,9 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
 /// reads the scenario's files itself, and so needs no CheckedScenario.
 SimulationParts assemble(const Scenario& scenario);
 
-/// Returns the surface of the environment: the triangles that our shell's points come from, or the triangles of
-/// the mesh file. For an environment without triangles, returns only the points, as vertices. Throws InputError
-/// if the file cannot be used.
+/// Returns the surface of the environment: the triangles from whose vertices the point shell is made, or the
+/// triangles of the mesh file. For an environment without triangles, returns only the points, as vertices. Throws
+/// InputError if the file cannot be used.
 TriangleSoup environment_surface(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

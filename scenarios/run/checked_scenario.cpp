@@ -38,7 +38,7 @@ CheckedScenario checked(LoadedScenario loaded, Libraries libraries) {
   for (const auto& file : loaded.files.all()) {
     try {
       file->check();
-      if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // the tool's mesh must also be closed
+      if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // throws if the tool's mesh is not closed
     } catch (const InputError& error) {
       fail_in({.file = file_of(loaded, file->pointer()), .pointer = file->pointer()}, error.what());
     }

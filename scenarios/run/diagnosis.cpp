@@ -52,9 +52,9 @@ struct DiagnosedRun {
   bool vibrates() const { return metric("vibration_last_quarter_m_per_s").value_or(0.0) > kMaxVibration; }
   bool is_free() const { return position_is_free(scenario().motion); }
   bool has_springs() const { return std::holds_alternative<SpringsEnvironment>(scenario().environment); }
-  /// Returns `number` if it is meaningful for this run, else an empty value. Numbers are not meaningful if the
-  /// run diverged, went through the surface or never touched. In a run with springs that come to rest, the mean
-  /// force is no reference for force steps.
+  /// Returns `number` if it is meaningful for this run, else an empty value. It is not meaningful if the run
+  /// diverged, went through the surface or never touched it. It is also not meaningful if the environment is springs
+  /// and the tool comes to rest: the mean force is then no reference for force steps.
   Number if_completed(const Number& number) const {
     if (has_springs() && !vibrates()) return std::nullopt;
     return ended(Outcome::diverges, Outcome::went_through, Outcome::no_contact) ? std::nullopt : number;
@@ -110,15 +110,16 @@ std::string buzz_frequency(const DiagnosedRun& run) {
   return fmt::format(", at about {:.0f} Hz", 0.5 * turns / (run.scenario().time.step * static_cast<double>(last.rows)));
 }
 
-/// Returns K divided by the largest stable K of the linear loop in contact. The loop uses the stiffest contact
-/// of the run (largest stiffness ratio lambda). Empty without contact or without a loop. Rounded to six digits,
-/// so that the result does not depend on how a build rounds.
+/// Returns K divided by the largest stable K of the linear loop in contact. The loop uses the stiffest contact of the
+/// run (largest stiffness ratio lambda). Empty without contact, or if the scenario has no linear loop. Rounded to six
+/// digits, so that the result does not depend on how a build rounds.
 Number ratio_to_stability_limit(const DiagnosedRun& run) {
   const Number lambda = run.metric("ratio_max");
   const double K = run.scenario().rendering.stiffness;
   if (!lambda || !(*lambda > 0.0) || !(K > 0.0) || !run.is_free()) return std::nullopt;
   if (contact_step_matrix(run.scenario(), *lambda).size() == 0) return std::nullopt;
-  constexpr double kMin = 1e-9, kMax = 2.0;  // search range, in units of K; above it, K is far below the limit
+  constexpr double kMin = 1e-9, kMax = 2.0;  // search range in units of K; if the limit is above the range, K is far
+                                             // below the limit
   Scenario at = run.scenario();
   const double limit = first_stability_limit(kMin * K, kMax * K, [&](double stiffness) {
     at.rendering.stiffness = stiffness;
@@ -137,7 +138,8 @@ Number stability_limit_ratio(const DiagnosedRun& run) {
 /// contacts is proportional to 1 / spacing^2. Empty if the tip moved less than ten spacings in contact.
 Number coarseness(const DiagnosedRun& run) {
   constexpr double kSufficientContacts = 4.0,
-                   kMinSpacings = 10.0;  // contacts in a step; multiples of the point spacing
+                   kMinSpacings = 10.0;  // kSufficientContacts: contacts in a step; kMinSpacings: path length in
+                                         // contact in units of the point spacing
   const auto distance = point_distance(run.loaded);
   const Number contacts = quotient(run.metric("colliding_mean"), run.metric("contact_share"));
   if (!distance || !contacts || run.observations.path_in_contact < kMinSpacings * distance->metres) return std::nullopt;
@@ -148,7 +150,7 @@ Number coarseness(const DiagnosedRun& run) {
 Number encoder_force(const DiagnosedRun& run) {
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&run.scenario().device);
   if (device == nullptr) return std::nullopt;
-  // Steps in which a velocity filter of any order reaches its peak or passes almost nothing.
+  // Number of steps within which a velocity filter of any order reaches its peak or passes almost nothing.
   constexpr int kSamples = 100;
   VelocityFilter filter(device->velocity_filter, run.scenario().time.step);
   filter.reset(Vec3::Zero());
@@ -171,7 +173,7 @@ Number damping(const DiagnosedRun& run) {
 }
 
 /// Returns the displacement of the tip perpendicular to the force in the last quarter, divided by the tool's
-/// half width. Only for a free tool that stays in contact and that no script moves.
+/// half width. Empty unless the tool is free and stays in contact, and no script moves it.
 Number drift(const DiagnosedRun& run) {
   const RunObservations& rows = run.observations;
   const RunObservations::Quarter& last = rows.last_quarter;
@@ -247,8 +249,9 @@ struct Rule {
   Number (*value)(const DiagnosedRun& run);
   Sentence attempt;
   Sentence more = "";          ///< further facts, appended to the problem
-  bool low_vibration = false;  ///< included in diagnosis_rules(true)
-  bool warns = false;          ///< reported as a warning for runs without a diagnosis; such a rule uses metrics only
+  bool low_vibration = false;  ///< true if diagnosis_rules(true) includes the rule
+  bool warns = false;          ///< true if the rule gives a warning for runs without a diagnosis; such a rule uses
+                               ///< metrics only
 };
 
 constexpr Rule kRules[] = {

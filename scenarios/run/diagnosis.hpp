@@ -17,8 +17,8 @@ namespace hapbench {
 /// use metrics only.
 std::vector<Diagnosed> diagnosis_rules(bool low_vibration = false);
 
-/// Returns the values of the diagnosis_rules(true) for this result, also values below their thresholds. A rule
-/// whose number has no value is left out.
+/// Returns the rules of diagnosis_rules(true) with their values for this result, including values below the
+/// thresholds. A rule whose number has no value is left out.
 std::vector<Diagnosed> low_vibration_numbers(const LoadedScenario& loaded, const Result& result);
 
 /// Returns the rules whose threshold this run exceeds, in the order of diagnosis_rules(). `observations` and

@@ -20,13 +20,15 @@ struct RunObservations {
   std::uint64_t at_force_limit = 0;
   std::uint64_t at_input_limit = 0;  ///< steps in contact whose hand force reaches the input limit of the device
   double path_in_contact = 0.0;      ///< path length of the tip in contact [m]
-  double longest_step = 0.0;         ///< as defined at OutcomeObserver::longest_step() [m]
+  double longest_step = 0.0;         ///< longest displacement of the tip in a step, as defined at
+                                     ///< OutcomeObserver::longest_step() [m]
   Vec3 last_force = Vec3::Zero();    ///< rendered force in the last step [N]
   struct Quarter {
     std::uint64_t rows = 0;
     bool always_in_contact = true;                     ///< true if every step of the quarter is in contact
     Vec3 start = Vec3::Zero();                         ///< tip position in the first step of the quarter [m]
-    Vec3 high_squares = Vec3::Zero();                  ///< sum of the squared force above 30 Hz, per axis [N^2]
+    Vec3 high_squares = Vec3::Zero();                  ///< sum over the steps of the squared force above 30 Hz, for
+                                                       ///< each axis [N^2]
     std::array<std::uint64_t, 3> high_sign_changes{};  ///< number of sign changes of the force above 30 Hz, per axis
   } last_quarter;
   Vec3 tip = Vec3::Zero();  ///< tip position in the last step [m]
@@ -56,7 +58,7 @@ class DiagnosisObserver final : public Observer {
   std::optional<double> force_limit_, input_limit_;
   std::optional<HighPass> high_pass_;
   std::uint64_t quarter_ = 0;
-  bool was_in_contact_ = false;  ///< in contact in the previous step
+  bool was_in_contact_ = false;  ///< true if the tool was in contact in the previous step
   Vec3 high_ = Vec3::Zero();     ///< force above 30 Hz in the previous step [N]
   RunObservations observations_;
 };

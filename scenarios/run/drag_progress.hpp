@@ -20,14 +20,14 @@ class DragProgress {
   void add(double time) noexcept;
 
   /// Returns the interval in which the tool stood still until the end of the run; empty if it did not. The tool
-  /// stands still while it advances less than a tenth of the target's advance, measured over target advances of
-  /// one tool width.
+  /// stands still if, while the target point advances by one tool width, the tool advances by less than a tenth of
+  /// this width.
   std::optional<Stuck> stuck() const;
   double progress() const { return now_.tool; }           ///< largest progress of the tool along the path [m]
   double target_progress() const { return now_.target; }  ///< progress of the target point along the path [m]
-  /// Returns the lag of the tool behind the target point at the end [m]. Empty unless the lag exceeds a tenth
-  /// of the target's progress, half the tool width, and twice the lag at half of the path. The last condition
-  /// excludes a tool that friction holds back at a constant lag.
+  /// Returns the lag of the tool behind the target point at the end [m]. Empty unless the lag exceeds each of these
+  /// three lengths: a tenth of the target's progress, half the tool width, and twice the lag at half of the path. The
+  /// last condition excludes a tool that friction holds back at a constant lag.
   std::optional<double> left_behind() const;
 
  private:

@@ -80,7 +80,7 @@ const HapbenchModule& opened(const fs::path& file) {
     if (problem.starts_with(again)) problem.erase(0, again.size());
     fail_in_file(file, "is not a module: " + problem);
   }
-  // Ask the module for its table.
+  // Get the table of the module.
   const auto entry = entry_point(file, library);
   const HapbenchModule* table = nullptr;
   try {

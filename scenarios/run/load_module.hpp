@@ -14,8 +14,8 @@
 ///
 /// The lists of loaded libraries belong to the process and not to a ProgramContext. dlopen() gives a process
 /// one copy of a library, whose code and static data all contexts share. A loaded law is also entered in the
-/// single table of algorithms (algorithms/registry.hpp). A separate list for each context would not know this
-/// and would load the same law again.
+/// single table of algorithms (algorithms/registry.hpp). If each context had its own list, a second context would
+/// load the same law again.
 namespace hapbench {
 
 /// A module that the user named, by --module or HAPBENCH_MODULE_PATH.

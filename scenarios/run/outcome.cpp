@@ -92,7 +92,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   }
 
  private:
-  /// A condition under which a completed run gets another outcome. `text` returns a warning that says what
+  /// A condition under which a completed run gets another outcome. `text` returns a warning that explains what
   /// happened and why; it may be empty.
   struct Condition {
     Outcome outcome;
@@ -175,7 +175,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
           "{}",
           length_text(half_width), p.deep->time, millimetres(p.deep->place), length_text(p.deepest), end);
     }
-    // The tip centre never was deeper than the half width.
+    // In this case the tip centre was never deeper than the half width.
     if (p.left) return fmt::format("it entered the environment at {} and {}", millimetres(p.entered), end);
     if (p.ends_inside)
       return fmt::format("the core of the tool ended inside the environment; for the tip centre: {}", end);
@@ -221,8 +221,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   }
 
   /// Returns true if a dragged tool advanced by less than its width, although it should have advanced by more
-  /// than two widths. The metrics of such a run look good but do not describe a drag. The spring of a hand
-  /// whose tool follows stretches by less than a width.
+  /// than two widths. The metrics of such a run look good but do not describe a drag. (If the tool follows the hand,
+  /// the spring between them stretches by less than the tool's width.)
   bool not_dragged() {
     const double width = 2.0 * tool_->half_width();
     return progress_ && progress_->progress() < width &&

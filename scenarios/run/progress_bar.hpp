@@ -15,7 +15,7 @@ using ProgressListener = std::function<void(std::string_view label, std::uint64_
 
 /// Selects whether progress is shown: as a bar on the terminal, or through a listener.
 struct Progress {
-  /// Not explicit, so that `false` can be passed for work without progress.
+  /// Implicit conversion is allowed, so that a caller can pass `false` for work without a progress bar.
   Progress(bool shown = false, const ProgressListener* other = nullptr) : is_shown(shown), listener(other) {}
 
   bool is_shown;

@@ -28,7 +28,7 @@ struct RecorderEntry {
   const ResultTable& table;
   std::function<bool(const RecordFields&)> is_wanted;
   RowSource (*rows)(const RecordedTrial& trial);
-  bool has_every_row = false;  ///< true: the source itself selects the rows (record.every does not apply)
+  bool has_every_row = false;  ///< true if the source itself selects the rows, so that record.every does not apply
 };
 
 // The observers that find() looks up exist, because the same record fields create them. checked() has rejected
@@ -47,7 +47,7 @@ const RecorderEntry kRecorders[] = {
     {kForceReferenceTable, &RecordFields::force_reference,
      [](const RecordedTrial& t) { return force_reference_rows(*t.sections.find<ForceFidelityObserver>()); }}};
 
-constexpr double kBytesPerNumber = 12.0;  // estimate: numbers have between one and seventeen digits
+constexpr double kBytesPerNumber = 12.0;  // an estimate, because numbers have between one and seventeen digits
 constexpr double kContactsPerRow = 30.0;
 
 /// Returns the estimated number of lines that a table gets for each recorded step.

@@ -38,8 +38,8 @@ std::vector<fs::path> trial_directories(const fs::path& directory) {
   return found;
 }
 
-/// Removes the files of an earlier run. Some are optional: with other settings, this run would not overwrite
-/// them.
+/// Removes the files of an earlier run. Some files are optional: if this run has other settings, it may not write and
+/// so not overwrite them.
 void remove_earlier_run(const fs::path& directory, FileSet& files) {
   for (const char* name : {"summary.json", "columns.json", kTargetTable.file, "timing.json"})
     files.remove(directory / name);

@@ -84,8 +84,8 @@ class Run {
     if (diagnose) diagnosis_.emplace(scenario_);
   }
 
-  /// Runs a trial. `target`: where it records; empty: nowhere. `label`: label of the progress bar; empty: no
-  /// bar.
+  /// Runs a trial. `target`: destination of the recorded tables; empty: nothing is recorded. `label`: label of the
+  /// progress bar; empty: no bar.
   void run_trial(Trial trial, const std::optional<RecordTarget>& target, const std::string& label,
                  const ProgressListener* listener) {
     // Build the parts, and tell the observers that a trial begins.
@@ -98,8 +98,8 @@ class Run {
     sections_.begin(trial_parts);
     tool_ = parts.tool;
 
-    // Collect the observers, in the order in which they are notified. The sampler is first and last, to measure
-    // the time between.
+    // Collect the observers, in the order in which they are notified. The sampler is notified first and last, so that
+    // it can leave out the time of the observers between.
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
     const auto outcome = outcome_observer(scenario_, checked_.files(), parts, &*metrics_);
     ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), listener);
@@ -247,7 +247,7 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutpu
   std::optional<ResultFolder> folder;
   if (output) folder.emplace(*output);
   if (output) tables = nullptr;
-  // No reallocation later: the recorders keep pointers to elements.
+  // Reserve memory for all elements, because the recorders keep pointers to them.
   if (tables != nullptr) tables->trials.reserve(trials.size());
   Run run(checked, shell, trials.size(), diagnose);
   for (std::size_t i = 0; i < trials.size(); ++i) {

@@ -22,15 +22,15 @@ namespace {
 
 /// Returns the pose of the tool at the start.
 ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
-  parts.hand->reset();  // the hand may steer the orientation
+  parts.hand->reset();  // needed because the hand may control the orientation
   const bool is_free = parts.motion->position_is_free();
   return {is_free ? scenario.initial.position : parts.motion->position_at(0.0), parts.motion->axis_at(0.0),
           parts.motion->roll_at(0.0)};
 }
 
 constexpr double kTypicalStep = 0.001;  ///< typical time step of haptic loops [s]
-/// Ratio from which two lengths or times probably have different units: the factor is 1000 for mm instead of m,
-/// and 100 for cm instead of m.
+/// If the ratio of two lengths or times is at least this, their units are probably different: the factor is 1000 for
+/// mm instead of m, and 100 for cm instead of m.
 constexpr double kUnitFactor = 100.0;
 
 /// Returns a warning if the environment is much smaller or larger than objects that a hand works on.
@@ -46,7 +46,7 @@ std::optional<Warning> size_warning(const Environment& environment, const Box& b
 /// Returns a warning if the points of a mesh are so far apart that the tool feels each point. Surfaces that a
 /// formula defines are not checked: their spacing was chosen in the scenario.
 std::optional<Warning> spacing_warning(const LoadedScenario& loaded, const ToolShape& tool) {
-  // Fractions of the tool's width; "hapbench new" chooses kSmoothSpacing.
+  // Spacings as fractions of the tool's width. "hapbench new" chooses kSmoothSpacing.
   constexpr double kSmoothSpacing = 0.1, kRoughSpacing = 1.0 / 6.0;
   if (!std::holds_alternative<MeshEnvironment>(loaded.scenario.environment)) return std::nullopt;
   const PointDistance distance = *point_distance(loaded);
@@ -90,8 +90,8 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const ToolShape& tool
   return warnings;
 }
 
-/// Returns a warning if the support point of the tool's core lies behind the nearest surface point, on the side
-/// opposite to its normal.
+/// Returns a warning if the front point of the tool's core (core_offset) lies behind the nearest surface point, on
+/// the side opposite to the normal of this point.
 std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const ToolPose& pose) {
   const Vec3 core = pose.position - core_offset(tool) * pose.axis;
   // Find the nearest point of the surface.
@@ -103,7 +103,7 @@ std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolSha
     nearest = i;
     distance = to_point;
   }
-  // Cosine of 45 degrees: the core lies behind the point, not beside an edge of the surface.
+  // Cosine of 45 degrees. Within this angle, the core lies behind the point and not beside an edge of the surface.
   constexpr double kBehind = 0.7;
   const SurfacePoint point = shell.point(nearest);
   const double behind = point.normal.dot(point.position - core);

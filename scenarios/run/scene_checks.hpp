@@ -17,12 +17,12 @@ struct SceneFacts {
   struct Surface {
     Box box;
     std::size_t points = 0;
-    Gap start;  ///< between tool and surface at the start
+    Gap start;  ///< distance between tool and surface at the start
   };
   std::optional<Surface> surface;
   std::shared_ptr<const ToolShape> tool;
-  std::optional<bool> is_closed;  ///< whether a mesh has no open edges; empty for other environments
-  std::vector<Warning> warnings;  ///< about sizes, time step, tool, starting position and path of a drag
+  std::optional<bool> is_closed;  ///< for a mesh: true if it has no open edges; empty for other environments
+  std::vector<Warning> warnings;  ///< warnings about sizes, time step, tool, starting position and path of a drag
 };
 
 /// Builds the environment, places the tool in its starting pose and checks the scene. Throws InputError if a

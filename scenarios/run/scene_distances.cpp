@@ -12,7 +12,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the mean distance of a mesh's vertices: the square root of the area a vertex [m].
+/// Returns the mean distance between neighbouring vertices of a mesh [m]: the square root of the area for each
+/// vertex.
 double vertex_distance(const TriangleSoup& soup) {
   double area = 0.0;
   for (const auto& [a, b, c] : soup.triangles) {

@@ -26,7 +26,8 @@ Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& s
 struct PointDistance {
   const char* path;  ///< path of the field, as in --set
   double metres;
-  bool is_given = true;  ///< false: mean spacing of the vertices of a mesh without a given spacing
+  bool is_given = true;  ///< false: no spacing is given, and the distance is the mean distance between neighbouring
+                         ///< vertices of the mesh
 };
 
 /// Returns the point spacing of the environment; empty if no field sets it.

@@ -59,8 +59,8 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
 }
 
 /// Returns the scenario with the stiffness and damping of the friction bristle in place of the contact springs:
-/// the linear loop along a surface on which dry friction holds the tool. The bristle integrates the device's
-/// velocity. It therefore sees the position through the velocity filter.
+/// the linear loop along a surface on which dry friction holds the tool. The bristle integrates the velocity that the
+/// device measures. Its deflection is therefore the position after the velocity filter.
 Scenario stuck_scene(Scenario scenario) {
   RenderingConfig& r = scenario.rendering;
   const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
@@ -73,9 +73,9 @@ Scenario stuck_scene(Scenario scenario) {
   return scenario;
 }
 
-/// Fields of a device that the linear model covers, as JSON pointers within the device. The loop includes them,
-/// SampledLoop::nonlinearity() reports them, or they have no effect as long as nothing saturates. With any
-/// other field that is not at its default, there is no linear model.
+/// Fields of a device that the linear model covers, as JSON pointers within the device. The loop includes a field, or
+/// SampledLoop::nonlinearity() reports it, or it has no effect as long as nothing saturates. With any other field
+/// that is not at its default, there is no linear model.
 constexpr std::string_view kKnownToTheory[] = {"/handle_mass_kg",
                                                "/viscous_N_s_per_m",
                                                "/coulomb_N",
@@ -119,7 +119,7 @@ bool has_permanent_springs(const Scenario& scenario) {
 }
 
 Vec3 stiffness_eigenvalues(Scenario scenario) {
-  // Run one step with all springs deflected, and read the tensor.
+  // Run one step in which all springs are deflected, and read the tensor.
   scenario.time.steps = 1;
   scenario.bounds = {};
   scenario.initial.position = Vec3(1e-3, 1e-3, 1e-3);

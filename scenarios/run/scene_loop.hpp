@@ -45,22 +45,22 @@ std::string unmodelled_fields(const Scenario& scenario);
 
 /// Returns the delay of the device's force, or of the servo of an admittance device [samples]. 0 for an ideal device.
 double delay_of(const Scenario& scenario);
-/// Returns the path of the field that sets this delay.
+/// Returns the path of the field that sets the delay of delay_of().
 inline const char* delay_path(const Scenario& scenario) {
   const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
   return has_servo ? "device.servo.delay_samples" : "device.delay_samples";
 }
 
 /// Returns the state matrix of one step of the tool in contact with a wall of stiffness lambda K and damping
-/// lambda B. With an ideal device, this is the step matrix of the integrator; with another device, of
-/// device_loop(). Empty if the delay makes the loop too large to solve, or if unmodelled_fields() is not empty.
+/// lambda B. With an ideal device, this is the step matrix of the integrator; with another device, the state matrix
+/// of device_loop(). Empty if the delay makes the loop too large to solve, or if unmodelled_fields() is not empty.
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda);
 
 /// Returns the state matrices (contact_step_matrix()) of several variants of the scenario's loop at a wall of
 /// stiffness lambda K, each with its name:
 /// - the scenario's own loop, with an empty name;
-/// - with dry friction, a tool that friction holds;
-/// - with `over_hands`, if a hand holds an impedance device, the hands of typical_hands().
+/// - if the scenario has dry friction: the loop with a tool that friction holds;
+/// - with `over_hands`, if a hand holds an impedance device: the loop with each hand of typical_hands().
 /// Returns an empty list if contact_step_matrix() is empty.
 std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_step_matrices(const Scenario& scenario, double lambda,
                                                                            bool over_hands);

@@ -35,8 +35,8 @@ std::optional<Warning> short_path_warning(const DragHandFields& fields, const Dr
 }
 
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
-  // Suspect: an environment much smaller than the tool's thickness or much larger than its length. Millimetres
-  // taken for metres change either ratio by a factor of 1000.
+  // An environment is suspect if it is much smaller than the tool's thickness or much larger than the tool's length.
+  // Millimetres taken for metres change either ratio by a factor of 1000.
   constexpr double kTooSmall = 0.1, kTooLarge = 100.0;
   const double size = diagonal(environment);
   if (size >= kTooSmall * 2.0 * tool.half_width() && size <= kTooLarge * tool.reach()) return "";
@@ -45,7 +45,8 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
 }
 
 std::string frame_problem(const Box& tool) {
-  constexpr double kSuspectRatio = 2.0;  // ratio of lengths from which the frame is probably wrong
+  constexpr double kSuspectRatio = 2.0;  // if two lengths of the tool have at least this ratio, its frame is probably
+                                         // wrong
   const Vec3 size = tool.size();
   const double gap = distance_to(tool, Vec3::Zero());
   if (gap > 0.0) return fmt::format("is {} away from its tip centre", length_text(gap));

@@ -10,9 +10,9 @@ namespace hapbench {
 double script_moves_until(const Scenario& scenario);
 /// Returns the longest period of the periodic scripts of hand and tool [s]; 0 if no script is periodic.
 double script_period(const Scenario& scenario);
-/// Returns true if a script or the hand's tremor moves the tool, which therefore may never come to rest. Then
-/// only velocity above 30 Hz that exceeds 1 mm/s counts as motion. After the end of the script, any velocity
-/// above 1 mm/s counts.
+/// Returns true if a script or the hand's tremor moves the tool, which therefore may never come to rest. While the
+/// script runs, only velocity above 30 Hz that exceeds 1 mm/s then counts as vibration. After the end of the script,
+/// every velocity above 1 mm/s counts.
 bool has_scripted_motion(const Scenario& scenario);
 
 }  // namespace hapbench

@@ -7,12 +7,12 @@
 namespace hapbench {
 
 void Standstill::add(const StepRecord& record) noexcept {
-  // Weight of a step in the running mean of the contact force; averages over chatter.
+  // Weight of a step in the running mean of the contact force. The mean removes chatter.
   constexpr double kMeanWeight = 1 / 32.0;
   const Vec3& position = record.tool.pose.position;
   const Vec3 target = target_(record.time);
-  // Before the first contact, the direction of the contact force is unknown. Target distances from that time do
-  // not count.
+  // Before the first contact, the direction of the contact force is unknown. Distances of the target in these steps
+  // do not count.
   if (mean_force_.isZero(0.0)) across_ = 0.0;
   mean_force_ += kMeanWeight * (record.force.spring - mean_force_);
   // Extend the boxes of tool and target.

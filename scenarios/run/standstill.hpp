@@ -21,13 +21,14 @@ class Standstill {
 
   void add(const StepRecord& record) noexcept;
 
-  /// Returns the interval of the standstill; empty if the tool moved in the end or its target did not.
+  /// Returns the interval of the standstill. Empty if the tool moved at the end of the run, or if its target did not
+  /// move.
   std::optional<Stuck> stuck() const;
 
  private:
   std::function<Vec3(double)> target_;
   double width_;
-  Vec3 mean_force_ = Vec3::Zero();  ///< spring force of the contacts, averaged over the last 32 steps or so [N]
+  Vec3 mean_force_ = Vec3::Zero();  ///< spring force of the contacts, averaged over about the last 32 steps [N]
   Box tool_box_, target_box_;  ///< bounding boxes of the positions of tool and target since the standstill began [m]
   /// largest distance between target and tool perpendicular to the contact force since then [m]
   double across_ = 0.0;

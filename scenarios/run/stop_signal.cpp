@@ -59,7 +59,7 @@ StopSignal::StopSignal() {
   struct sigaction action {};
   action.sa_handler = note;
   action.sa_flags = SA_RESTART;
-  sigfillset(&action.sa_mask);  // no handler interrupts another
+  sigfillset(&action.sa_mask);  // a handler must not interrupt another handler
   for (int i = 0; i < 2; ++i) {
     ::sigaction(kSignals[i], nullptr, &before_[i]);
     if (before_[i].sa_handler != SIG_IGN) ::sigaction(kSignals[i], &action, nullptr);

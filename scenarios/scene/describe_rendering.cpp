@@ -53,8 +53,8 @@ void algorithm_parameters(Fields& f, RenderingConfig& rendering, const Algorithm
 }
 
 /// Describes the field `parameters`, which holds an object for each algorithm that has parameters of its own.
-/// Only the objects of the scenario's algorithm and of algorithms whose parameters were given are written.
-/// Otherwise a written scenario would change whenever an algorithm is added.
+/// A written scenario has the objects of the scenario's algorithm and of algorithms whose parameters were given. With
+/// the objects of all algorithms, it would change whenever an algorithm is added.
 void algorithm_parameters(Fields& f, RenderingConfig& rendering) {
   const auto presence = [&rendering](const AlgorithmEntry& entry) {
     const bool written = !entry.algorithm_parameters.empty() &&
@@ -91,8 +91,8 @@ static void describe(Fields& f, DryFrictionConfig& dry) {
          "zeta_t, damping ratio of the bristle with the virtual mass");
 }
 
-/// Describes the field `friction`: the thesis's viscous friction, whose defaults depend on the scene, or dry
-/// friction instead.
+/// Describes the field `friction`: either the thesis's viscous friction, whose defaults depend on the scene, or dry
+/// friction.
 static void describe_friction(Fields& f, RenderingConfig& rendering) {
   constexpr TypeName kTypes[] = {
       {"viscous", "viscous friction of the thesis, proportional to the velocity (default)"},
@@ -185,7 +185,7 @@ void describe(Fields& f, RenderingConfig& rendering) {
   static const std::vector<std::string> kDepthModels =
       names_of(depth_models(), [](const DepthModelEntry& entry) { return entry.info->name; });
   f.choice("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
-  // Set the stages that the algorithm fixes. They are the defaults of the fields below.
+  // Set the stages that the algorithm prescribes. They are the defaults of the fields that are described next.
   if (f.reads()) rendering = with_fixed_stages(rendering);
   number(f, parameter::kIterations, rendering.iterations, "m, number of shaping iterations");
   f.choice("depth_model", rendering.depth_model, kDepthModels, "depth model",

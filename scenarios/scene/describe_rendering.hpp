@@ -5,8 +5,8 @@
 
 namespace hapbench {
 
-/// Describes the fields of `rendering` with meaning, unit, range and default. When a file is read, the stages
-/// that the chosen algorithm fixes, such as its depth model, become the defaults.
+/// Describes the fields of `rendering` with meaning, unit, range and default. When a file is read, a stage that the
+/// chosen algorithm prescribes, such as its depth model, becomes the default.
 void describe(Fields& f, RenderingConfig& rendering);
 
 }  // namespace hapbench

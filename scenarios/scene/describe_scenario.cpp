@@ -177,8 +177,8 @@ static void describe(Fields& f, ExpectFields& expect) {
           });
 }
 
-/// Describes the field `extends`. read_scenario_text has merged the scenario that a file extends and removed the
-/// field, so that the field is only found in JSON that was not read from a file. Throws InputError in this case.
+/// Describes the field `extends`. read_scenario_text merges the scenario that a file extends and removes the field.
+/// If the field is still there, the JSON was not read from a file, and InputError is thrown.
 static void describe_extends(Fields& f) {
   std::string other;
   f.text(kExtends, other, 4096,
@@ -198,7 +198,7 @@ void describe(Fields& f, Scenario& scenario) {
   f.text("description", scenario.description, 10'000, "what the scenario shows");
   f.text("source", scenario.source, 1000, "source of the scenario's numbers");
   f.integer("seed", scenario.seed, {0, std::int64_t{1} << 53}, "seed of all random numbers");
-  // Time and environment. The environment's type determines defaults of the fields below.
+  // Time and environment. The environment's type determines defaults of the fields that follow.
   f.group("time", "time step and number of steps", Presence::required,
           [&](Fields& time) { steps = describe_time(time, scenario.time); });
   f.value("environment", scenario.environment, "environment: the object that the tool touches", Presence::required);

@@ -136,7 +136,8 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
   f.number(
       "encoder_step_m", device.encoder_step, {0.0, 1.0, "m"},
       "encoder resolution: the measured position is rounded to the nearest multiple (halves away from zero); 0: exact");
-  // A device with a delay in seconds has no number of samples (NaN) until resolve_delay knows the time step.
+  // In a device with a delay in seconds, the number of samples is NaN until resolve_delay computes it from the time
+  // step.
   f.number(
       "delay_samples", device.delay_samples, {0.0, kMaxDeviceDelay, "time steps"},
       "delay from a position sample to the force computed from it, in time steps; with a fraction, the force changes "
@@ -150,7 +151,7 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
         d.number(value, {0.0, 1e4, "s"});
       });
   if (f.reads() && device.delay && !f.given("delay_samples"))
-    device.delay_samples = std::numeric_limits<double>::quiet_NaN();  // resolve_delay knows the time step
+    device.delay_samples = std::numeric_limits<double>::quiet_NaN();  // resolve_delay computes it from the time step
   f.value("velocity_filter", device.velocity_filter, "how the tool's velocity is computed from measured positions");
   f.number("force_max_N", device.force_max, {0.0, 1e9, "N", true},
            "largest norm of the motors' force; they saturate at it; null: no limit");

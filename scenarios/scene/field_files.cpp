@@ -41,7 +41,7 @@ std::string hint_for(const InputError& fault) {
 /// Returns the fault with the file's name in its location, and with hints for unknown names.
 InputError in_file(const InputError& fault, const fs::path& file) {
   ErrorLocation location = fault.location();
-  if (!location.file.empty()) {  // the fault is in a file that the scenario names
+  if (!location.file.empty()) {  // true if the fault is in a file that the scenario names
     location.outer.insert(location.outer.begin(), file);
     return {fault.kind(), location, fault.problem()};
   }
@@ -73,7 +73,7 @@ void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
 
 fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   if (!pointer.starts_with('/')) return loaded.file;
-  // A field that no file sets has its default value. Then search for the object around it.
+  // No file sets a field that has its default value. In this case search for the object around the field.
   for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
     for (const ScenarioLayer& layer : loaded.layers)
       if (layer.json.contains(at)) return layer.file;

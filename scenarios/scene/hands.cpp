@@ -15,7 +15,7 @@
 namespace hapbench {
 
 constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
-constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn in both directions
+constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< range of one full turn in both directions
 
 static void describe(Fields& f, ForceHandFields& hand) {
   profiles(f, {"x_N", "y_N", "z_N"}, hand.force, "N",

@@ -34,7 +34,8 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
     Json json = text.json;
     const bool same_run = std::all_of(overrides.begin(), overrides.end(), keeps_run_unchanged);
     if (!same_run && json.is_object() && json.contains("expect")) relax_expectations(json["expect"]);
-    // Apply the overrides, also to the first layer, from which file_of finds the file of a value.
+    // Apply the overrides to the merged scenario and to the first layer. file_of uses the layers to find the file
+    // that sets a value.
     for (const std::string& override : overrides) apply_override(json, override);
     if (!loaded.layers.empty()) {
       for (const std::string& override : overrides) apply_override(loaded.layers.front().json, override);

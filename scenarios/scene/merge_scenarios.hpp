@@ -13,8 +13,8 @@ void merge_fields(Json& base, const Json& more);
 /// Removes from `object` the field that excludes `field`.
 void drop_alternative(Json& object, std::string_view field);
 
-/// Removes `delay_samples` of the device if `delay_s` is there too. An effective scenario has both, but the number of
-/// samples was computed for a time step that has changed since.
+/// Removes the device's field `delay_samples` if the device also has `delay_s`. An effective scenario has both
+/// fields. Its number of samples was computed for its own time step, which another scenario may change.
 void drop_derived_samples(Json& scenario);
 
 }  // namespace hapbench

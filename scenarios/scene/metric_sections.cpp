@@ -10,7 +10,7 @@
 namespace hapbench {
 namespace {
 
-/// A section of the summary: its name, when a run has it, and its observer.
+/// A section of the summary: its name, the condition under which a run has it, and its observer.
 struct SectionKind {
   const char* name;
   /// Returns the number of target positions, or 1 for a section that has no target positions. Returns 0 if the
@@ -19,7 +19,7 @@ struct SectionKind {
   /// Returns the observer of a run of the scenario. If `scenario` is null, returns an observer that is only used to
   /// list the metrics.
   std::unique_ptr<MetricObserver> (*observe)(const Scenario* scenario, std::size_t parts);
-  bool merges = false;  ///< the section can be computed over several trials
+  bool merges = false;  ///< true if the section can be computed over several trials
 };
 
 template <class Type>
@@ -68,8 +68,8 @@ void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* i
   metrics.report_end(section);
 }
 
-/// Returns the common metrics and the metrics of the sections, without values. `parts(kind)` is the number of
-/// target positions as in SectionKind::parts; a section with 0 is skipped.
+/// Returns the common metrics and the metrics of the sections, without values. `parts(kind)` returns a number like
+/// SectionKind::parts; a section for which it returns 0 is skipped.
 template <class Parts>
 MetricList list_without_values(const Parts& parts) {
   MetricList metrics;

@@ -51,8 +51,8 @@ class SectionObservers {
 
  private:
   std::vector<std::unique_ptr<MetricObserver>> observers_;
-  std::vector<std::size_t> kinds_;  ///< index in the list of sections, for each observer
-  std::size_t trials_ = 0;          ///< number of trials begun
+  std::vector<std::size_t> kinds_;  ///< for each observer: index of its section in the list of sections
+  std::size_t trials_ = 0;          ///< number of trials that have begun
 };
 
 }  // namespace hapbench

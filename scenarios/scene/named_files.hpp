@@ -51,7 +51,7 @@ class NamedFile {
   std::shared_ptr<const ContactTrace> trace() { return kept<ContactTrace>(); }
 
  private:
-  /// Parsed contents; empty for a shared library, whose code is loaded elsewhere.
+  /// Parsed contents; empty for a shared library, which load_module.hpp loads.
   using Contents = std::variant<std::monostate, std::vector<SurfacePoint>, MeshFile, Stroke, ContactTrace>;
 
   struct Read {

@@ -20,9 +20,9 @@ void apply_override(Json& scenario, const std::string& text);
 /// Returns true if the override does not change the run, so that the scenario's expectations still apply to it.
 bool keeps_run_unchanged(std::string_view override);
 
-/// Relaxes the expectations for a run that an override has changed. Removes the bounds on metrics, and adds the
-/// default outcomes to the listed outcomes. A run that never touches its object or diverges stays unexpected
-/// unless the scenario lists that outcome.
+/// Relaxes the expectations for a run that an override has changed. Removes the bounds on metrics. Adds the outcomes
+/// that are expected without the field "expect" (ExpectFields) to the listed outcomes. A run that never touches its
+/// object or diverges stays unexpected unless the scenario lists that outcome.
 void relax_expectations(Json& expect);
 
 }  // namespace hapbench

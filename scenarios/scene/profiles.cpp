@@ -13,7 +13,7 @@
 namespace hapbench {
 namespace {
 
-constexpr double kMaxMagnitude = 1e9;  ///< of a value or a time of a profile
+constexpr double kMaxMagnitude = 1e9;  ///< largest magnitude of a value or a time of a profile
 
 /// All shapes of profiles except a constant, which is written as a number.
 using TimeVaryingShape = std::variant<Profile::Ramp, Profile::Sine, Profile::Waypoints>;

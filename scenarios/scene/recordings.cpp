@@ -15,7 +15,7 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kMaxSamples = 10'000'000;  ///< of a stroke
+constexpr std::size_t kMaxSamples = 10'000'000;  ///< maximum number of samples of a stroke
 /// Allowed deviation of a quaternion's norm from 1. Three decimals in the file suffice.
 constexpr double kMaxNormError = 1e-3;
 /// Quantities of a stroke: time, position, axis or orientation, measured force.
@@ -55,8 +55,8 @@ Eigen::Quaterniond orientation_of(std::span<const double> cells, const RowLocati
   rows.fail(row, fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError));
 }
 
-constexpr std::size_t kMaxContacts = 20'000'000;      ///< of a recording
-constexpr std::size_t kMaxContactsPerTime = 100'000;  ///< contacts with the same time
+constexpr std::size_t kMaxContacts = 20'000'000;      ///< maximum number of contacts of a recording
+constexpr std::size_t kMaxContactsPerTime = 100'000;  ///< maximum number of contacts with the same time
 /// Allowed deviation of a gradient's norm from 1. Three decimals in the file suffice.
 constexpr double kMaxLengthError = 1e-3;
 constexpr double kRounding = 1e-12;  ///< deviation of a unit gradient's norm from 1 by rounding

@@ -59,9 +59,8 @@ void warn_of_idle_integrator(const Scenario& scenario, std::vector<Warning>& war
            scenario.integrator.type->info.name)});
 }
 
-/// Warns about an admittance device if the hand does not feel the handle: then servo and mechanics have no
-/// effect. Sensor and limiter always have an effect. Therefore there is no warning if only they differ from the
-/// defaults.
+/// Warns about an admittance device if the hand does not feel the handle: servo and mechanics then have no effect.
+/// Sensor and limiter always have an effect, so there is no warning if only their fields differ from the defaults.
 void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warnings) {
   const char* hand = std::holds_alternative<NoHandFields>(scenario.hand)      ? "none"
                      : std::holds_alternative<ForceHandFields>(scenario.hand) ? "force"

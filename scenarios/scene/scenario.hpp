@@ -50,12 +50,13 @@ struct SpringGroup {
 /// Springs with random directions.
 struct RandomSprings {
   std::int64_t count = 0;
-  bool planar = true;  ///< directions in the plane z = 0; false: in all directions
+  bool planar = true;  ///< true: directions in the plane z = 0; false: directions in space
 };
 /// Springs between the tool's tip and the origin, without a surface.
 struct SpringsEnvironment {
-  bool bilateral = true;      ///< springs push and pull; false: only while their depth is positive
-  bool signed_depths = true;  ///< depth <p, u> of the tip p along the direction u; false: its absolute value
+  bool bilateral = true;      ///< true: springs push and pull; false: a spring acts only while its depth is positive
+  bool signed_depths = true;  ///< true: the depth is <p, u>, with the tip p and the spring's direction u; false: its
+                              ///< absolute value
   std::vector<SpringGroup> groups;
   RandomSprings random;
 };
@@ -63,7 +64,7 @@ struct BlockEnvironment {
   BlockWithHole block;
   double grid = 0.0001;  ///< spacing of the density field [m]
   Density density = Density::signed_distance;
-  bool per_cell = false;  ///< lists a vertex once for each cell that shares it (thesis 2.1, C.2); false: once
+  bool per_cell = false;  ///< true: a vertex appears once for each cell that shares it (thesis 2.1, C.2); false: once
 };
 struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file
@@ -74,20 +75,20 @@ struct MeshEnvironment {
   double scale = 1.0;             ///< length of the file's unit [m]
   std::optional<double> spacing;  ///< spacing after resampling [m]; empty: no resampling
   std::optional<double> grid;     ///< cell size of the local average [m]; empty: no cells
-  bool flip = false;              ///< reverses the normals of an open surface
+  bool flip = false;              ///< true: the normals of an open surface are reversed
 };
 using Environment = std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment,
                                  MeshEnvironment, ConicalHole>;
 
 /// State at t = 0.
 struct InitialFields {
-  Vec3 position = Vec3::Zero();  ///< of the tip centre [m]
+  Vec3 position = Vec3::Zero();  ///< position of the tip centre [m]
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
 struct CylinderFields {
   double diameter = 0.001;  ///< [m]
-  double length = 0.01;     ///< from the tip plane to the far end [m]
+  double length = 0.01;     ///< distance from the tip plane to the far end [m]
   Tip tip = Tip::flat;
 };
 /// A solid of revolution.
@@ -114,7 +115,7 @@ using ToolFields = std::variant<CylinderFields, RevolvedFields, BurFields, MeshT
 
 /// A scripted orientation of the tool (sim/tool/motion.hpp).
 struct OrientationFields {
-  Vec3 up = {0.0, 1.0, 0.0};    ///< against gravity
+  Vec3 up = {0.0, 1.0, 0.0};    ///< direction against gravity
   Vec3 lean = {1.0, 0.0, 0.0};  ///< direction in which the tool tilts at azimuth 0; perpendicular to up
   Profile tilt;                 ///< [rad]
   Profile azimuth;              ///< [rad]
@@ -146,8 +147,8 @@ struct ForceHandFields {
 };
 struct PushHandFields {
   Profile force;         ///< [N]
-  double angle = 0.0;    ///< between the force and -z [rad]
-  double azimuth = 0.0;  ///< of the force's horizontal part, from +x about z [rad]
+  double angle = 0.0;    ///< angle between the force and -z [rad]
+  double azimuth = 0.0;  ///< direction of the force's horizontal part: angle about z from +x [rad]
 };
 /// A spring and a damper between the handle and a moving target.
 struct ImpedanceHandFields {
@@ -165,10 +166,10 @@ struct MassSpringDamperHandFields {
 struct DragHandFields {
   Drag drag;
   std::optional<std::vector<Vec3>> path;  ///< points on or near the surface [m]
-  std::optional<Vec3> direction;          ///< from the initial position along the surface
+  std::optional<Vec3> direction;          ///< direction of travel along the surface, from the initial position
   /// Angle between the tool's axis and the normal [rad]. Empty: the motion gives the orientation.
   std::optional<double> tilt = 0.0;
-  double azimuth = 0.0;       ///< of the tilt, about the normal, from the direction of travel [rad]
+  double azimuth = 0.0;       ///< direction of the tilt: angle about the normal from the direction of travel [rad]
   double smoothing = 0.0005;  ///< radius of SmoothedSurface [m]
 };
 /// Returns the length of the drag hand's path [m]. If the hand has a direction and no path, returns the distance
@@ -239,7 +240,7 @@ struct MetricBound {
 /// Expectations of a run. A run meets them if it has one of `outcomes` and every metric is within its bounds.
 struct ExpectFields {
   std::vector<Outcome> outcomes = {Outcome::completes, Outcome::leaves_hole, Outcome::tool_horizontal};
-  std::map<std::string, MetricBound> metrics;  ///< by the name of the metric
+  std::map<std::string, MetricBound> metrics;  ///< bounds by the name of the metric
 };
 
 struct Scenario {

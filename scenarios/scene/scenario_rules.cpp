@@ -64,7 +64,8 @@ struct Rule {
   bool (*is_broken)(const Scenario& scenario);
 };
 
-/// Checked in this order. The condition of a rule may assume that all rules before it are satisfied.
+/// The rules in the order in which they are checked. The condition of a rule may assume that all earlier rules are
+/// satisfied.
 constexpr Rule kRules[] = {
     {"/rendering/local_average", "got true; allowed: false, because springs have no grid cells",
      [](const Scenario& s) { return s.rendering.local_average && is<SpringsEnvironment>(s.environment); }},
@@ -108,8 +109,8 @@ constexpr Rule kRules[] = {
     {"/motion/position/type",
      "got a prescribed position; allowed: \"free\" with hand \"tracking\", which moves the tool",
      [](const Scenario& s) { return is<TrackingHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
-    // Recorded contacts are valid for the recorded motion only. Recorded contacts and contacts of a library are not
-    // points of the scenario's point shell.
+    // Recorded contacts are valid for the recorded motion only. Recorded contacts, and contacts that a loaded module
+    // (a shared library) computes, are not points of the scenario's point shell.
     {"/rendering/contact_source", "got \"{}\"; allowed: \"own\", with springs, which have no surface",
      [](const Scenario& s) { return has_external_contacts(s) && is<SpringsEnvironment>(s.environment); }},
     {"/rendering/contact_source",

@@ -26,8 +26,8 @@ ValueGuide full_scenario(Json* definitions) {
   return guide;
 }
 
-/// Returns true if an object that lacks some fields of a valid object is also valid: nothing inside the schema is
-/// required.
+/// Returns true if nothing inside the schema is required: an object that lacks some fields of a valid object is then
+/// also valid.
 bool allows_parts(const Json& schema) {
   if (!schema.is_structured()) return true;
   if (schema.is_object() && (schema.contains("required") || schema.contains("oneOf"))) return false;
@@ -42,8 +42,8 @@ Json partial_schema(const ValueGuide& full, const std::string& at) {
   for (const FieldGuide& field : full.fields) {
     Json& part = schema["properties"][field.name];
     const Json& whole = field.value.schema;
-    // Nothing is required: the same schema. An object with required parts: recurse. Otherwise any value is
-    // allowed.
+    // If nothing is required, use the same schema. For an object with required parts, recurse. Otherwise allow any
+    // value.
     if (allows_parts(whole)) {
       part = {{"$ref", at + "/properties/" + field.name}};
     } else if (whole.contains("properties") && !whole.contains("required") && !whole.contains("oneOf")) {

@@ -86,7 +86,7 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
       throw InputError(fmt::format("got {}; allowed: a scenario, which is an object", shown(json)));
   });
   if (base.empty()) return json;
-  // Read the base, and drop what is not inherited.
+  // Read the base, and drop the fields that are not inherited.
   Json merged = read_extended(base, layers);
   if (base.parent_path() != file.parent_path()) rebase_relative_paths(merged, fs::current_path() / base.parent_path());
   for (const char* own : {"name", "expect"}) merged.erase(own);

@@ -16,7 +16,8 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kMaxProfilePoints = 1000;  // of a tool's outline; the cost of a time step grows with their number
+constexpr std::size_t kMaxProfilePoints = 1000;  // maximum number of points of a tool's outline; the cost of a time
+                                                 // step grows with this number
 
 /// Types of tools, in the order of the variant ToolFields.
 constexpr TypeName kToolTypes[] = {

@@ -16,7 +16,8 @@ namespace hapbench {
 namespace {
 
 // ---- A1: vibration of the original algorithm and of stiffness shaping, without friction (Table A.1 lists none) and
-// with the trainer's friction. The initial tilt and speed are choices; other values are other readings.
+// with the trainer's friction. The initial tilt and speed are choices of this project (choices.json), which
+// `reproduce --choices` varies.
 
 Measured measure_peg_motion(const Evidence& e) {
   Measured measured;
@@ -44,7 +45,8 @@ constexpr std::size_t kPairs = 100;  ///< number of spring pairs in Table A.3
 
 /// Measures how the mass approaches the origin. arrives: 1 if its final distance from the origin is at most
 /// rule.arrived times the initial distance (the tolerance), otherwise 0. overshoot: largest x or y coordinate [m]; the
-/// mass starts at negative coordinates. swings: number of changes of side of an axis, beyond the tolerance.
+/// mass starts at negative coordinates. swings: number of times that a coordinate changed its sign, where only
+/// coordinates beyond the tolerance count.
 MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t pairs, const std::string& algorithm,
                       std::vector<std::string> overrides = {}) {
   overrides.insert(overrides.end(), {fmt::format("environment.groups.0.count={}", pairs),
@@ -57,7 +59,7 @@ MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t p
   const auto rows = static_cast<std::uint64_t>(loaded.scenario.time.steps);
   bool arrives = false;
   double overshoot = 0.0, swings = 0.0;
-  Vec3 side = Vec3::Zero();  // last coordinate beyond the tolerance, for each axis
+  Vec3 side = Vec3::Zero();  // for each axis: the last coordinate whose magnitude exceeded the tolerance
   for_each_row(checked(loaded), [&](const StepRecord& row) {
     const Vec3& p = row.tool.pose.position;
     for (const Eigen::Index axis : {0, 1}) {
@@ -96,7 +98,7 @@ Measured measure_springs_unlimited(const Evidence& e) {
   return measured;
 }
 
-/// Returns true if the mass arrives without more swings than rule.smooth_swings.
+/// Returns true if the mass arrives and swings at most rule.smooth_swings times.
 bool is_smooth(const MeasuredCase& m, const PublishedNumbers& p) {
   return m["arrives"] == 1.0 && m["swings"] <= threshold(p, "smooth_swings");
 }
@@ -127,7 +129,8 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
       "pairs with which the way is smooth: " + text};
 }
 
-// With 100 pairs the plain sum is not smooth even without limits; with 4 pairs it is (A2).
+// Number of pairs with which the plain sum is smooth without limits. With 100 pairs it is not smooth even without
+// limits (A2).
 constexpr std::size_t kStablePairs = 4;
 
 /// Returns two cases for each algorithm and number of pairs: without force limits, then with force limits.
@@ -171,8 +174,8 @@ constexpr double kLimitResolution = 1e-4;
 constexpr const char* kUndamped = "rendering.damping_ratio=0";
 constexpr double kSameEnergy = 1e-9;  // relative; stated in the rule's text
 
-/// Returns the largest value of a field at which a mass on the spring stays bounded after an initial velocity of 1
-/// mm/s.
+/// Returns the largest value of a field at which the motion of a mass on the spring stays bounded after an initial
+/// velocity of 1 mm/s.
 double largest_bounded(const Evidence& e, const std::string& field, const Range& range,
                        std::vector<std::string> overrides) {
   overrides.insert(overrides.end(), {"time.steps=20000", "initial.velocity_m_per_s=[0.001,0,0]"});
@@ -184,11 +187,11 @@ double largest_bounded(const Evidence& e, const std::string& field, const Range&
   return field_limit(question).end.value.value_or(0.0);
 }
 
-/// Returns the largest stiffness that stays bounded [N/m].
+/// Returns the largest stiffness at which the motion stays bounded [N/m].
 double largest_stiffness(const Evidence& e, std::vector<std::string> overrides = {}) {
   return largest_bounded(e, kStiffnessPath, {1e3, 1e9, true}, std::move(overrides));
 }
-/// Returns the largest damping without a spring that stays bounded [N s/m].
+/// Returns the largest damping, without a spring, at which the motion stays bounded [N s/m].
 double largest_damping_alone(const Evidence& e) {
   return largest_bounded(e, "rendering.damping_N_s_per_m", {1.0, 1e5, true}, {"rendering.stiffness_N_per_m=0"});
 }

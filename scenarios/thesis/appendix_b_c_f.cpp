@@ -16,7 +16,8 @@
 namespace hapbench {
 namespace {
 
-// ---- B1: the force on the tool along the surface normal, <f, n> [N], for a wall point beyond the tool's median line.
+// ---- B1: the force on the tool along the surface normal, <f, n> [N], for a wall point on the far side of the tool's
+// axis.
 
 MeasuredValues measure_flipped_gradient(const Evidence&) {
   const auto force_along_normal = [](const char* depth_model) {
@@ -78,7 +79,7 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
 }
 
 // ---- B3: the merged depth before and after adding two points, in units of the depth of each point. There are 2 n + 1
-// points with opposite gradients, n = kPoints; the two added points turn the merged direction around.
+// points with opposite gradients, n = kPoints; the two added points reverse the merged direction.
 
 constexpr std::size_t kPoints = 10;
 constexpr double kExact = 1e-9;
@@ -152,7 +153,8 @@ std::vector<Vec3> forces_of(const RenderingConfig& config, const Scene& scene, c
   return forces;
 }
 
-/// Returns the rms difference between the second and the first forces over the rms of the first forces.
+/// Returns the rms of the differences between the second and the first forces, divided by the rms of the first
+/// forces.
 double change_of_force(const std::vector<Vec3>& first, const std::vector<Vec3>& second) {
   double difference = 0.0, force = 0.0;
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -184,7 +186,7 @@ Measured measure_density(const Evidence& e) {
   const auto add = [&](const std::string& name, RenderingConfig config) {
     MeasuredCase& m =
         measured.emplace_back(MeasuredCase{name, {{"updates", {static_cast<double>(config.iterations)}}}});
-    m.values["x40_reduced"] = {std::nan("")};  // stays NaN for a law without reduction
+    m.values["x40_reduced"] = {std::nan("")};  // the value remains NaN for a law without reduction
     changes(m, config);
     config.reduction.reset();
     changes(m, config);
@@ -212,7 +214,7 @@ Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
 // ---- C6: the damping ratio of 1, 2, 4 and 8 springs in parallel. The stiffness ratio is the number of springs.
 
 constexpr double kCounts[] = {1.0, 2.0, 4.0, 8.0};
-constexpr double kSpringDamping = 0.1;  ///< damping ratio of one spring; small, so that it oscillates many times
+constexpr double kSpringDamping = 0.1;  ///< damping ratio of one spring; small, so that the mass oscillates many times
 
 Measured measure_relative_damping(const Evidence& e) {
   Measured measured;

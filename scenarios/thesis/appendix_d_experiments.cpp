@@ -33,7 +33,7 @@ constexpr double kStandardErrors = 2.0;  // stated in the rule's text
 /// The columns of targets.csv by name; NaN for a missing value.
 using TargetTable = std::map<std::string, std::vector<double>>;
 
-/// Returns the mean of a column over the targets at a place, by subject. Omits subjects without a value.
+/// Returns the mean of a column over the targets at a position, for each subject. Omits subjects without a value.
 std::map<double, double> subject_means(const TargetTable& targets, const char* column, double place) {
   std::map<double, std::vector<double>> values;
   for (std::size_t i = 0; i < targets.at("place").size(); ++i) {
@@ -75,10 +75,11 @@ double half_a_digit(double printed) {
 
 /// Comparison of a measure with the published values.
 struct Compared {
-  bool agrees = false;    ///< significance and direction of the difference are as published
-  bool near = false;      ///< both means are near the published means; always true for the force
+  bool agrees = false;    ///< true if significance and direction of the difference are as published
+  bool near = false;      ///< true if both means are near the published means; always true for the force
   double t = 0.0;         ///< paired t statistic of original minus shaped
-  double farthest = 0.0;  ///< larger difference from a published mean [standard errors of the difference]
+  double farthest = 0.0;  ///< larger of the differences from the two published means [standard errors of the
+                          ///< difference]
 };
 
 /// Compares a measure with the published values. `id`, `published_difference`: see judge_experiment().
@@ -95,7 +96,7 @@ Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const
   Compared c;
   c.t = paired_t(original, shaped);
   const bool significant = std::abs(c.t) > critical_t(original.empty() ? 0 : original.size() - 1);
-  // Means that round to the same printed values do not differ, however small their scatter.
+  // Two means that round to the same printed value do not differ, however small their scatter.
   const double margin = half_a_digit(of_original.mean) + half_a_digit(of_shaped.mean);
   const bool alike = std::abs(mean_of(original) - mean_of(shaped)) <= margin;
   c.agrees =
@@ -203,11 +204,14 @@ Measured measure_pilots(const Evidence& e) {
   return measured;
 }
 
-/// The result of the pilot experiments over offsets or over heights, with the original algorithm.
+/// Result of one pilot experiment, which varies either the offset or the height of the targets. Success rates are
+/// those of the original algorithm unless a member says otherwise.
 struct PilotResult {
-  bool easy = false;       ///< true if most targets are removed at some position
-  bool beyond = false;     ///< true if more than hardly any are removed beyond the published position
-  bool somewhere = false;  ///< true if at some position hardly any are removed, but most with stiffness shaping
+  bool easy = false;       ///< true if, at some position, most targets are removed
+  bool beyond = false;     ///< true if, at some position beyond the published position, the success rate is above
+                           ///< kHardlyAnyTarget
+  bool somewhere = false;  ///< true if, at some position, hardly any target is removed, but most targets are removed
+                           ///< with stiffness shaping
 
   bool as_published() const { return easy && !beyond; }
   const char* text() const {

@@ -34,8 +34,8 @@ constexpr const char* kDensities[] = {"signed_distance", "binary"};
 
 // ---- T1, T2, T3: number of points in each step with contact. One case for each point density. The hands are
 // calibrated to the mean and standard deviation of the raw counts, so that the raw counts are inputs; the counts after
-// the reduction are results. Our hands also tap with more than the input limit. Steps within kAfterTap of a tap count
-// for the means but not for the bound of 15 points.
+// the reduction are results. Our hands also tap with more than the input limit. Steps within kAfterTap after such a
+// tap count for the means, but not for the bound of 15 points.
 
 constexpr double kAfterTap = 0.1;  ///< [s]
 
@@ -75,8 +75,8 @@ Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& pub
 }
 
 /// Returns whether the mean and the spread of counts are near the published values of recording `one`. The thesis
-/// publishes two recordings of a task without errors. A value is near recording `one` if it is no further from it than
-/// recording `other` is.
+/// publishes two recordings of a task without errors. A value is near recording `one` if its difference from this
+/// recording is at most the difference between the two recordings.
 std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
                                const PublishedNumber& other) {
   const auto is_near = [](double value, double published, double elsewhere) {
@@ -88,9 +88,9 @@ std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts,
 
 /// Agreement of the counts of one density with a published recording, from section 3.3 or from appendix C.3.
 struct CountsAgree {
-  bool raw = false;    ///< mean and spread of the raw counts agree
-  bool mean = false;   ///< in addition, the mean after the reduction agrees
-  bool whole = false;  ///< in addition, the spread after the reduction agrees, and no step exceeds the bound
+  bool raw = false;    ///< true if mean and spread of the raw counts agree
+  bool mean = false;   ///< true if, in addition, the mean after the reduction agrees
+  bool whole = false;  ///< true if, in addition, the spread after the reduction agrees and no step exceeds the bound
 };
 
 /// Compares the counts of one density with both published recordings of a task: the counts of 3.3 and of appendix C.3
@@ -163,13 +163,13 @@ Measured measure_hands(const Evidence& e) {
   return measured;
 }
 
-/// Returns in_kind at best, because the hand and forces of the thesis are not published. Uses the first half of the
-/// cases, which have the scene's setting of the local average.
+/// The best possible verdict is in_kind, because the hand and forces of the thesis are not published. Uses the first
+/// half of the cases, which have the scene's setting of the local average.
 Finding judge_ideal_trajectory(const Measured& measured, const PublishedNumbers& published) {
   const double around = threshold(published, "around"), split = published["J1.split"].mean;
   const double depth = around * published["J1.depth"].mean, lateral = around * published["J1.lateral"].mean;
   const MeasuredCase& gentlest = measured.front();
-  // NaN counts as far off.
+  // With NaN the comparison is false.
   const bool follows = std::abs(gentlest["height"]) <= depth;
   bool on_line = true, above = true, shallow = true;
   std::string as_high;
@@ -355,7 +355,7 @@ Directions random_directions(Random& random) {
   return contacts;
 }
 
-/// Returns the set with one random contact changed by about `step`.
+/// Returns the set after one random contact was changed by about `step`.
 Directions neighbour(Directions contacts, double step, Random& random) {
   WeightedDirection& contact = contacts[random.below(contacts.size())];
   contact.direction = (contact.direction + step * random.direction()).normalized();
@@ -420,7 +420,7 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
 
 // ---- L1: displacement of the tool into the flat as a function of the measured force.
 // deviation: rms difference, without the force limit, between the displacement and the ideal line of Fig. 6,
-//   (measured force - weight) / K, over the largest displacement.
+//   (measured force - weight) / K, divided by the largest displacement.
 // onset: measured force from which the displacement is constant with the limit [N].
 // plateau_spread: (max - min) / mean of the displacement beyond the onset.
 
@@ -442,7 +442,8 @@ std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario
 
 MeasuredValues measure_force_limit(const Evidence& e) {
   const std::vector<FlatRow> off = rows_on_flat(e, "force_limit_off"), on = rows_on_flat(e, "force_limit_on");
-  // The plateau is the mean displacement in the last quarter. At the onset the displacement first reaches 99 % of it.
+  // The plateau is the mean displacement in the last quarter. The onset is the force at which the displacement first
+  // reaches 99 % of the plateau.
   double plateau = 0.0, onset = std::numeric_limits<double>::infinity();
   const std::size_t last = on.size() / 4;
   for (std::size_t i = on.size() - last; i < on.size(); ++i) plateau += on[i].depth / static_cast<double>(last);
@@ -547,7 +548,7 @@ constexpr double kFrequencies[] = {1.0, kNormalShaking, 3.0, 4.0, 6.0, 8.0};
 
 /// Result of shaking at one frequency.
 struct Shaking {
-  double apparent_mass = 0.0;  ///< amplitude of hand force over amplitude of handle acceleration [kg]
+  double apparent_mass = 0.0;  ///< amplitude of the hand's force divided by amplitude of the handle's acceleration [kg]
   double force_max = 0.0;      ///< largest force of the hand in the last second [N]
 };
 

@@ -9,7 +9,7 @@
 #include "scenarios/thesis/measurements.hpp"
 
 /// Claims of 1.2, 2.8, 3.4 and F.2: the computing time of contact points. Times differ between machines and runs, so
-/// that two ledgers do not agree in digits.
+/// that the numbers in two ledgers are not equal.
 namespace hapbench {
 namespace {
 

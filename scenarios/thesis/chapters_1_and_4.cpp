@@ -26,13 +26,14 @@ namespace {
 // ---- V1, V2: a hand presses a drill with a constant tilt, in the direction of the hand of task 2.
 
 constexpr double kPressedTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
-/// Steps between evaluations of the depth, 4 ms.
+/// Number of steps between two evaluations of the depth; they take 4 ms of simulated time.
 constexpr std::uint64_t kStepsBetweenEvaluations = 8;
-/// Steps before this time [s] are ignored: at some tilts the drill does not start at its resting position.
+/// Time from which on the depth is measured [s]. Before it, at some tilts, the drill has not yet reached its resting
+/// position.
 constexpr double kLanded = 0.5;
 
-/// Returns the largest depth of the drill in the block after kLanded, at each tilt [m]. The final depth would not do: a
-/// drill that pops through the block has left it at the end.
+/// Returns the largest depth of the drill in the block after kLanded, at each tilt [m]. The final depth would not be
+/// enough: a drill that passes through the block has left the block at the end.
 MeasuredCase pressed(const Evidence& e, const std::string& name, const std::string& scene,
                      std::vector<std::string> overrides = {}) {
   MeasuredCase m{name, {}};
@@ -122,7 +123,8 @@ Finding judge_pop_through(const MeasuredCase& m, const PublishedNumbers&) {
 }
 
 // ---- S1, B4: the plain sum of all points (S1), and the highest depth along the averaged direction (B4), compared with
-// stiffness shaping, in the planar peg scene and in task 2. Measured are vibration() and "diverges", 1 or 0.
+// stiffness shaping, in the planar peg scene and in task 2. Each case has the values of vibration(), and "diverges"
+// (1 or 0).
 
 /// Returns four cases: planar peg with the law, planar peg with shaping, task with the law, task with shaping.
 Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, const std::string& task,
@@ -160,7 +162,7 @@ Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
 }
 
 // ---- G1: gradients on both sides of the tool's median line: the inner product of the gradients for two wall points,
-// by both depth models. Negative: the gradient flips.
+// by both depth models. If it is negative, the gradient flips.
 
 constexpr double kSameDirection = 0.999;  ///< smallest inner product of equal directions
 
@@ -326,7 +328,7 @@ Finding judge_over_reduction(const MeasuredCase& m, const PublishedNumbers& p) {
 }
 
 // ---- C2, C7: a hand holds a tool in place and turns it into a wall. Compared are the damping of the thesis, which
-// ignores the angular velocity, and a damping that includes it; at the scene's speed (C2) and slowly (C7).
+// ignores the angular velocity, and a damping that includes it; at the scene's speed (C2) and at a low speed (C7).
 
 Measured measure_turn_into_wall(const Evidence& e, const std::vector<std::string>& overrides) {
   return {vibration("as in the thesis", e.run("turned_into_wall", overrides)),

@@ -107,8 +107,9 @@ std::vector<std::string> Choices::values_on_record() const {
 
 std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<const std::string> values) const {
   // Apply the choices one after the other to the scenario's JSON, and remember the text of each changed field.
-  Json changed = effective_scenario(scenario, scenario.directory);  // with all defaults, so that every field exists
-  Json texts = Json::object();                                      // new value by path
+  Json changed = effective_scenario(scenario, scenario.directory);  // the scenario with all defaults, so that every
+                                                                    // field exists
+  Json texts = Json::object();                                      // new values, by path
   for (std::size_t i = 0; i < all_.size(); ++i) {
     for (const ChosenField& field : all_[i].fields) {
       if (!concerns(field, scenario.name)) continue;

@@ -21,13 +21,15 @@ namespace hapbench {
 struct ChosenField {
   std::vector<std::string> scenarios;  ///< names of bundled scenarios; '*' matches any characters
   std::string path;                    ///< dotted, as in --set; '*' matches every index of a list
-  bool times = false;                  ///< true: the choice multiplies the file's value; false: replaces it
+  bool times = false;                  ///< true: the choice's value multiplies the value in the scenario; false: it
+                                       ///< replaces this value
 };
 
 /// One open assumption. Exactly one of `range` and `options` is given.
 struct OpenChoice {
   std::string id = {};
-  std::string value = {};                               ///< recorded value, which the scenarios have, as text for --set
+  std::string value = {};                               ///< recorded value as text for --set; the bundled scenarios
+                                                        ///< have this value
   std::optional<std::pair<double, double>> range = {};  ///< smallest and largest plausible value of a number
   std::vector<std::string> options = {};                ///< plausible values of a text, as for --set
   std::vector<ChosenField> fields = {};  ///< empty for a number that rules of claims read by the choice's id

@@ -18,7 +18,7 @@ namespace hapbench {
 /// Inputs of the measurement of a claim: the published numbers, and access to results and bundled scenarios.
 struct Evidence {
   PublishedNumbers published;
-  std::filesystem::path directory;  ///< has a subdirectory of results for each scenario, named after it
+  std::filesystem::path directory;  ///< has a subdirectory with the results of each scenario, named like the scenario
   /// Called with a scenario's name before its results are read. Runs the scenario if necessary.
   std::function<void(const std::string& scenario)> provide;
   /// Returns overrides for load_scenario of a bundled scenario. May be empty.

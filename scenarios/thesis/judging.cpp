@@ -12,7 +12,7 @@ Finding Claim::finding(const Evidence& evidence) const {
   // Measure and judge.
   const Measured cases = measure(evidence);
   Finding finding = judge(cases, evidence.published);
-  // Insert the measured numbers into the texts: each name refers to the latest case, CASE.NAME to a given case.
+  // Insert the measured numbers into the texts. NAME refers to the latest case so far, CASE.NAME to the given case.
   PublishedNumbers numbers = evidence.published;
   std::string of_cases;
   for (const MeasuredCase& m : cases) {

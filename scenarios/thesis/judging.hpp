@@ -67,9 +67,9 @@ using Measured = std::vector<MeasuredCase>;
 /// The result of judging a claim, computed from measured numbers.
 struct Finding {
   Verdict verdict = Verdict::not_reproducible;
-  std::string why = {};       ///< one sentence: which condition of the rule decided
+  std::string why = {};       ///< one sentence that names the condition of the rule that decided
   std::string measured = {};  ///< the numbers as text; a judge leaves it empty if rules.json has the text
-  std::string brief = {};     ///< deciding number as text; main results only
+  std::string brief = {};     ///< the number that decides, as text; only for main results
   Measured cases = {};        ///< the measured numbers
 };
 
@@ -94,15 +94,16 @@ struct Claim {
   std::string claim = {};      ///< statement of the claim, in our words
   std::string published = {};  ///< published numbers, as text
   std::string rule = {};       ///< rule of the verdict with its thresholds, as text
-  std::string why = {};        ///< why no simulation can test it; empty if one can
-  std::string measured = {};   ///< text of the measured numbers, such as <rows> or <40 N.depth> of a case
-  std::string each = {};       ///< text repeated for each case after `measured`; {} is the case's name
-  Measure measure = nullptr;   ///< null if no simulation can test the claim, like `judge`
+  std::string why = {};        ///< why no simulation can test the claim; empty if a simulation can
+  std::string measured = {};   ///< text with names of measured numbers, such as <rows>, or <40 N.depth> for the number
+                               ///< "depth" of the case "40 N"
+  std::string each = {};       ///< text that is appended to `measured` for each case; {} stands for the case's name
+  Measure measure = nullptr;   ///< `measure` and `judge` are null if no simulation can test the claim
   Judge judge = nullptr;
-  bool timing = false;  ///< the finding contains run times, which differ between runs
-  bool ours = false;    ///< finding of this project; not counted as a claim of the thesis
-  bool costly = false;  ///< slow to measure: judged for a quarter of the readings only (robustness.hpp)
-  bool drawn = false;   ///< a figure plots the numbers of its cases; the ledger then stores them
+  bool timing = false;  ///< true: the finding contains run times, which differ between runs
+  bool ours = false;    ///< true: a finding of this project, not counted as a claim of the thesis
+  bool costly = false;  ///< true: slow to measure, so it is judged for a quarter of the readings only (robustness.hpp)
+  bool drawn = false;   ///< true: a figure plots the numbers of its cases, so the ledger stores them
 
   /// Short texts of a main result: the claim, the published numbers and the measured numbers. Empty for other claims.
   struct Main {
@@ -121,7 +122,7 @@ struct JudgedClaim {
   std::string reach = {};                   ///< Choices::reach(); empty if no choice influences the claim
   double seconds = 0.0;                     ///< time to run its scenarios and to measure it [s]
 
-  /// Returns true if another reading of the choices can change the verdict.
+  /// Returns true if other values of the choices can change the verdict.
   bool can_be_sampled() const {
     return !claim.timing && finding.verdict != Verdict::not_reproducible && !reach.empty();
   }

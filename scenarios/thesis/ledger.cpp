@@ -25,8 +25,8 @@ bool is_ours(const Json& claim) {
   return claim.at("ours").get<bool>();
 }
 
-/// Returns "steady" if more than half of the judged samples have the recorded verdict, otherwise "fragile"; "not
-/// sampled" without samples.
+/// Returns the robustness of a verdict: "steady" if more than half of the judged samples of the choices give the
+/// recorded verdict, otherwise "fragile"; "not sampled" without samples.
 const char* sureness(const Json& robustness) {
   if (robustness.is_null()) return kNotSampled;
   const auto judged = robustness.at("judged").get<std::size_t>(), holds = robustness.at("holds").get<std::size_t>();
@@ -140,7 +140,7 @@ Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
 }  // namespace
 
 std::string headline_of(const Json& claims) {
-  // Count verdicts and sureness over the claims of the thesis.
+  // Count the verdicts, and the robustness of the verdicts, over the claims of the thesis.
   std::map<Verdict, std::size_t> verdicts;
   std::map<std::string, std::size_t> sure;
   std::size_t all = 0;
@@ -202,7 +202,7 @@ std::string ledger_markdown(const Json& ledger) {
   for (const Verdict verdict : {Verdict::refuted, Verdict::not_reproduced, Verdict::in_kind, Verdict::reproduced})
     for (const Json& claim : claims)
       if (!is_ours(claim) && verdict_of(claim) == verdict) text += row_of(claim);
-  // List claims that no simulation can test, and the findings of this project.
+  // List the claims that no simulation can test, and the findings of this project.
   std::string unjudged, findings;
   for (const Json& claim : claims) {
     if (is_ours(claim)) findings += row_of(claim);

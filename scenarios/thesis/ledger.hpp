@@ -15,7 +15,8 @@ namespace hapbench {
 /// recorded verdict and its hash of the choices agree with `judged`. Throws InputError if `robustness` has another
 /// format.
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness);
-/// Returns a sentence with the number of claims for each verdict and for each sureness (steady, fragile, not sampled).
+/// Returns a sentence with the number of claims for each verdict and for each robustness of a verdict: steady (most
+/// readings give the same verdict), fragile (most do not), or not sampled.
 std::string headline_of(const Json& claims);
 
 /// Returns the content of claims.md from the result of ledger_json: the main results, counts by chapter, the claims of

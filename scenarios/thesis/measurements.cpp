@@ -90,7 +90,7 @@ bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const Publ
 }
 
 std::optional<double> damping_ratio_of_swings(std::span<const double> x) {
-  constexpr double kSmallest = 1e-6;  // smallest extreme that counts [m]
+  constexpr double kSmallest = 1e-6;  // smallest magnitude of an extreme that counts [m]
   // Collect the magnitudes of the extremes.
   std::vector<double> extremes;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {

@@ -32,8 +32,9 @@ void for_each_row(const CheckedScenario& checked, const std::function<void(const
 inline const Cylinder kDrill;
 inline const ToolPose kUpright{Vec3::Zero(), {0.0, 0.0, -1.0}};
 
-/// Returns one contact of the upright drill with a wall point of normal +x at x = `beyond` [m], and the depth by
-/// `depth_model`. For beyond > 0 the tool's axis is inside the wall: the point is beyond the tool's median line.
+/// Returns one contact of the upright drill with a wall point at x = `beyond` [m] and normal +x. Its depth is that of
+/// the depth model with the name `depth_model`. For beyond > 0 the tool's axis lies inside the wall, so the point is
+/// on the far side of the axis.
 ContactBuffer wall_point(double beyond, const char* depth_model);
 
 /// Number of repetitions of a timing measurement.
@@ -55,8 +56,8 @@ double seconds_of(int repetitions, Work work) {
   return smallest;
 }
 
-/// Returns a scenario of a drill in the block's hole, prepared for measuring contacts: with an ideal device, which has
-/// no dynamics, and the original force limit; at most one period of the tilt long (6 s); without records.
+/// Returns a scenario of a drill in the block's hole, prepared for measuring contacts: it has an ideal device, which
+/// has no dynamics, with the original force limit; it lasts at most one period of the tilt (6 s); it records nothing.
 Scenario drill_in_hole(Scenario scenario);
 
 /// The contacts before (`colliding`) or after (`rendered`) the scenario's point stages.
@@ -72,7 +73,8 @@ ContactBuffer largest_of(const std::vector<ContactBuffer>& sets);
 /// Returns the size of the largest set; 0 without sets.
 std::size_t largest_size(const std::vector<ContactBuffer>& sets);
 
-/// Returns the smallest total duration [s] of copying each set and calling `work` with the copy.
+/// Returns the smallest duration [s], over the repetitions, of a pass that copies each set and calls `work` with the
+/// copy.
 template <class Work>
 double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Work work) {
   ContactBuffer copy(largest_size(sets));
@@ -91,8 +93,8 @@ MeasuredCase vibration(const std::string& name, const Result& run);
 /// Returns true if `a` has a larger velocity variation and a larger vibration power than `b`.
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
 /// Returns true if `a` vibrates in comparison with a smooth algorithm `b`. With the factor f = rule.vibrates: either
-/// the velocity variation is at least f times and the vibration power at least f^2 times that of `b`; or
-/// vibrates_more() is true and the number of force reversals is at least f times that of `b`.
+/// its velocity variation is at least f times, and its vibration power at least f^2 times, the value of `b`; or
+/// vibrates_more() is true and its number of force reversals is at least f times the number of `b`.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
 
 /// Returns the damping ratio zeta of an oscillation about zero, from positions `x` [m], one for each time step. With

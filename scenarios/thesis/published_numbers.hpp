@@ -31,7 +31,8 @@ class PublishedNumbers {
   /// format, such as <J1.depth.mean*1000:.2f>; without a format it is written by plain(), and NaN as "none". Throws
   /// InputError for an unknown id.
   std::string fill(const std::string& text) const;
-  /// Sets the mean of a number that is not published, such as a threshold (choices.hpp) or a measured number.
+  /// Sets the mean of a number that the thesis does not publish, such as a threshold (choices.hpp) or a measured
+  /// number.
   void set(const std::string& id, double value) { numbers_[id].mean = value; }
 
  private:

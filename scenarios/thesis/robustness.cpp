@@ -43,7 +43,8 @@ std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   try {
     const CheckedScenario scene = checked(evidence.load(name));
     const Result run = run_scenario(scene, evidence.directory / name, false);
-    // A subject who loses the drill misses the remaining targets, which is a result.
+    // If a simulated subject loses the drill, the remaining targets are not removed. This is a result and not a
+    // problem.
     const bool diverged = run.end.outcome == Outcome::diverges &&
                           !std::holds_alternative<TrackingHandFields>(scene.scenario().hand) &&
                           !outcome_is_expected(scene.scenario().expect, Outcome::diverges);
@@ -55,7 +56,7 @@ std::string problem_of_run(const Evidence& evidence, const std::string& name) {
 
 /// Returns for each choice the bin of each reading in `which`, for the sensitivity analysis.
 std::vector<std::vector<std::size_t>> bins_of_choices(const Readings& readings, const std::vector<std::size_t>& which) {
-  // At most 16 bins, with at least 16 readings each if there are enough.
+  // Use at most 16 bins. Each bin has at least 16 readings if there are enough readings.
   const std::size_t count = std::clamp<std::size_t>(which.size() / 16, 2, 16);
   std::vector<std::vector<std::size_t>> bins;
   for (std::size_t c = 0; c < readings.choices.all().size(); ++c) {
@@ -147,7 +148,8 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
     fs::remove_all(directory, ignored);
   });
   // Run each scenario when its results are first needed.
-  std::map<std::string, std::string> problems;  // by scenario that was run; empty if its results can be used
+  std::map<std::string, std::string> problems;  // for each scenario that was run: why its results cannot be used;
+                                                // empty if they can
   Evidence evidence{
       readings.choices.with_numbers(readings.published, values), directory, {}, [&](const Scenario& scenario) {
         return readings.choices.overrides(scenario, values);
@@ -167,7 +169,7 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
     try {
       judged.verdicts.emplace_back(verdict_name(j.claim.finding(evidence).verdict));
     } catch (const IoError&) {
-      throw;  // a full disk is no result for the claim
+      throw;  // an error such as a full disk says nothing about the claim
     } catch (const std::exception& error) {
       judged.verdicts.emplace_back(kNotMeasured);
       judged.problems.push_back(fmt::format("sample {}, {}: {}", reading, j.claim.id, error.what()));

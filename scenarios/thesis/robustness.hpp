@@ -18,8 +18,8 @@ namespace hapbench {
 struct Readings {
   Choices choices;
   PublishedNumbers published;
-  std::vector<JudgedClaim> claims;               ///< with the verdicts of the ledger
-  std::vector<std::vector<std::string>> values;  ///< by reading, then by choice, as texts for --set
+  std::vector<JudgedClaim> claims;               ///< the claims with the verdicts of the ledger
+  std::vector<std::vector<std::string>> values;  ///< values[reading][choice], as texts for --set
 
   /// Returns the number of readings for costly claims, which are judged in the first quarter of the readings only.
   std::size_t costly() const { return (values.size() + 3) / 4; }
@@ -40,7 +40,7 @@ inline constexpr const char* kNotJudged = "";
 /// The verdicts on all claims under one reading.
 struct ReadingVerdicts {
   std::vector<std::string> verdicts;  ///< verdict_name(), kNotMeasured or kNotJudged, by claim
-  std::vector<std::string> problems;  ///< why claims could not be measured, as text
+  std::vector<std::string> problems;  ///< texts that explain why claims could not be measured
 };
 
 /// Judges the claims under one reading. Runs each scenario once, when a claim first needs it. Writes results into

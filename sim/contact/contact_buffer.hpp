@@ -43,8 +43,8 @@ class ContactBuffer {
   void clear() { size_ = 0; }
   /// Appends a contact with zero depth, gradient and weight. Precondition: size() < capacity().
   void push(std::uint32_t index, const Vec3& point, const Vec3& normal);
-  /// Counts n more contacts, which the caller has already written behind the last contact. Precondition: size()
-  /// + n <= capacity().
+  /// Increases size() by n. The caller has already written these n contacts behind the last contact. Precondition:
+  /// size() + n <= capacity().
   void extend(std::size_t n) { size_ += n; }
   /// Appends a copy of contact `from` of another buffer. Precondition: size() < capacity().
   void push_copy_of(const ContactBuffer& other, std::size_t from) { copy(other, from, size_++); }
@@ -108,9 +108,9 @@ struct RatioRange {
 /// Precondition: the contacts are padded.
 RatioRange ratio_range(const ContactBuffer& contacts, const Mat3& S);
 
-/// Returns the largest eigenvalue of a symmetric matrix, exact to rounding. Iterative, about 0.3 us. The closed
-/// form would lose half of the digits where the largest eigenvalue is double, as it is for a well-shaped
-/// stiffness tensor.
+/// Returns the largest eigenvalue of a symmetric matrix, exact to rounding. Iterative, about 0.3 us. The closed form
+/// would lose half of the digits if the two largest eigenvalues are equal, which is the normal case after stiffness
+/// shaping.
 double lambda_max(const Mat3& S);
 
 }  // namespace hapbench

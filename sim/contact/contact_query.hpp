@@ -16,7 +16,7 @@ struct SearchWork {
   std::uint64_t queries = 0;
   std::uint64_t points_tested = 0;  ///< shell points compared with the tool, without padding
   std::uint64_t lists_rebuilt = 0;  ///< neighbour lists built; 0 for a search without lists
-  /// Queries answered with no contact by the clearance bound alone, without testing a point.
+  /// Queries in which the tool is certainly too far away for a contact, so that no point is tested.
   std::uint64_t skipped = 0;
 
   SearchWork& operator+=(const SearchWork& other) noexcept {

@@ -13,7 +13,7 @@ constexpr double kSpacingsPerCell = 2.5;
 /// Maximum number of cells per point, which bounds the memory. Most cells are empty, because shells are
 /// surfaces.
 constexpr double kCellsPerPoint = 8.0;
-/// Number of cells that is always allowed, so that small shells keep cells of the wanted size.
+/// Number of cells that is always allowed, so that small shells get cells of the requested size.
 constexpr double kMinCells = 4096.0;
 
 /// Returns the distance between neighbours [m] that n points would have if they were spread evenly over the
@@ -40,15 +40,16 @@ SortedByCell sorted_by_cell(const GridCells& cells, std::size_t n, Position posi
   // Count the points of each cell. The cells are computed twice instead of stored, to save memory for millions
   // of points.
   for (std::size_t i = 0; i < n; ++i) ++sorted.start[cells.cell_of(position(i))];
-  // The partial sums are the end of each cell. Filling each cell from its end turns them into its start.
+  // The partial sum of the counts up to a cell is the end of the cell's points. Filling each cell from its end moves
+  // this end to the start of the cell.
   std::partial_sum(sorted.start.begin(), sorted.start.end(), sorted.start.begin());
   for (std::size_t i = n; i-- > 0;)
     sorted.order[--sorted.start[cells.cell_of(position(i))]] = static_cast<std::uint32_t>(i);
   return sorted;
 }
 
-/// Replaces each of `count` numbers, `stride` entries apart, by the sum of `window` numbers that starts with
-/// it.
+/// Replaces each of `count` numbers, which are `stride` entries apart, by the sum of `window` consecutive numbers of
+/// which it is the first.
 void sum_windows(std::uint32_t* first, std::size_t count, std::size_t stride, std::size_t window) {
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = 1; k < window && i + k < count; ++k) first[i * stride] += first[(i + k) * stride];

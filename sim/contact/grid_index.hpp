@@ -88,10 +88,10 @@ class GridIndex {
   bool keeps_order_ = true;
 };
 
-/// Returns the indices of the points in the order of their shell's GridIndex. `cell_size` [m] is the
-/// PointShell's. O(n).
+/// Returns the indices of the points in the order of their shell's GridIndex. `cell_size`: edge length of the cells
+/// of the PointShell [m]. O(n).
 std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, double cell_size);
-/// Returns the points in this order. A search in a shell of these points need not sort
+/// Returns the points in the order of grid_order(). A search in a shell with this order need not sort its points
 /// (GridIndex::keeps_order).
 std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 

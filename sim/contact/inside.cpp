@@ -10,7 +10,7 @@
 namespace hapbench {
 namespace {
 
-/// Cells that are halved together; the tool evaluates their eight halves in one call.
+/// Number of cells that are halved together; the tool evaluates their eight halves in one call.
 constexpr std::size_t kAtOnce = 4;
 /// Maximum size of the stack of cells. A cell is smaller than the tolerance after at most about 60 halvings,
 /// and each halving adds four cells.
@@ -21,8 +21,9 @@ constexpr std::size_t kMaxEvaluations = 20000;
 /// smaller than kCoarse are not searched beyond the border of an open surface.
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
-/// Lengths relative to the half width. Segments shorter than kShort are not halved. Segments longer than kLong
-/// have one ball only. kPolyline bounds the distance between a round body and its outline, which is a polyline.
+/// Lengths in half widths of the tool. A segment of the tool's axis shorter than kShort is not halved. A segment
+/// longer than kLong gets a single ball. kPolyline: largest distance between a round body and the polyline that
+/// represents its outline.
 constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
 /// Offsets of further ball centres from the centre of the smallest ball, in half widths.
 constexpr double kCentreOffsets[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
@@ -124,8 +125,8 @@ void InsideSearch::halve(const ToolPose& pose, const Cell* parents, std::size_t 
   std::ranges::sort(cells_.begin() + static_cast<std::ptrdiff_t>(first), cells_.end(), {}, &Cell::bound);
 }
 
-/// Moves a point near the tool into the tool, if it is not inside. Repeats, because the distances of a mesh
-/// tool are approximate. Returns false if the point is still outside.
+/// Moves a point near the tool into the tool, if the point is not inside. Repeats the move, because the distances of
+/// a mesh tool are approximate. Returns false if the point is still outside.
 bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
   for (int round = 0; round < 3; ++round) {
     one_.clear();
@@ -176,8 +177,8 @@ InsideBound::InsideBound(const ToolShape& tool, const Solid& solid)
   segments_.push_back({far->s, tip->s});
 }
 
-/// Returns the distance from a position on the axis to the farthest point of the segment. This is a point of
-/// the outline within the segment, or a point at which the outline crosses an end of the segment.
+/// Returns the distance from a position on the axis to the farthest point of the segment. The farthest point is a
+/// point of the outline within the segment, or a point at which the outline crosses an end of the segment.
 double InsideBound::radius(const Segment& segment, double position) const {
   double furthest = 0.0;
   for (std::size_t i = 0; i < outline_.size(); ++i) {
@@ -217,8 +218,8 @@ std::vector<InsideBound::Ball> InsideBound::balls_of(const Segment& segment) con
   return balls;
 }
 
-/// Returns the bound from one ball. Uses the ball's last evaluation, without a new one, if this bound is
-/// sufficient or, if only a sufficient bound is of use, clearly cannot become sufficient.
+/// Returns the bound from one ball. Reuses the ball's last evaluation in two cases: its bound is sufficient; or only
+/// a sufficient bound is useful, and a new evaluation clearly cannot give one.
 InsideBound::Evaluation InsideBound::evaluate(Ball& ball, const BoundRequest& q) {
   const Vec3 centre = q.pose.position + ball.position * q.pose.axis;
   const double beyond = ball.radius + q.moved + std::abs(ball.position) * q.turned;

@@ -30,14 +30,15 @@ class InsideSearch {
   InsideSearch(const ToolShape& tool, const Solid& solid);
 
   /// Returns the depth [m] of the deepest point found, or `known` if that is larger. `known` [m]: a depth found in
-  /// another pose. Returns nullopt if this is 0 and the tip centre, or a point that may be inside, lies beyond the
-  /// border of an open surface, where inside and outside are unknown. `tolerance`: absolute tolerance relative to
-  /// the tool's half width; 2 % of the depth are added to it.
+  /// another pose. Returns nullopt instead of 0 if the tip centre, or a point that may be inside, lies beyond the
+  /// border of an open surface, where inside and outside are unknown. `tolerance`: largest error of the result, in
+  /// units of the tool's half width; an error of 2 % of the depth is allowed in addition.
   std::optional<double> depth(const ToolPose& pose, double known = 0.0, double tolerance = kTolerance) noexcept;
 
-  /// Default of `tolerance`, relative to the tool's half width, and the relative tolerance of the depth.
+  /// Default of the argument `tolerance`. The same number is the relative error of the depth that is allowed in
+  /// addition.
   static constexpr double kTolerance = 0.02;
-  /// Additional error of the depth [m], from a tool sampled on a grid or from points that represent a surface.
+  /// Further error of the depth [m], if the tool is sampled on a grid or points represent the surface; 0 otherwise.
   double error() const noexcept { return error_; }
   /// Approximate number of distances evaluated in all searches so far.
   std::size_t looks() const noexcept { return evaluations_; }
@@ -47,7 +48,7 @@ class InsideSearch {
   struct Cell {
     Vec3 centre, half;
     double bound;                  ///< upper bound of the depth in the cell [m]
-    KnownDistance known_distance;  ///< a known distance, in this cell or in a cell that contains it
+    KnownDistance known_distance;  ///< signed distance at a point of this cell, or of a cell that contains this cell
   };
   void halve(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept;
   bool may_be_deepest(double bound) const noexcept {

@@ -25,12 +25,12 @@ namespace hapbench {
 /// Contacts with a depth <= 0 are dropped, except for springs that may pull. Integrators that query within a
 /// step get the contacts of the step, held or moved to the pose of their query.
 ///
-/// The source is queried when the result is due, for the pose of the query. Pending queries therefore store no
-/// contacts, and a source with a memory still sees all queries in order.
+/// A query first stores only its pose. The other source computes the contacts for this pose in the step in which they
+/// are due. Pending queries therefore store no contacts, and a source with a memory still gets all queries in order.
 class MultiRateContacts final : public ContactSource {
  public:
-  /// `may_pull`: contacts with negative depth are springs that pull and stay. `seed` determines which queries
-  /// are lost. Precondition: every >= 1, delay >= 0.
+  /// `may_pull`: true if contacts with negative depth are springs that pull, so that they are kept. `seed` determines
+  /// which queries are lost. Precondition: every >= 1, delay >= 0.
   MultiRateContacts(std::unique_ptr<ContactSource> source, const MultiRateSchedule& timing, bool may_pull,
                     std::uint64_t seed);
 

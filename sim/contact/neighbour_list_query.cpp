@@ -14,13 +14,13 @@ namespace {
 /// Thickness of the skin in half widths of the tool. With a thicker skin every step tests more points. With a
 /// thinner skin lists must be rebuilt more often.
 constexpr double kSkinPerHalfWidth = 0.2;
-/// Maximum number of times that an empty skin is doubled while the tool is in free air.
+/// Maximum number of times that a skin without points is doubled.
 constexpr int kMaxDoublings = 12;
 /// Relative slack that covers rounding in the tool's motion and in the search.
 constexpr double kSlack = 1e-9;
 
-/// Upper bound of the coordinates [m] of a tool that has shell points within twice its reach. A tool farther
-/// away has no points to list.
+/// Returns an upper bound of the coordinates [m] of a tool that has shell points within twice its reach. For a tool
+/// farther away the list is empty.
 double largest_scale(const PointShell& shell, const ToolShape& tool) {
   const Box& box = shell.bounds();
   return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) + 4.0 * tool.reach();
@@ -31,11 +31,12 @@ double largest_scale(const PointShell& shell, const ToolShape& tool) {
 /// Its contacts are bitwise identical to ShellQuery's.
 ///
 /// No point is missed: a point of the tool moves by at most ToolShape::displacement_bound since the list was built.
-/// While this distance is at most the skin, every shell point that touches the tool is in the list. Beyond, the
-/// list is rebuilt. The slow loop of thesis 2.2 therefore only saves work here.
+/// While this distance is at most the skin, every shell point that touches the tool is in the list. If the distance
+/// is larger, the list is rebuilt. The lists, which correspond to the slow loop of thesis 2.2, therefore only save
+/// work.
 ///
-/// Clearance: if the list is empty, larger and larger skins are searched. The largest empty skin is the
-/// distance that the tool may move before the next search. In free air a step costs one comparison.
+/// In free air: if the list is empty, the skin is doubled as long as it contains no point. The tool may move by the
+/// thickness of the largest empty skin before the next search. In free air a step costs one comparison.
 class NeighbourListQuery final : public ContactQuery {
  public:
   /// Builds the grid. O(n).

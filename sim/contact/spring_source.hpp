@@ -11,18 +11,18 @@
 
 namespace hapbench {
 
-/// Springs between the tool's position p and the origin, where all have their rest length (thesis A.2). Spring
-/// j has the unit gradient u_j and the depth d_j = <p, u_j> [m].
+/// Springs that act on the tool (thesis A.2). At the origin all springs have their rest length. With the tool at the
+/// position p, spring j has the unit gradient u_j and the depth d_j = <p, u_j> [m].
 ///
 /// Bilateral springs push and pull. Their depths are signed. Without signed depths, following thesis 2.3 (d >=
 /// 0), the depth is |<p, u_j>| and the gradient points along the displacement. The force is the same in both
-/// cases, but a law that averages gradients then sees opposite springs as one direction instead of as
-/// cancelling. Unilateral springs are contacts only while d_j > 0.
+/// cases, but in a law that averages gradients, opposite springs then have equal gradients, whereas signed gradients
+/// would cancel. Unilateral springs are contacts only while d_j > 0.
 struct SpringSet {
   /// Unit vectors u_j.
   std::vector<Vec3> gradients;
   bool bilateral = true;
-  bool signed_depths = true;  ///< for bilateral springs; see above
+  bool signed_depths = true;  ///< false: depths are |<p, u_j>|; used for bilateral springs only
 };
 
 /// Contact source of a spring set: each spring is a contact at the tool's position.

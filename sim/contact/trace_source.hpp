@@ -19,7 +19,7 @@ struct ContactTrace {
   };
   struct Time {
     double time;        ///< [s], ascending from entry to entry
-    std::size_t first;  ///< index of its first contact; its last contact is before the next entry's first
+    std::size_t first;  ///< index of the first contact at this time; the contacts end before `first` of the next entry
   };
   std::vector<Time> times;
   std::vector<Contact> contacts;

@@ -99,8 +99,8 @@ Reduced reduced(double x) {
   if (std::abs(x) <= 0.25 * kPi.high) return {0, {x, 0.0}};
   DoubleDouble angle = {x, 0.0};
   if (std::abs(x) > 0x1p20) {
-    // Remove whole turns. std::fmod is exact, but it removes multiples of kTwoPi.high, each too short by
-    // kTwoPi.low. Add the difference.
+    // Remove whole turns. std::fmod is exact, but it subtracts multiples of kTwoPi.high, which is smaller than 2 pi
+    // by kTwoPi.low. Correct for this difference.
     const double rest = std::fmod(x, kTwoPi.high), turns = nearest((x - rest) / kTwoPi.high);
     angle = two_sum(rest, std::abs(x) < 0x1p50 ? -turns * kTwoPi.low : 0.0);
   }
@@ -192,7 +192,7 @@ DoubleDouble log_of(double x) {
   return two_sum(whole.high, low);
 }
 
-/// Returns atan(x) - x for |x| <= 1/8. The truncation error is below 2^-63 of it.
+/// Returns atan(x) - x for |x| <= 1/8. The truncation error is below 2^-63 of the result.
 double atan_remainder(double x) {
   const double z = x * x;
   return x * z *
@@ -291,7 +291,7 @@ double expm1(double x) noexcept {
   const Exponential e = exponential_of({x, 0.0});
   if (e.k == 0) return e.power.high + e.rest;
   if (e.k > 60) return exp_of({x, 0.0});
-  // Compute 2^k (1 + y + rest) - 1; the difference of the powers of two first, because it is exact.
+  // Compute 2^k (1 + y + rest) - 1. Start with 2^k - 1, because this difference is exact.
   const double power = scaled(1.0, e.k);
   const DoubleDouble leading = two_sum(power - 1.0, power * e.power.high);
   return leading.high + (leading.low + power * e.rest);

@@ -20,7 +20,7 @@ double between(double a, double b, double k, double n) {
   return k == n ? b : a + (b - a) * (k / n);
 }
 
-/// Adds the points of an edge strictly between a and b.
+/// Adds the points of the edge from a to b, without a and b.
 void add_face(std::vector<SurfacePoint>& points, const Vec3& a, const Vec3& b, const Vec3& normal, double spacing) {
   const double n = intervals((b - a).norm(), spacing);
   for (double k = 1; k < n; ++k) {
@@ -149,7 +149,7 @@ double signed_distance(const Hole2d& hole, const Vec3& q) {
 
 double signed_distance(const ConicalHole& cone, const Vec3& q) {
   const double sine = math::sin(cone.half_angle), cosine = math::cos(cone.half_angle);
-  const double rho = length(q.x(), q.y()), z = q.z() + cone.depth;  // from the apex
+  const double rho = length(q.x(), q.y()), z = q.z() + cone.depth;  // coordinates relative to the apex
   const double inwards = sine * z - cosine * rho;
   const double along = sine * rho + cosine * z, beyond = along - std::clamp(along, 0.0, slant(cone));
   return std::copysign(length(inwards, beyond), inwards);
@@ -169,8 +169,10 @@ double signed_distance(const BlockWithHole& block, const Vec3& q) {
     const double beyond_sides = length(std::max(x, 0.0), std::max(y, 0.0));
     return length(beyond_sides, std::max({z, below, 0.0}));
   }
-  if (rho < R && z > -H) return std::min(R - rho, z + H);  // in the hole: distance to its wall or bottom
-  // In the material: distance to the closest face or to the hole.
+  if (rho < R && z > -H)
+    return std::min(R - rho, z + H);  // a point in the hole: distance to the wall or the bottom
+                                      // of the hole In the material: distance to the closest
+                                      // face or to the hole.
   const double to_hole = length(std::max(rho - R, 0.0), std::max(-H - z, 0.0));
   return -std::min({-x, -y, -z, -below, to_hole});
 }

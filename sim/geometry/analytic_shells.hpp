@@ -14,7 +14,7 @@ namespace hapbench {
 /// Planar peg-in-hole scene of thesis A.1.1, in the plane z = 0. The y axis points up; the mouth of the hole is at
 /// y = 0, centred at x = 0. Point order: along the profile from the left end of the flat top, down the left wall,
 /// along the bottom, up the right wall, to the right end of the flat top. The thesis gives the width (1 mm) and the
-/// spacing (0.1 mm). The depth, the length of the flat top and the 45 degree normals at edges are choices of this
+/// spacing (0.1 mm). The depth, the length of the flat top and the 45 degree normals at edges are assumptions of this
 /// project.
 struct Hole2d {
   double width = 0.001;     ///< [m]
@@ -45,7 +45,7 @@ struct Slot {
 /// between them, and their number is a multiple of four, so that a rotation by 90 degrees about z maps the points
 /// onto themselves bit for bit. `point_count` of this surface is an upper bound.
 struct ConicalHole {
-  double half_angle = 0.5;  ///< between axis and wall [rad], in (0, pi/2)
+  double half_angle = 0.5;  ///< angle between axis and wall [rad], in (0, pi/2)
   double depth = 0.003;     ///< [m]
   double spacing = 0.0001;  ///< [m]
 };

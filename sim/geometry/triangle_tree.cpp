@@ -25,7 +25,7 @@ struct Packs {
 };
 
 /// Returns the squared distances from eight points to an edge. `from`: points relative to one end of the edge;
-/// `along`: dot products of these with the edge vector `side`; `per_length2`: 1 / |side|^2.
+/// `along`: dot products of the vectors `from` with the edge vector `side`; `per_length2`: 1 / |side|^2.
 Pack squared_distance_to_side(const Packs& from, const Vec3& side, const Pack& along, double per_length2) {
   const Pack t = simd::min(simd::max(along * Pack(per_length2), Pack(0.0)), Pack(1.0));
   const Pack dx = from.x - t * Pack(side.x()), dy = from.y - t * Pack(side.y()), dz = from.z - t * Pack(side.z());
@@ -77,7 +77,7 @@ double side_of_edge(const Vec3& a, const Vec3& b, double x, double y) {
 }
 
 /// Returns true if the vertical line passes to the left of the edge from a to b; `side` is side_of_edge(). A line
-/// through the edge counts as moved slightly in x, and much less in y.
+/// that meets the edge is treated as if it were moved slightly in x, and much less in y.
 bool left_of_edge(double side, const Vec3& a, const Vec3& b) {
   if (side != 0.0) return side > 0.0;
   return a.y() != b.y() ? b.y() < a.y() : b.x() > a.x();
@@ -145,7 +145,7 @@ void TriangleTree::split(std::size_t node, std::vector<Item>& items) {
   nodes_[node].low = low;
   nodes_[node].high = high;
   if (count <= kMaxLeafTriangles) return;
-  // Divide at the median of the centroids.
+  // Divide the triangles at the median of their centroids.
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
   std::nth_element(begin, begin + count / 2, end,
@@ -157,8 +157,8 @@ void TriangleTree::split(std::size_t node, std::vector<Item>& items) {
 }
 
 /// Calls `use` with the triangles of the leaves, closest boxes first. `distance_to(node)` returns the distance of a
-/// box, `is_less` compares two distances, and `may_be_nearer(distance)` returns false for a box that is not to be
-/// searched; it is called when the search reaches the box.
+/// box, `is_less` compares two distances, and `may_be_nearer(distance)` returns false for a box that need not be
+/// searched. It is called when the search reaches the box.
 template <class DistanceTo, class IsLess, class MayBeNearer, class Use>
 [[gnu::always_inline]] inline void TriangleTree::visit_nearest_first(const DistanceTo& distance_to,
                                                                      const IsLess& is_less,

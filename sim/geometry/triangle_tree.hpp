@@ -32,8 +32,8 @@ inline bool before(const Vec3& a, const Vec3& b) noexcept {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// Intersection of the vertical line through (x, y) with a triangle. The winding number changes by `step` when a
-/// point moves upwards through it.
+/// Intersection of the vertical line through (x, y) with a triangle. The winding number around a point changes by
+/// `step` when the point moves upwards through the triangle.
 struct Crossing {
   double z;
   int step;

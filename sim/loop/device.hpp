@@ -17,8 +17,8 @@ struct HandleState {
 struct HandView {
   const HandleState& handle;
   const ToolPose& tool;      ///< tool as shown on the display
-  const Vec3& model_force;   ///< f_render of the previous step, shown by the gauge and used by the task [N]
-  const Vec3& spring_force;  ///< f_spring of the previous step, shown by the gauge and used by the task [N]
+  const Vec3& model_force;   ///< f_render of the previous step [N], an input of the hand's target task
+  const Vec3& spring_force;  ///< f_spring of the previous step [N], an input of the hand's target task
 };
 
 /// Model of the human hand: its force on the handle as a function of time and perception. One instance holds
@@ -75,8 +75,8 @@ class Device {
   /// Moves the handle from step k to step k + 1, under f_render and the hand's force of step k [N]. Called only
   /// if moves_tool().
   virtual void drive(const Vec3& /*rendered*/, const Vec3& /*hand_force*/) noexcept {}
-  /// Returns position and velocity of the handle as measured by the device; they become the tool's. Called only
-  /// if moves_tool().
+  /// Returns position and velocity of the handle as measured by the device. The tool takes over both. Called only if
+  /// moves_tool().
   virtual HandleState sampled() const noexcept { return handle(); }
 };
 

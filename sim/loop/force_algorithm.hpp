@@ -40,7 +40,7 @@ struct RenderedForce {
   Vec3 rendered = Vec3::Zero();        ///< f_render = spring + damping + friction, after limits [N]
   Mat3 S = Mat3::Zero();               ///< stiffness tensor in units of the spring stiffness K
   double depth_max = 0.0;              ///< largest depth of the colliding points, before any point stage [m]
-  Friction friction = Friction::none;  ///< none without load or without dry friction
+  Friction friction = Friction::none;  ///< `none` if dry friction is off or no contact has a load
 };
 
 /// Elastic energy of the penalty springs in one step, and the moment that they would exert about the tip
@@ -49,15 +49,16 @@ struct RenderedForce {
 ///
 ///  - Laws with weights: f_i = -K c_i d_i u_i.
 ///  - virtual_coupling and least_squares: f_i = -K_p (d_i + <u_i, s>) u_i, the penalty springs after the
-///    coupling has stretched by s. K_p is K or K / eps. These forces push and pull against each other, so the
-///    moment may be much larger than force times arm suggests.
+///    coupling has stretched by s. K_p is K for virtual_coupling, and K / eps with the regularisation eps for
+///    least_squares. These forces push and pull against each other, so the moment may be much larger than force
+///    times arm suggests.
 ///  - original_averaging and highest_depth: the law has one spring without a point of application, so each of
 ///    the n contacts gets f_spring / n.
 ///  - proxy: f_i = -K lambda_i m_i for the points that hold the proxy, with multiplier lambda_i and tool normal
-///    m_i, and r_i from the proxy's tip centre. For points inside the proxy it is scaled down like the slow
-///    motion that frees the proxy. If several sets of points hold the proxy equally well, any of them is used,
-///    so the force is unique but the moment may not be.
-///  - A passivity controller scales all contact forces like the springs.
+///    m_i, and r_i from the proxy's tip centre. For a point inside the proxy, the force is scaled by the same factor
+///    as the slow motion that moves the proxy out of the point. If several sets of points hold the proxy equally
+///    well, the solver uses one of them. The total force is the same for each set, but the moment may differ.
+///  - A passivity controller scales all contact forces by the factor by which it scales f_spring.
 ///
 /// Damping, friction and force limits act on the tool as a whole and do not contribute. The springs of a spring
 /// set act at the tip centre.
@@ -86,7 +87,8 @@ struct AlgorithmWork {
   SearchWork search = {};              ///< work of the algorithm's own contact searches, at other poses than the tool's
   std::uint64_t steps_controlled = 0;  ///< steps in which a passivity controller changed the force
 
-  std::uint64_t steps_staged = 0;  ///< steps in which a force stage changed the force
+  std::uint64_t steps_staged = 0;  ///< steps in which a force stage (energy tank or actuator-limited passivity) changed
+                                   ///< the force
   double energy_staged = 0.0;      ///< energy [J] that a force stage prevented the force from giving to the tool
 
   AlgorithmWork& operator+=(const AlgorithmWork& other) noexcept {
@@ -120,8 +122,8 @@ class ForceAlgorithm {
   /// implicit integrators only.
   virtual ForceJacobian jacobian() const noexcept = 0;
   /// Returns the cut-off frequency [Hz] of the low-pass filter through which `compute` reads the tool's angular
-  /// velocity: infinite for the unfiltered velocity, nullopt if `compute` does not read it. In the last case it
-  /// is not computed.
+  /// velocity: infinite for the unfiltered velocity, nullopt if `compute` does not read it. With nullopt, the angular
+  /// velocity is not computed.
   virtual std::optional<double> angular_velocity_cutoff() const noexcept { return std::nullopt; }
   /// Returns the description of a failure in external code that made the result of the last `compute` invalid,
   /// or null. Called when a run diverges.

@@ -31,7 +31,7 @@ class ObservedEnergy {
   /// Returns to t = 0.
   void reset() noexcept { *this = ObservedEnergy(dt_, free_); }
 
-  /// Begins the next step, in which `tool` is the tool's state.
+  /// Begins the next step; `tool` is the tool's state in this step.
   void move(const ToolState& tool, bool handle_moves_tool = false) noexcept {
     first_ = !begun_;
     begun_ = true;
@@ -79,7 +79,7 @@ class ObservedEnergy {
   }
 
  private:
-  /// Displacement since the previous step, over which the previous force does work [m].
+  /// Displacement since the previous step [m]. The force of the previous step does work over this displacement.
   Vec3 displacement_to(const ToolState& tool, bool handle_moves_tool) const noexcept {
     if (handle_moves_tool || !free_) return tool.pose.position - pose_[!current_].position;
     return 0.5 * (velocity_ + tool.velocity) * dt_;

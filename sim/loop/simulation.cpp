@@ -46,7 +46,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
       parts_(std::move(parts)),
       observers_(std::move(observers)),
       contacts_(parts_.source->capacity()) {
-  // Collect what the observers read.
+  // Find out which optional quantities the observers read.
   ratio_wanted_ = springs_wanted_ = energy_wanted_ = config_.skips == Skips::off;
   for (const Observer* observer : observers_) {
     ratio_wanted_ |= observer->wants_ratio();

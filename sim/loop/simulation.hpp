@@ -16,8 +16,8 @@
 
 namespace hapbench {
 
-/// How the stepping of a run ended. The meaning of a run for the tool is judged from its recorded rows
-/// (results/summary/outcome.hpp).
+/// How the stepping of a run ended. Whether the tool got stuck, lost contact or passed through the surface is judged
+/// afterwards from the recorded steps (results/summary/outcome.hpp).
 enum class Ending {
   completed,        ///< all steps are done, or the hand has finished its task
   left_hole,        ///< stopped by a StopRule
@@ -79,7 +79,7 @@ struct Divergence {
 
 struct SimulationResult {
   Ending ending = Ending::completed;
-  std::uint64_t rows = 0;  ///< steps passed to the observers
+  std::uint64_t rows = 0;  ///< number of steps passed to the observers
   Divergence divergence;   ///< set if the run diverged
 };
 
@@ -94,7 +94,7 @@ struct StepRecord {
   Vec3 hand_force = Vec3::Zero();  ///< force of the hand on the handle [N]
   MeasuredForce hand;              ///< hand_force as measured by the device
   HandleState handle;
-  bool handle_moves_tool = false;           ///< the tool follows the measured handle; there is no virtual mass
+  bool handle_moves_tool = false;           ///< true if the tool follows the handle; there is then no virtual mass
   const TargetTask* task = nullptr;         ///< target task of the hand; null if there is none
   std::size_t colliding = 0;                ///< number of colliding points before any point stage
   const ContactBuffer* rendered = nullptr;  ///< contacts that the law used; valid during on_step only
@@ -177,11 +177,14 @@ class Simulation {
   /// Copy of the contacts before any point stage; null unless an observer reads them.
   std::unique_ptr<ContactBuffer> found_;
   bool position_is_free_ = false;
-  bool tool_rolls_ = false;                        ///< the tool is not round, so its pose includes the roll
-  bool turn_rolls_ = false;                        ///< the angular velocity includes the rotation about the tool's axis
-  bool roll_wanted_ = false;                       ///< an observer or the tool needs the roll angle
-  bool handle_is_separate_ = false;                ///< the handle is a body separate from the tool
-  bool handle_moves_tool_ = false;                 ///< the tool follows the handle; there is no virtual mass
+  bool tool_rolls_ = false;                        ///< true if the tool is not a solid of revolution, so that its pose
+                                                   ///< includes the roll
+  bool turn_rolls_ = false;                        ///< true if the angular velocity includes the rotation about the
+                                                   ///< tool's axis
+  bool roll_wanted_ = false;                       ///< true if an observer or the tool needs the roll angle
+  bool handle_is_separate_ = false;                ///< true if the handle is a body separate from the tool
+  bool handle_moves_tool_ = false;                 ///< true if the tool follows the handle; there is then no virtual
+                                                   ///< mass
   std::optional<double> angular_velocity_cutoff_;  ///< [Hz]; nullopt if nothing reads the angular velocity
   ContactBuffer contacts_;
 

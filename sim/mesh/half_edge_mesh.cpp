@@ -48,7 +48,8 @@ using Triangle = TriangleSoup::Triangle;
 struct Hinge {
   std::array<std::uint32_t, 2> triangles;
   std::array<std::uint32_t, 2> corners;  ///< corner of each triangle at which the edge starts
-  bool opposed;                          ///< opposite directions along the edge, as in consistently wound neighbours
+  bool opposed;                          ///< true if the triangles run along the edge in opposite directions, as
+                                         ///< consistently wound neighbours do
 };
 
 constexpr std::uint32_t kNone = 0xffffffffu;
@@ -97,7 +98,7 @@ class MeshParts {
       closed_.push_back(true);
       part_[first] = part;
       open.push_back(first);
-      // Visit the part by depth-first search from its first triangle.
+      // Visit all triangles of the part by depth-first search from its first triangle.
       while (!open.empty()) {
         const std::uint32_t t = open.back();
         open.pop_back();
@@ -142,8 +143,8 @@ class MeshParts {
   }
 
   /// Reverses closed parts that enclose a negative volume, together with the parts inside their bounding boxes.
-  /// Returns the number of reversed parts. At most kMaxEnclosingParts parts, the largest, are tested for enclosing
-  /// others.
+  /// Returns the number of reversed parts. Only the kMaxEnclosingParts largest parts are tested for enclosing other
+  /// parts.
   std::size_t orient_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
     // Bounding box and volume of each part.
     shapes_.assign(count(), Shape{});
@@ -161,7 +162,8 @@ class MeshParts {
       shape.volume += (reversed_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
     }
 
-    // From the largest part to the smallest: a part inside an outermost part is reversed together with it.
+    // Orient the parts from the largest to the smallest. A part inside an outermost part is reversed together with
+    // the outermost part.
     std::vector<std::uint32_t> largest_first(count()), outermost;
     std::iota(largest_first.begin(), largest_first.end(), 0u);
     std::ranges::stable_sort(largest_first, std::greater(), [&](std::uint32_t p) { return shapes[p].size(); });
@@ -212,8 +214,8 @@ class MeshParts {
   std::vector<Shape> shapes_;  ///< of the parts
 };
 
-/// More than in any sensible mesh. The time to find an edge at a vertex is proportional to the number of its
-/// triangles.
+/// Maximum number of triangles at a vertex, larger than in any sensible mesh. The time to find an edge at a vertex is
+/// proportional to this number.
 constexpr std::size_t kMaxTrianglesAtVertex = 10'000;
 
 std::string text(const Vec3& position) {
@@ -389,7 +391,7 @@ void HalfEdgeMesh::split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middl
       set_next_halfedge_handle(sides[i], sides[(i + 1) % 3]);
     }
   };
-  // Shorten the edge to start at `middle`, and add a new edge from there to the old start.
+  // Shorten the edge so that it starts at `middle`, and add a new edge from `middle` to the old start.
   const auto forth = halfedge_handle(edge, 0), back = halfedge_handle(edge, 1);
   const auto start = to_vertex_handle(back);
   const auto to_start = new_edge(middle, start), from_start = opposite_halfedge_handle(to_start);

@@ -86,7 +86,7 @@ class NodeGrid {
 
  private:
   double spacing_;
-  std::array<std::int64_t, 3> first_;  ///< number of the first node, in spacings from the node at -spacing / 2
+  std::array<std::int64_t, 3> first_;  ///< index of the first node; index 0 is the node at -spacing / 2
   std::array<std::size_t, 3> count_;
 };
 
@@ -131,7 +131,7 @@ class GridLayer {
 
   std::size_t words() const { return words_; }
   std::uint64_t inside(std::size_t w, std::size_t j) const { return inside_[j * words_ + w]; }
-  /// Returns the bits of the next nodes along x.
+  /// Returns the bits inside(w, j) of the nodes that follow the nodes of word w along x.
   std::uint64_t next_inside(std::size_t w, std::size_t j) const {
     return inside(w, j) >> 1u | (w + 1 < words_ ? inside(w + 1, j) << 63u : 0);
   }
@@ -155,8 +155,8 @@ class GridLayer {
   void find_inside(std::size_t i, std::size_t j, std::size_t size) {
     const double half = 0.5 * grid_->spacing() * static_cast<double>(size - 1);
     const double distance = field_->signed_distance(node(i, j) + Vec3(half, half, 0.0));
-    // The whole square is inside or outside if the distance at its middle is larger than the distance of its
-    // corners from there. The factor 1 + 1e-9 covers rounding.
+    // The whole square is inside or outside if the distance at its middle is larger than the distance from the middle
+    // to a corner. The factor 1 + 1e-9 covers rounding.
     if (size > 1 && std::abs(distance) <= std::numbers::sqrt2 * half * (1.0 + 1e-9)) {
       for (const std::size_t y : {j, j + size / 2}) {
         for (const std::size_t x : {i, i + size / 2}) {
@@ -182,7 +182,7 @@ class GridLayer {
 /// slabs depend on the position of the slab boundary.
 constexpr std::size_t kMaxSlabs = 16;
 
-/// Calls visit(i) for each set bit of the word that starts with node 64 w.
+/// Calls visit(i) for each node i whose bit is set in `bits`, the word of the nodes 64 w … 64 w + 63.
 template <class Visit>
 void for_each_node(std::uint64_t bits, std::size_t w, Visit visit) {
   for (; bits != 0; bits &= bits - 1) visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
@@ -354,10 +354,10 @@ void append(const IsoSurface& slab, IsoSurface& all) {
 
 }  // namespace
 
-// Each face of the cell contributes directed segments that cut off its inside corners. Walking around the face, a
-// segment leads from the edge at which the walk enters a sequence of inside corners to the edge at which it leaves
-// the sequence. Every crossed edge is entered on one of its two faces and left on the other, so the segments form
-// closed polygons.
+// Each face of the cell contributes directed segments that cut off its inside corners. On a walk around the face, a
+// segment starts at the edge where the walk enters a sequence of inside corners, and ends at the edge where the walk
+// leaves this sequence. Every crossed edge belongs to two faces. It is the end of a segment on one face and the start
+// of a segment on the other, so the segments form closed polygons.
 std::vector<CubeTriangle> cube_triangles(unsigned inside) {
   const auto is_inside = [inside](int corner) { return (inside >> corner & 1u) != 0; };
   std::array<int, kEdgeNumbers> next{};

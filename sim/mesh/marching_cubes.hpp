@@ -31,7 +31,8 @@ struct DensityField {
 /// cell".
 struct CutCells {
   std::vector<Vec3> centres;                ///< centres of the cells [m]
-  std::vector<std::uint32_t> starts = {0};  ///< where each cell begins in `vertices`, then vertices.size()
+  std::vector<std::uint32_t> starts = {0};  ///< index in `vertices` at which each cell begins; the last entry is
+                                            ///< vertices.size()
   std::vector<std::uint32_t> vertices;      ///< vertex numbers, ordered by cell and within a cell by edge
 };
 
@@ -56,9 +57,9 @@ struct IsoSurfaceOptions {
 ///
 /// Evaluates the field only near the surface: skips a square of nodes in a layer if the distance at its middle
 /// shows that all its nodes are inside or all are outside. Time and memory grow with the area of the surface, apart
-/// from a few layers of the grid and a few operations for every 64 nodes. A vertex takes 48 bytes, first in the
-/// growing array of a slab of the grid and then in the result. Runs on oneTBB's threads; the result does not depend
-/// on their number.
+/// from a few layers of the grid and a few operations for every 64 nodes. A vertex takes 48 bytes in the result.
+/// While it is computed, it takes 48 bytes in the growing array of its slab of the grid. Runs on oneTBB's threads;
+/// the result does not depend on their number.
 IsoSurface marching_cubes(const DensityField& field, IsoSurfaceOptions options = {});
 
 /// Returns the density field of the block for marching_cubes(). `spacing` of the grid [m]. Precondition: spacing >

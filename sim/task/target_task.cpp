@@ -8,8 +8,8 @@
 namespace hapbench {
 namespace {
 
-/// Updates the output of a first-order low-pass over dt [s], with its input held. Without a cut-off, output =
-/// input.
+/// Updates the output of a first-order low-pass over dt [s], during which the input is constant. Without a cut-off,
+/// output = input.
 void follow(double& output, double input, std::optional<double> cutoff, double dt) noexcept {
   output = cutoff ? output - math::expm1(-2.0 * std::numbers::pi * *cutoff * dt) * (input - output) : input;
 }

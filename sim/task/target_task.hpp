@@ -23,12 +23,13 @@ struct Gauge {
 /// The force that the task checks: f_render, the model reaction force, or f_spring.
 enum class PressForce { rendered, spring };
 
-/// Effect on the time on the target when the force stays below min_press_force for longer than the grace time.
+/// Effect on the time on the target (TargetRules::hold) if the force stays below min_press_force for longer than the
+/// grace time.
 enum class LowForce {
-  restarts,  ///< the time restarts from 0
-  pauses,    ///< the time is held
+  restarts,  ///< the time on the target restarts from 0
+  pauses,    ///< the time on the target stops counting until the subject presses again
   closes,    ///< the target disappears
-  nothing    ///< the time continues
+  nothing    ///< the time on the target continues to count
 };
 
 /// The force along +z that the task compares with min_press_force: single samples, or filtered by a first-order
@@ -36,7 +37,7 @@ enum class LowForce {
 struct Threshold {
   PressForce force = PressForce::rendered;
   std::optional<double> cutoff = {};  ///< cut-off frequency of the low-pass [Hz]; nullopt: single samples
-  double grace = 0.0;                 ///< time below min_press_force that does not interrupt the hold [s]
+  double grace = 0.0;                 ///< time below min_press_force that does not interrupt the time on the target [s]
   LowForce low = LowForce::restarts;
 };
 
@@ -49,10 +50,11 @@ struct TargetRules {
   double tolerance = 0.0002;            ///< largest distance at which the tip is on the target [m]
   /// Largest distance at which force and speed are logged [m]; nullopt: tolerance.
   std::optional<double> logged = {};
-  double min_press_force = 1.0;             ///< smallest force along +z that activates the task and keeps it active [N]
+  double min_press_force = 1.0;             ///< smallest force along +z that counts as pressing; activates the target
+                                            ///< [N]
   std::optional<Gauge> gauge = {};          ///< nullopt: the subject sees every sample of the rendered force
   std::optional<Threshold> threshold = {};  ///< nullopt: the task checks the force that the subject sees
-  double hold = 1.0;                        ///< uninterrupted time on the target after which it is removed [s]
+  double hold = 1.0;                        ///< uninterrupted time on the target after which the target is removed [s]
   double time_limit = 10.0;                 ///< time from activation until the target disappears [s]
 };
 
@@ -64,9 +66,9 @@ struct TargetResult {
 };
 
 /// The task of one trial. Targets appear one at a time in a pseudo-random order, equally often at each
-/// position. A target waits until the subject presses; this activates it and starts the time limit. It is
-/// removed when the tip has stayed on it and pressed for the holding time. Dips of the force within the grace
-/// time do not count. A target that is never activated also disappears after the time limit, so that a trial
+/// position. A target waits until the subject presses; the press activates the target and starts the time limit. The
+/// target is removed when the tip has stayed on it and pressed for the holding time. Dips of the force within the
+/// grace time do not count. A target that is never activated also disappears after the time limit, so that a trial
 /// always ends (our choice). Allocates in the constructor only.
 class TargetTask {
  public:

@@ -21,8 +21,8 @@ struct BurProfile {
 /// - length: length of the head along the axis, from its front end (including the half ball of a round tip) to the
 ///   beginning of the shank. For a ball bur it equals the diameter; the neck hides a small part of the ball at the
 ///   rear.
-/// - shank_diameter: diameter of the cylinder behind the head, called neck if it is thin. The shank is ten times as
-///   long.
+/// - shank_diameter: diameter of the cylinder behind the head, called neck if it is thin. The length of this cylinder
+///   is ten times its diameter.
 ///
 /// | family | head, from the shank to the tip | tip centre |
 /// |---|---|---|

@@ -37,8 +37,8 @@ void for_each_edge(std::span<const TriangleSide> sides, const Use& use) {
 /// Returns true if equally many sides run along the edge in both directions.
 bool is_balanced(std::span<const TriangleSide> edge);
 
-/// Surface that bounds a solid. Its triangles are counter-clockwise seen from outside, and equally many run along
-/// each edge in both directions.
+/// Surface that bounds a solid. Its triangles are counter-clockwise seen from outside. On each edge, equally many
+/// sides of triangles run in both directions.
 class ClosedSurface {
  public:
   /// Builds the surface from welded(vertices, triangles), in O(n log n). Throws std::invalid_argument with the
@@ -84,8 +84,8 @@ struct GridNodes {
 ///
 /// The winding number is the sum of the signed intersections of the surface with any ray from the point. Here the
 /// rays run along z from below (vertical_crossing), so one sweep over each column of nodes suffices. Runs on
-/// oneTBB's threads; the result does not depend on their number. Cost: the number of triangles times the columns
-/// that each covers, plus the number of nodes.
+/// oneTBB's threads; the result does not depend on their number. Cost: O(c + n) for n nodes, where c counts for each
+/// triangle the columns of nodes that it covers.
 std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const GridNodes& nodes);
 
 }  // namespace hapbench

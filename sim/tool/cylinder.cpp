@@ -38,8 +38,8 @@ Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const Contact
 }
 
 /// Returns d if it is positive, and kNever otherwise. The thesis uses "the minimal positive value". If a point lies
-/// exactly on a surface and its ray points outwards there, the exit is therefore on the next surface, or the depth
-/// is 0 if that is out of reach.
+/// exactly on a surface and its ray points outwards, the exit is therefore on another surface, or the depth is 0 if
+/// no other surface is in reach.
 double if_positive(double d) {
   return d > 0.0 ? d : kNever;
 }
@@ -85,8 +85,10 @@ double exit_distance(const Cylinder& tool, const ToolPose& pose, const Vec3& poi
     d = std::min(d, if_positive(-s / slope));
   }
   if (slope < 0.0) d = std::min(d, if_positive(-(tool.length() + s) / slope));
-  // An exit farther away than the longest line through the body lies on the continuation of a surface beyond the
-  // body: the point is on another surface, and the ray is almost tangential to it. Such depths would have no bound.
+  // No exit from the body is farther away than its longest chord. A larger value is an intersection with the infinite
+  // extension of a surface beyond the body, such as the side of an infinitely long cylinder. It occurs for a point on
+  // another surface whose ray is almost parallel to the extended surface. The depth is then 0; otherwise it would be
+  // unbounded.
   return d > tool.max_exit_distance() ? 0.0 : d;
 }
 

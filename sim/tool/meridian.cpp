@@ -150,8 +150,8 @@ class SectionParts {
   /// Convex part under construction.
   struct Part {
     double low, high;                  ///< range of s [m]
-    std::optional<std::size_t> below;  ///< its lower line; none if the part reaches the axis
-    std::vector<std::size_t> above;    ///< its upper lines, in order
+    std::optional<std::size_t> below;  ///< lower line of the part; empty if the part reaches the axis
+    std::vector<std::size_t> above;    ///< upper lines of the part, in order
   };
 
   explicit SectionParts(const Meridian& meridian) : profile_(meridian.profile), lines_(meridian.lines) {}

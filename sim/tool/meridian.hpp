@@ -60,7 +60,7 @@ struct Meridian {
   /// Upper and lower lines of all parts.
   std::vector<Height> heights;
   std::vector<HalfPlane> planes;  ///< half planes of the profile's segments if the body is convex, without the discs
-  bool convex = false;            ///< corners that turn inwards by less than 1e-12 rad count as straight
+  bool convex = false;            ///< true if no corner turns inwards by more than 1e-12 rad
   double low, high;               ///< range of s [m], without the ball of a round tip
   double widest = 0.0;            ///< largest rho [m]
   double reach = 0.0;             ///< distance from the tip centre to the farthest point [m]

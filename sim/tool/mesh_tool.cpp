@@ -80,7 +80,7 @@ Pack nearest_whole(const Pack& a) {
   return (a + big) - big;
 }
 
-/// Indices of the nodes nearest to eight points. A point that is not in the grid (`within`) gets the first node.
+/// Indices of the nodes nearest to eight points. A point outside of the grid (GridPack::within) gets the first node.
 struct NearestNodes {
   Pack i, j, k;
 
@@ -100,7 +100,7 @@ struct NearestNodes {
 
 struct FieldValue {
   double value;   ///< phi_h [m]
-  Vec3 gradient;  ///< with respect to the coordinates of the nodes [m]
+  Vec3 gradient;  ///< gradient with respect to the coordinates of the nodes [m]
 };
 
 /// Evaluates the field phi_h at eight points in the grid. The weights are computed for all points at once, the sums
@@ -261,11 +261,11 @@ class ExitSearch {
     return inside_ + std::max({min_step_, -below_ / std::numbers::sqrt3, -below_ - 2.0 * bound_});
   }
 
-  /// Adds the field's value at a distance along the ray. Before a point outside is found this continues the march,
-  /// then it shrinks the bracket.
+  /// Adds the field's value at a distance along the ray. Continues the march until a point outside is found;
+  /// afterwards shrinks the bracket.
   void add_sample(double distance, double value) {
     if (!bracketed_) return march(distance, value);
-    // Illinois variant of regula falsi: halves the value of an end that stays twice.
+    // Illinois variant of regula falsi: if an end of the bracket stays twice, its value is halved.
     if (value <= 0.0) {
       inside_ = distance;
       below_ = value;
@@ -286,7 +286,7 @@ class ExitSearch {
     if (bracketed_) {
       outside_ = distance;
       above_ = value;
-      done_ = below_ == 0.0;  // the start is on the surface
+      done_ = below_ == 0.0;  // true if the start of the ray is on the surface
       return;
     }
     inside_ = distance;

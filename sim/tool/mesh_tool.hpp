@@ -33,11 +33,12 @@ class MeshTool final : public ToolShape {
 
   void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                    ContactBuffer& contacts) const noexcept override;
-  /// Tests the value of the nearest node only. Let e = error_bound() and m = margin. A point y in the grid within m
-  /// of the body is within m of a point with phi_h <= 0, where phi <= e. Hence phi(y) <= m + e, and the nearest
-  /// node, whose distance from y is at most e, has phi <= m + 2 e. The grid is convex and contains the body. A
-  /// point outside of the grid is therefore at least sqrt(a^2 + b^2) away from the body. Here a is its distance
-  /// from the grid, and b the distance of the closest point of the grid from the body.
+  /// Tests the value of the nearest node only. phi and phi_h are the exact and the interpolated field
+  /// (SignedDistanceGrid). Let e = error_bound() and m = margin. A point y in the grid within m of the body is within
+  /// m of a point with phi_h <= 0, where phi <= e. Hence phi(y) <= m + e, and the nearest node, whose distance from y
+  /// is at most e, has phi <= m + 2 e. The grid is convex and contains the body. A point outside of the grid is
+  /// therefore at least sqrt(a^2 + b^2) away from the body. Here a is its distance from the grid, and b the distance
+  /// of the closest point of the grid from the body.
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
                  std::uint8_t* marks) const noexcept override;
   Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept override;
@@ -49,8 +50,8 @@ class MeshTool final : public ToolShape {
   void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   /// Marches along the ray and refines the last step by regula falsi. Steps are too short to cross the surface (the
-  /// field changes by at most sqrt(3) times the step), but at least an eighth of the grid spacing. Thinner gaps may
-  /// therefore be missed.
+  /// field changes by at most sqrt(3) times the step), but at least an eighth of the grid spacing. Gaps that are
+  /// thinner than a step may therefore be missed.
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
   /// For a concave body the constraints are the depths and gradients of the field.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,

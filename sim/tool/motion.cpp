@@ -41,7 +41,8 @@ struct Segment {
   double fraction;  ///< elapsed part of the duration, 0 to 1
 };
 
-/// Returns the segment at time t; before the first and after the last waypoint a constant one.
+/// Returns the segment at time t. Before the first and after the last waypoint, this is a segment with a constant
+/// value.
 Segment segment_at(const Profile::Waypoints& w, double t) {
   const auto& p = w.points;
   if (p.empty()) return {0.0, 0.0, 1.0, 0.0};
@@ -188,7 +189,7 @@ RecordedMotion::Segment RecordedMotion::segment_at(double t) const noexcept {
 
 Eigen::Quaterniond RecordedMotion::orientation_in(const Segment& segment) noexcept {
   const Eigen::Quaterniond turn = segment.from->orientation->conjugate() * *segment.to->orientation;
-  const double sine = turn.vec().norm();  // of half the angle
+  const double sine = turn.vec().norm();  // sine of half the rotation angle
   if (sine == 0.0) return *segment.from->orientation;
   return *segment.from->orientation * turn_about(turn.vec() / sine, segment.fraction * angle_of(turn, sine));
 }

@@ -31,7 +31,7 @@ struct ToolPose {
 /// Pose and velocity of the tool. The orientation is scripted, so its angular velocity is known and not integrated.
 struct ToolState {
   ToolPose pose;
-  Vec3 velocity = Vec3::Zero();  ///< of the tip centre [m/s]
+  Vec3 velocity = Vec3::Zero();  ///< velocity of the tip centre [m/s]
   /// Angular velocity over the previous step [rad/s], low-pass filtered if the algorithm requests it. Zero unless
   /// an algorithm reads it. Includes the rotation about the axis if the pose or the script (Motion::scripts_roll)
   /// has one.

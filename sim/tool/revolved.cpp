@@ -18,8 +18,8 @@ using simd::Mask, simd::Pack, simd::select;
 
 /// Returns the points of `all` that lie in the section with s <= 0. s: axial coordinate; rho2: squared distance
 /// from the axis. Compares squared heights, because a square root costs as much as four lines. This function and
-/// the tests below are always inlined: as calls, with their packs in memory, they made a simulation step of a bur
-/// 10 % slower.
+/// the tests below are always inlined: as function calls, which pass packs through memory, they would make a
+/// simulation step with a bur 10 % slower.
 [[gnu::always_inline]] inline Mask in_section(const Meridian& meridian, const Mask& all, const Pack& s,
                                               const Pack& rho2) {
   const auto height = [&](std::size_t k) {
@@ -73,15 +73,16 @@ Pack convex_depth(const Meridian& meridian, const Pack& s, const Pack& rho) {
 /// Closest point on the profile's segments and discs.
 struct NearestPlace {
   Pack distance2;
-  Pack vs, vr;  ///< segment's normal there; at a corner, the vector from the query point to the corner
+  Pack vs, vr;  ///< normal of the segment at the closest point; at a corner, the vector from the query point to the
+                ///< corner
   Mask at_corner;
 };
 
 /// Returns the closest point of the outline for points with axial coordinate s and distance rho from the axis.
 [[gnu::always_inline]] inline NearestPlace nearest_place(const Meridian& meridian, const Pack& s, const Pack& rho) {
   const Pack zero(0.0);
-  // Closer to a corner than this, the direction to it is rounding. The segment's normal is one of the valid
-  // directions.
+  // If a point is closer to a corner than this, the direction to the corner is dominated by rounding. The segment's
+  // normal is then used, which is one of the valid directions.
   const Pack at_line(1e-12 * meridian.widest);
   NearestPlace nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, zero < zero};
   for (const Meridian::Line& line : meridian.lines) {
@@ -133,7 +134,7 @@ struct AxialRay {
 /// computed without cancellation near the axis and the cone.
 struct ConeCrossing {
   double k, m, a, b, c, root;
-  bool meets;  ///< not read for a ray from inside a convex cone, which always intersects it
+  bool meets;  ///< true if the ray meets the cone; not read for a ray from inside a convex cone, which always does
 
   ConeCrossing(const HalfPlane& cone, const AxialRay& ray) : k(cone.offset - cone.ns * ray.s), m(cone.ns * ray.slope) {
     const double nr = cone.nr;

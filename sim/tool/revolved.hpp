@@ -56,9 +56,9 @@ class Revolved final : public ToolShape {
   /// Returns the distance to the first point where the ray leaves the body; 0 for a point on the surface whose ray
   /// points outwards.
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
-  /// For a body that is not convex, the constraints only describe the distance to the closest point. A long
-  /// displacement may bring another part of the body to the point, such as the far side of an undercut. No flush
-  /// face replaces an edge.
+  /// For a body that is not convex, the constraints only describe the distance to the closest point. After a long
+  /// displacement, the point may be inside another part of the body, such as the far side of an undercut. A flush
+  /// face (kFlush) does not replace an edge.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
   void support_points(const ToolPose& pose, const ContactBuffer& contacts,
@@ -70,7 +70,7 @@ class Revolved final : public ToolShape {
  private:
   explicit Revolved(Meridian meridian);
   Meridian meridian_;
-  double widest2_, ball2_;  ///< largest_square_within of the radii `widest` and `ball` [m^2]
+  double widest2_, ball2_;  ///< squares of the radii `widest` and `ball`, rounded by largest_square_within() [m^2]
 };
 
 }  // namespace hapbench

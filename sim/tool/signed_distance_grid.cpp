@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kEdge = 16;  ///< cells along an edge of the cube of directions
 constexpr std::size_t kCells = 6 * kEdge * kEdge;
-/// Relative to the size of the body, distances below this value are rounding.
+/// Differences of distance below this fraction of the body's size are treated as rounding.
 constexpr double kTie = 1e-9;
 
 /// Returns the cell index along one coordinate in [-1, 1] of a cube face.
@@ -160,10 +160,10 @@ void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, dou
     const auto [a, b, c] = surface.corners(surface.triangles()[i]);
     const Vec3 area = area_vector(surface, surface.triangles()[i]);
     areas[i] = area.norm();
-    // The ray starts beyond the rounding of the triangle's own plane.
+    // The ray starts slightly away from the triangle, so that rounding does not make it hit this triangle.
     if (areas[i] > 0.0) thin[i] = tree.first_hit((a + b + c) / 3.0, -area / areas[i], 1e-6 * thickness);
   });
-  // Sum the thin area, and find the thinnest triangle.
+  // Sum the area that is too thin, and find the smallest thickness.
   double all = 0.0, too_thin = 0.0, thinnest = thickness;
   std::size_t where = 0;
   for (std::size_t i = 0; i < thin.size(); ++i) {
@@ -212,8 +212,8 @@ Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& near) const noexc
     }
   }
   if (nearest == nullptr) return points_.front();  // only if the direction is not finite
-  // Move towards the other extreme points as long as this approaches `near`; twice, for faces. A convex combination
-  // of extreme points is extreme as well.
+  // Move towards the other extreme points as long as the point gets closer to `near`. Do this twice, for the points
+  // of a face. A convex combination of extreme points is extreme as well.
   Vec3 support = *nearest;
   for (int pass = 0; pass < 2; ++pass) {
     for (const std::uint32_t i : candidates) {
@@ -248,7 +248,7 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
   // The winding numbers give the sign.
   const std::vector<std::int8_t> numbers = winding_numbers(surface, nodes_);
   check_winding(numbers, nodes_);
-  // One more number, because kernels read rows of three nodes as four numbers.
+  // Allocate one more number, because kernels read a row of three nodes as four numbers.
   values_.assign(nodes_.size() + 1, 0.0);
   // Compute the distances column by column, eight nodes at a time.
   parallel_for(std::size_t{0}, nodes_.count[0] * nodes_.count[1], [&](std::size_t column) {

@@ -37,8 +37,8 @@ struct PackRange {
 };
 
 /// Cosine of the largest angle, 6 degrees, between a tool's flat face and a surface at which the face counts as
-/// flush with the surface. The normals of shells are wrong by a few degrees. A face with a larger angle would keep
-/// the edge above the surface too early.
+/// flush with the surface. The normals of shells are wrong by a few degrees. A face with a larger angle would stop
+/// the edge of the face above the surface too early.
 inline constexpr double kFlush = 0.9945;
 
 /// Shape of the tool: the geometry that contact search, depth models, the proxy and metrics need. Code outside of
@@ -142,7 +142,7 @@ class ToolShape {
   virtual void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                                    ContactBuffer& contacts) const noexcept = 0;
   /// Writes the support point of the body in the direction -n_i for each contact normal n_i: argmin <q, n_i> over
-  /// the points q of the body. If the support point is not unique, writes the support point beside the contact.
+  /// the points q of the body. If the support point is not unique, writes a support point near the contact.
   virtual void support_points(const ToolPose& pose, const ContactBuffer& contacts,
                               const MutablePointArrays& places) const noexcept = 0;
 

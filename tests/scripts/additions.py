@@ -288,7 +288,7 @@ class StillnessObserver final : public MetricObserver {
             ),
             before(
                 '#include "results/observe/target_metrics.hpp"\n\nnamespace hapbench {\nnamespace {\n\n'
-                "/// A section of the summary: its name, when a run has it, and its observer.\n",
+                "/// A section of the summary: its name, the condition under which a run has it, and its observer.\n",
                 '#include "results/observe/stillness.hpp"\n',
             ),
             behind(

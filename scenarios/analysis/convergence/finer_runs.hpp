@@ -18,11 +18,13 @@ namespace hapbench {
 /// Error estimate of a metric, in the metric's unit. The errors by time step and point spacing are the errors of the
 /// coarsest of three levels (convergence_of).
 struct KnownError {
-  std::optional<double> step, spacing;  ///< empty if a finer run has another outcome or no such metric
+  std::optional<double> step, spacing;  ///< empty if a refined run has another outcome or lacks the metric
   bool has_points = true;               ///< false if the scene has no point spacing to refine
-  double tolerance = 0.0;               ///< error of the metric's computation, such as a histogram's quantile
+  double tolerance = 0.0;               ///< error of computing the metric in one run, such as the error of a quantile
+                                        ///< from a histogram
 
-  /// Returns the sum of the errors; empty if the error by step, or by an existing spacing, is unknown.
+  /// Returns the sum of the three errors. Empty if the error by the time step is unknown, or if the scene has a point
+  /// spacing and the error by it is unknown.
   std::optional<double> sum() const;
 };
 
@@ -37,7 +39,8 @@ class FinerRuns {
   /// at the times of the original run's steps.
   KnownError known_error(std::size_t run, const std::string& metric) const;
 
-  /// Returns a clause that names the refinements of a scene, and the reason for each refinement that was not made.
+  /// Returns a clause that names the refinements that were made of a scene, and for every other refinement the reason
+  /// why it was not made.
   std::string refined(std::size_t scene) const;
 
  private:
@@ -56,7 +59,8 @@ class FinerRuns {
   const Comparison& comparison_;
   std::span<const Result> reports_;
   std::vector<Scene> scenes_;
-  std::vector<Result> finer_;  ///< by refinement, then by level, then in the order of the comparison
+  std::vector<Result> finer_;  ///< refined runs, sorted by refinement, then by level, then in the order of the
+                               ///< comparison
 };
 
 }  // namespace hapbench

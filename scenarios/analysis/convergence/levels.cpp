@@ -21,7 +21,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the formal order of convergence in the time step. A device holds the force between samples: first order.
+/// Returns the formal order of convergence in the time step. With a device, which holds the force between samples,
+/// the order is 1.
 double order_in_step(const Scenario& scenario) {
   const IntegratorEntry& integrator = *scenario.integrator.type;
   if (has_device(scenario)) return 1.0;
@@ -29,7 +30,7 @@ double order_in_step(const Scenario& scenario) {
   return normal_damping(r) > 0.0 || r.has_friction() ? integrator.damped_order : integrator.order;
 }
 
-/// Returns why noise prevents convergence in the step; empty without noise.
+/// Returns a text that explains which noise prevents convergence in the time step; empty without noise.
 std::string noise_reason(const Scenario& scenario) {
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
   if (std::holds_alternative<TrackingHandFields>(scenario.hand))
@@ -58,7 +59,7 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
 }
 
 /// Returns the value of the first level: the scenario's value, or the mean vertex distance for a spacing that is not
-/// given. Throws InputError if there is neither.
+/// given. Throws InputError if neither of them exists.
 double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
   const Json own = current_value(loaded.scenario, path);
   if (own.is_number_float() && own.get<double>() > 0.0) return own.get<double>();

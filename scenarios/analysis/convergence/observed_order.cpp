@@ -12,13 +12,14 @@
 namespace hapbench {
 namespace {
 
-/// Differences below this fraction of the results are rounding errors of up to 10^6 steps, from which no order follows.
+/// A difference below this fraction of the results may be the rounding error of up to 10^6 steps. No order follows
+/// from such differences.
 constexpr double kRoundingShare = 1e-10;
 constexpr double kGciSafety = 1.25;        // Roache's safety factor for three or more levels
 constexpr double kAsymptoticWithin = 0.1;  // largest |GCI_21 / (r^p GCI_32) - 1|
 constexpr std::size_t kMinLevels = 3;
 
-/// Returns why fewer than three levels count. `first`: index of the first level that counts.
+/// Returns a text that explains why fewer than three levels count. `first`: index of the first level that counts.
 std::string too_few_reason(std::span<const LevelResult> levels, std::size_t first) {
   const std::size_t count = levels.size() - first;
   if (first == 0) return fmt::format("three levels are needed, got {}", count);
@@ -42,8 +43,8 @@ std::string switching_reason(std::span<const LevelResult> last) {
   return "";
 }
 
-/// Returns why the differences or orders of the last four (or three) results are not credible; empty if they are. `f`:
-/// results, coarsest first. `most`: largest credible order.
+/// Returns a text that explains why the differences or orders of the last four (or three) results are not credible;
+/// empty if they are credible. `f`: results, coarsest first. `most`: largest credible order.
 std::string incredible_reason(std::span<const double> f, std::span<const std::optional<double>> orders, double most) {
   const std::size_t last = f.size() - 1, from = last >= 3 ? last - 3 : 0;
   for (std::size_t i = from + 2; i <= last; ++i) {
@@ -61,7 +62,7 @@ std::string incredible_reason(std::span<const double> f, std::span<const std::op
 /// The levels that count: the finest consecutive levels that have a result and the outcome of the finest level.
 struct CountedLevels {
   std::size_t first = 0;  ///< index of the first level that counts
-  std::vector<double> f;  ///< their results, coarsest first
+  std::vector<double> f;  ///< results of the levels that count, coarsest first
   double largest = 0.0;   ///< largest magnitude of the results
 
   std::size_t count() const { return f.size(); }
@@ -104,7 +105,7 @@ void add_band(const CountedLevels& counted, Convergence& c) {
   }
 }
 
-/// Returns why no order can be stated; empty if one can.
+/// Returns a text that explains why no order can be stated; empty if an order can be stated.
 std::string no_order_reason(const LevelSweep& sweep, std::span<const LevelResult> levels, const CountedLevels& counted,
                             std::span<const std::optional<double>> orders) {
   const auto is_first = [&](const LevelResult& level) { return level.state_hash == levels.front().state_hash; };
@@ -118,8 +119,8 @@ std::string no_order_reason(const LevelSweep& sweep, std::span<const LevelResult
   return incredible_reason(f, orders.subspan(counted.first), 2.0 * sweep.formal_order);
 }
 
-/// Writes what follows from the observed order: Richardson's value, the GCI and the error estimates of all levels.
-/// Precondition: the last level has an order.
+/// Computes Richardson's value, the GCI and the error estimates of all levels from the observed order. Precondition:
+/// the last level has an order.
 void add_extrapolation(const LevelSweep& sweep, const CountedLevels& counted, Convergence& c) {
   const std::vector<double>& f = counted.f;
   const std::size_t count = f.size();
@@ -151,8 +152,8 @@ Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult>
 
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary,
                          const std::string& metric) {
-  // Contact counts that detect switching contacts. A refined surface has other points, so that only the number of
-  // landings is comparable.
+  // Contact counts that detect switching contacts. If the point spacing is refined, the surface has other points, and
+  // only the number of landings is comparable.
   constexpr const char* kContactCounts[] = {"landings", "steps_in_contact", "colliding_mean", "rendered_mean"};
   const std::string& path = levels.axis.path;
   LevelResult result{.setting = fmt::format("{} = {}", path, levels.axis.values[level]),

@@ -18,7 +18,7 @@ namespace hapbench {
 struct LevelResult {
   std::string setting;           ///< the field and its value, as text
   std::string outcome;           ///< name of the run's outcome
-  std::optional<double> result;  ///< the metric; empty if the run diverged or lacks the metric
+  std::optional<double> result;  ///< value of the metric; empty if the run diverged or lacks the metric
   /// Contact counts by name. If they differ between levels, contacts switched on or off.
   std::vector<std::pair<std::string, double>> contacts = {};
   std::uint64_t state_hash = 0;  ///< equal for bitwise equal runs
@@ -26,19 +26,22 @@ struct LevelResult {
 
 /// Convergence of one metric. r: ratio of the levels; p: observed order; f*: Richardson's value.
 struct Convergence {
-  std::optional<double> order;         ///< p at the three finest levels; empty if it is not credible
+  std::optional<double> order;         ///< p, computed from the three finest levels; empty if it is not credible (see
+                                       ///< convergence_of)
   std::string reason;                  ///< why there is no order, as a clause; empty with an order
   std::optional<double> extrapolated;  ///< f*; only with an order
   std::optional<double> gci;  ///< GCI of the finest level, relative to its result; only with an order and a result != 0
   /// True if the levels are in the asymptotic range: |GCI_21 / (r^p GCI_32) - 1| <= 0.1 for the three finest levels,
   /// and, if a fourth level counts, also for the second to fourth finest levels with the same p.
   bool asymptotic = false;
-  /// Smallest and largest result of the last three levels that count, or of two levels; empty with fewer.
+  /// Smallest and largest result of the three finest levels that count, or of two if only two count; empty with
+  /// fewer.
   std::optional<std::pair<double, double>> band;
-  /// Observed order at each level, from it and the two next coarser levels; empty if undefined.
+  /// Observed order at each level, computed from this level and the two next coarser levels; empty if undefined.
   std::vector<std::optional<double>> orders;
   /// Error estimate (not a bound) of each level [metric's unit]. With an order: 1.25 |f - f*|, which equals the GCI at
-  /// the finest level. Without: the largest distance to a finer level, at least the width of the band.
+  /// the finest level. Without an order: the largest distance to the result of a finer level, and at least the width
+  /// of `band`.
   std::vector<std::optional<double>> errors;
 };
 
@@ -48,7 +51,7 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
 /// Returns the convergence of a metric from its results at all levels. Only the finest consecutive levels that have a
 /// result and the same outcome as the finest level count. No order is stated if:
 /// - all runs are bitwise equal;
-/// - the levels have a reason (LevelSweep::no_order);
+/// - the levels give a reason against an order (LevelSweep::no_order);
 /// - fewer than three levels count;
 /// - the last two results differ by rounding only;
 /// - contacts switch between the last three levels;

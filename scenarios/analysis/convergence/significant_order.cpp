@@ -25,7 +25,7 @@ SignificantOrder significant_order(std::span<const NumberWithError> numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i].value && numbers[i].error) order.push_back(i);
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return *numbers[i].value; });
-  // Separate numbers that differ significantly from no other number.
+  // Separate the numbers that do not differ significantly from any other number.
   SignificantOrder order_found;
   const auto is_indistinguishable = [&](std::size_t a) {
     return std::ranges::none_of(order, [&](std::size_t b) { return comes_before(a, b) || comes_before(b, a); });
@@ -35,7 +35,7 @@ SignificantOrder significant_order(std::span<const NumberWithError> numbers) {
   std::erase_if(order, [&](std::size_t a) {
     return std::ranges::find(order_found.indistinguishable, a) != order_found.indistinguishable.end();
   });
-  // Start a new group wherever all numbers on the left are significantly smaller than all on the right.
+  // Start a new group wherever all numbers on the left are significantly smaller than all numbers on the right.
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::span left = std::span(order).first(k), right = std::span(order).subspan(k);
     const bool is_cut = std::ranges::all_of(left, [&](std::size_t a) {

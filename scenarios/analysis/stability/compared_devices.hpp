@@ -19,7 +19,7 @@ std::string delay_note(const Scenario& scenario);
 struct ComparedDevice {
   std::string name;                                ///< "ideal", "admittance", or the name of a preset or file
   Json json;                                       ///< value of the scenario's field "device"
-  bool has_place_for_mass = false;                 ///< true if a hand on its handle may have a mass
+  bool has_place_for_mass = false;                 ///< true if a scene with this device may have a hand with a mass
   std::optional<double> published_stiffness = {};  ///< published largest stable wall stiffness [N/m]; presets only
 };
 

@@ -53,7 +53,7 @@ class RunCache {
     return question_.rule.holds(at(t).verdict);
   }
 
-  // Precondition: the value was run.
+  // Precondition of the following functions: the value was run.
 
   JudgedValue at(double t) const {
     const double value = question_.search.value_at(t);
@@ -84,7 +84,7 @@ StableInterval find_interval(const LimitQuestion& question, RunCache& runs, Eval
                           : find_stable_interval(question.search, evaluated, is_stable, true);
 }
 
-/// Writes the interval that was found into the limit.
+/// Stores the interval that was found in the limit.
 void add_interval(const LimitQuestion& question, const StableInterval& interval, const RunCache& runs,
                   FieldLimit& limit) {
   const IntervalSearchOptions& search = question.search;
@@ -100,7 +100,7 @@ void add_interval(const LimitQuestion& question, const StableInterval& interval,
   if (search.current_parameter()) limit.own = runs.at(*search.current_parameter());
 }
 
-/// Writes all runs of the search into the limit, and the runs that contradict the interval.
+/// Stores in the limit all runs of the search, and the runs that contradict the interval that was found.
 void add_runs(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   const auto is_before = [&](double a, double b) { return question.search.smallest ? a > b : a < b; };
   for (const auto& [value, run] : runs) {
@@ -116,14 +116,14 @@ void add_runs(const LimitQuestion& question, const std::map<double, RunStability
   });
 }
 
-/// Writes whether hand and device are unstable without contact.
+/// Finds out whether hand and device are unstable without contact, and stores the result in the limit.
 void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   const JudgedValue suspect = limit.end.beyond ? *limit.end.beyond : limit.runs.front();
   limit.unstable_alone = !question.rule.holds(suspect.verdict) &&
                          unstable_without_contact(checked(question.at(suspect.value)), question.rule.max_vibration);
 }
 
-/// Writes the limits by closed forms, and the linear limit in contact.
+/// Computes the limits by closed forms and the linear limit in contact, and stores them in the limit.
 void add_formulas(const LimitQuestion& question, FieldLimit& limit) {
   limit.closed_form = inequality_limit(question).value;
   WallLimits wall = wall_limits(question);

@@ -34,7 +34,8 @@ class TransitionSearch {
 
   /// Returns the first transition that samples on either side confirm, with the other end of its interval.
   StableInterval confirmed() {
-    constexpr int kMaxRounds = 6;  // bisections, each at the transition that the previous samples revealed
+    constexpr int kMaxRounds = 6;  // maximum number of bisections; each is at the transition that the previous
+                                   // samples revealed
     start();
     StableInterval interval;
     for (int round = 0; round < kMaxRounds; ++round) {
@@ -55,7 +56,7 @@ class TransitionSearch {
   struct Transition {
     double first_stable;         ///< smallest stable parameter of the group
     double low;                  ///< largest stable parameter of the group
-    std::optional<double> high;  ///< next parameter, unstable; empty if t = 1 is stable
+    std::optional<double> high;  ///< next larger parameter, which is unstable; empty if t = 1 is stable
   };
 
   bool evaluate(double t) {
@@ -101,7 +102,7 @@ class TransitionSearch {
 
   /// Evaluates three parameters on either side of a transition, within one interval of the scan.
   void evaluate_beside(double first_stable, const StableInterval& interval) {
-    constexpr int kBeside = 3;  // samples on either side
+    constexpr int kBeside = 3;  // number of samples on either side
     constexpr double kInterval = 1.0 / kScanIntervals;
     const double before = std::max(first_stable, *interval.stable - kInterval);
     const double behind = std::min(1.0, *interval.beyond + kInterval);
@@ -193,7 +194,7 @@ StableInterval find_verified_interval(const IntervalSearchOptions& options, Eval
                                       const IsStable& stable, bool near,
                                       const std::function<void(std::span<const double>)>& ahead) {
   bool scattered = false;
-  // Stable parameters up to this value are isolated samples. They count as unstable.
+  // Stable parameters up to this value are isolated samples, which the search treats as unstable.
   double scattered_up_to = -1.0;
   const auto counts_as_stable = [&](double t) { return t > scattered_up_to && stable(t); };
   // Evaluates the samples in order and adds them to `evaluated`. Stops at the first unstable sample and returns it.

@@ -25,8 +25,8 @@ struct IntervalSearchOptions {
   std::optional<double> current = {};
   bool whole = false;     ///< true: values are integers
   bool smallest = false;  ///< true: t = 0 is the high end, and the result is the smallest stable value
-  /// Width at which bisection stops: relative to the value in a logarithmic range, relative to the range in a linear
-  /// range.
+  /// Width of the interval at which bisection stops: a fraction of the value in a logarithmic range, a fraction of
+  /// the range in a linear range.
   double resolution = kBisectionResolution;
 
   /// Returns the value at the parameter `t`, rounded if `whole`.
@@ -39,14 +39,16 @@ struct IntervalSearchOptions {
 
 /// The interval of stable parameters that a search found, from `first` to `stable`, and its unstable neighbours.
 struct StableInterval {
-  std::optional<double> stable = {};  ///< largest stable parameter of the interval; empty without an interval
+  std::optional<double> stable = {};  ///< largest stable parameter of the interval; empty if no interval was found
   std::optional<double> beyond = {};  ///< unstable parameter just above `stable`; empty if t = 1 is stable
-  std::optional<double> first = {};   ///< smallest stable parameter of the interval; empty without the other end
+  std::optional<double> first = {};   ///< smallest stable parameter of the interval; empty if the other end was not
+                                      ///< searched
   std::optional<double> before = {};  ///< unstable parameter just below `first`; empty if t = 0 is stable
-  bool scattered = false;  ///< there are stable parameters, but no contiguous stable interval as long as kNearLimit
+  bool scattered = false;  ///< true if stable parameters exist, but no contiguous interval of them is as long as
+                           ///< kNearLimit
 };
 
-/// Evaluated parameters, each with true if it is stable.
+/// Evaluated parameters. The value of an entry is true if the parameter is stable.
 using EvaluatedParameters = std::map<double, bool>;
 /// Evaluates a parameter. Returns true if it is stable.
 using IsStable = std::function<bool(double t)>;
@@ -71,15 +73,15 @@ inline constexpr std::size_t kSamplesNearLimit = 8;      ///< further samples ju
 /// Largest distance of the kSamplesNearLimit samples from the limit, relative to the limit.
 inline constexpr double kNearLimit = 0.02;
 
-/// Returns the upper 95 % confidence bound on the unstable fraction of an interval if `samples` samples in it are all
-/// stable: 1 - 0.05^(1 / samples).
+/// Returns an upper bound, at 95 % confidence, of the fraction of unstable values in an interval in which all of
+/// `samples` samples are stable: 1 - 0.05^(1 / samples).
 double may_fail_share(std::size_t samples);
 
 /// Returns `count` parameters between `from` and `to`: a golden-ratio sequence, whose first n parameters fill the
 /// interval evenly for every n.
 std::vector<double> parameters_between(double from, double to, std::size_t count);
 
-/// Returns kSamplesNearLimit parameters below `t` whose values are within kNearLimit of its value.
+/// Returns kSamplesNearLimit parameters below `t`. Their values are within kNearLimit of the value at `t`.
 std::vector<double> parameters_below(const IntervalSearchOptions& options, double t);
 
 /// Finds an interval as find_stable_interval does with `beside`, and verifies it: by kVerificationSamples samples

@@ -14,7 +14,8 @@ namespace {
 
 using IsTrueOf = std::function<bool(const Scenario&)>;
 
-// An evaluation costs a thousandth of a run. The scan can therefore be finer, and bisection goes down to rounding.
+// An evaluation of the theory costs a thousandth of a run. The scan is therefore finer than the scan by runs, and
+// bisection continues down to rounding.
 constexpr int kTheoryIntervals = 256;
 constexpr double kTheoryResolution = 1e-12;
 
@@ -28,7 +29,8 @@ bool has_eigenvalues(const Scenario& scenario) {
 
 /// Returns true if all eigenvalues of a step lie inside the unit circle, for each principal stiffness of the springs.
 bool step_is_stable(const Scenario& scenario) {
-  constexpr double kNoWall = 1e-12;  // [K]; below: a direction without springs, where the handle moves freely
+  constexpr double kNoWall = 1e-12;  // smallest stiffness in units of K; below it, a direction has no springs, and
+                                     // the handle moves freely along it
   const Vec3 lambdas = stiffness_eigenvalues(scenario);
   return std::all_of(lambdas.begin(), lambdas.end(), [&](double lambda) {
     if (!has_device(scenario)) return tool_on_spring(scenario, lambda).is_stable();

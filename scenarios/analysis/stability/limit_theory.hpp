@@ -11,11 +11,12 @@ namespace hapbench {
 
 /// The limit of a stability condition over the range of a question.
 struct TheoreticalLimit {
-  /// Last stable value before the first stable-to-unstable transition. Infinite (smallest: 0) if the whole range is
-  /// stable; empty if the condition does not apply to the scene or no value is stable.
+  /// Last stable value before the first stable-to-unstable transition. If the whole range is stable, it is infinite,
+  /// or 0 in a search for the smallest stable value; empty if the condition does not apply to the scene or no value
+  /// is stable.
   std::optional<double> value = {};
-  /// Midpoints of all contiguous intervals of stable parameters. field_limit() also runs these, because its coarser
-  /// scan could miss a narrow interval.
+  /// Midpoints of all contiguous intervals of stable parameters. field_limit() also runs these parameters, because
+  /// its coarser scan could miss a narrow interval.
   std::vector<double> islands = {};
   bool has_none = false;  ///< true if the condition applies and no value is stable
 };
@@ -28,9 +29,9 @@ TheoreticalLimit eigenvalue_limit(const LimitQuestion& question);
 /// without hand and device.
 TheoreticalLimit inequality_limit(const LimitQuestion& question);
 
-/// Returns the limit by the eigenvalues of the loop of device, hand and a permanent contact of stiffness K `lambda`
-/// (`lambda`: largest eigenvalue of the stiffness tensor S, in units of K). Infinite if the whole range is stable;
-/// empty without a device.
+/// Returns the limit by the eigenvalues of the loop of device, hand and a permanent contact. The stiffness of this
+/// contact is K times `lambda`, which is the largest eigenvalue of the stiffness tensor S in units of K. Infinite if
+/// the whole range is stable; empty without a device.
 std::optional<double> contact_limit(const LimitQuestion& question, double lambda);
 
 /// Limits of the stiffness K [N/m] on a two-sided wall that holds the handle of an impedance device.
@@ -39,7 +40,7 @@ struct WallLimits {
   /// Empty if the question does not concern K on such a wall.
   std::vector<std::optional<double>> closed_forms = {};
   std::optional<double> worst_hand = {};  ///< smallest limit over the hands of typical_hands()
-  std::string no_theory = {};             ///< why the eigenvalues of the loop give no limit; empty if they do
+  std::string no_theory = {};             ///< why the eigenvalues of the loop give no limit; empty if they give one
 };
 /// Returns the limits of K if the question varies K on a two-sided wall with an impedance device; otherwise empty
 /// limits.

@@ -26,11 +26,12 @@ class MotionClassifier final : public Observer {
  public:
   /// `steps`: number of time steps of the run. Precondition: steps >= 4.
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
-  /// Returns a classifier for a tool that a script moves, which is therefore never at rest. `time_step` [s].
+  /// Returns a classifier for a tool that a script moves. Such a tool may never be at rest. `time_step` [s].
   ///
-  /// Classifies the velocity above 30 Hz (the whole velocity if steps are longer than 1/60 s). A speed below 1 mm/s in
-  /// the last quarter, about the threshold of a hand, is stable. If the script ends at step `still` in the first half
-  /// of the run, also classifies the unfiltered velocity over quarters of the remaining steps.
+  /// Classifies the part of the velocity above 30 Hz (the whole velocity if steps are longer than 1/60 s). The run is
+  /// stable if this part stays below 1 mm/s in the last quarter, which is about the smallest speed that a hand feels.
+  /// If the script ends at step `still` in the first half of the run, also classifies the unfiltered velocity over
+  /// quarters of the remaining steps.
   static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still);
 
   void on_step(const StepRecord& record) noexcept override;
@@ -58,7 +59,8 @@ class MotionClassifier final : public Observer {
     Vec3 last_velocity = Vec3::Zero();  ///< last nonzero value of each component [m/s]
 
     void add(std::uint64_t quarter, const Vec3& velocity) noexcept;
-    /// Returns the class of the interval. A speed below `felt` [m/s] in the last quarter is stable.
+    /// Returns the class of motion in the interval. It is stable if the speed stays below `felt` [m/s] in the last
+    /// quarter.
     MotionClass motion_class(double felt) const noexcept;
     /// Returns true if the amplitude grows by 1 % from each quarter to the next.
     bool grows() const noexcept;
@@ -70,7 +72,7 @@ class MotionClassifier final : public Observer {
   Interval all_;                        ///< the whole run, filtered
   std::optional<std::uint64_t> still_;  ///< first step at which the script no longer moves the tool
   Interval held_;                       ///< steps from `still_` on, unfiltered
-  double largest_speed_ = 0.0;          ///< over all steps so far [m/s]
+  double largest_speed_ = 0.0;          ///< largest speed over all steps so far [m/s]
   int rows_at_rest_ = 0;
 };
 

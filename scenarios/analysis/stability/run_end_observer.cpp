@@ -41,7 +41,7 @@ bool RunEndObserver::has_left(const PointShell& shell, double reach) const {
 
 SettledState RunEndObserver::state(bool rests) const {
   SettledState state;
-  // The run was stopped when the tool came to rest. The steps that were not simulated count with velocity 0.
+  // If the run was stopped because the tool came to rest, the steps that were not simulated count with velocity 0.
   state.vibration = vibration_.rms(if_any(rests && judged_.begin(), judged_.end() - judged_.begin().value_or(0)));
   if (steps_in_contact_ == 0) return state;
   const auto steps = static_cast<double>(steps_in_contact_);

@@ -13,7 +13,8 @@
 /// Observes the state at the end of a run, from which the run is judged.
 namespace hapbench {
 
-/// The settled state of a run: `contacts` and `lambda_max` are over the steps of its last quarter.
+/// The state at the end of a run. `contacts` and `lambda_max` are computed over the steps of the last quarter of the
+/// run.
 struct SettledState {
   /// Vibration of the handle above 30 Hz over the judged steps (EvaluationWindow) [m/s rms]; empty at sampling rates of
   /// 60 Hz or less.
@@ -22,9 +23,9 @@ struct SettledState {
   double lambda_max = 0.0;  ///< largest eigenvalue of the mean stiffness tensor S in contact, in units of K
 };
 
-/// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the judged
-/// steps. Accumulates contacts and stiffness tensors over the current quarter of the run. At the end this is the last
-/// quarter, or the quarter in which the tool came to rest.
+/// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the
+/// judged steps (EvaluationWindow). Accumulates contacts and stiffness tensors over the current quarter of the run.
+/// At the end this is the last quarter, or the quarter in which the tool came to rest.
 class RunEndObserver final : public Observer {
  public:
   /// `alone`: true if there is no environment; then all steps after the first quarter are judged.
@@ -36,15 +37,16 @@ class RunEndObserver final : public Observer {
   bool touched() const { return judged_.begin().has_value(); }
   /// Returns a hash of all positions of the handle (RunStability::motion_hash).
   std::uint64_t motion_hash() const { return motion_.value(); }
-  /// Returns true if slow bounces persist (SlowBounces::persist).
+  /// Returns true if the tool keeps bouncing slowly until the end (SlowBounces::persist).
   bool keeps_bouncing() const { return bounces_.persist(); }
   /// Returns true if the tool ends without contact and more than `reach` [m] outside of the shell's bounding box.
   bool has_left(const PointShell& shell, double reach) const;
-  /// Returns the settled state. `rests`: true if the run was stopped early because the tool came to rest.
+  /// Returns the state at the end of the run. `rests`: true if the run was stopped early because the tool came to
+  /// rest.
   SettledState state(bool rests) const;
 
  private:
-  bool touches_ = false;     ///< in contact in the last step
+  bool touches_ = false;     ///< true if the tool was in contact in the last step
   Vec3 tip_ = Vec3::Zero();  ///< centre of the tip [m]
   Hash64 motion_;
   std::uint64_t steps_;  ///< number of steps of the run

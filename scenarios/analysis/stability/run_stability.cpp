@@ -83,7 +83,7 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
 RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const PointShell> shell,
                           const StabilityRule& rule) {
   constexpr int kMaxExtensions = 3;
-  constexpr std::int64_t kExtensionFactor = 4, kMaxExtendedSteps = 1'000'000;  // steps
+  constexpr std::int64_t kExtensionFactor = 4, kMaxExtendedSteps = 1'000'000;
   // Extend a run that is too short to judge.
   RunStability run = judged_once(checked.scenario(), checked.files(), shell, rule);
   Scenario longer = checked.scenario();
@@ -92,7 +92,8 @@ RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const 
     longer.time.steps *= kExtensionFactor;
     const std::uint64_t motion_hash = run.motion_hash;
     run = judged_once(longer, checked.files(), shell, rule);
-    run.motion_hash = motion_hash;  // of the unextended run, so that it compares with other runs
+    run.motion_hash = motion_hash;  // keep the hash of the unextended run, which can be compared with the hashes of
+                                    // other runs
   }
   // Check the bounds on metrics in a complete run.
   if (!is_stable(run.verdict) || rule.bounds.empty()) return run;

@@ -27,8 +27,8 @@ inline constexpr std::size_t kMotionClasses = 4;
 
 /// Name and description of a verdict.
 struct RunVerdictText {
-  std::string_view name;  ///< as in result files: "stable", "decaying", …
-  const char* meaning;    ///< for the user
+  std::string_view name;  ///< name in result files: "stable", "decaying", …
+  const char* meaning;    ///< description for the user
   const char* rule = "";  ///< criterion of a class of motion; empty for other verdicts
 };
 /// Returns the texts of all verdicts, in the order of RunVerdict.
@@ -37,7 +37,7 @@ std::span<const RunVerdictText> run_verdict_texts() noexcept;
 /// Returns RunVerdictText::name of a verdict.
 std::string_view run_verdict_name(RunVerdict verdict) noexcept;
 
-/// Returns true for `stable` and `dying_out`: the run comes to rest in contact.
+/// Returns true for `stable` and `dying_out` (named "decaying" in results): the tool comes to rest in contact.
 bool is_stable(RunVerdict verdict) noexcept;
 
 }  // namespace hapbench

@@ -12,13 +12,14 @@ namespace hapbench {
 
 /// Conditions that a stable run satisfies.
 struct StabilityRule {
-  /// Largest allowed vibration of the handle over the judged steps [m/s rms]. If set, the vibration decides instead of
-  /// the class of motion: a smaller vibration is stable, a larger vibration is not, even if it decays. A run without a
-  /// measured vibration is not stable. A tool with persistent slow bounces (SlowBounces) is vibrating.
+  /// Largest allowed vibration of the handle above 30 Hz over the judged steps (EvaluationWindow) [m/s rms]. If set,
+  /// the vibration decides instead of the class of motion: a smaller vibration is stable, a larger vibration is not,
+  /// even if it decays. A run without a measured vibration is not stable. A tool with persistent slow bounces
+  /// (SlowBounces) is vibrating.
   std::optional<double> max_vibration = {};
   /// Bounds on metrics of summary.json, by name. A metric without a value violates its bound.
   std::map<std::string, MetricBound> bounds = {};
-  bool bounded = false;  ///< true: a vibrating run, which does not grow, is also stable
+  bool bounded = false;  ///< true: a run of class `vibrating`, whose amplitude does not grow, also counts as stable
 
   /// Returns true if a run with this verdict is stable by this rule.
   bool holds(RunVerdict verdict) const noexcept;

@@ -16,8 +16,8 @@
 namespace hapbench {
 namespace {
 
-/// Relative rounding error allowed in sums over at most kMaxContacts contacts and in exact_shaping's weights, which
-/// its epsilon of 1e-6 makes sensitive.
+/// Allowed relative rounding error of sums over at most kMaxContacts contacts, and of the weights of exact_shaping.
+/// These weights are sensitive because of the small epsilon of 1e-6.
 constexpr double kForceRounding = 1e-6;
 constexpr std::uint64_t kSetsPerJob = 1000;
 
@@ -38,7 +38,7 @@ struct StressedForce {
   std::uint64_t points_dropped = 0;
 };
 
-/// Computes the force of `config`'s algorithm for a contact set.
+/// Computes the force of the algorithm in `config` for a contact set.
 StressedForce force_on(const ContactSet& set, const PointShell& shell, const RenderingConfig& config) {
   ShellSource source(shell, set.tool, make_contact_query(shell, set.tool, Skips::off), make_depth_model(config));
   ContactBuffer contacts(source.capacity());

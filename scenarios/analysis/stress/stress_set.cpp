@@ -24,12 +24,12 @@ Vec3 log_uniform_vector(Random& random, double low, double high) {
   return log_uniform(random, low, high) * direction;
 }
 
-/// Returns true with a probability.
+/// Returns true with the given probability.
 bool chance(Random& random, double probability) {
   return random.uniform() < probability;
 }
 
-/// Returns a unit vector that differs from u by 1e-16 (rounding) to 1.
+/// Returns a unit vector whose distance from u is random, between about 1e-16 (rounding) and 1.
 Vec3 nearly(Random& random, const Vec3& u) {
   return (u + log_uniform_vector(random, 1e-16, 1.0)).normalized();
 }
@@ -39,7 +39,8 @@ Vec3 sign_of(Random& random, const Vec3& u) {
   return chance(random, 0.5) ? u : Vec3(-u);
 }
 
-/// Returns a point at a radius from the tool's axis and a height [m] along it, in a random direction around the axis.
+/// Returns a point at the distance `radius` from the tool's axis and at `height` along the axis [m], in a random
+/// direction around the axis.
 Vec3 at(Random& random, const ContactSet& set, double radius, double height) {
   const Vec3 e = set.pose.axis.unitOrthogonal(), d = random.direction_in_plane();
   return set.pose.position + height * set.pose.axis + radius * (d.x() * e + d.y() * set.pose.axis.cross(e));
@@ -100,7 +101,7 @@ Draw normals(Random& random, const ContactSet& set) {
 
 /// Draws the tool's size, pose and velocity.
 void draw_tool(Random& random, ContactSet& set) {
-  // A fifth of the scenes at each end of the scale, the others in between.
+  // Of the scenes, a fifth has the smallest size, a fifth has the largest size, and the others lie in between.
   const double which = random.uniform();
   const double scale = which < 0.2 ? 1e-12 : which < 0.4 ? 1e3 : log_uniform(random, 1e-12, 1e3);
   set.tool = {scale * random.uniform(0.05, 1.0), scale * random.uniform(0.1, 3.0),

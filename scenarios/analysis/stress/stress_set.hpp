@@ -9,7 +9,7 @@
 #include "sim/tool/cylinder.hpp"
 
 /// Random contact sets, most of them degenerate, for which an algorithm may compute a force that is not finite. All
-/// tools
+/// tools are cylinders: their gradients are undefined on the axis and the rims.
 namespace hapbench {
 
 /// A tool, surface points in contact with it, and the settings of the rendering.
@@ -18,7 +18,7 @@ struct ContactSet {
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();      ///< [m/s]
   std::vector<SurfacePoint> points;  ///< inside the tool up to rounding; normals are unit vectors or zero
-  RenderingConfig rendering;         ///< without the algorithm
+  RenderingConfig rendering;         ///< settings of the rendering; their algorithm is not used
 };
 
 /// Largest number of points of a set. In some sets the reduction keeps fewer points (n_ext).

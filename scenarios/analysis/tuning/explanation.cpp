@@ -14,12 +14,13 @@
 namespace hapbench {
 namespace {
 
-/// Returns a clause about the K and setting that become feasible.
+/// Returns a clause with the K and the setting that are feasible after the limit is relaxed.
 std::string then_text(const TuneTrial& trial) {
   return fmt::format("then K = {:.4g} N/m{}", trial.stiffness, setting_text(trial.setting));
 }
 
-/// Returns a clause about the relaxed value of a limit with which the trial keeps it, including the metric's error.
+/// Returns a clause with a relaxed value of a limit, at which the trial keeps the limit. The value includes the
+/// metric's error.
 std::string relaxed(const Trials& trials, const TuneTrial& trial, const std::string& name) {
   const auto worst = value_in(trial.worst, name);
   if (!worst) return fmt::format("drop the bound on {}, which has no value here", name);
@@ -35,7 +36,8 @@ std::string relaxed(const Trials& trials, const TuneTrial& trial, const std::str
 /// Returns for each limit the smallest relaxation of this limit alone with which a trial keeps all limits; if there is
 /// no such trial, the relaxations that the nearest trial needs.
 std::string relaxations(const Trials& trials, const TuneTrial& nearest) {
-  // For each limit, find the trial that violates only this limit, by the smallest ratio.
+  // For each limit, find among the trials that violate only this limit the trial with the smallest ratio to the
+  // limit.
   std::map<std::string, std::pair<double, const TuneTrial*>> smallest;
   for (const auto& [key, trial] : trials.all()) {
     const TuneMetrics violated = trial.limits_alone ? trials.violated_limits(trial) : TuneMetrics();

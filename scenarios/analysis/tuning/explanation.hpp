@@ -7,8 +7,8 @@
 namespace hapbench {
 
 /// Writes into `law` why no setting is feasible: the violated constraint, and the limit to relax. Explains the trial
-/// nearest to keeping its limits (Trials::nearest). If there is no such trial, explains a trial that lacks only the
-/// margin; if there is none either, the last trial.
+/// that is nearest to keeping its limits (Trials::nearest). If no trial violates only limits, explains a trial that
+/// lacks only the gain margin. If there is no such trial either, explains the last trial.
 void explain(Trials& trials, TunedLaw& law);
 
 }  // namespace hapbench

@@ -19,8 +19,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns verification parameters between 0 and `last`. Logarithmic range: kVerificationSamples parameters. Delays:
-/// also every quarter of a sample. Integers: every integer.
+/// Returns the parameters between 0 and `last` that verify an interval: kVerificationSamples parameters in a
+/// logarithmic range, every integer in a range of integers, and for delays also every quarter of a sample.
 std::vector<double> parameters_up_to(const IntervalSearchOptions& options, double last) {
   std::vector<double> parameters;
   if (!options.whole) parameters = parameters_between(0.0, last, kVerificationSamples);
@@ -32,19 +32,19 @@ std::vector<double> parameters_up_to(const IntervalSearchOptions& options, doubl
 }
 
 /// Returns the largest value of a range up to which all variants of the trial are settled. `override_of`: override that
-/// sets a value. Verifies the interval by samples; a sample that fails shortens it.
+/// sets a value. Verifies the interval by samples; a sample that fails shortens the interval.
 double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearchOptions& options,
                     const std::function<std::string(double value)>& override_of) {
   const auto holds = [&](double t) {
     const auto override_at = [&](std::size_t) { return override_of(options.value_at(t)); };
     return !trials.first_failing(trial, trials.variant_count(), override_at);
   };
-  bool so_far = true;  // values beyond the first failure do not change the result and are not run
+  bool so_far = true;  // false after the first failure; values beyond it do not change the result and are not run
   const auto holds_so_far = [&](double t) {
     so_far = so_far && holds(t);
     return so_far;
   };
-  // Search the limit, verify the values below it, and repeat with each sample that fails.
+  // Search the limit and verify the values below it. If a sample fails, search again below this sample.
   EvaluatedParameters evaluated = evaluate_scan(kScanIntervals, holds_so_far);
   while (true) {
     const double last = find_stable_interval(options, evaluated, holds, false).stable.value_or(0.0);
@@ -64,7 +64,7 @@ std::optional<double> smallest_damping_ratio(const Scenario& scenario, double la
   for (const auto& [hand, step] : contact_step_matrices(scenario, lambda, over_hands)) {
     for (const std::complex<double>& z : eigenvalues(step)) {
       const double magnitude = math::hypot(z.real(), z.imag());
-      if (magnitude < 1e-9) continue;  // a state of a delay line, no mode
+      if (magnitude < 1e-9) continue;  // this is a state of a delay line and not a mode
       const double decay = -math::log(magnitude), ratio = decay / math::hypot(decay, math::atan2(z.imag(), z.real()));
       if (decay != 0.0) smallest = std::min(smallest.value_or(1.0), ratio);
     }

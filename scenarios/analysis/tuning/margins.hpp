@@ -2,17 +2,17 @@
 
 #include <optional>
 
-/// Robustness margins of a tuned setting.
+/// Robustness margins of the choice, that is, of the setting and stiffness that the search selected.
 namespace hapbench {
 
-/// Margins up to which all variants of a choice stay settled. Limited to kMaxGainMargin and kMaxDelayMargin. A margin
-/// is empty if it has no meaning, such as the delay of an ideal device.
+/// Margins up to which a choice stays stable in all scene variants. They are searched up to kMaxGainMargin and
+/// kMaxDelayMargin. A margin is empty if it has no meaning, such as the delay of an ideal device.
 struct TuneMargins {
   std::optional<double> gain;           ///< largest factor on K
   std::optional<double> delay_samples;  ///< largest additional delay of the device's force or servo [samples]
   std::optional<double> damping_ratio;  ///< damping ratio of the least damped mode of the loop in contact
 };
-/// Largest margins that are searched: factor on K, and delay [samples].
+/// Upper ends of the searches: factor on K, and delay [samples].
 inline constexpr double kMaxGainMargin = 64.0, kMaxDelayMargin = 64.0;
 
 class Trials;

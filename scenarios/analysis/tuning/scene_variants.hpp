@@ -9,17 +9,15 @@
 namespace hapbench {
 
 /// Names of the variant sets, which add runs to the run of the scene itself:
-///   hands   hand stiffnesses of 100 and 1000 N/m (the extremes of typical_hands()) with the scene's damping; a hand
-///   with
-///   a
-///           mass also gets masses of 0.1 and 0.5 kg
+///   hands   hand stiffnesses of 100 and 1000 N/m (the extremes of typical_hands()) with the scene's damping;
+///           a hand with a mass also gets masses of 0.1 and 0.5 kg
 ///   seeds   four further seeds, with start positions shifted by 10 um, less than the repeatability of a hand
 ///   speeds  the scripts of hand and tool at half and twice their speed
 inline constexpr const char* kFamilies[] = {"hands", "seeds", "speeds"};
 
 /// A variant of a scene.
 struct SceneVariant {
-  std::string name;                         ///< for the user, such as "a hand of 0.5 kg and 1000 N/m"
+  std::string name;                         ///< name for the user, such as "a hand of 0.5 kg and 1000 N/m"
   std::vector<std::string> overrides = {};  ///< overrides that make the variant; empty: the scene itself
 };
 

@@ -29,7 +29,8 @@ std::string verdict_with(const RunStability& run, const SceneVariant& variant) {
   return std::string(run_verdict_name(run.verdict)) + with(variant);
 }
 
-/// Writes the worst value of a limited metric over the variants into the trial; no value if a run has no value.
+/// Stores the worst value of a limited metric over the variants in the trial. Stores no value if the metric has no
+/// value in one of the runs.
 void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bound,
                 std::span<const TuneMetrics> metrics, std::span<const SceneVariant> variants) {
   for (std::size_t i = 0; i < metrics.size(); ++i) {
@@ -71,7 +72,7 @@ Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
   for (const std::string& set : question_.families)
     for (SceneVariant& variant : scene_variants(own, set)) variants_.push_back(std::move(variant));
   if (has_permanent_springs(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
-  // Without limits of the user, use the thresholds of the diagnosis.
+  // If the user gave no limits, use the thresholds of the low-vibration rules of the diagnosis.
   if (requires_low_vibration_)
     for (const Diagnosed& rule : diagnosis_rules(requires_low_vibration_)) limits_[rule.rule].max = rule.threshold;
   end_.fail("range", "the end of the search range");
@@ -211,7 +212,7 @@ bool Trials::judge_loop(TuneTrial& trial, const SceneVariant& variant, double la
 
 /// Runs the variants [first, last) at K and at G K. Fails the trial at the first run that is not settled.
 void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
-  std::vector<RunStability> judged(2 * (last - first));  // of each variant at K, then at G K
+  std::vector<RunStability> judged(2 * (last - first));  // for each variant: the verdict at K, then at G K
   in_parallel(judged.size(), [&](std::size_t job) {
     const double gain = job % 2 != 0 ? question_.margin : 1.0;
     const CheckedScenario scene = checked(load(trial.setting, gain * trial.stiffness, variants_[first + job / 2]));
@@ -234,7 +235,7 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
 
 /// Measures the limited metrics over the variants. Fails the trial at the first violated limit.
 void Trials::judge_limits(TuneTrial& trial) {
-  // Low vibration concerns the run of the scene itself only; limits of the user concern all variants.
+  // The low-vibration rules apply only to the run of the scene itself. Limits of the user apply to all variants.
   std::vector<TuneMetrics> metrics(requires_low_vibration_ ? 1 : variants_.size());
   in_parallel(metrics.size(), [&](std::size_t i) {
     const CheckedScenario scene = checked(load(trial.setting, trial.stiffness, variants_[i]));

@@ -20,7 +20,7 @@ namespace hapbench {
 
 inline constexpr double kTuneResolution = 5e-3;  ///< relative width at which a search for K stops
 
-/// A run that is not settled.
+/// A run that violates the constraint "settled": it is not stable by rule_of().
 struct Failing {
   std::size_t run;  ///< index of the run, from 0
   std::string why;  ///< reason, for the user
@@ -30,7 +30,7 @@ struct Failing {
 ///
 /// Invariants:
 /// - each setting and stiffness is run once, when it is first requested;
-/// - the result of every trial follows the current limits: tighten_limits() re-evaluates all trials;
+/// - the result of every trial agrees with the current limits: tighten_limits() re-evaluates all trials;
 /// - cap(), the largest K of the search, only decreases: a K that failed a verification is not chosen again;
 /// - runs() counts every simulation.
 class Trials {
@@ -42,7 +42,7 @@ class Trials {
 
   const TuneQuestion& question() const { return question_; }
   const TuneRanges& ranges() const { return ranges_; }
-  /// Returns the number of variants, including the scene itself: the number of runs of a trial at K.
+  /// Returns the number of variants, including the scene itself. A trial makes this number of runs at K.
   std::size_t variant_count() const { return variants_.size(); }
   /// Returns true if the variants have other hands.
   bool over_hands() const { return over_hands_; }
@@ -57,7 +57,7 @@ class Trials {
 
   /// Returns the trial of a setting at K [N/m]. Runs it first if necessary.
   const TuneTrial& trial_at(const TuneSetting& setting, double stiffness);
-  /// Returns the trial of a setting at K [N/m]; for K above cap(), returns end().
+  /// Returns the trial of a setting at K [N/m], like trial_at(). For K above cap(), returns end() without a run.
   const TuneTrial& beyond(const TuneSetting& setting, double K);
   /// Returns true if a setting is feasible at K [N/m].
   bool feasible(const TuneSetting& setting, double K) { return beyond(setting, K).feasible(); }
@@ -80,12 +80,14 @@ class Trials {
   /// Returns the current bound on a metric. Precondition: the metric has a limit.
   const MetricBound& limit_on(const std::string& metric) const { return limits_.at(metric); }
   /// Returns the violated limits of a trial, each with the factor > 1 by which the worst value is beyond its limit. A
-  /// limited metric without a value has an infinite factor; a low-vibration rule without a value is kept. Precondition:
-  /// TuneTrial::worst is filled.
+  /// limited metric without a value has an infinite factor; a low-vibration rule whose number has no value counts as
+  /// satisfied. Precondition: TuneTrial::worst is filled.
   TuneMetrics violated_limits(const TuneTrial& trial) const;
-  /// Returns the number of violated limits and the largest factor of violated_limits(), with its precondition.
+  /// Returns the number of violated limits and the largest factor of violated_limits(). Precondition:
+  /// TuneTrial::worst is filled.
   std::pair<std::size_t, double> excess(const TuneTrial& trial) const;
-  /// Returns the trial with the smallest excess() among trials that violate only limits on metrics; null without any.
+  /// Returns the trial with the smallest excess() among the trials that violate only limits on metrics; null if there
+  /// is no such trial.
   const TuneTrial* nearest() const;
   /// Returns the error estimates of the metrics of the last verified trial.
   const TuneMetrics& error() const { return error_; }
@@ -102,7 +104,7 @@ class Trials {
   void note_unstable(double K);
   /// Returns the largest K of the search [N/m].
   double cap() const { return cap_; }
-  /// Limits the search to K <= `cap` [N/m]. Larger K fail with this constraint and reason.
+  /// Limits the search to K <= `cap` [N/m]. Trials at a larger K fail with this constraint and reason.
   void set_cap(double cap, std::string constraint, std::string reason);
   /// Returns the infeasible trial that represents all K above the cap.
   const TuneTrial& end() const { return end_; }

@@ -17,20 +17,20 @@ namespace hapbench {
 /// The result for one law.
 struct TunedLaw {
   std::string algorithm;
-  std::optional<TuneTrial> choice;  ///< empty: no setting is feasible
+  std::optional<TuneTrial> choice;  ///< the best feasible setting and its K; empty if no setting is feasible
   /// Constraint (TuneTrial::binding) that a slightly larger K violates; without a choice, the constraint that the
   /// nearest trial violates.
   std::string binding;
   std::string why;    ///< reason of the violation, for the user
-  std::string relax;  ///< without a choice: which limit to relax, and by how much
+  std::string relax;  ///< if there is no choice: the limit to relax, and its new value, for the user
   TuneMargins margins;
   FieldLimit edge;  ///< stability limits of K in the scene with the choice and the scene's hand
   /// Error estimates: largest change of each metric of the scene's run if the step is halved, the point spacing is
-  /// halved, or depth is evaluated at every step. Without an entry for a metric that such a run lacks.
+  /// halved, or depth is evaluated at every step. A metric that one of these runs lacks has no entry.
   TuneMetrics error;
   std::vector<TuneTrial> trials;       ///< all trials, by setting and K
   std::size_t runs = 0;                ///< total number of simulations
-  std::size_t verified = 0;            ///< number of verification runs between K and G K, all settled
+  std::size_t verified = 0;            ///< number of verification runs between K and G K, all of them settled
   std::vector<std::string> overrides;  ///< overrides that apply the choice to the scene
 };
 
@@ -41,9 +41,8 @@ struct TunedLaw {
 ///   Without limits of the user, the run of the scene itself must have low vibration (low_vibration_numbers in
 ///   diagnosis.hpp).
 /// - every variant is settled at G K.
-/// - the loop in contact has stable eigenvalues from K to G K (contact_step_matrices; for an impedance device that a
-/// hand holds,
-///   with every hand of typical_hands()).
+/// - the loop in contact has stable eigenvalues from K to G K (contact_step_matrices; with every hand of
+///   typical_hands() if a hand holds an impedance device).
 ///
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified
 /// (verification.hpp). If the verification fails, the search is repeated with stricter bounds. Throws InputError for a

@@ -16,7 +16,8 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
   if (!scene.rendering.hunt_crossley) {
     ranges.damping_ratio = question.damping_ratio;
     ranges.damping_ratio->logarithmic = true;
-    // The scenario's zeta refers to the virtual mass, but the mass that moves is the handle: convert the range.
+    // Convert the range of zeta: in the question it refers to the mass of the handle, which moves; in the scenario it
+    // refers to the virtual mass.
     if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scene.device)) {
       const double scale = std::sqrt(device->handle_mass / scene.rendering.mass);
       ranges.damping_ratio->from *= scale;

@@ -29,7 +29,7 @@ struct TuneQuestion {
   Range damping_ratio = {0.01, 10.0, true};       ///< zeta; on impedance devices computed with the handle's mass
   /// Virtual mass of an admittance device [kg]; empty: half to twice the scene's virtual mass.
   std::optional<Range> mass = {};
-  bool filters = false;                                ///< also search velocity filters of impedance devices
+  bool filters = false;                                ///< true: velocity filters of impedance devices are searched too
   unsigned threads = 1;                                ///< number of parallel runs; does not change the result
   std::function<void(std::size_t runs)> on_runs = {};  ///< called repeatedly with the number of runs so far
 };

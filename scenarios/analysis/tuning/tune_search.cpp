@@ -15,7 +15,8 @@ constexpr const char* kFilters[] = {R"({"type":"difference"})", R"({"type":"low_
                                     R"({"type":"low_pass","cutoff_Hz":100})", R"({"type":"low_pass","cutoff_Hz":200})",
                                     R"({"type":"adaptive_window"})"};
 
-/// Returns the initial settings. The scene's setting comes first: a later setting replaces it only with a larger K.
+/// Returns the initial settings. The scene's setting comes first, so that another setting is preferred only if it
+/// allows a larger K.
 std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& scene) {
   std::vector<std::optional<double>> ratios = {std::nullopt};
   if (ranges.damping_ratio) {
@@ -65,7 +66,8 @@ Range TuneSearch::stiffnesses() const {
   return {whole.from, whole.to / trials_.question().margin, true};
 }
 
-/// Finds the largest feasible K of a setting if it exceeds the best K, and makes it the best trial. Returns true if so.
+/// Searches a feasible K of a setting above the best K so far. If there is one, makes the trial with the largest such
+/// K the best trial and returns true.
 bool TuneSearch::improve(const TuneSetting& setting) {
   // Search only above the best K.
   IntervalSearchOptions options{.range = stiffnesses(), .resolution = kTuneResolution};
@@ -91,8 +93,8 @@ bool TuneSearch::is_too_soft(const TuneSetting& setting, const IntervalSearchOpt
   return trials_.trial_at(setting, options.value_at(t)).too_soft;
 }
 
-/// Returns the parameter of a feasible value that lies between two values of the scan, the lower too soft and the upper
-/// too stiff; empty if there is none.
+/// Searches between two neighbouring values of the scan, of which the lower is too soft and the upper too stiff.
+/// Returns the parameter of a feasible value; empty if there is none.
 std::optional<double> TuneSearch::window(const TuneSetting& setting, const IntervalSearchOptions& options,
                                          const EvaluatedParameters& scan) {
   for (auto at = scan.begin(); std::next(at) != scan.end(); ++at) {

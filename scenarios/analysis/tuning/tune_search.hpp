@@ -13,10 +13,10 @@ namespace hapbench {
 /// Searches the settings of a law for the largest feasible K.
 ///
 /// Starts from damping ratios zeta in factors of 10^(1/4), with the scene's mass and both ends of the range of the
-/// virtual mass. For each setting that allows a K larger than the best K by 0.5 %, searches its largest feasible K. If
-/// no trial is feasible but some violate only limits on metrics, descends from the nearest trial towards the limits.
-/// Then evaluates velocity filters with the best mass. Finally refines zeta and mass until a change by 0.4 % no longer
-/// raises K.
+/// virtual mass. For each setting at which a K 0.5 % above the best K is feasible, searches the largest feasible K.
+/// If no trial is feasible but some trials violate only limits on metrics, searches for a feasible trial, by a
+/// pattern search that starts at the trial nearest to keeping its limits. Then evaluates velocity filters with the
+/// best mass. Finally refines zeta and mass until a change by 0.4 % no longer raises K.
 class TuneSearch {
  public:
   /// `trials` must outlive this.

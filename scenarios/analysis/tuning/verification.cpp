@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kStiffnessReduction = 1.25;  // K is divided by this if a longer run is not settled
 
-/// Records that K is not settled, and limits the search to stiffnesses whose margin stays below K. Returns true.
+/// Records that the run at K is not settled. Limits the search to stiffnesses K' with G K' below K. Returns true.
 bool refute(Trials& trials, const TuneTrial& choice, double K, const std::string& why) {
   trials.note_unstable(K);
   trials.set_cap(K / trials.question().margin * (1.0 - kTuneResolution), "margin",
@@ -63,7 +63,8 @@ bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law)
 bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
   const Scenario scenario = trials.load(choice.setting, choice.stiffness).scenario;
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
-  // A script that moves on after the end of the scene would reach other positions: skip this verification.
+  // Skip this verification if a script goes on after the end of the scene, because it would move the tool to other
+  // positions.
   if (script_moves_until(scenario) > duration && script_period(scenario) == 0.0) return false;
   const auto twice = [&](std::size_t) { return fmt::format("time.steps={}", 2 * scenario.time.steps); };
   const auto failing = trials.first_failing(choice, trials.variant_count(), twice);
@@ -100,7 +101,7 @@ TuneMetrics known_errors(Trials& trials, const TuneTrial& trial) {
   }
   trials.count_runs(finer.size());
   const std::vector<Result> runs = run_all(finer, {trials.question().threads, ""});
-  // The error of a metric is its largest change; a metric that a run lacks has none.
+  // The error of a metric is its largest change. A metric that is missing in one of the runs has no error estimate.
   TuneMetrics error;
   for (const auto& [name, value] : trial.metrics) {
     double largest = 0.0;

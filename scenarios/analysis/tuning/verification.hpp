@@ -19,8 +19,8 @@ TuneMetrics known_errors(Trials& trials, const TuneTrial& trial);
 /// Returns true if a choice passes all verifications, the cheapest first:
 /// - it is settled at 56 gains from 1 to G, in runs that cycle through the variants;
 /// - the stability limit of K in the scene itself, found by field_limit(), is beyond G K;
-/// - it is settled in runs twice as long, unless a script would move on after the scene's end;
-/// - it keeps the limits of the user even if its metrics are off by their errors.
+/// - it is settled in runs twice as long; this is not checked if a script would go on after the end of the scene;
+/// - it keeps the limits of the user even if each metric is worse by its error estimate.
 ///
 /// If a verification fails, tightens the cap on K or the limits in `trials` so that the choice is no longer feasible.
 /// Writes TunedLaw::verified, edge and error, and the metrics of the choice.

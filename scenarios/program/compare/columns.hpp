@@ -17,10 +17,10 @@ struct ComparedRun {
 };
 
 /// Returns the columns of comparison.csv, without times, so that equal comparisons give identical files.
-/// `seeds`: there are several seeds; the first column then has the seed.
+/// `seeds`: true if there are several seeds; the first column then has the seed.
 Columns<ComparedRun> comparison_columns(bool seeds);
-/// Returns the columns of ranking.csv, which has a row for each scenario, algorithm and metric. `seeds`: there
-/// are several seeds; the printed table then has the spread.
+/// Returns the columns of ranking.csv, which has a row for each scenario, algorithm and metric. `seeds`: true if
+/// there are several seeds; the printed table then has the spread.
 Columns<RankingEntry> ranking_columns(bool seeds);
 /// Returns the columns of the table of the algorithms over all scenarios and metrics.
 Columns<LawRankingEntry> law_ranking_columns();

@@ -37,7 +37,7 @@ namespace {
 
 struct CompareOptions : CommonOptions {
   std::vector<std::string> scenarios, metrics;
-  ComparisonQuestion question;  ///< without algorithms: all algorithms are compared
+  ComparisonQuestion question;  ///< if it has no algorithms, all algorithms are compared
   bool errors = false;
 };
 
@@ -125,7 +125,7 @@ int compare(const CompareOptions& options, ProgramContext& context) {
   // Check all input before anything runs or is written.
   const Comparison comparison = planned(options);
   const bool several = comparison.scenes.size() > 1;
-  // True if there are several scenes or seeds to rank over, or metrics to rank by.
+  // True if a ranking is reported: there are several scenes or several seeds, or --by names metrics.
   const bool ranks = several || comparison.seeds > 1 || !options.metrics.empty();
   print_warnings(context, comparison.warnings);
   Report report(options, kCompareFiles, several ? "compare" : "compare_" + comparison.names[0], context);
@@ -139,8 +139,8 @@ int compare(const CompareOptions& options, ProgramContext& context) {
     require_writable_directory(context, out / comparison.folder(run));
   const JobOptions jobs = job_options(options, "compare", context);
   JobOptions timed = jobs;
-  // The wide table of a single scene shows times, which concurrent runs would lengthen: run one at a time
-  // unless --jobs is given.
+  // The wide table of a single scene shows times, and concurrent runs would be slower. Therefore make one run at a
+  // time unless --jobs is given.
   if (options.jobs == 0 && !ranks && layout.in_full()) timed.threads = 1;
   const std::vector<Result> reports =
       run_all(comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); });

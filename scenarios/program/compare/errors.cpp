@@ -94,7 +94,7 @@ void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t sc
 std::string vibration_text(const Ranking& league, const Layout& layout) {
   struct VibrationMetric {
     const char *of, *metric;
-    double threshold;  ///< vibration that a hand cannot feel [unit of the metric]
+    double threshold;  ///< largest vibration that a hand cannot feel [unit of the metric]
   };
   constexpr VibrationMetric kVibrations[] = {{"force", "force_rms_above_30Hz_N", 1e-4},
                                              {"tool", kToolVibrationPower, 1e-10}};
@@ -104,7 +104,8 @@ std::string vibration_text(const Ranking& league, const Layout& layout) {
   std::vector<std::string> failing;
   for (std::size_t a = 0; a < league.algorithms.size(); ++a)
     if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
-  // Compare the force; if a law without failures has no value of it, compare the tool.
+  // Compare the vibration of the force. If a law without failures has no value for it, compare the vibration of the
+  // tool.
   for (const auto& [of, metric, threshold] : kVibrations) {
     const auto metric_index =
         static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());

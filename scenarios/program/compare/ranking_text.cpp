@@ -52,7 +52,7 @@ RankCount rank_count(const Ranking& league, const std::string& algorithm) {
 std::string first_ranks_text(const Ranking& league) {
   constexpr std::size_t kMaxNamed = 5;
   if (!league.laws.front().mean_rank) return "nothing is ranked: none of these metrics has a better direction";
-  std::size_t rankings = 0;  // equal for all laws
+  std::size_t rankings = 0;  // number of rankings, which is equal for all laws
   std::vector<std::string> firsts;
   for (const LawRankingEntry& law : league.laws) {
     const RankCount count = rank_count(league, law.algorithm);

@@ -98,8 +98,9 @@ std::vector<Description> other_meanings(const Index& index, const std::string& n
   return {describe_scenario(find_scenario(name), layout)};
 }
 
-/// Returns the glossary's entry for a name that has another meaning too, after an empty line. Returns an empty text if
-/// the glossary has no entry, or if its file is missing: the other meaning does not need it.
+/// Returns an empty line and the glossary's entry for a name that the program also defines. Returns an empty text if
+/// the glossary has no entry, or if the file of the glossary is missing, because the program's meaning does not need
+/// this file.
 std::string glossary_addition(const std::string& name, const Layout& layout) {
   try {
     const std::optional<Description> term = find_term(glossary_index(layout), name);

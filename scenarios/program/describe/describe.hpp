@@ -2,7 +2,8 @@
 
 #include "scenarios/program/command_line.hpp"
 
-/// The command `describe`, which explains the names of the program and of the files installed beside it.
+/// The command `describe`. It explains the names that a user meets: names defined in the program (algorithms, fields,
+/// metrics, columns …), and the scenarios, studies, claims and glossary terms installed with it.
 namespace hapbench {
 
 void add_describe(CommandLine& line);

@@ -20,7 +20,7 @@ struct Description {
 Description joined(const std::vector<Description>& meanings);
 
 /// Returns the text of an entry that is described by its JSON. The first line has the name, unit and kind. The
-/// prose and the other members follow, each with its key. A member that is an array of objects becomes a list
+/// description and the other members follow, each with its key. A member that is an array of objects becomes a list
 /// of such entries. `indent`: spaces in front of each line.
 std::string entry_text(const Json& item, const Layout& layout, std::size_t indent = 0);
 

@@ -22,8 +22,8 @@ Description describe_algorithms(const Layout& layout);
 Description describe_profile(const Layout& layout);
 /// Describes all fields of a scenario file.
 Description describe_scenario_fields(const Layout& layout);
-/// Adds the types that fields choose from, such as the types of an environment. A type with one schema in
-/// several fields is added once.
+/// Adds the types that fields choose from, such as the types of an environment. A type that several fields share with
+/// the same schema is added once.
 void add_types(Index& index, const Layout& layout);
 
 }  // namespace hapbench

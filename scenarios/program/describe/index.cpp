@@ -12,7 +12,7 @@
 namespace hapbench {
 namespace {
 
-/// Names of descriptions that cover several entries.
+/// Names whose descriptions cover several entries.
 constexpr std::pair<const char*, Description (*)(const Layout&)> kSections[] = {
     {"metrics", describe_metrics},
     {"summary.json", describe_metrics},
@@ -36,7 +36,7 @@ constexpr std::pair<const char*, Description (*)(const Layout&)> kSections[] = {
 }  // namespace
 
 Index program_index(const Layout& layout) {
-  // Entries come in the order of the lists; headings are last because they refer to other entries.
+  // Entries are in the order of the lists of `describe`. Headings come last because they refer to other entries.
   const std::vector<DescribedTable> tables = result_tables();
   Index index;
   add_models(index, layout);

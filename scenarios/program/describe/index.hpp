@@ -9,8 +9,8 @@
 #include "scenarios/program/layout.hpp"
 
 /// The index of the names that users meet. `describe` lists some kinds of names and explains each name, and
-/// error messages suggest the nearest name. Each part of the index is made from the table that defines its
-/// kind, so that a new entry of that table appears here too.
+/// error messages suggest the nearest name. The names of each kind are read from the table that defines them, so that
+/// a new entry of the table appears here too.
 namespace hapbench {
 
 /// A name with one of its meanings.
@@ -21,7 +21,7 @@ struct IndexEntry {
   std::function<Description()> describe;
   Json more = Json::object();  ///< further members in a list's JSON: the group of a scenario, the verdict on a claim
 };
-/// Names with their meanings, in the order of the lists of `describe`.
+/// Names with their meanings, in the order in which `describe` lists them.
 using Index = std::vector<IndexEntry>;
 
 /// Returns the names that are defined in the program itself, without the files installed beside it: from models

@@ -30,8 +30,8 @@ std::string group_of(const IndexEntry& item) {
 
 constexpr std::size_t kColumn = 34;  // column of the summaries [characters]
 
-/// Returns the first sentence, which also ends at a semicolon or at a colon after character 20. Shortens it to
-/// the rest of the line.
+/// Returns the first sentence. A semicolon, or a colon after character 20, also ends the sentence. Truncates it to
+/// the width that is left in the line.
 std::string short_summary(const std::string& text, const Layout& layout) {
   std::size_t end = std::min(text.find("; "), text.find(": ", 20));
   for (std::size_t dot = text.find('.'); dot < end; dot = text.find('.', dot + 1)) {
@@ -51,7 +51,8 @@ std::string list_text(const Index& all, bool only_names, const Layout& layout) {
     // Begin a new list if the kind or group changes.
     if (lists.empty() || lists.back().first != title) lists.emplace_back(title, "");
     std::string& entries = lists.back().second;
-    const std::string verdict = item.more.value("verdict", "");  // of a claim, whose statement is listed in full
+    const std::string verdict = item.more.value("verdict", "");  // only a claim has a verdict; its statement is
+                                                                 // listed in full
     if (only_names)
       entries += (entries.empty() ? "" : ", ") + item.name;
     else if (verdict.empty())

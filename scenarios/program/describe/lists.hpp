@@ -21,8 +21,9 @@ std::span<const char* const> listed_kinds();
 std::string list_name(const std::string& kind);
 /// Returns true for the name of a kind's list, except "metrics", which describe_metrics() explains in full.
 bool is_kind(const std::string& name);
-/// Prints the entries of a kind or group, or with --grep the entries with a text. Without a name and --grep,
-/// prints only the names of each kind, without the many metrics, claims and terms. Returns the exit status.
+/// Prints the entries of a kind or group, or with --grep the entries that contain a text. Without a name and without
+/// --grep, prints only the names of each kind, except for metrics, claims and terms, which are too many. Returns the
+/// exit status.
 int list(const DescribeOptions& options, ProgramContext& context);
 
 }  // namespace hapbench

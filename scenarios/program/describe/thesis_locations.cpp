@@ -27,8 +27,8 @@ struct ThesisLocation {
   std::string kind, number;
 };
 
-/// Returns the kind of location that a word announces. Every word other than figure and table announces
-/// sections.
+/// Returns the kind of the locations whose numbers follow a word. After every word other than "figure" and "table"
+/// they are sections.
 std::string location_kind(const std::string& word) {
   const std::string lower = lower_case(word);
   if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";
@@ -51,8 +51,8 @@ std::optional<ThesisLocation> parse_thesis_location(const std::string& name) {
   return location;
 }
 
-/// Returns true if a source such as "3.3, Fig. 4, C.2a" names the location or a part of it. A kind applies to
-/// all numbers up to the next word. Other numbers in the source also count as locations.
+/// Returns true if a source such as "3.3, Fig. 4, C.2a" names the location or a part of it. A kind applies to all
+/// numbers up to the next word. Numbers that are no location of the thesis are treated as locations too.
 bool mentions_location(const std::string& source, const ThesisLocation& requested) {
   static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
   std::string kind = "section";

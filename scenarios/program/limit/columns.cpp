@@ -14,8 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the columns that distinguish the cases: device, scene, fields of --over, algorithm. Null: all
-/// columns, for `describe`.
+/// Returns the columns that distinguish the cases: device, scene, fields of --over, algorithm. If `table` is null,
+/// returns all columns, for `describe`.
 template <class Row>
 Columns<Row> case_columns(const LimitTable* table) {
   const bool devices = table == nullptr || !table->devices.empty();
@@ -72,8 +72,8 @@ auto of(Part part, Get get) {
   return [part, get](const LimitRow& row) { return cell_of(std::invoke(get, std::invoke(part, row))); };
 }
 
-/// Returns the columns of the stability limit, of the stable interval that it ends, and of the linear limit. A
-/// single case also prints the other end of the interval.
+/// Returns the columns of the stability limit, of the stable interval at whose end it lies, and of the linear limit.
+/// A single case also prints the other end of the interval.
 Columns<LimitRow> limit_value_columns(const LimitTable* table) {
   const auto is_printed = [table](bool low) {
     return table == nullptr || (!table->is_grid() && low != table->first().question.search.smallest);

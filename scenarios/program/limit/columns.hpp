@@ -8,8 +8,8 @@
 /// The tables of `limit`.
 namespace hapbench {
 
-/// Name of the column with the runs that are unstable within the stable interval or stable outside of it, and
-/// the column's former name.
+/// New and old name of one column. It lists the runs that are unstable within the stable interval, or stable outside
+/// of it.
 inline constexpr const char* kNonMonotonic = "non_monotonic_runs";
 
 /// A row of limit_runs.csv: a run and the case that it belongs to.
@@ -21,8 +21,8 @@ struct LimitRunRow {
 };
 
 /// Returns the columns of limit.csv. They include the published closed-form limits of a wall on an impedance
-/// device if a case has them. `table` selects the columns that apply, here and below; null: all columns, for
-/// `describe`.
+/// device if a case has them. In all functions of this header, `table` selects the columns that apply to it; null:
+/// all columns, for `describe`.
 Columns<LimitRow> limit_columns(const LimitTable* table);
 /// Returns the columns of limit_runs.csv.
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table);

@@ -49,7 +49,7 @@ bool are_devices_changed(const LimitOptions& options) {
 }
 
 /// Returns the selected devices. Each device is followed by its variants: both ends of the range of unpublished
-/// parameters, or the friction factors of --friction. A device that --set changes has "*" behind its name.
+/// parameters, or the friction factors of --friction. If --set changes a device, "*" is appended to its name.
 std::vector<ComparedDevice> device_variants(const LimitOptions& options) {
   const bool none_other = options.friction == std::vector<std::string>{kNoFriction};
   const bool is_changed = are_devices_changed(options);
@@ -72,7 +72,8 @@ std::vector<ComparedDevice> device_variants(const LimitOptions& options) {
   return devices;
 }
 
-/// Returns the error with the device's name in its location, because the overrides apply to all devices.
+/// Returns the error with the device's name in its location. The name is needed because the overrides apply to all
+/// devices.
 InputError on_device(const ComparedDevice& device, const InputError& error) {
   std::vector<InputError> faults;
   for (const InputError& fault : error.faults()) {

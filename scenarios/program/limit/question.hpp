@@ -30,9 +30,10 @@ struct LimitRow {
   const ComparedDevice* device = nullptr;     ///< null: the scene's device
   Scenario scenario = {};  ///< the scenario with overrides, device and axis values, and its current value of the field
   LimitQuestion question = {};
-  /// The limit divided by the limit of the reference case, which has the first scene and algorithm and is equal
-  /// in all else; and the same ratio of K lambda_max(S), the rendered stiffness. S is the normalized stiffness
-  /// tensor. Empty if one of the two cases has no limit.
+  /// stiffness_ratio: the limit divided by the limit of the reference case. The reference case has the first scene
+  /// and the first algorithm, and is equal in everything else. rendered_ratio: the same ratio of the rendered
+  /// stiffness K lambda_max(S), with the stiffness tensor S in units of K. Empty if one of the two cases has no
+  /// limit.
   std::optional<double> stiffness_ratio = {}, rendered_ratio = {};
 
   const std::string& scene() const { return axis_values[axis_values.size() - 2]; }
@@ -47,12 +48,13 @@ struct LimitTable {
   std::vector<LimitRow> rows = {};
 
   const LimitRow& first() const { return rows.front(); }
-  /// Number of fields of --over, which are the axes 1 to over().
+  /// Number of fields of --over. These fields are the axes 1 to over().
   std::size_t over() const { return cases.axes().size() - 3; }
-  /// Number of scenes times number of algorithms. Each block of columns() successive rows is equal in all else.
+  /// Number of scenes times number of algorithms. The rows of each block of columns() successive rows differ only in
+  /// scene and algorithm.
   std::size_t columns() const { return cases.axes()[over() + 1].size() * cases.axes()[over() + 2].size(); }
-  /// True if a grid shows the limits, with rows for devices or values of --over. Otherwise each number of the
-  /// few limits is printed.
+  /// True if the limits are printed as a grid, with a row for each device or value of --over. Otherwise there are few
+  /// limits, and each is printed with all its numbers.
   bool is_grid() const { return !devices.empty() || over() > 0; }
 };
 

@@ -37,8 +37,8 @@ std::string resolution_text(const LimitQuestion& question) {
   return fmt::format("{} %{}", 100.0 * search.resolution, search.range.logarithmic ? "" : " of the range");
 }
 
-/// States the question for one scene. `over`: other fields vary too, so that values which depend on them are
-/// omitted.
+/// States the question for one scene. `over`: true if other fields vary too; values that depend on these fields are
+/// then omitted.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over, const Layout& layout) {
   const IntervalSearchOptions& search = question.search;
   const std::string width = resolution_text(question);
@@ -95,7 +95,7 @@ std::string remarks_text(const LimitRow& row, const Layout& layout) {
 
 /// Returns notes that explain the table's columns and marks.
 std::string notes_text(const LimitTable& table, const Layout& layout) {
-  std::optional<double> friction;  // largest Coulomb friction of a handle [N]; empty without impedance devices
+  std::optional<double> friction;  // largest Coulomb friction over the handles [N]; empty without impedance devices
   for (const LimitRow& row : table.rows)
     if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device))
       friction = std::max(friction, std::optional(device->coulomb));

@@ -21,14 +21,14 @@ struct DragStart {
   Vec3 position = Vec3::Zero();    ///< initial.position_m [m]
   Vec3 direction = Vec3::UnitX();  ///< hand.direction
   double smoothing = 0.0;          ///< hand.smoothing_m [m]
-  double free_length = 0.0;        ///< length of the path up to where the surface ends or turns back [m]
+  double free_length = 0.0;        ///< length of the path, which ends where the surface ends or turns back [m]
 };
 
-/// Chooses the start position and direction of a drag. Evaluates the directions +x, +y, -x and -y from each
-/// position, with once, twice and four times `smoothing` [m]. Stops with the smallest smoothing that gives a
-/// path of at least `min_length` [m]; otherwise returns the longest path. A later path is preferred only if it is
-/// 10 % longer, so that rounding does not decide. Cost: about 10 ms for each combination. Precondition: the
-/// shell has points and `positions` is not empty.
+/// Chooses the start position and direction of a drag. Evaluates the directions +x, +y, -x and -y from each position.
+/// Does so with the smoothing radius `smoothing` [m], then with twice and four times this radius, until a path is at
+/// least `min_length` [m] long. If no path is, returns the longest path. A later path is preferred only if it is 10 %
+/// longer, so that rounding does not decide. Cost: about 10 ms for each combination. Precondition: the shell has
+/// points and `positions` is not empty.
 DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double min_length);
 
 }  // namespace hapbench

@@ -6,10 +6,10 @@
 
 #include "scenarios/input/json_file.hpp"
 
-/// The kinds of scenes that `new` can start from.
+/// The kinds of scenes that the command `hapbench new` can write.
 namespace hapbench {
 
-/// A kind of scene to start from.
+/// A kind of scene, such as a drag over a mesh.
 struct StartKind {
   std::string name, summary;
   std::string source;  ///< kind of the source file: "mesh", "shell" or "stroke"; empty: no source file

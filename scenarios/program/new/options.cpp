@@ -33,7 +33,7 @@ double parse_length(const char* option, const std::string& text) {
 
 void check_options(const NewOptions& options, const StartKind& kind) {
   const std::string &name = kind.name, &from = options.from;
-  // A tool that lands is placed above a surface; a tool that drags also moves along it.
+  // `lands`: the tool starts above a surface. `drags`: it also moves along the surface.
   const bool drags = name == "drag" || name == "bur", lands = drags || name == "mesh" || name == "shell";
   const bool has_mesh = !options.on.empty() || (kind.source == "mesh" && !from.empty());
   const auto require = [](bool is_right, const char* option, const char* allowed) {

@@ -29,7 +29,7 @@
 namespace hapbench {
 namespace {
 
-constexpr double kClearance = 0.001;    ///< distance of tool and surface at the start [m]
+constexpr double kClearance = 0.001;    ///< distance between tool and surface at the start [m]
 constexpr double kDragSpeed = 5.0;      ///< speed of a drag [tool diameters per second]
 constexpr double kPressDepth = 0.0035;  ///< depth of a pressing hand's target below the surface [m]; gives 1 N
 
@@ -108,7 +108,7 @@ class Start {
       scene_["motion"] = {{"orientation", {{"up", list_of(up)}, {"lean", list_of(lean)}}}};
   }
 
-  /// Returns the mesh file of the environment, or of a tool.
+  /// Returns the mesh file of the environment; if the mesh is a tool, the file of the tool.
   const std::string& mesh_file() const { return options_.on.empty() ? options_.from : options_.on; }
 
   LoadedScenario scenario() const { return read_scenario(scene_, directory_); }
@@ -219,8 +219,8 @@ class Start {
       if (scene_.contains("tool") && scene_["tool"].contains(field)) scene_["tool"][field] = size;
   }
 
-  /// Returns the points of the surface. Flips the normals of an open mesh if they point away from the side
-  /// around its highest point. Throws InputError for point shells with such normals.
+  /// Returns the points of the surface. If, around the highest point, the normals of an open mesh point away from the
+  /// side, flips all its normals. Throws InputError for a point shell with such normals.
   std::vector<SurfacePoint> points_facing_side() {
     std::vector<SurfacePoint> shell = points();
     const Box box = bounds_of(shell);
@@ -344,7 +344,7 @@ class Start {
     start_at({0.0, 0.0, to_micrometres(-box.min.z() + kClearance)});
   }
 
-  /// Chooses the start and direction of a drag, over four fifths of the path up to the end of the surface.
+  /// Chooses the start and direction of a drag. The drag covers four fifths of the path to the end of the surface.
   void choose_drag_path(const PointShell& shell, const std::vector<Vec3>& starts) {
     // Search a path of at least a quarter of the surface's extent.
     const double min_length = 0.25 * shell.bounds().size().maxCoeff();

@@ -8,13 +8,13 @@
 #include "scenarios/program/new/kinds.hpp"
 #include "scenarios/program/new/options.hpp"
 
-/// The scenes that `new` makes.
+/// The scenes that the command `hapbench new` writes.
 namespace hapbench {
 
 /// A scenario to start from.
 struct StartedScene {
   Json scene;                      ///< content of the scenario file
-  std::vector<std::string> notes;  ///< sizes and choices that were made, one line each
+  std::vector<std::string> notes;  ///< texts about the sizes and values that were chosen, one line each
   std::vector<std::string> warnings;
 };
 

@@ -41,7 +41,7 @@ inline constexpr Margin kMargins[] = {
     {"damping_margin", "1", "damping ratio of the least damped mode of the contact loop; empty without a contact loop",
      "", "damping_ratio", "damping ratio {} of the least damped mode", &TuneMargins::damping_ratio, 2.0}};
 
-/// Returns the chosen stiffness K with the digits that the resolution of the search leaves.
+/// Returns the chosen stiffness K, with the digits that are significant at the resolution of the search.
 std::string stiffness_text(const TuneTrial& choice);
 
 }  // namespace hapbench

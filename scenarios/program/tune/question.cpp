@@ -15,7 +15,7 @@
 namespace hapbench {
 namespace {
 
-/// Returns a range of numbers above 0, which is searched in ratios; empty for an empty text. Throws InputError.
+/// Returns a range of numbers above 0, which is searched in equal ratios; empty for an empty text. Throws InputError.
 std::optional<Range> parse_ratio_range(const char* option, const std::string& text) {
   std::optional<Range> range = parse_range(option, text);
   if (!range) return range;

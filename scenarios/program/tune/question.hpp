@@ -14,7 +14,8 @@ namespace hapbench {
 struct TuneOptions : CommonOptions {
   std::string scenario, device, damping_ratio, mass;
   std::vector<std::string> algorithms, bounds, family;
-  TuneQuestion question;  ///< the members that options set directly
+  TuneQuestion question;  ///< holds the members of TuneQuestion that options set directly; tune_question() fills the
+                          ///< others
 };
 
 /// Returns the question for the scene in a file. Throws InputError.

@@ -74,9 +74,9 @@ void rk4(ToolState& tool, const Vec3& force, double mass, double dt, ForceField&
 
 /// Runge-Kutta of order 4 with event location. The step is split into intervals in which the set of contacts is
 /// constant. If a contact begins or ends within an interval, the interval is halved until it is shorter than
-/// the tolerance, and the next interval begins after the event. Reference for the onset and release of
-/// contacts: there, an explicit step creates energy of first order in the step size, this method of first order
-/// in the tolerance. f_in is held over the step.
+/// the tolerance, and the next interval begins after the event. Reference for the onset and release of contacts. At
+/// such an event, the energy error of other explicit integrators is proportional to the step size; the energy error
+/// of this method is proportional to the tolerance. f_in is held over the step.
 ///
 /// Each event costs about 10 log2(dt / tolerance) forces. After kMaxIntervals intervals, the step continues
 /// without locating events.
@@ -107,7 +107,7 @@ void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceFiel
     acting = force_then;
     set = field.contact_set();
     done = last ? dt : done + h;
-    if (!same) h = dt;  // after the event, try the rest of the step
+    if (!same) h = dt;  // after the event, try the whole rest of the step
   }
 }
 
@@ -155,7 +155,7 @@ void implicit_midpoint(ToolState& tool, const Vec3& force, double mass, double d
   tool.velocity += change;
 }
 
-/// The force of a spring-damper plus a force that is held over the step.
+/// The force of a spring-damper plus a constant force.
 class LinearForce final : public ForceField {
  public:
   LinearForce(const SpringDamper& s, const Vec3& held)
@@ -171,7 +171,7 @@ class LinearForce final : public ForceField {
   Vec3 held_;
 };
 
-/// Returns (x, v) after one step from (x, v), under a held force [N].
+/// Returns (x, v) after one step from (x, v), under the additional constant force `held` [N].
 Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) {
   LinearForce field(s, held * Vec3::UnitX());
   ToolState tool;

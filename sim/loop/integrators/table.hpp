@@ -16,11 +16,12 @@ class ForceField {
  public:
   virtual ~ForceField() = default;
   /// Returns f_in + f_render [N] at the time t_k + fraction dt, 0 < fraction <= 1, with the tip at `position` [m] and
-  /// `velocity` [m/s]. The axis follows the script. f_in is held over the step, as by a sampled device. Costs a
-  /// contact search and a force computation.
+  /// `velocity` [m/s]. The tool's axis at this time is that of the scripted motion. f_in is constant over the step.
+  /// Costs a contact search and a force computation.
   virtual Vec3 force_at(double fraction, const Vec3& position, const Vec3& velocity) noexcept = 0;
-  /// Returns a hash of the set of rendered contacts, of the last force_at, or of the step's own force if
-  /// force_at has not been called. Equal sets have equal hashes. Costs about a nanosecond for each contact.
+  /// Returns a hash of the set of contacts that were rendered in the last call of force_at, or at the start of the
+  /// step if force_at has not been called in this step. Equal sets have equal hashes. Costs about a nanosecond for
+  /// each contact.
   virtual std::uint64_t contact_set() const noexcept { return 0; }
   /// Returns the Jacobian of the step's force. Precondition: force_at has not been called in this step.
   virtual ForceJacobian jacobian() const noexcept = 0;
@@ -31,9 +32,9 @@ inline constexpr double kEventTolerance = 1e-9;
 
 struct SpringDamper;
 
-/// An integrator: computes motion from forces. The functions in table.cpp document stability and energy. The
-/// theory functions apply to one spring-damper. Those without a closed form are null; callers then evaluate
-/// steps of the integrator instead.
+/// An integrator: computes motion from forces. The functions in table.cpp document stability and energy. The theory
+/// functions apply to one spring-damper. A theory function is null if the integrator has no closed form; callers then
+/// evaluate steps of the integrator instead.
 struct IntegratorEntry {
   ModelInfo info;
   /// Takes one step of dt [s]: moves position and velocity of the tool of `mass` [kg]. `force` [N] is the force
@@ -42,8 +43,8 @@ struct IntegratorEntry {
   void (*step)(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double tolerance);
   int order = 1;         ///< order of convergence on undamped springs
   int damped_order = 1;  ///< order of convergence with damping
-  /// True if the force at the start of the step acts unchanged over the step (M dv = f dt). Its work then needs
-  /// no other force.
+  /// True if the force at the start of the step acts unchanged over the step (M dv = f dt). The work of the force in
+  /// the step then depends on this force only.
   bool holds_force = false;
   /// Returns the matrix A of one step, (x, v) -> A (x, v).
   Eigen::Matrix2d (*step_matrix)(const SpringDamper&) = nullptr;
