@@ -80,8 +80,7 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   text += "\n";
   const Json fields = field_meanings(start.scene);
   for (const auto& [path, meaning] : fields.items()) text += layout.entry(path, meaning.get<std::string>(), 0, 34);
-  text += fmt::format("\n\"hapbench describe scenario\" explains all fields; next: hapbench run {}\n",
-                      shell_file(out));
+  text += fmt::format("\n\"hapbench describe scenario\" explains all fields; next: hapbench run {}\n", shell_file(out));
   Json json = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
   if (options.preview) json["picture"] = picture.string();
   print(context, options.output, text, json);
