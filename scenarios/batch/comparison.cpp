@@ -104,7 +104,7 @@ Comparison planned(const ComparisonQuestion& question) {
 
 void remove_earlier_comparison(const fs::path& folder, const Comparison& comparison) {
   std::error_code ignored;
-  fs::remove(folder / "ranking.csv", ignored);
+  for (const char* table : {"ranking.csv", "comparison_timing.csv"}) fs::remove(folder / table, ignored);
   for (const fs::path& scene : comparison.scene_folders(folder)) fs::remove(scene / "comparison.csv", ignored);
   for (const fs::path& run : comparison.run_folders(folder)) {
     if (!fs::is_directory(run, ignored)) continue;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "scenarios/analysis/convergence/levels.hpp"
 #include "scenarios/analysis/convergence/observed_order.hpp"
@@ -26,6 +25,8 @@
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
+#include "scenarios/program/work_precision.hpp"
+#include "scenarios/run/bare_run.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
@@ -39,12 +40,15 @@ namespace {
 constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv",
                      *kTimes = "converge_levels_timing.csv";
 constexpr double kLargestRatio = 10.0;
+constexpr int kLevelsOfMetrics = 5, kLevelsOfSettings = 4;  ///< numbers of levels by default
+constexpr double kErrorAskedFor = 1e-6;                     ///< default of --to with --over [m]
 
 struct ConvergeOptions : CommonOptions {
   std::string scenario;
   std::vector<std::string> metrics;
   std::string field = kStepPath;
-  int levels = 5;
+  std::vector<std::string> over;  ///< axes of a work-precision study; empty: the convergence of metrics
+  int levels = 0;                 ///< 0: the default
   double ratio = 2.0;
   std::string to;
 };
@@ -223,14 +227,6 @@ double parse_relative_error(const std::string& text) {
   return share;
 }
 
-/// Returns the processor time of this thread [s]. Unlike wall time it does not include waiting for other
-/// processes.
-double processor_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// Runs a scene and measures the processor time of the run, without the preparation of its point shell.
 LevelRun run_of(const CheckedScenario& scene) {
   const auto shell = make_shell(scene.scenario(), scene.files());
@@ -250,8 +246,42 @@ LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenari
     load_scenario(scenario, given);  // throws if the field does not exist or takes no number
   }
   return with_file(loaded, [&] {
-    return level_sweep(loaded, options.field, static_cast<std::size_t>(options.levels), options.ratio);
+    return level_sweep(loaded, options.field,
+                       static_cast<std::size_t>(options.levels > 0 ? options.levels : kLevelsOfMetrics), options.ratio);
   });
+}
+
+/// Returns the error of --to for a work-precision study [m].
+double parse_position_error(const std::string& text) {
+  if (text.empty()) return kErrorAskedFor;
+  const auto number = finite_number(text);
+  if (!number || *number <= 0.0)
+    fail_in_option("--to", fmt::format("got \"{}\"; allowed with --over: an error of the tip's position in metres, as "
+                                       "1e-6",
+                                       text));
+  return *number;
+}
+
+/// Runs a work-precision study: `converge --over`.
+int study_settings(const ConvergeOptions& options, ProgramContext& context) {
+  if (options.field != kStepPath)
+    fail_in_option("--vary", fmt::format("got {}; allowed with --over: {}", options.field, kStepPath));
+  if (!options.metrics.empty())
+    fail_in_option("--metric", "cannot be combined with --over, whose error is that of the tip's position");
+  const double max_error = parse_position_error(options.to);
+  const std::filesystem::path file = find_scenario(options.scenario);
+  WorkPrecisionQuestion question{read_scenario_text(file), options.overrides};
+  for (const std::string& axis : options.over) question.over.push_back(parse_axis(axis));
+  question.levels = static_cast<std::size_t>(options.levels > 0 ? options.levels : kLevelsOfSettings);
+  question.ratio = options.ratio;
+  question.max_error = max_error;
+  Report report(options, "converge", "converge_" + file.stem().string(), context);
+  const auto problems = work_precision(question, job_options(options, "converge", context));
+  report.json() = Json::array();
+  report_work_precision(problems, max_error, context.layout(), report);
+  report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
+                         shell_file(report.folder())));
+  return report.finish();
 }
 
 int converge(const ConvergeOptions& options, ProgramContext& context) {
@@ -259,6 +289,7 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   // Check all input before anything runs or is written.
   if (!(options.ratio > 1.0 && options.ratio <= kLargestRatio))
     fail_in_option("--ratio", fmt::format("got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
+  if (!options.over.empty()) return study_settings(options, context);
   const auto max_error = options.to.empty() ? std::nullopt : std::optional(parse_relative_error(options.to));
   const std::filesystem::path file = find_scenario(options.scenario);
   const ScenarioText scenario = read_scenario_text(file);
@@ -298,13 +329,15 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
 }  // namespace
 
 std::vector<DescribedTable> converge_tables() {
-  return {
+  std::vector<DescribedTable> tables = {
       order_columns().described(kOrders, "written by converge: one line per metric"),
       level_columns({}).described(kLevels, "written by converge: one line per metric and level"),
       time_columns().described(
           kTimes,
           "written by converge: processor times, one line per level (in a file of their own because they differ from "
           "run to run)")};
+  for (DescribedTable& table : work_precision_tables()) tables.push_back(std::move(table));
+  return tables;
 }
 
 void add_converge(CommandLine& line) {
@@ -318,12 +351,19 @@ void add_converge(CommandLine& line) {
   command.add("--vary <field>", options.field,
               "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
               "environment.grid_m or tool.grid_m; any positive number whose error falls with it");
-  command.add("--levels <n>", options.levels, "number of levels; the coarsest has the scenario's value (default: 5)",
+  command.add("--over <field=values>", options.over,
+              "run time against error of settings: fields to compare, such as integrator.type=all and "
+              "rendering.algorithm=a,b; may be repeated",
+              {.several = true});
+  command.add("--levels <n>", options.levels,
+              "number of levels; the coarsest has the scenario's value (default: 5; with --over: 4)",
               {.range = {{3, 9}}});
   command.add("--ratio <number>", options.ratio,
               "ratio of the field between two levels (default: 2); an integer for the time step");
-  command.add("--to <error>", options.to,
-              "also print the coarsest level with a relative error below this, such as 1%, and its run time");
+  command.add(
+      "--to <error>", options.to,
+      "also print the coarsest level with a relative error below this, such as 1%, and its run time; with --over: "
+      "the error of the tip's position [m] that is asked for (default: 1e-6)");
   add_common(command, options, "converge_NAME");
   command.footer(
       "Result: one row per level with its error; the first row is your scenario's own setting. Below: observed order, "
@@ -333,6 +373,8 @@ void add_converge(CommandLine& line) {
       "Files: converge.csv (one row per metric: order, extrapolated value, range), converge_levels.csv (one row per "
       "metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier files."
       "\n\n"
+      "Run time against error: --over compares integrators and time steps with the converged solution of the same "
+      "problem. Every law is a problem of its own. Files: convergence.csv (errors) and convergence_timing.csv.\n\n"
       "Time: with the default levels of the time step, about 31 times one run.");
 }
 

@@ -12,6 +12,7 @@
 #include "scenarios/batch/number_with_error.hpp"
 #include "scenarios/batch/ranking.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/compare/times.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {
@@ -107,7 +108,7 @@ std::vector<DescribedTable> ranking_tables() {
           ranking_columns(true).described(
               "ranking.csv",
               "written by compare for several scenarios or seeds: one line per scenario, algorithm and metric"),
-          law_ranking_columns().described()};
+          law_ranking_columns().described(), times_table()};
 }
 
 }  // namespace hapbench

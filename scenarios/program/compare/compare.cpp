@@ -25,6 +25,7 @@
 #include "scenarios/program/compare/columns.hpp"
 #include "scenarios/program/compare/errors.hpp"
 #include "scenarios/program/compare/ranking_text.hpp"
+#include "scenarios/program/compare/times.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -39,7 +40,11 @@ struct CompareOptions : CommonOptions {
   std::vector<std::string> scenarios, metrics;
   ComparisonQuestion question;  ///< if it has no algorithms, all algorithms are compared
   bool errors = false;
+  bool time = false;
 };
+
+/// The name of the run time in --by.
+constexpr const char* kTimeMetric = "time";
 
 /// Checks the options and plans the comparison. Throws InputError.
 Comparison planned(const CompareOptions& options) {
@@ -118,8 +123,11 @@ std::string runs_text(const std::vector<Result>& reports, const Ranking& league,
   return text;
 }
 
-int compare(const CompareOptions& options, ProgramContext& context) {
+int compare(const CompareOptions& given, ProgramContext& context) {
   const Layout layout = context.layout();
+  // The run time is no metric of a run: it has a table and a ranking of its own.
+  CompareOptions options = given;
+  options.time |= std::erase(options.metrics, kTimeMetric) > 0;
   if (options.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
   // Check all input before anything runs or is written.
@@ -165,6 +173,7 @@ int compare(const CompareOptions& options, ProgramContext& context) {
                    "outcome, so that no error is known",
                    0));
   }
+  if (options.time) report_times(comparison, reports, jobs, layout, report);
   report.say(fmt::format("\nresults in {}\n", out.string()));
   judge(comparison, reports, report);
   return report.finish();
@@ -187,7 +196,7 @@ void add_compare(CommandLine& line) {
       "shift the start by a random vector of this length [m], the same for all laws; needed for a spread over seeds "
       "if nothing else is random");
   command.add("--by <metric,...>", options.metrics,
-              "metrics of the ranking; smaller is better, except for success rates (default: " +
+              "metrics of the ranking, or time; smaller is better, except for success rates (default: " +
                   fmt::format("{}", fmt::join(kDefaultMetrics, ", ")) +
                   "; if every scenario has a reference force, fidelity metrics instead)",
               {.comma_separated = true});
@@ -196,6 +205,10 @@ void add_compare(CommandLine& line) {
       "--errors", options.errors,
       "repeat all runs at half and a quarter of the time step and of the point spacing, to print errors and check "
       "which ranks hold; about 9 times the work");
+  command.flag(
+      "--time", options.time,
+      "also measure the processor time of each law, in runs without observers, and rank the laws by it; writes "
+      "comparison_timing.csv");
   command.footer(
       "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
       "of laws that are better by more than 0.1 % and by more than the errors of both. Laws with a failed run rank "

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scenarios/run/checked_scenario.hpp"
+#include "sim/core/types.hpp"
+#include "sim/loop/simulation.hpp"
+
+/// Motion and force of a run at times that runs with other time steps share, and their differences.
+namespace hapbench {
+
+/// Tip position and rendered force of a run at the times of every n-th step.
+struct SampledMotion {
+  std::vector<Vec3> position;  ///< of the tip centre [m]
+  std::vector<Vec3> force;     ///< rendered force [N]
+  Ending ending = Ending::completed;
+};
+
+/// Runs the first trial of a scenario and samples every TimeFields::stride-th step. `shift` [m] moves the start of a
+/// free tool. Throws InputError and Stopped.
+SampledMotion sampled_motion(const CheckedScenario& checked, const Vec3& shift = Vec3::Zero());
+
+/// Difference of two motions: root mean square over their common samples.
+struct MotionDifference {
+  double position = 0.0;  ///< [m]
+  double force = 0.0;     ///< [N]
+};
+/// Returns the difference of two motions; nothing if they have no common sample, or if one of them ended earlier.
+std::optional<MotionDifference> difference(const SampledMotion& a, const SampledMotion& b);
+
+}  // namespace hapbench

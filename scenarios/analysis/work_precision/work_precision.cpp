@@ -1,0 +1,257 @@
+#include "scenarios/analysis/work_precision/work_precision.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "scenarios/analysis/convergence/levels.hpp"
+#include "scenarios/analysis/work_precision/pareto_front.hpp"
+#include "scenarios/batch/cases.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/scene/field_files.hpp"
+#include "sim/loop/integrators/table.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr const char* kIntegratorPath = "integrator.type";
+
+/// The reference solution of a curve uses another integrator than the curve: the first of these, or the second for
+/// curves of the first.
+const IntegratorEntry* const kReferenceIntegrators[] = {&kRk4, &kVelocityVerlet};
+
+std::string reference_integrator(const std::string& of_curve) {
+  const std::string first = kReferenceIntegrators[0]->info.name;
+  return of_curve == first ? kReferenceIntegrators[1]->info.name : first;
+}
+
+/// A run of the study: a problem with an integrator and a time step.
+struct StudyRun {
+  std::size_t problem = 0;
+  std::string integrator;
+  std::size_t level = 0;  ///< 0: the time step of the scenario
+  auto operator<=>(const StudyRun&) const = default;
+};
+
+/// Returns the number of levels between the smallest time step of the settings and that of the reference solution.
+std::size_t reference_levels(double ratio) {
+  return static_cast<std::size_t>(std::ceil(std::log(kReferenceRefinement) / std::log(ratio) - 1e-9));
+}
+
+/// The problems, curves and levels of a study.
+class Study {
+ public:
+  explicit Study(const WorkPrecisionQuestion& question)
+      : question_(question), loaded_(load_scenario(question.scenario, question.overrides)) {
+    for (const Axis& axis : question.over) {
+      if (axis.path == kStepPath)
+        fail_in_option("--over", fmt::format("got {}; allowed: other fields, because --vary refines it", axis.path));
+      if (axis.path == kIntegratorPath) {
+        curves_ = axis.values;
+      } else {
+        axes_.push_back(axis);
+      }
+    }
+    if (curves_.empty()) curves_ = {std::string(loaded_.scenario.integrator.type->info.name)};
+    problems_ = Cases({question.scenario}, {}, axes_).size();
+    levels_ = with_file(loaded_, [&] {
+      return level_sweep(loaded_, kStepPath, question.levels + reference_levels(question.ratio), question.ratio);
+    });
+  }
+
+  std::size_t problems() const { return problems_; }
+  const std::vector<std::string>& curves() const { return curves_; }
+  std::size_t finest() const { return question_.levels - 1; }
+  std::size_t reference_level() const { return levels_.axis.values.size() - 1; }
+  const LevelSweep& levels() const { return levels_; }
+
+  /// Returns the name of a problem: the values of its axes, or the law if no axis defines problems.
+  std::string name(std::size_t problem) const {
+    const auto values = Cases({question_.scenario}, {}, axes_).values(problem);
+    return values.empty() ? loaded_.scenario.rendering.algorithm : fmt::format("{}", fmt::join(values, ", "));
+  }
+
+  /// Loads and checks a run. The integrator and the time step come after the fields of the problem.
+  CheckedScenario load(const StudyRun& run) const {
+    std::vector<Axis> axes = axes_;
+    axes.push_back({kIntegratorPath, {run.integrator}});
+    axes.push_back(levels_.axis);
+    const Cases cases({question_.scenario}, question_.overrides, std::move(axes));
+    return checked(cases.load(run.problem * levels_.axis.values.size() + run.level));
+  }
+
+ private:
+  const WorkPrecisionQuestion& question_;
+  LoadedScenario loaded_;
+  std::vector<Axis> axes_;  ///< fields that define problems
+  std::vector<std::string> curves_;
+  std::size_t problems_ = 1;
+  LevelSweep levels_;
+};
+
+/// Makes the runs of a study that are compared with each other, each once.
+class Motions {
+ public:
+  explicit Motions(const Study& study) : study_(study) {
+    for (std::size_t problem = 0; problem < study.problems(); ++problem) {
+      for (const std::string& curve : study.curves()) {
+        for (std::size_t level = 0; level <= study.finest(); ++level) add({problem, curve, level});
+        // Two levels of the reference solution give its error.
+        for (const std::size_t back : {0u, 1u})
+          add({problem, reference_integrator(curve), study.reference_level() - back});
+      }
+    }
+  }
+
+  /// Checks the coarsest and the finest run of each curve and each reference, so that errors are found before the first
+  /// run. Throws InputError.
+  void check() const {
+    for (const auto& [run, motion] : motions_)
+      if (run.level == 0 || run.level == study_.reference_level()) study_.load(run);
+  }
+
+  void run(const JobOptions& jobs) {
+    std::vector<std::pair<const StudyRun, SampledMotion>*> all;
+    for (auto& entry : motions_) all.push_back(&entry);
+    // The longest runs first, so that no thread has a long run left at the end.
+    std::ranges::stable_sort(all, [](auto* a, auto* b) { return a->first.level > b->first.level; });
+    const std::size_t shifts = study_.problems();
+    shifted_.resize(shifts);
+    for_each_job(all.size() + shifts, jobs, [&](std::size_t job) {
+      if (job < all.size()) {
+        all[job]->second = sampled_motion(study_.load(all[job]->first));
+      } else {
+        const std::size_t problem = job - all.size();
+        const Vec3 shift = Vec3::Constant(kInitialShift / std::sqrt(3.0));
+        shifted_[problem] = sampled_motion(study_.load({problem, study_.curves().front(), study_.finest()}), shift);
+      }
+    });
+  }
+
+  const SampledMotion& at(const StudyRun& run) const { return motions_.at(run); }
+
+  /// Returns the reference solution of a curve.
+  const SampledMotion& reference(std::size_t problem, const std::string& curve) const {
+    return at({problem, reference_integrator(curve), study_.reference_level()});
+  }
+
+  /// Returns the error of the reference solution of a curve: the largest of its difference from the next coarser level
+  /// and its differences from the reference solutions of the other curves. Nothing if they ended differently.
+  std::optional<MotionDifference> reference_error(std::size_t problem, const std::string& curve) const {
+    const SampledMotion& reference = this->reference(problem, curve);
+    std::vector<const SampledMotion*> others = {
+        &at({problem, reference_integrator(curve), study_.reference_level() - 1})};
+    for (const std::string& other : study_.curves()) others.push_back(&this->reference(problem, other));
+    MotionDifference largest;
+    for (const SampledMotion* other : others) {
+      const auto found = difference(reference, *other);
+      if (!found) return std::nullopt;
+      largest.position = std::max(largest.position, found->position);
+      largest.force = std::max(largest.force, found->force);
+    }
+    return largest;
+  }
+
+  /// Returns the distance to which two runs grow that start kInitialShift apart [m]; infinite if they end differently.
+  double grown_shift(std::size_t problem) const {
+    const auto grown = difference(at({problem, study_.curves().front(), study_.finest()}), shifted_[problem]);
+    return grown ? grown->position : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  void add(StudyRun run) { motions_.try_emplace(std::move(run)); }
+
+  const Study& study_;
+  std::map<StudyRun, SampledMotion> motions_;
+  std::vector<SampledMotion> shifted_;  ///< by problem
+};
+
+/// Marks the Pareto front of a problem and its knee. Errors that are not resolved do not count: their true value is
+/// unknown.
+void mark_front(std::vector<WorkPrecisionSetting>& settings) {
+  std::vector<CostAndError> points;
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    if (!settings[i].is_resolved()) continue;
+    points.push_back({settings[i].cost.per_simulated_second(), settings[i].error->position});
+    indices.push_back(i);
+  }
+  const std::vector<std::size_t> front = pareto_front(points);
+  for (const std::size_t i : front) settings[indices[i]].on_front = true;
+  if (const auto found = knee(points, front)) settings[indices[*found]].is_knee = true;
+}
+
+/// Returns the settings of a problem with their errors, without their cost.
+std::vector<WorkPrecisionSetting> settings_of(const Study& study, const Motions& motions, std::size_t problem,
+                                              bool is_predictable) {
+  std::vector<WorkPrecisionSetting> settings;
+  for (const std::string& curve : study.curves()) {
+    const auto reference_error = motions.reference_error(problem, curve);
+    for (std::size_t level = 0; level <= study.finest(); ++level) {
+      WorkPrecisionSetting setting{study.name(problem), curve};
+      setting.reference_error = reference_error.value_or(MotionDifference{});
+      if (reference_error && is_predictable)
+        setting.error = difference(motions.at({problem, curve, level}), motions.reference(problem, curve));
+      settings.push_back(std::move(setting));
+    }
+  }
+  return settings;
+}
+
+std::string reference_text(const Study& study) {
+  std::vector<std::string> names;
+  for (const std::string& curve : study.curves())
+    if (std::ranges::find(names, reference_integrator(curve)) == names.end())
+      names.push_back(reference_integrator(curve));
+  return fmt::format("{} at {} = {}", fmt::join(names, " and "), kStepPath,
+                     study.levels().axis.values[study.reference_level()]);
+}
+
+}  // namespace
+
+const WorkPrecisionSetting* WorkPrecisionProblem::cheapest_below(double max_error) const {
+  const WorkPrecisionSetting* best = nullptr;
+  for (const WorkPrecisionSetting& setting : settings) {
+    // An unresolved error is at most the sum of the measured difference and the error of the reference.
+    if (!setting.error || setting.error->position + setting.reference_error.position > max_error) continue;
+    if (best == nullptr || setting.cost.per_simulated_second() < best->cost.per_simulated_second()) best = &setting;
+  }
+  return best;
+}
+
+std::vector<WorkPrecisionProblem> work_precision(const WorkPrecisionQuestion& question, const JobOptions& jobs) {
+  const Study study(question);
+  Motions motions(study);
+  motions.check();
+  motions.run(jobs);
+  // Errors.
+  std::vector<WorkPrecisionProblem> problems;
+  std::vector<StudyRun> timed;
+  for (std::size_t p = 0; p < study.problems(); ++p) {
+    WorkPrecisionProblem& problem = problems.emplace_back(WorkPrecisionProblem{study.name(p), reference_text(study)});
+    problem.grown_shift = motions.grown_shift(p);
+    problem.is_predictable = problem.grown_shift <= question.max_error;
+    problem.settings = settings_of(study, motions, p, problem.is_predictable);
+    for (const std::string& curve : study.curves())
+      for (std::size_t level = 0; level <= study.finest(); ++level) timed.push_back({p, curve, level});
+  }
+  // Costs, measured when nothing else runs.
+  const std::vector<RunCost> costs = measure_cost(
+      timed.size(), [&](std::size_t i) { return study.load(timed[i]); }, jobs);
+  for (std::size_t i = 0; i < timed.size(); ++i) {
+    const std::size_t each = study.curves().size() * question.levels;
+    WorkPrecisionSetting& setting = problems[timed[i].problem].settings[i % each];
+    setting.cost = costs[i];
+    setting.step_s = costs[i].time_step_s;
+  }
+  for (WorkPrecisionProblem& problem : problems) mark_front(problem.settings);
+  return problems;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/analysis/work_precision/sampled_motion.hpp"
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/run_cost.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+
+/// Work-precision studies: the discretisation error of integrators and time steps, and their cost.
+///
+/// A problem is a scene with a force law and every other field except integrator and time step. Two laws are two
+/// problems, because they have different solutions. The error of a setting is the difference from the converged
+/// solution of the same problem, at times that all settings share.
+namespace hapbench {
+
+/// What to compute.
+struct WorkPrecisionQuestion {
+  ScenarioText scenario;
+  std::vector<std::string> overrides = {};  ///< as in --set, for all runs
+  /// Fields that vary. The axis `integrator.type` gives the curves of a problem, every other axis gives problems.
+  std::vector<Axis> over = {};
+  std::size_t levels = 4;   ///< number of time steps; the coarsest is that of the scenario
+  double ratio = 2.0;       ///< ratio of two neighbouring time steps; an integer
+  double max_error = 1e-6;  ///< error that is asked for: rms of the tip's position [m]
+};
+
+/// A reference solution uses a time step that is at least this factor smaller than the smallest step of the settings.
+inline constexpr double kReferenceRefinement = 16.0;
+/// An error is resolved if it is at least this factor larger than the error of the reference solution.
+inline constexpr double kResolvedError = 10.0;
+/// Initial shift [m] whose growth shows whether the trajectory of a problem can be predicted.
+inline constexpr double kInitialShift = 1e-9;
+
+/// An integrator with a time step.
+struct WorkPrecisionSetting {
+  std::string problem;     ///< values of the axes that define the problem, such as the name of the law
+  std::string integrator;  ///< name of the integrator
+  double step_s = 0.0;     ///< time step [s]
+  std::optional<MotionDifference> error = {};  ///< empty if the run ended otherwise than the reference solution
+  MotionDifference reference_error = {};       ///< error of the reference solution
+  RunCost cost = {};
+  bool on_front = false;  ///< no other setting of the problem has a smaller position error at a smaller cost
+  bool is_knee = false;   ///< knee of the front (pareto_front.hpp)
+
+  /// Returns true if the position error is known and resolved.
+  bool is_resolved() const { return error && error->position >= kResolvedError * reference_error.position; }
+};
+
+/// A problem with its settings, ordered by integrator, then by decreasing time step.
+struct WorkPrecisionProblem {
+  std::string name;
+  std::string reference = {};  ///< description of the reference solutions
+  double grown_shift = 0.0;    ///< rms distance [m] of two runs of the smallest step that start kInitialShift apart
+  bool is_predictable = true;  ///< grown_shift is at most the error that is asked for
+  std::vector<WorkPrecisionSetting> settings = {};
+
+  /// Returns the cheapest setting with a position error of at most `max_error`; null if there is none.
+  const WorkPrecisionSetting* cheapest_below(double max_error) const;
+};
+
+/// Runs all settings, their reference solutions and the measurements of cost. The measurements run one at a time,
+/// everything else in parallel. Throws InputError before anything runs, and Stopped.
+std::vector<WorkPrecisionProblem> work_precision(const WorkPrecisionQuestion& question, const JobOptions& jobs);
+
+}  // namespace hapbench

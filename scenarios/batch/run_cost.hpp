@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "scenarios/batch/jobs.hpp"
+#include "scenarios/run/checked_scenario.hpp"
+
+/// Measures the cost of scenarios with bare runs: without observers and files.
+namespace hapbench {
+
+/// Processor time of a run, without the preparation of its point shell.
+struct RunCost {
+  std::uint64_t steps = 0;   ///< steps of the run
+  double step_s = 0.0;       ///< time of one step [s], averaged over a run: the smallest of all repetitions
+  double spread_s = 0.0;     ///< median of the repetitions minus the smallest repetition [s] of one step
+  double time_step_s = 0.0;  ///< simulated time of one step [s]
+
+  /// Processor time per simulated second [1].
+  double per_simulated_second() const { return step_s / time_step_s; }
+};
+
+/// Returns true if `a` is faster than `b` by more than the sum of both spreads.
+bool is_faster(const RunCost& a, const RunCost& b);
+
+/// Number of repetitions by default.
+inline constexpr unsigned kTimingRepetitions = 5;
+
+/// Measures the cost of `count` scenarios, one run at a time. `scene` returns scenario i.
+///
+/// Every round runs each scenario once, so that a slow change of the processor's speed affects all scenarios alike. A
+/// measurement repeats a run until it takes at least 20 ms. Runs with the same number of points share nothing: each
+/// scenario keeps its own simulation until the end. `jobs` only supplies label and listener of the progress bar.
+/// Throws InputError and Stopped.
+std::vector<RunCost> measure_cost(std::size_t count, const std::function<CheckedScenario(std::size_t)>& scene,
+                                  const JobOptions& jobs, unsigned repetitions = kTimingRepetitions);
+
+}  // namespace hapbench

@@ -1,0 +1,105 @@
+#include "scenarios/analysis/work_precision/work_precision.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+namespace hapbench::work_precision_test {
+namespace {
+
+constexpr double kStep = 1e-3, kStiffness = 1000.0, kMass = 0.1, kStart = 1e-3;
+constexpr int kSteps = 64;
+
+/// A mass on one bilateral spring without damping: x(t) = x_0 cos(omega t).
+ScenarioText oscillator() {
+  return {test::data_directory() / "oscillator.json",
+          Json{{"time", {{"step_s", kStep}, {"steps", kSteps}}},
+               {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}},
+               {"initial", {{"position_m", {kStart, 0, 0}}}},
+               {"rendering",
+                {{"algorithm", "summation"},
+                 {"stiffness_N_per_m", kStiffness},
+                 {"mass_kg", kMass},
+                 {"damping_ratio", 0},
+                 {"friction", {{"mu_s_N_s_per_m", 0}, {"mu_f_s_per_m", 0}}}}}}};
+}
+
+std::vector<WorkPrecisionProblem> study(const std::vector<std::string>& over, double max_error = 1e-6) {
+  WorkPrecisionQuestion question{oscillator()};
+  for (const std::string& axis : over) question.over.push_back(parse_axis(axis));
+  question.max_error = max_error;
+  return work_precision(question, {});
+}
+
+/// Returns the exact rms error of the position of velocity Verlet at the common times: its solution is
+/// x_0 cos(omega' t) with cos(omega' h) = 1 - (omega h)^2 / 2.
+double exact_error_of_verlet(double step) {
+  const double omega = std::sqrt(kStiffness / kMass);
+  const double of_verlet = std::acos(1.0 - 0.5 * omega * omega * step * step) / step;
+  double sum = 0.0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double t = k * kStep;
+    sum += std::pow(kStart * (std::cos(of_verlet * t) - std::cos(omega * t)), 2);
+  }
+  return std::sqrt(sum / kSteps);
+}
+
+TEST(WorkPrecision, FindsTheErrorsOfAnOscillator) {
+  const auto problems = study({"integrator.type=velocity_verlet,rk4"});
+  ASSERT_EQ(problems.size(), 1u);
+  const WorkPrecisionProblem& problem = problems[0];
+  EXPECT_TRUE(problem.is_predictable) << problem.grown_shift;
+  ASSERT_EQ(problem.settings.size(), 8u);
+  for (const WorkPrecisionSetting& setting : problem.settings) {
+    ASSERT_TRUE(setting.error) << setting.integrator << " " << setting.step_s;
+    // The force is K times the position.
+    EXPECT_NEAR(setting.error->force, kStiffness * setting.error->position, 1e-9 * setting.error->force);
+    EXPECT_GT(setting.cost.step_s, 0.0);
+    EXPECT_EQ(setting.cost.steps, static_cast<std::uint64_t>(std::lround(kSteps * kStep / setting.step_s)));
+    if (setting.integrator != "velocity_verlet") continue;
+    // The reference is rk4 with a step h / 128. Its error is (omega h / 128)^5 / 120 in a step, below 1e-13 of x_0.
+    EXPECT_NEAR(setting.error->position, exact_error_of_verlet(setting.step_s), 1e-9 * kStart) << setting.step_s;
+    EXPECT_TRUE(setting.is_resolved());
+  }
+}
+
+TEST(WorkPrecision, ChoosesTheCheapestSettingBelowAnError) {
+  const auto problems = study({"integrator.type=leapfrog,velocity_verlet,rk4"});
+  const WorkPrecisionProblem& problem = problems[0];
+  const WorkPrecisionSetting* best = problem.cheapest_below(1e-6);
+  ASSERT_NE(best, nullptr);
+  for (const WorkPrecisionSetting& other : problem.settings) {
+    if (other.error && other.error->position < 1e-7) {
+      EXPECT_LE(best->cost.per_simulated_second(), other.cost.per_simulated_second());
+    }
+  }
+  EXPECT_EQ(problem.cheapest_below(1e-300), nullptr);
+}
+
+TEST(WorkPrecision, TreatsEveryLawAsAProblem) {
+  const auto problems = study({"rendering.algorithm=summation,shaped_stiffness"});
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_EQ(problems[0].name, "summation");
+  EXPECT_EQ(problems[1].name, "shaped_stiffness");
+  for (const WorkPrecisionProblem& problem : problems) EXPECT_EQ(problem.settings.size(), 4u);
+}
+
+TEST(WorkPrecision, StatesNoErrorOfATrajectoryThatCannotBePredicted) {
+  // Any growth of the shift is more than the error asked for.
+  const auto problems = study({"integrator.type=leapfrog"}, 1e-12);
+  EXPECT_FALSE(problems[0].is_predictable);
+  EXPECT_GT(problems[0].grown_shift, 0.1 * kInitialShift);
+  for (const WorkPrecisionSetting& setting : problems[0].settings) EXPECT_FALSE(setting.error);
+}
+
+TEST(WorkPrecision, RefusesAnAxisOfTheTimeStep) {
+  EXPECT_TRUE(test::input_error_of([] { study({"time.step_s=1e-3,1e-4"}); }));
+}
+
+}  // namespace
+}  // namespace hapbench::work_precision_test
