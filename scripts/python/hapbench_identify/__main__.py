@@ -386,14 +386,13 @@ def play(kind, numbers, out):
     write(Path(out), f"time_s,force_N\n{rows}\n")
     peak = float(np.abs(force).max())
     low, high = map(float, range_of(time, force, numbers["mass"]))
-    heavy = f"of {numbers['mass']:g} kg or more with up to this friction"
     table = [
         ["signal", KINDS[kind], "", ""],
         ["samples", str(len(time)), "", ""],
         ["largest force [N]", f"{peak:.3g}", "", ""],
         ["largest identifiable dry friction [N]", f"{FRICTION_TOLD * peak:.3g}", "", ""],
-        [f"travel {heavy} [m]", f"{high - low:.3g}", "", ""],
-        ["positions, from the start [m]", f"{low:.3g} ... {high:.3g}", "", ""],
+        [f"travel of {numbers['mass']:g} kg or more [m]", f"{high - low:.3g}", "", ""],
+        ["positions from the start [m]", f"{low:.3g} ... {high:.3g}", "", ""],
     ]
     return table, {
         "file": out,
