@@ -128,7 +128,7 @@ def run(options):
         refuse_source(out, options.log, "log")
     table, data = play(kind, numbers, out) if kind else identify(options, out)
     sure = kind or data["confidence"]
-    headings = ["signal", "value", "", ""]
+    headings = ["signal", "value"]
     if not kind:
         headings = ["identified device", "value", "95 % from" if sure else "estimated from", "to"]
     next_line = (
@@ -387,12 +387,12 @@ def play(kind, numbers, out):
     peak = float(np.abs(force).max())
     low, high = map(float, range_of(time, force, numbers["mass"]))
     table = [
-        ["signal", KINDS[kind], "", ""],
-        ["samples", str(len(time)), "", ""],
-        ["largest force [N]", f"{peak:.3g}", "", ""],
-        ["largest identifiable dry friction [N]", f"{FRICTION_TOLD * peak:.3g}", "", ""],
-        [f"travel of {numbers['mass']:g} kg or more [m]", f"{high - low:.3g}", "", ""],
-        ["positions from the start [m]", f"{low:.3g} ... {high:.3g}", "", ""],
+        ["signal", KINDS[kind]],
+        ["samples", str(len(time))],
+        ["largest force [N]", f"{peak:.3g}"],
+        ["largest identifiable dry friction [N]", f"{FRICTION_TOLD * peak:.3g}"],
+        [f"travel of {numbers['mass']:g} kg or more [m]", f"{high - low:.3g}"],
+        ["positions from the start [m]", f"{low:.3g} ... {high:.3g}"],
     ]
     return table, {
         "file": out,
