@@ -99,8 +99,26 @@ struct Metric {
   const char* meaning;  ///< definition and computation; ||.|| is the Euclidean norm, f is f_render
   Cell value;           ///< a count or a number; empty if it does not exist (such as a ratio without contact)
   Better better = Better::none;
-  double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance that `within` sets
-  bool bounded = false;                   ///< true if `within` has set a tolerance
+  double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance; see `within`
+  bool bounded = false;                   ///< `within` has set a tolerance
+  /// True for the state at a fixed time, and for sums and means over a fixed time. False for extremes, percentiles and
+  /// counts, and for metrics that depend on when contacts begin or end: these do not vary smoothly with the time step.
+  bool smooth = false;
+  bool either_sign = false;  ///< the value can be negative
+  /// If only every n-th step counts (TimeFields::stride): estimated range of the value over all n choices of the first
+  /// counted step [unit of the value]. 0 if every step counts, and without a value.
+  double sampling_spread = 0.0;
+
+  /// Marks a metric as `smooth`.
+  Metric& varies_smoothly() {
+    smooth = true;
+    return *this;
+  }
+  /// Marks a metric as `either_sign`.
+  Metric& has_either_sign() {
+    either_sign = true;
+    return *this;
+  }
 
   /// Sets the tolerance: `relative` |value| + `absolute` [unit of the value].
   Metric& within(double relative_part, double absolute_part) {

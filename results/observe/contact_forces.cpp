@@ -189,18 +189,18 @@ void ContactForces::report(Section& s) const {
   const bool landed = landing_rows_ > 0, is_settled = has_settled();
   const auto rows = static_cast<double>(settled_rows_);
   s.metric("landings", "1",
-           "number of first touches: steps in contact that follow at least metrics.settling_s without contact, or the "
-           "start of the run",
+           "number of first touches: steps in contact (colliding of trajectory.csv > 0) that follow at least "
+           "metrics.settling_s without contact, or the start of the run; times are rounded to whole steps",
            landings_);
   s.metric(
       "landing_force_max_N", "N",
-      "largest norm of the rendered force, max ||f||, during landings (within metrics.settling_s after a first touch, "
-      "or before metrics.from_s); no value without a landing",
+      "largest norm of the rendered force, max ||f||, during landings (metrics.settling_s from a first touch on, or "
+      "all steps before metrics.from_s if it is given), with f = (fx_N, fy_N, fz_N) of trajectory.csv; no value without a landing",
       if_any(landed, std::sqrt(landing_max_squared_)), Better::less);
-  s.metric(
-      "landing_force_step_max_N", "N",
-      "largest force step ||f_k - f_(k-1)|| from one time step to the next during landings; no value without a landing",
-      if_any(landed, std::sqrt(landing_step_max_squared_)), Better::less);
+  s.metric("landing_force_step_max_N", "N",
+           "largest force step ||f_k - f_(k-1)|| from one time step to the next during landings (as "
+           "landing_force_max_N); no value without a landing",
+           if_any(landed, std::sqrt(landing_step_max_squared_)), Better::less);
   s.metric(
       "settled_s", "s",
       "duration of settled contact: number of steps in contact that belong to no landing, times the time step; below "
@@ -213,11 +213,13 @@ void ContactForces::report(Section& s) const {
   s.metric("settled_force_max_N", "N",
            "largest norm of the rendered force, max ||f||, in settled contact; no value if settled_s < 1/30 s",
            if_any(is_settled, std::sqrt(max_squared_)));
-  s.metric("force_step_p99_N", "N",
-           "99th percentile of the force step ||f_k - f_(k-1)|| from one time step to the next in settled contact; "
-           "relative error at most 0.8 %; no value if settled_s < 1/30 s",
-           // The middle of a bin can exceed all numbers in it, so limit it to the maximum.
-           if_any(is_settled, std::min(steps_.quantile(0.99), std::sqrt(step_max_squared_))), Better::less)
+  s.metric(
+       "force_step_p99_N", "N",
+       "99th percentile (nearest rank) of the force step ||f_k - f_(k-1)|| from one time step to the next in settled "
+       "contact; "
+       "relative error at most 0.8 %; no value if settled_s < 1/30 s",
+       // The middle of a bin can exceed all numbers in it, so limit it to the maximum.
+       if_any(is_settled, std::min(steps_.quantile(0.99), std::sqrt(step_max_squared_))), Better::less)
       .within(MagnitudeHistogram::kRelativeError, MagnitudeHistogram::kLeast);
   s.metric(
       "settled_force_step_max_N", "N",
@@ -226,8 +228,11 @@ void ContactForces::report(Section& s) const {
       if_any(is_settled, std::sqrt(step_max_squared_)), Better::less);
   s.metric(
       "force_rms_above_30Hz_N", "N",
-      "vibration of the rendered force: root mean square of f after a 30 Hz high-pass (Butterworth, fourth order, "
-      "started at rest at the end of each landing) over the steps in settled contact; no value at sampling rates of "
+      "vibration of the rendered force: root mean square of f = (fx_N, fy_N, fz_N) of trajectory.csv after the 30 Hz "
+      "high-pass (as vibration_power_above_30Hz_m2_per_s2) over the steps in settled contact; the filter starts in "
+      "steady state at the first step in settled contact after each landing and also filters the steps without contact "
+      "that follow, until the next landing; after more than metrics.settling_s without contact it restarts at rest; no "
+      "value at sampling rates of "
       "60 Hz or less or if settled_s < 1/30 s",
       if_any(is_settled && high_pass_.has_value(), std::sqrt(above_cutoff_squares_ / rows)), Better::less);
   s.metric("force_reversals_per_s", "1/s",

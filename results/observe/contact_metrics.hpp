@@ -37,7 +37,7 @@ class ContactAgeObserver final : public MetricObserver {
   void report(Section& s) const override {
     s.metric(
         "age_p50_s", "s",
-        "median age of the contacts in use, from the contact query to the step that uses its result; no value if no "
+        "median age of the contacts in use (in no file), from the contact query to the step that uses its result; no value if no "
         "step used contacts",
         age_of_rank(0.5));
     s.metric(
@@ -50,7 +50,8 @@ class ContactAgeObserver final : public MetricObserver {
         "largest age of the contacts in use, from the contact query to the step that uses its result; no value if no "
         "step used contacts",
         if_any(rows_ > 0, dt_ * static_cast<double>(oldest_)));
-    s.metric("searches", "1", "number of contact queries, including queries whose result was lost", requested_);
+    s.metric("searches", "1", "number of contact queries (in no file), including queries whose result was lost",
+             requested_);
     s.metric("lost_share", "1",
              "fraction of the contact queries (contacts.searches) whose result was lost; no value without a query",
              per(lost_, requested_));
@@ -92,12 +93,14 @@ class LostTorqueObserver final : public MetricObserver {
   void report(Section& s) const override {
     s.metric(
         "lost_mean_Nm", "Nm",
-        "mean norm of the lost torque over the steps in contact, mean ||tau|| with tau = sum r_i x f_i about the "
+        "mean norm of the lost torque (tx_Nm, ty_Nm, tz_Nm of trajectory.csv) over the steps in contact, mean ||tau|| "
+        "with tau = sum r_i x f_i about the "
         "tip's centre, where contact i contributes f_i to f_spring: torque that the contacts exert and a 3-DOF device "
         "cannot render; no value without contact",
         per(sum_, rows_in_contact_));
     s.metric("lost_max_Nm", "Nm",
-             "largest norm of the lost torque, max ||tau||, tau = sum r_i x f_i as in torque.lost_mean_Nm; no value "
+             "largest norm of the lost torque (tx_Nm, ty_Nm, tz_Nm of trajectory.csv), max ||tau||, as in "
+             "torque.lost_mean_Nm; no value "
              "without contact",
              if_any(rows_in_contact_ > 0, std::sqrt(max_squared_)));
   }
@@ -129,11 +132,12 @@ class FrictionObserver final : public MetricObserver {
     s.metric(
         "stick_share", "1",
         "fraction of the steps with a friction load in which dry friction sticks (instead of sliding); no value if no "
-        "step has a friction load",
+        "step has a friction load; the state of each step is in no file",
         per(sticking_, with_load));
     s.metric(
         "slips_per_s", "1/s",
-        "number of changes from sticking to sliding per second of the run; no value if no step has a friction load",
+        "number of changes from sticking to sliding per second of the run; no value if no step has a friction load; "
+        "the state of each step is in no file",
         if_any(with_load > 0, per(slips_, dt_ * static_cast<double>(rows_))));
   }
 
@@ -155,11 +159,14 @@ class ForceStageObserver final : public MetricObserver {
     work_ = algorithm_->work();
   }
   void report(Section& s) const override {
-    s.metric("changed_share", "1", "fraction of the steps in which the force stage changes the force",
+    s.metric("changed_share", "1",
+             "fraction of the steps in which the force stage changes the force; counted in the run, in no file",
              per(work_.steps_staged, rows_));
     s.metric("removed_J", "J",
-             "energy that the force stage removed: force change of the stage, integrated along the tool's path",
-             if_any(rows_ > 0, work_.energy_staged));
+             "energy that the force stage removed: force change of the stage, integrated along the tool's path; "
+             "the force before the stage is in no file",
+             if_any(rows_ > 0, work_.energy_staged))
+        .has_either_sign();
   }
 
  private:

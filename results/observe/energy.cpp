@@ -129,35 +129,59 @@ void EnergyLedger::report(Section& s) const {
   const EnergyBalance& b = balance_;
   s.metric(
       "created_sum_J", "J",
-      "created energy, summed over only the steps in which it is positive (energy that later steps take back is not "
-      "subtracted; see energy.created_J)",
+      "created energy, summed over only the steps in which it is positive (positive changes of created_J of energy.csv; "
+      "energy that later steps take back is not subtracted)",
       created_sum_, Better::less);
-  s.metric("created_max_J", "J", "largest created energy of a single step", created_max_, Better::less);
+  s.metric("created_max_J", "J", "largest created energy of a single step (change of created_J of energy.csv)",
+           created_max_, Better::less);
   s.metric(
-      "created_J", "J",
-      "created energy over the whole run: energy stored in the springs at the end, minus the work that translation "
-      "and rotation of the tool did on the springs; it arises when contacts appear, vanish or change their weights",
-      b.created);
-  s.metric("input_J", "J", "work of the input force f_in on the tool", b.input);
+       "created_J", "J",
+       "created energy over the whole run (last created_J of energy.csv): energy stored in the springs at the end, minus the work that translation "
+       "and rotation of the tool did on the springs; it arises when contacts appear, vanish or change their weights",
+       b.created)
+      .has_either_sign();
+  s.metric("input_J", "J", "work of the input force f_in on the tool (last input_J of energy.csv)", b.input)
+      .varies_smoothly()
+      .has_either_sign();
   s.metric(
-      "spring_J", "J",
-      "work of the spring force f_spring on the tool; for a prescribed motion by the trapezoidal rule, with an error "
-      "of up to K d^2 / 8 where a contact begins or ends between steps whose depths differ by d",
-      b.spring);
+       "spring_J", "J",
+       "work of the spring force f_spring on the tool (last spring_J of energy.csv); for a prescribed motion by the trapezoidal rule, with an error "
+       "of up to K d^2 / 8 where a contact begins or ends between steps whose depths differ by d",
+       b.spring)
+      .varies_smoothly()
+      .has_either_sign();
   s.metric(
-      "damping_J", "J",
-      "work of damping, friction and force limit on the tool, i.e. of f - f_spring; negative: energy is dissipated",
-      b.damping);
-  s.metric("rotation_J", "J", "work that the tool's rotation did on the springs", b.rotation);
-  s.metric("integration_J", "J",
-           "energy created by the numerical integrator (discretisation error); 0 for an exact integration",
-           b.integration);
-  s.metric("script_J", "J", "work of the scripted motion on the tool; 0 for a freely moving tool", b.script);
-  s.metric("hand_J", "J", "work of the hand on the handle", b.hand);
-  s.metric("actuator_J", "J", "work of the device's actuators", b.actuator);
+       "damping_J", "J",
+       "work of damping, friction and force limit on the tool, i.e. of f - f_spring (last damping_J of energy.csv); "
+       "negative: energy is dissipated",
+       b.damping)
+      .varies_smoothly()
+      .has_either_sign();
+  s.metric("rotation_J", "J", "work that the tool's rotation did on the springs (last rotation_J of energy.csv)",
+           b.rotation)
+      .varies_smoothly()
+      .has_either_sign();
+  s.metric(
+       "integration_J", "J",
+       "energy created by the numerical integrator (discretisation error; last integration_J of energy.csv); 0 for an "
+       "exact integration",
+       b.integration)
+      .varies_smoothly()
+      .has_either_sign();
+  s.metric("script_J", "J",
+           "work of the scripted motion on the tool (last script_J of energy.csv); 0 for a freely moving tool",
+           b.script)
+      .varies_smoothly()
+      .has_either_sign();
+  s.metric("hand_J", "J", "work of the hand on the handle (last hand_J of energy.csv)", b.hand)
+      .varies_smoothly()
+      .has_either_sign();
+  s.metric("actuator_J", "J", "work of the device's actuators (last actuator_J of energy.csv)", b.actuator)
+      .varies_smoothly()
+      .has_either_sign();
   s.metric(
       "residual_max_J", "J",
-      "largest |kinetic energy that no other term of the balance explains| over the steps; a correct balance leaves "
+      "largest |kinetic energy that no other term of the balance explains| over the steps (|residual_J| of energy.csv); a correct balance leaves "
       "rounding errors only",
       residual_max_, Better::less);
 }
@@ -206,13 +230,20 @@ PassivityObserver::Extremes PassivityObserver::worst() const noexcept {
 void PassivityObserver::report(Section& s) const {
   const Extremes e = worst();
   s.metric(
-      "energy_min_J", "J",
-      "smallest energy that the rendering held: minimum over the steps of the work that the tool's translation and "
-      "rotation did on the rendering; negative if the rendering returned more energy than it had received",
-      if_any(e.rows, e.energy_min));
-  s.metric("time_of_min_s", "s", "time at which energy_min_J is first reached", if_any(e.rows, e.time_of_min));
+       "energy_min_J", "J",
+       "smallest energy that the rendering held: minimum over the steps of the work that the tool's translation and "
+       "rotation did on the rendering; negative if the rendering returned more energy than it had received. E starts "
+       "with the energy of the springs (stored_J of energy.csv); step k subtracts f_(k-1) . (v_(k-1) + v_k) dt / 2, with "
+       "f and v of trajectory.csv, or f_(k-1) . (p_k - p_(k-1)) if the handle moves the tool, or (f_(k-1) + f_k) / 2 . "
+       "(p_k - p_(k-1)) along a prescribed path, and adds the change of rotation_J of energy.csv",
+       if_any(e.rows, e.energy_min))
+      .has_either_sign();
+  s.metric("time_of_min_s", "s", "time_s of the step at which energy_min_J is first reached",
+           if_any(e.rows, e.time_of_min));
   s.metric("energy_end_J", "J", "energy that the rendering held at the last step (defined as in energy_min_J)",
-           if_any(e.rows, e.energy_end));
+           if_any(e.rows, e.energy_end))
+      .varies_smoothly()
+      .has_either_sign();
   s.metric("net_created_J", "J",
            "net created energy, max(0, -energy_min_J); 0 means that the run shows no violation of passivity",
            if_any(e.rows, e.net_created()), Better::less);

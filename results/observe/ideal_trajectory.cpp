@@ -185,42 +185,52 @@ void IdealTrajectoryObserver::Errors::report(Section s) const {
   const auto rms = [this](const Spread& of) { return std::sqrt(per(of.squares, rows)); };
   s.metric(
       "rows", "1",
-      "number of recorded steps at whose tilt the ideal trajectory exists, with a hand force below 2 N (gentle) or of "
-      "at least 2 N (firm)",
+      "number of recorded steps at whose tilt the ideal trajectory exists, with hand_force_N of ideal_trajectory.csv "
+      "below 2 N (gentle) or of at least 2 N (firm); the other metrics are over these steps",
       rows);
-  s.metric("height_error_mean_m", "m",
-           "mean height error (tip height - ideal height) over the compared steps; negative: the tool sank in",
-           per(height.sum, rows));
-  s.metric("height_error_rms_m", "m", "root mean square of the height error (tip height - ideal height)", rms(height),
-           Better::less);
-  s.metric("height_error_min_m", "m", "smallest (most negative) height error (tip height - ideal height)", height.min);
-  s.metric("height_error_max_m", "m", "largest height error (tip height - ideal height)", height.max);
   s.metric(
-      "lateral_error_mean_m", "m",
-      "mean lateral error (lateral position of the tip - ideal lateral position), positive in the direction in which "
-      "the tool leans",
-      per(lateral.sum, rows));
+       "height_error_mean_m", "m",
+       "mean height error (height_m - ideal_height_m of ideal_trajectory.csv) over the compared steps; negative: the tool sank in",
+       per(height.sum, rows))
+      .has_either_sign();
+  s.metric("height_error_rms_m", "m",
+           "root mean square of the height error (height_m - ideal_height_m of ideal_trajectory.csv)", rms(height),
+           Better::less);
+  s.metric("height_error_min_m", "m",
+           "smallest (most negative) height error (height_m - ideal_height_m of ideal_trajectory.csv)", height.min)
+      .has_either_sign();
+  s.metric("height_error_max_m", "m", "largest height error (height_m - ideal_height_m of ideal_trajectory.csv)",
+           height.max);
+  s.metric(
+       "lateral_error_mean_m", "m",
+       "mean lateral error (lateral_m - ideal_lateral_m of ideal_trajectory.csv), positive in the direction in which "
+       "the tool leans",
+       per(lateral.sum, rows))
+      .has_either_sign();
   s.metric("lateral_error_rms_m", "m",
-           "root mean square of the lateral error (lateral position of the tip - ideal lateral position)", rms(lateral),
+           "root mean square of the lateral error (lateral_m - ideal_lateral_m of ideal_trajectory.csv)", rms(lateral),
            Better::less);
   s.metric("lateral_error_max_m", "m",
-           "largest absolute lateral error |lateral position of the tip - ideal lateral position|",
+           "largest absolute lateral error |lateral_m - ideal_lateral_m of ideal_trajectory.csv|",
            std::max(lateral.max, -lateral.min), Better::less);
   s.metric(
       "interpenetration_mean_m", "m",
-      "mean interpenetration: depth of the tool in the exact block, computed from the shapes and not from the shell",
+      "mean interpenetration (interpenetration_m of ideal_trajectory.csv): depth of the tool in the exact block, computed from the shapes and not from the shell",
       per(interpenetration.sum, rows), Better::less);
   s.metric(
       "interpenetration_max_m", "m",
-      "largest interpenetration: depth of the tool in the exact block, computed from the shapes and not from the shell",
+      "largest interpenetration (interpenetration_m of ideal_trajectory.csv): depth of the tool in the exact block, computed from the shapes and not from the shell",
       interpenetration.max, Better::less);
 }
 
 void IdealTrajectoryObserver::report(Section& s) const {
   gentle_.report(s.part("gentle"));
   firm_.report(s.part("firm"));
-  s.metric("rows_without_ideal", "1", "number of recorded steps at whose tilt the ideal trajectory does not exist",
-           rows_without_ideal_);
+  s.metric(
+      "rows_without_ideal", "1",
+      "number of recorded steps at whose tilt the ideal trajectory does not exist: lines of trajectory.csv without a "
+      "line in ideal_trajectory.csv",
+      rows_without_ideal_);
 }
 
 }  // namespace hapbench

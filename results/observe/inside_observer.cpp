@@ -72,7 +72,7 @@ void InsideDepths::report(Section& s, bool has_settled) const {
   s.metric(
        "inside_max_m", "m",
        "largest distance of the tool's deepest point below the environment's surface over all steps (with "
-       "record.inside: over the recorded steps); the true maximum exceeds it by at most 2 % of itself and of the "
+       "record.inside: over the recorded steps, largest inside_m of trajectory.csv); the true maximum exceeds it by at most 2 % of itself and of the "
        "tool's half width, or by its tolerance if one is given; no value for springs and beyond the border of an open "
        "surface",
        max, Better::less)
@@ -80,13 +80,15 @@ void InsideDepths::report(Section& s, bool has_settled) const {
   s.metric(
        "inside_settled_m", "m",
        "median distance of the tool's deepest point below the environment's surface, over up to twelve evenly spread "
-       "steps in settled contact (with record.inside: over all recorded steps in settled contact); no value if "
+       "steps in settled contact (with record.inside: median inside_m of trajectory.csv over all recorded steps in "
+       "settled contact); no value if "
        "settled_s < 1/30 s",
        has_settled ? settled_median() : std::nullopt, Better::less)
       .within(InsideSearch::kTolerance, settled_within);
   s.metric(
       "centre_inside_share", "1",
-      "fraction of the steps in which the tip centre is below the surface; the tip centre of a flat tip is below it "
+      "fraction of the steps in which the tip centre is below the surface (mean of centre_inside of trajectory.csv "
+      "with record.inside, without empty cells); the tip centre of a flat tip is below it "
       "whenever the tip is pressed in",
       per(centre_inside, rows), Better::less);
 }

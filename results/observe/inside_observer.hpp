@@ -186,6 +186,10 @@ class InsideObserver final : public Observer {
 
   /// Depth of the tool in the last step [m]; empty if unknown, and in steps without a search.
   const std::optional<double>& depth() const noexcept { return depth_; }
+  /// 1 if the tip centre was below the surface in the last step, 0 if it was not; empty if unknown.
+  std::optional<double> centre_inside() const noexcept {
+    return if_any(tip_phi_.known, tip_phi_.value < 0.0 ? 1.0 : 0.0);
+  }
   const Passage& passage() const noexcept { return passage_; }
   const CorePassage& core_passage() const noexcept { return core_passage_; }
   /// Searches the deepest points and returns the depths. Call after the run.

@@ -52,11 +52,12 @@ void ReductionJumps::add(const ContactBuffer& kept, double step_squared, bool se
 
 MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config)
     : stride_(config.stride),
+      first_(config.first),
       vibration_(dt),
       last_quarter_(config.steps, dt),
       friction_limit_(config.friction_limit),
       contact_forces_(dt, config.settling) {
-  assert(dt > 0.0);
+  assert(dt > 0.0 && first_ < stride_);
   if (config.reduction_capacity) reduction_.emplace(*config.reduction_capacity);
 }
 
@@ -72,7 +73,7 @@ void MetricsObserver::begin() noexcept {
 }
 
 void MetricsObserver::on_step(const StepRecord& record) noexcept {
-  if (stride_ > 1 && record.step % stride_ != 0) return;
+  if (stride_ > 1 && record.step % stride_ != first_) return;
   add_motion(record.tool.pose.position, record.body_velocity());
   last_quarter_.add(now_.rows, record.handle.velocity);
   add_contacts(record, add_force(record.force));
@@ -134,14 +135,17 @@ std::uint64_t MetricsObserver::state_hash() const noexcept {
 void MetricsObserver::report(Section& s) const {
   report_motion_and_force(s);
   report_contacts(s);
-  s.metric("speed_max_m_per_s", "m/s", "largest speed of the tip's centre", std::sqrt(speed_max_squared_));
+  s.metric("speed_max_m_per_s", "m/s", "largest ||v|| of the moving body, as velocity_total_variation_m_per_s",
+           std::sqrt(speed_max_squared_));
   s.metric(
       "explicit_friction_limit_N", "N",
       "largest ||f_spring|| at which the explicit integrator is stable with friction, (B_max - mu_s) / mu_f with the "
-      "friction coefficients mu_s [N s/m] and mu_f [s/m]; no value if the run has no such limit",
+      "friction coefficients mu_s [N s/m] and mu_f [s/m], and B_max = 2 M / dt of leapfrog, 4 M / dt of "
+      "velocity_verlet; no value if the run has no such limit",
       friction_limit_);
   s.metric("explicit_friction_rows_beyond", "1",
-           "number of steps with ||f_spring|| above explicit_friction_limit_N; no value without this limit",
+           "number of steps with ||f_spring|| (fspring_x_N, fspring_y_N, fspring_z_N of trajectory.csv) above "
+           "explicit_friction_limit_N; no value without this limit",
            if_any(friction_limit_.has_value(), rows_beyond_friction_), Better::less);
   s.metric(
       "explicit_friction_first_step", "1",
@@ -149,8 +153,8 @@ void MetricsObserver::report(Section& s) const {
       first_beyond_friction_);
   contact_forces_.report(s);
   s.metric("reduction_changes", "1",
-           "number of steps in contact whose set of points kept by rendering.reduction differs from the set of the "
-           "previous step, also in contact; no value without rendering.reduction",
+           "number of steps in contact whose set of points kept by rendering.reduction (index of contacts.csv) differs "
+           "from the set of the previous step, also in contact; no value without rendering.reduction",
            reduction_ ? std::optional(reduction_->changes()) : std::nullopt, Better::less);
   s.metric("reduction_force_step_max_N", "N",
            "largest force step ||f_k - f_(k-1)|| over the steps in settled contact at which the set of points kept by "
@@ -159,66 +163,93 @@ void MetricsObserver::report(Section& s) const {
 }
 
 void MetricsObserver::report_motion_and_force(Section& s) const {
-  s.metric("force_max_N", "N", "largest norm of the rendered force over the run, max ||f||, landings included",
+  s.metric("force_max_N", "N",
+           "largest norm of the rendered force over the run, max ||f|| with f = (fx_N, fy_N, fz_N) of trajectory.csv, "
+           "landings included",
            std::sqrt((before_ + now_).force_max_squared), Better::less);
-  s.metric("force_step_max_N", "N",
-           "largest force step ||f_k - f_(k-1)|| from one time step to the next, landings included",
-           std::sqrt(force_step_max_squared_), Better::less);
   s.metric(
-      "velocity_total_variation_m_per_s", "m/s",
-      "total variation of the velocity: sum of ||v_k - v_(k-1)|| over all steps; a smooth motion has a small value",
-      velocity_variation_, Better::less);
+      "force_step_max_N", "N",
+      "largest force step ||f_k - f_(k-1)|| from one time step to the next, f = (fx_N, fy_N, fz_N) of trajectory.csv, "
+      "landings included",
+      std::sqrt(force_step_max_squared_), Better::less);
+  s.metric(
+       "velocity_total_variation_m_per_s", "m/s",
+       "total variation of the velocity of the moving body: sum of ||v_k - v_(k-1)|| over all steps, with v = "
+       "(hvx_m_per_s, hvy_m_per_s, hvz_m_per_s) of trajectory.csv if the handle of an impedance device moves the tool, "
+       "otherwise (vx_m_per_s, vy_m_per_s, vz_m_per_s); a smooth motion has a small value",
+       velocity_variation_, Better::less)
+      .varies_smoothly();
   s.metric(
       "force_reversals", "1",
       "number of reversals: steps whose force has a negative inner product with the force of the previous step, f_k . "
-      "f_(k-1) < 0",
+      "f_(k-1) < 0, f = (fx_N, fy_N, fz_N) of trajectory.csv",
       force_reversals_, Better::less);
   s.metric("vibration_power_above_30Hz_m2_per_s2", "m2/s2",
-           "mean ||v||^2 of the tool's velocity after a 30 Hz high-pass (Butterworth, fourth order) over all steps; no "
-           "value at sampling rates of 60 Hz or less",
-           vibration_.mean_square(), Better::less);
+           "mean ||v||^2 of the velocity of the moving body (as velocity_total_variation_m_per_s) after the 30 Hz "
+           "high-pass, in steady state at the first step, over all steps; the high-pass is a Butterworth filter of "
+           "fourth order, made by the bilinear transform with prewarped cutoff, for each component; no value at "
+           "sampling rates of 60 Hz or less",
+           vibration_.mean_square(), Better::less)
+      .varies_smoothly();
   s.metric(
       "depth_max_m", "m",
-      "largest penetration depth of a colliding point, by the depth model; at most the tool's half width, even if the "
+      "largest penetration depth of a colliding point (depth_max_m of trajectory.csv), by the depth model; at most the tool's half width, even if the "
       "tool is deeper in the environment (inside_max_m)",
       depth_max_, Better::less);
 }
 
 void MetricsObserver::report_contacts(Section& s) const {
   const TrialContact all = before_ + now_;
-  s.metric("ratio_min", "1",
-           "smallest stiffness ratio rho = u^T S u over all rendered contacts: combined stiffness along the contact's "
-           "gradient u, in units of K; no value without contact",
-           ratio_.min);
-  s.metric("ratio_max", "1",
-           "largest stiffness ratio rho = u^T S u over all rendered contacts: combined stiffness along the contact's "
-           "gradient u, in units of K; no value without contact",
-           ratio_.max);
-  s.metric("colliding_mean", "1", "mean number of colliding points per step, including steps without contact",
+  s.metric(
+      "ratio_min", "1",
+      "smallest stiffness ratio rho = u^T S u over all rendered contacts (ratio_min of trajectory.csv): combined stiffness along the contact's "
+      "gradient u, in units of K; no value without contact",
+      ratio_.min);
+  s.metric(
+      "ratio_max", "1",
+      "largest stiffness ratio rho = u^T S u over all rendered contacts (ratio_max of trajectory.csv): combined stiffness along the contact's "
+      "gradient u, in units of K; no value without contact",
+      ratio_.max);
+  s.metric("colliding_mean", "1",
+           "mean number of colliding points per step (colliding of trajectory.csv), including steps without contact",
            per(colliding_sum_, rows()));
-  s.metric("colliding_max", "1", "largest number of colliding points in one step", colliding_max_);
-  s.metric("rendered_mean", "1",
-           "mean number of rendered points (colliding points after local average and reduction, which the force law "
-           "receives) per step, including steps without contact",
-           per(rendered_sum_, rows()));
-  s.metric("rendered_max", "1", "largest number of rendered points (points that the force law receives) in one step",
+  s.metric("colliding_max", "1", "largest number of colliding points in one step (colliding of trajectory.csv)",
+           colliding_max_);
+  s.metric(
+      "rendered_mean", "1",
+      "mean number of rendered points (rendered of trajectory.csv: colliding points after local average and reduction, which the force law "
+      "receives) per step, including steps without contact",
+      per(rendered_sum_, rows()));
+  s.metric("rendered_max", "1", "largest number of rendered points (rendered of trajectory.csv) in one step",
            rendered_max_);
-  s.metric("steps_in_contact", "1", "number of steps with at least one colliding point", all.in_contact);
+  s.metric("steps_in_contact", "1",
+           "number of steps with at least one colliding point (colliding of trajectory.csv > 0)", all.in_contact);
   s.metric("contact_share", "1", "fraction of the run in contact: steps_in_contact / steps",
            per(all.in_contact, rows()));
-  s.metric("last_contact_s", "s", "time of the last step with a colliding point; no value without contact", all.last);
+  s.metric("last_contact_s", "s", "time_s of the last step with a colliding point; no value without contact", all.last);
 }
 
 void MetricsObserver::report_end(Section& s) const {
   s.metric(
-      "vibration_last_quarter_m_per_s", "m/s",
-      "vibration of the handle: root mean square of its velocity after a 30 Hz high-pass over the last quarter of the "
-      "run; `limit --stable still` compares this value with its threshold; no value at sampling rates of 60 Hz or less",
-      last_quarter_.value(), Better::less);
+       "vibration_last_quarter_m_per_s", "m/s",
+       "vibration of the handle: root mean square of its velocity (hvx_m_per_s, hvy_m_per_s, hvz_m_per_s of "
+       "trajectory.csv) after the 30 Hz high-pass, in steady state at the first step, over the last quarter of the "
+       "run; `limit --stable still` compares this value with its threshold; no value at sampling rates of 60 Hz or less",
+       last_quarter_.value(), Better::less)
+      .varies_smoothly();
   const bool any = rows() > 0;
-  s.metric("final_position_m.x", "m", "x of the tip's centre at the last step", if_any(any, position_.x()));
-  s.metric("final_position_m.y", "m", "y of the tip's centre at the last step", if_any(any, position_.y()));
-  s.metric("final_position_m.z", "m", "z of the tip's centre at the last step", if_any(any, position_.z()));
+  s.metric("final_position_m.x", "m", "x of the tip's centre at the last step (px_m of trajectory.csv)",
+           if_any(any, position_.x()))
+      .varies_smoothly()
+      .has_either_sign();
+  s.metric("final_position_m.y", "m", "y of the tip's centre at the last step (py_m of trajectory.csv)",
+           if_any(any, position_.y()))
+      .varies_smoothly()
+      .has_either_sign();
+  s.metric("final_position_m.z", "m", "z of the tip's centre at the last step (pz_m of trajectory.csv)",
+           if_any(any, position_.z()))
+      .varies_smoothly()
+      .has_either_sign();
 }
 
 }  // namespace hapbench

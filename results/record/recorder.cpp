@@ -64,6 +64,10 @@ constexpr auto kCommonColumns = std::tuple{
         [](const StepRecord& r) -> const Vec3& { return r.hand.input; }),
     filled({{"hx_m", "m", "x of the handle"}, {"hy_m", "m", "y of the handle"}, {"hz_m", "m", "z of the handle"}},
            [](const StepRecord& r) -> const Vec3& { return r.handle.position; }),
+    filled({{"hvx_m_per_s", "m/s", "x of the handle's velocity; on an impedance device without encoder and filter"},
+            {"hvy_m_per_s", "m/s", "y of the handle's velocity"},
+            {"hvz_m_per_s", "m/s", "z of the handle's velocity"}},
+           [](const StepRecord& r) -> const Vec3& { return r.handle.velocity; }),
     filled(
         {{"colliding", "1", "number of points inside the tool or on its surface, before local average and reduction"}},
         [](const StepRecord& r) { return r.colliding; }),
@@ -98,7 +102,10 @@ constexpr Column kTorqueColumns[] = {
 constexpr Column kInsideColumns[] = {
     {"inside_m", "m",
      "distance of the tool's deepest point below the environment's surface (inside_max_m is its maximum); empty for "
-     "springs and beyond the border of an open surface"}};
+     "springs and beyond the border of an open surface"},
+    {"centre_inside", "1",
+     "1 if the tip's centre is below the surface, 0 if it is not; empty for springs and beyond the border of an open "
+     "surface"}};
 
 constexpr TrajectoryGroup kGroups[] = {
     {&TrajectoryExtras::pose, "pose", "add the tool's orientation to trajectory.csv, as a quaternion qw,qx,qy,qz",
@@ -120,7 +127,8 @@ constexpr TrajectoryGroup kGroups[] = {
      "add the depth of the tool in the environment, inside_m, to trajectory.csv, and compute its metrics from every "
      "recorded step",
      kInsideColumns, [](const StepRecord&, const InsideObserver* inside, std::optional<double>* cells) {
-       *cells = inside != nullptr ? inside->depth() : std::nullopt;
+       cells[0] = inside != nullptr ? inside->depth() : std::nullopt;
+       cells[1] = inside != nullptr ? inside->centre_inside() : std::nullopt;
      }}};
 
 /// Returns the columns that trajectory.csv has with these extras: the common columns, followed by the columns of each

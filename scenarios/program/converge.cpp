@@ -79,7 +79,8 @@ ConvergeStudy convergence_study(const LevelSweep& levels, const std::vector<Leve
                                 const std::string& metric) {
   std::vector<LevelResult> results;
   for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i].result, metric));
-  ConvergeStudy study{convergence_of(levels, results), metric, levels.axis.path, levels.formal_order, {}};
+  const MetricTraits traits = traits_of(runs.front().result.metrics, metric);
+  ConvergeStudy study{convergence_of(levels, results, traits), metric, levels.axis.path, levels.formal_order, {}};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     LevelRow& row =
         study.levels.emplace_back(LevelRow{metric, levels.axis.values[i], results[i].outcome, results[i].result,
@@ -115,7 +116,9 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
       {"order", "1", "observed_order", order, only_printed()},
       {"error_estimate", "unit of the metric",
        "estimated error of this level's result: with an order 1.25 |f - f*| (f* is the extrapolated value), else the "
-       "larger of the width of the band and the largest difference from a finer level",
+       "larger of the range of the last three levels and the largest difference from a finer level; for an extreme or "
+       "a metric that depends on contact events the larger of both, plus the difference of the two finest levels "
+       "without an order, plus the spread over the choice of the counted steps",
        &Row::error},
       {"error %", "1", "of converge: error_estimate divided by the result of the finest level", percent,
        only_printed()},
@@ -139,7 +142,8 @@ Columns<ConvergeStudy> order_columns() {
       {"field", "", "path of the refined field", &Row::field},
       {"formal_order", "1",
        "formal order, expected from theory: order of the integrator for time.step_s (1 with a device, which holds the "
-       "force between samples), 2 for other fields",
+       "force between samples; 2 for leapfrog without damping, whose amplitudes are of order 2 and whose positions at a "
+       "fixed time are of order 1), 2 for other fields",
        &Row::formal_order},
       {"observed_order", "1",
        "observed order of the three finest levels; empty if no order is credible (column reason)", &Row::order,
@@ -160,9 +164,10 @@ Columns<ConvergeStudy> order_columns() {
        "the three before",
        &Row::asymptotic},
       {"low", "unit of the metric",
-       "smallest result of the band (the last three levels that have the outcome of the finest level)", low, kOnlyCsv},
-      {"high", "unit of the metric",
-       "largest result of the band (the last three levels that have the outcome of the finest level)", high, kOnlyCsv}};
+       "smallest result of the band (the last three levels that have the outcome of the finest level), for an extreme "
+       "or a metric that depends on contact events minus its spread over the choice of the counted steps",
+       low, kOnlyCsv},
+      {"high", "unit of the metric", "largest result of the band, as column low, plus the spread", high, kOnlyCsv}};
 }
 
 Json study_json(const ConvergeStudy& study) {

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "algorithms/registry.hpp"
+#include "results/observe/sampling_spread.hpp"
 #include "results/observe/step_times.hpp"
 #include "results/summary/allocations.hpp"
 #include "scenarios/input/nearest_name.hpp"
@@ -93,8 +94,14 @@ class Run {
     const SimulationConfig config = simulation_config(scenario_);
     const TrialParts trial_parts{config, parts, reference_.get(), trial.subject, trial.number};
     const TimeFields& time = scenario_.time;
-    if (!metrics_) metrics_.emplace(time.step * static_cast<double>(time.stride), metrics_config(scenario_, parts));
+    if (!metrics_) {
+      const double counted_step = time.step * static_cast<double>(time.stride);
+      const MetricsConfig metrics = metrics_config(scenario_, parts);
+      metrics_.emplace(counted_step, metrics);
+      sampling_.emplace(counted_step, metrics);
+    }
     metrics_->begin();
+    sampling_->begin();
     sections_.begin(trial_parts);
     tool_ = parts.tool;
 
@@ -104,6 +111,7 @@ class Run {
     const auto outcome = outcome_observer(scenario_, checked_.files(), parts, &*metrics_);
     ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), listener);
     std::vector<Observer*> observers = {&sampler, &*metrics_};
+    for (MetricsObserver& observer : sampling_->observers()) observers.push_back(&observer);
     for (const auto& observer : sections_.all()) observers.push_back(observer.get());
     observers.push_back(outcome.get());
     if (diagnosis_) observers.push_back(&*diagnosis_);
@@ -130,6 +138,7 @@ class Run {
     result.algorithm = scenario_.rendering.algorithm;
     result.duration = static_cast<double>(result.end.rows) * scenario_.time.step;
     sections_.report(*metrics_, inside_ ? &*inside_ : nullptr, result);
+    sampling_->write(result.metrics);
     result.state_hash = metrics_->state_hash();
     result.warnings = checked_.file_warnings();
     // With several trials, name the first trial that has warnings.
@@ -207,7 +216,8 @@ class Run {
   const std::shared_ptr<const PointShell>& shell_;
   std::shared_ptr<const ReferenceForce> reference_;
   std::shared_ptr<const ToolShape> tool_;
-  std::optional<MetricsObserver> metrics_;  ///< created with the parts of the first trial
+  std::optional<MetricsObserver> metrics_;  ///< created with the parts of the first trial, like `sampling_`
+  std::optional<SamplingSpread> sampling_;
   SectionObservers sections_;
   std::optional<DiagnosisObserver> diagnosis_;  ///< empty unless requested
   std::optional<InsideDepths> inside_;

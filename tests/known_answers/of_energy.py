@@ -528,6 +528,7 @@ def handle_on_spring(bench):
         run.table(),
         [
             ("hx_m", x, "exact motion of the handle", held, "Euler's", x + v * dt),
+            ("hvx_m_per_s", v, "the handle's own speed", held, "the measured one", shown_v),
             ("vx_m_per_s", shown_v, "difference of positions", held, "the handle's own", v),
             ("fx_N", spring, "-K x of the row", held, "a row late", motors),
         ],

@@ -339,7 +339,15 @@ def pressed_ball(bench):
                 half,
                 "depth of the deepest contact",
                 run.table()["depth_max_m"],
-            )
+            ),
+            (
+                "centre_inside",
+                (z < 0).astype(float),
+                "height below 0",
+                EXACT,
+                "rows in contact",
+                touching.astype(float),
+            ),
         ],
     )
 

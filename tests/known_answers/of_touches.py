@@ -404,6 +404,14 @@ def touch_tables(bench, run, r):
                 "a row late",
                 np.r_[r.p[:1, i], r.p[:-1, i]],
             ),
+            (
+                f"hv{x}_m_per_s",
+                r.v[:, i],
+                "an ideal device's handle is the tip",
+                STEPPED,
+                "a row later",
+                np.r_[r.v[1:, i], r.v[0, i] + 1],
+            ),
         ]
     columns += [
         (

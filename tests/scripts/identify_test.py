@@ -22,8 +22,10 @@ LATE = 1e-3 * TRUE["delay_samples"]  # [s]
 HANDLE = (M, B, C, LATE, 0.0, 0.0)
 
 
-def played(time, force, finer, spring=0.0):
-    """Positions at `time` by small steps with the mean speed of each; dry friction stops the handle within a step."""
+def played(time, force, finer, spring=0.0, stribeck=(0.0, 1.0)):
+    """Positions at `time` by small steps with the mean speed of each; dry friction stops the handle within a step.
+    `stribeck`: by how much, relative to dry friction, it is larger at rest, and up to which speed [m/s].
+    """
     x = v = 0.0
     places = [x]
     arrivals = time + LATE
@@ -33,14 +35,14 @@ def played(time, force, finer, spring=0.0):
         for k in which.tolist():
             push = (force[k] if k >= 0 else 0.0) - B * v - spring * x
             free = v + h * push / M
-            grip = h * C / M
+            grip = h * C / M * (1.0 + stribeck[0] * np.exp(-((v / stribeck[1]) ** 2)))
             before, v = v, 0.0 if abs(free) <= grip else free - np.copysign(grip, free)
             x += 0.5 * h * (before + v)
         places.append(x)
     return np.array(places)
 
 
-class Identify(unittest.TestCase):
+class Logs(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.root = scratch_folder(cls)
@@ -75,10 +77,13 @@ class Identify(unittest.TestCase):
         return said
 
     def assert_holds(self, told):
-        for name, true in TRUE.items():
+        # A varying clock has another mean interval than 1 ms.
+        for name, true in {**TRUE, "delay_samples": LATE / told["step_s"]}.items():
             low, high = told[name]["interval"]
             self.assertTrue(low <= true <= high, f"{name}: {true} in {low} ... {high}")
 
+
+class Identify(Logs):
     def test_the_model_is_what_small_steps_tend_to(self):
         errors = [
             np.abs(played(self.time[:500], self.force[:500], n) - self.places[:500]).max()
@@ -287,6 +292,72 @@ class Identify(unittest.TestCase):
             self.assertIn(why, self.refused(self.root / "bad.csv"))
 
 
+class Doubt(Logs):
+    """Logs of which the model is not true, or not quite."""
+
+    def setUp(self):
+        self.random = np.random.default_rng(5)
+
+    def test_a_clock_that_varies_misses_no_samples(self):
+        rows = len(self.time)
+        clocks = {
+            "loops of varying length": np.cumsum(
+                1e-3 * np.maximum(0.1, 1.0 + 0.4 * self.random.standard_normal(rows))
+            ),
+            "times around a raster": np.sort(
+                self.time + 4e-4 * self.random.uniform(-1.0, 1.0, rows)
+            ),
+            "stalls": np.cumsum(
+                1e-3
+                * np.where(
+                    self.random.random(rows) < 0.01, self.random.uniform(1.5, 6.0, rows), 1.0
+                )
+            ),
+        }
+        for name, time in clocks.items():
+            with self.subTest(clock=name):
+                places = positions(time - time[0], self.force, HANDLE)
+                told, warned = self.told(self.log(np.round(places / Q) * Q, time - time[0]))
+                self.assertNotIn("missing", warned)
+                self.assertIn("the sampling is not uniform", warned)
+                self.assertEqual(told["confidence"], 0.95)
+                self.assert_holds(told)
+
+    def test_times_that_are_not_those_of_the_samples_are_not_trusted(self):
+        sampled = np.sort(self.time + 4e-4 * self.random.uniform(-1.0, 1.0, len(self.time)))
+        places = positions(sampled, self.force, HANDLE)
+        for stamps in (self.time, self.time + self.random.uniform(0.0, 6e-4, len(self.time))):
+            told, warned = self.told(self.log(np.round(places / Q) * Q, stamps))
+            self.assert_distrusted(told, warned)
+
+    def test_friction_that_depends_on_the_speed_is_not_trusted(self):
+        for more, speed in ((0.2, 0.05), (0.3, 0.02), (0.5, 0.01)):
+            with self.subTest(more=more, speed=speed):
+                places = played(self.time, self.force, 40, stribeck=(more, speed))
+                told, warned = self.told(self.log(np.round(places / Q) * Q))
+                self.assert_distrusted(told, warned)
+
+    def test_logs_that_begin_in_motion(self):
+        for first in (150, 400, 700):
+            with self.subTest(first=first):
+                told, warned = self.told(
+                    self.log(
+                        np.round(self.places[first:] / Q) * Q,
+                        self.time[first:],
+                        self.force[first:],
+                    )
+                )
+                self.assertEqual(warned, "")
+                self.assert_holds(told)
+
+    def assert_distrusted(self, told, warned):
+        self.assertIsNone(told["confidence"])
+        self.assertIn("do not read them as 95 % intervals", warned)
+        printed = run("import", "device", self.root / "log.csv", "--out", self.root / "d.json")
+        self.assertNotIn("95 %", printed.stdout)
+        self.assertIn("estimated from", printed.stdout)
+
+
 class Design(unittest.TestCase):
     def test_signals_keep_their_limits(self):
         for kind in KINDS:
@@ -299,14 +370,33 @@ class Design(unittest.TestCase):
                 place = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * 1e-3
                 self.assertLessEqual(np.ptp(place), travel * (1 + 1e-9), kind)
 
+    def test_signals_keep_their_travel_with_friction(self):
+        dry, viscous = (
+            part.ravel() for part in np.meshgrid(np.linspace(0.0, 0.6, 41), (0.0, 0.3, 3.0))
+        )
+        for kind in KINDS:
+            for mass, force, travel in ((0.06, 3.0, 0.03), (0.1, 2.0, 0.08), (0.2, 1.0, 0.1)):
+                with self.subTest(kind=kind, mass=mass):
+                    time, values = design(kind, force, travel, 1000.0, 4.0, mass)
+                    # Semi-implicit steps of 0.1 ms for all frictions at once, two samples late.
+                    x, v, low, high = np.zeros((4, len(dry)))
+                    grip = 1e-4 * dry * np.abs(values).max() / mass
+                    for push in np.repeat(np.concatenate([[0.0, 0.0], values[:-2]]), 10).tolist():
+                        free = v + 1e-4 * (push - viscous * v) / mass
+                        v = np.sign(free) * np.maximum(np.abs(free) - grip, 0.0)
+                        x = x + 1e-4 * v
+                        low, high = np.minimum(low, x), np.maximum(high, x)
+                    # Steps of 0.1 ms move the handle by up to 0.5 % of a stroke too far.
+                    self.assertLessEqual(high.max() - low.min(), 1.005 * travel)
+
     def test_travel_that_limits_the_force_is_said(self):
         designed = partial(
             run, "import", "device", "--out", scratch_folder(self) / "signal.csv", "--design"
         )
         warned = designed("chirp,travel=0.08,mass=0.1,force=2").stderr
         self.assertIn(
-            "the travel of 0.08 m limits the force to 0.72 N instead of 2 N, so that dry friction can be "
-            "identified up to 0.432 N",
+            "the travel of 0.08 m limits the force to 0.544 N instead of 2 N, so that dry friction can be "
+            "identified up to 0.327 N",
             warned,
         )
         asked = warned.split("force=")[1].split()[0]

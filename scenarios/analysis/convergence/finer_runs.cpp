@@ -81,7 +81,7 @@ std::optional<double> FinerRuns::error_by(const Part& part, std::size_t run, con
     const Result& level = finer_[part.first + (i - 1) * each + run % each];
     results.push_back(level_result(part.levels, i, level, metric));
   }
-  return convergence_of(part.levels, results).errors.front();
+  return convergence_of(part.levels, results, traits_of(reports_[run].metrics, metric)).errors.front();
 }
 
 std::string FinerRuns::refined(std::size_t scene) const {

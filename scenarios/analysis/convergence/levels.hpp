@@ -16,9 +16,8 @@ inline constexpr const char* kStepPath = "time.step_s";
 struct LevelSweep {
   Axis axis;                  ///< the field's values, and the overrides that each value needs
   double ratio = 2.0;         ///< r: each value over the next value
-  double formal_order = 2.0;  ///< order of convergence of the integrator, if the field is the time step; 2 for a
-                              ///< spacing
-  std::string no_order = {};  ///< why no order of convergence exists for this scene; empty if it can exist
+  double formal_order = 2.0;  ///< largest order of the integrator in the step; 2 for a spacing
+  std::string no_order = {};  ///< why metrics of this scene have no convergence order; empty if they can
 };
 
 /// Returns `levels` levels of the field at `path`, each finer by `ratio`.

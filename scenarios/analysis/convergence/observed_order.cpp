@@ -18,16 +18,27 @@ constexpr double kRoundingShare = 1e-10;
 constexpr double kGciSafety = 1.25;        // Roache's safety factor for three or more levels
 constexpr double kAsymptoticWithin = 0.1;  // largest |GCI_21 / (r^p GCI_32) - 1|
 constexpr std::size_t kMinLevels = 3;
+/// Fewer levels of an extreme, or of a metric that depends on events, can look regular by chance: the event stays
+/// between the same two rows for some levels and then moves.
+constexpr std::size_t kMinLevelsOfEvents = 5;
 
-/// Returns a text that explains why fewer than three levels count. `first`: index of the first level that counts.
-std::string too_few_reason(std::span<const LevelResult> levels, std::size_t first) {
+std::size_t min_levels(const MetricTraits& traits) {
+  return traits.smooth ? kMinLevels : kMinLevelsOfEvents;
+}
+
+/// Returns why fewer levels count than an order needs. `first`: index of the first level that counts.
+std::string too_few_reason(std::span<const LevelResult> levels, std::size_t first, const MetricTraits& traits) {
   const std::size_t count = levels.size() - first;
+  const char* needed = traits.smooth ? "three" : "five";
+  if (first == 0 && !traits.smooth)
+    return fmt::format("an extreme, or a metric that depends on contact events, needs five levels; got {}", count);
   if (first == 0) return fmt::format("three levels are needed, got {}", count);
   const LevelResult& last = levels[first - 1];
   const std::string why = fmt::format(
       fmt::runtime(last.result ? "has the outcome {}" : "has no value of the metric (outcome {})"), last.outcome);
   if (count == 0) return fmt::format("the finest run, at {}, {}", last.setting, why);
-  return fmt::format("the run at {} {}, which leaves {} levels, and an order needs three", last.setting, why, count);
+  return fmt::format("the run at {} {}, which leaves {} levels, and an order needs {}", last.setting, why, count,
+                     needed);
 }
 
 /// Returns a clause about the first contact count that differs between the levels; empty if none differs.
@@ -43,10 +54,13 @@ std::string switching_reason(std::span<const LevelResult> last) {
   return "";
 }
 
-/// Returns a text that explains why the differences or orders of the last four (or three) results are not credible;
-/// empty if they are credible. `f`: results, coarsest first. `most`: largest credible order.
-std::string incredible_reason(std::span<const double> f, std::span<const std::optional<double>> orders, double most) {
-  const std::size_t last = f.size() - 1, from = last >= 3 ? last - 3 : 0;
+/// Returns why the differences or orders of the last `count` results are not credible; empty if they are. `f`:
+/// results, coarsest first. `formal`, `ratio`: as in LevelSweep.
+std::string incredible_reason(std::span<const double> f, std::span<const std::optional<double>> orders,
+                              std::size_t count, double formal, double ratio) {
+  const std::size_t last = f.size() - 1, from = f.size() >= count ? f.size() - count : 0;
+  // The same deviation of the differences from a power of the step as in the asymptotic range.
+  const double most = 2.0 * formal + math::log(1.0 + kAsymptoticWithin) / math::log(ratio);
   for (std::size_t i = from + 2; i <= last; ++i) {
     const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];
     if (coarse * fine < 0.0) return "the differences between the last levels change sign";
@@ -54,7 +68,7 @@ std::string incredible_reason(std::span<const double> f, std::span<const std::op
     if (*orders[i] <= 0.0) return fmt::format("the differences do not shrink (order {:.2g})", *orders[i]);
     if (*orders[i] > most)
       return fmt::format("the order {:.3g} is not credible: it is more than twice the formal order {:g}", *orders[i],
-                         most / 2);
+                         formal);
   }
   return "";
 }
@@ -92,43 +106,63 @@ void add_orders(const LevelSweep& sweep, const CountedLevels& counted, Convergen
   }
 }
 
-/// Writes the band of the last levels, and the error estimates that hold without an order.
-void add_band(const CountedLevels& counted, Convergence& c) {
+/// Writes the band of the last levels, and the error estimates that hold without an order. `spread`: sampling spread of
+/// a metric that is not smooth.
+void add_band(const CountedLevels& counted, const MetricTraits& traits, double spread, Convergence& c) {
   const std::vector<double>& f = counted.f;
   if (f.size() < 2) return;
   const auto last = f.end() - static_cast<std::ptrdiff_t>(std::min(f.size(), kMinLevels));
   c.band = {*std::min_element(last, f.end()), *std::max_element(last, f.end())};
+  const double width = c.band->second - c.band->first;
+  // At first order, the levels beyond the finest level add as much as the last refinement.
+  const double beyond = traits.smooth ? 0.0 : std::abs(f[f.size() - 1] - f[f.size() - 2]) + spread;
   for (std::size_t i = 0; i < f.size(); ++i) {
-    double error = c.band->second - c.band->first;
+    double error = width;
     for (std::size_t j = i + 1; j < f.size(); ++j) error = std::max(error, std::abs(f[i] - f[j]));
-    c.errors[counted.first + i] = error;
+    c.errors[counted.first + i] = error + beyond;
   }
+  if (!traits.smooth) c.band = {c.band->first - spread, c.band->second + spread};
+}
+
+/// Returns Richardson's value of results of order `p`.
+double extrapolated_value(const LevelSweep& sweep, std::span<const double> f, double p) {
+  return f[f.size() - 1] + (f[f.size() - 1] - f[f.size() - 2]) / (math::pow(sweep.ratio, p) - 1.0);
 }
 
 /// Returns a text that explains why no order can be stated; empty if an order can be stated.
 std::string no_order_reason(const LevelSweep& sweep, std::span<const LevelResult> levels, const CountedLevels& counted,
-                            std::span<const std::optional<double>> orders) {
+                            std::span<const std::optional<double>> orders, const MetricTraits& traits) {
   const auto is_first = [&](const LevelResult& level) { return level.state_hash == levels.front().state_hash; };
   if (levels.size() > 1 && levels.back().result && std::ranges::all_of(levels, is_first))
     return fmt::format("{} has no effect here: the runs of all levels are identical", sweep.axis.path);
   if (!sweep.no_order.empty()) return sweep.no_order;
   const std::vector<double>& f = counted.f;
-  if (f.size() < kMinLevels) return too_few_reason(levels, counted.first);
+  if (f.size() < min_levels(traits)) return too_few_reason(levels, counted.first, traits);
   if (counted.is_rounding(f[f.size() - 2] - f.back())) return "the last levels differ by rounding only";
-  if (std::string reason = switching_reason(levels.last(kMinLevels)); !reason.empty()) return reason;
-  return incredible_reason(f, orders.subspan(counted.first), 2.0 * sweep.formal_order);
+  if (std::string reason = switching_reason(levels.last(min_levels(traits))); !reason.empty()) return reason;
+  const std::size_t count = traits.smooth ? kMinLevels + 1 : kMinLevelsOfEvents;
+  std::string reason = incredible_reason(f, orders.subspan(counted.first), count, sweep.formal_order, sweep.ratio);
+  if (!reason.empty() || traits.either_sign) return reason;
+  const double extrapolated = extrapolated_value(sweep, f, *orders.back());
+  if (extrapolated >= -kRoundingShare * counted.largest) return "";
+  return fmt::format("the extrapolated value {:.3g} is negative, which this metric cannot be", extrapolated);
 }
 
-/// Computes Richardson's value, the GCI and the error estimates of all levels from the observed order. Precondition:
-/// the last level has an order.
-void add_extrapolation(const LevelSweep& sweep, const CountedLevels& counted, Convergence& c) {
+/// Writes what follows from the observed order: Richardson's value, the GCI and the error estimates of all levels.
+/// Precondition: the last level has an order.
+void add_extrapolation(const LevelSweep& sweep, const CountedLevels& counted, const MetricTraits& traits, double spread,
+                       Convergence& c) {
   const std::vector<double>& f = counted.f;
   const std::size_t count = f.size();
   const double p = *c.orders.back(), growth = math::pow(sweep.ratio, p), fine = f[count - 1] - f[count - 2];
   c.order = p;
-  c.extrapolated = f[count - 1] + fine / (growth - 1.0);
+  c.extrapolated = extrapolated_value(sweep, f, p);
   if (f[count - 1] != 0.0) c.gci = kGciSafety * std::abs(fine) / (std::abs(f[count - 1]) * (growth - 1.0));
-  for (std::size_t i = 0; i < count; ++i) c.errors[counted.first + i] = kGciSafety * std::abs(f[i] - *c.extrapolated);
+  const double scatter = traits.smooth ? 0.0 : c.band->second - c.band->first - 2.0 * spread;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double error = std::max(kGciSafety * std::abs(f[i] - *c.extrapolated), scatter);
+    c.errors[counted.first + i] = error + (traits.smooth ? 0.0 : spread);
+  }
   const auto in_range = [&](std::size_t i) {  // asymptotic range of the levels i - 2, i - 1 and i
     const double gci_21 = (f[i - 1] - f[i - 2]) / std::abs(f[i - 1]), gci_32 = (f[i] - f[i - 1]) / std::abs(f[i]);
     return std::abs(gci_21 / (growth * gci_32) - 1.0) <= kAsymptoticWithin;
@@ -138,16 +172,23 @@ void add_extrapolation(const LevelSweep& sweep, const CountedLevels& counted, Co
 
 }  // namespace
 
-Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels) {
+Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels, const MetricTraits& traits) {
   Convergence c;
   c.orders.resize(levels.size());
   c.errors.resize(levels.size());
   const CountedLevels counted = counted_levels(levels);
   add_orders(sweep, counted, c);
-  add_band(counted, c);
-  c.reason = no_order_reason(sweep, levels, counted, c.orders);
-  if (c.reason.empty()) add_extrapolation(sweep, counted, c);
+  const double spread = levels.empty() ? 0.0 : levels.back().spread;
+  add_band(counted, traits, spread, c);
+  c.reason = no_order_reason(sweep, levels, counted, c.orders, traits);
+  if (c.reason.empty()) add_extrapolation(sweep, counted, traits, spread, c);
   return c;
+}
+
+MetricTraits traits_of(const MetricList& list, const std::string& metric) {
+  const Metric* found = find_metric(list, metric);
+  if (found == nullptr) return {.smooth = false, .either_sign = false};
+  return {found->smooth, found->either_sign};
 }
 
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary,
@@ -161,6 +202,7 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
                      .result = std::nullopt,
                      .state_hash = summary.state_hash};
   if (summary.end.outcome != Outcome::diverges) result.result = number_of(summary.metrics, metric);
+  if (const Metric* found = find_metric(summary.metrics, metric)) result.spread = found->sampling_spread;
   const std::span<const char* const> counts = kContactCounts;
   for (const char* name : counts.first(path.starts_with("environment.") ? 1 : counts.size()))
     result.contacts.emplace_back(name, number_of(summary.metrics, name).value_or(0.0));

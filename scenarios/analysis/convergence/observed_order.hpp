@@ -22,6 +22,12 @@ struct LevelResult {
   /// Contact counts by name. If they differ between levels, contacts switched on or off.
   std::vector<std::pair<std::string, double>> contacts = {};
   std::uint64_t state_hash = 0;  ///< equal for bitwise equal runs
+  double spread = 0.0;           ///< Metric::sampling_spread of the metric
+};
+
+/// The properties of a metric that decide how it can be extrapolated, as in Metric.
+struct MetricTraits {
+  bool smooth = true, either_sign = true;
 };
 
 /// Convergence of one metric. r: ratio of the levels; p: observed order; f*: Richardson's value.
@@ -34,16 +40,20 @@ struct Convergence {
   /// True if the levels are in the asymptotic range: |GCI_21 / (r^p GCI_32) - 1| <= 0.1 for the three finest levels,
   /// and, if a fourth level counts, also for the second to fourth finest levels with the same p.
   bool asymptotic = false;
-  /// Smallest and largest result of the three finest levels that count, or of two if only two count; empty with
-  /// fewer.
+  /// Smallest and largest result of the last three levels that count, or of two levels; empty with fewer. For a metric
+  /// that is not smooth, both are moved outwards by its sampling spread at the finest level.
   std::optional<std::pair<double, double>> band;
   /// Observed order at each level, computed from this level and the two next coarser levels; empty if undefined.
   std::vector<std::optional<double>> orders;
   /// Error estimate (not a bound) of each level [metric's unit]. With an order: 1.25 |f - f*|, which equals the GCI at
-  /// the finest level. Without an order: the largest distance to the result of a finer level, and at least the width
-  /// of `band`.
+  /// the finest level. Without: the largest distance to a finer level, at least the range of the last three levels.
+  /// For a metric that is not smooth: the larger of both, plus the difference of the two finest levels if there is no
+  /// order (what remains beyond them at first order), plus the sampling spread at the finest level.
   std::vector<std::optional<double>> errors;
 };
+
+/// Returns the properties of a metric; the strictest ones if the list does not have the metric.
+MetricTraits traits_of(const MetricList& list, const std::string& metric);
 
 /// Returns a metric of the run at a level. `summary`: the result of this run.
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary, const std::string& metric);
@@ -51,11 +61,13 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
 /// Returns the convergence of a metric from its results at all levels. Only the finest consecutive levels that have a
 /// result and the same outcome as the finest level count. No order is stated if:
 /// - all runs are bitwise equal;
-/// - the levels give a reason against an order (LevelSweep::no_order);
-/// - fewer than three levels count;
+/// - the levels have a reason (LevelSweep::no_order);
+/// - fewer than three levels count, or fewer than five for a metric that is not smooth;
 /// - the last two results differ by rounding only;
-/// - contacts switch between the last three levels;
-/// - within the last four levels, differences change their sign or an order is not in (0, 2 formal_order].
-Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels);
+/// - contacts switch between the last three levels (of a metric that is not smooth: five);
+/// - within the last four levels (five), differences change their sign or an order is not in (0, 2 formal_order];
+/// - the extrapolated value is negative, and the metric cannot be.
+Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels,
+                           const MetricTraits& traits = {});
 
 }  // namespace hapbench

@@ -29,7 +29,7 @@ from hapbench_import.stroke import columns_text, number_text
 
 from .fit import MASS, fit
 from .log import read_log
-from .model import FRICTION_TOLD, KINDS, NAMES, design, force_to_ask, travel_of
+from .model import FRICTION_TOLD, KINDS, NAMES, design, force_to_ask, range_of
 from .units import LONGEST_STEP, is_likely, is_usual, likely_units, scale_option, turned_round
 
 NOTES = [
@@ -38,8 +38,8 @@ NOTES = [
     "a row is the one commanded at its time, positive in the direction of the position.",
     'Units in column names, such as "position [mm]", are applied; --scale overrides them. '
     "--scale force=-1 changes the sign of the forces.",
-    "Result: mass, viscous and dry friction, delay, encoder step and noise, each with a 95 % "
-    "interval. A parameter that the log cannot determine is not written; a warning gives the "
+    "Result: mass, viscous and dry friction, delay, encoder step and noise, each with an interval. It "
+    "is a 95 % interval unless a warning says that the residual is not noise. A parameter that the log cannot determine is not written; a warning gives the "
     "reason. A constant offset force is printed, but is not part of the device.",
     "Design: force (largest, default 1 N), travel (of the handle, default 0.05 m), mass (smallest "
     "possible, default 0.05 kg), rate (default 1000 Hz), duration (default 5 s).",
@@ -62,6 +62,7 @@ UNITS = {
     "position_noise_m": "m",
     "offset_N": "N",
 }
+UNTRUSTED = "The true values can lie outside of the intervals: do not read them as 95 % intervals"
 MOST_DRAWN = 6000  # samples, so that a picture of a long log is not megabytes
 IN_DEVICE = (
     "handle_mass_kg",
@@ -126,7 +127,10 @@ def run(options):
     if options.log:
         refuse_source(out, options.log, "log")
     table, data = play(kind, numbers, out) if kind else identify(options, out)
-    headings = ["signal" if options.design else "identified device", "value", "95 % from", "to"]
+    sure = kind or data["confidence"]
+    headings = ["signal", "value"]
+    if not kind:
+        headings = ["identified device", "value", "95 % from" if sure else "estimated from", "to"]
     next_line = (
         "play these forces on the device, log time_s,force_N,position_m, then "
         f"{shell_line('hapbench', 'import', 'device', 'LOG.csv')}"
@@ -214,6 +218,7 @@ def identify(options, out):
     ]
     table.append(["residual [m]", f"{found.rms:.3g}", "", ""])
     return table, told | {
+        "confidence": 0.95 if found.trusted else None,
         "step_s": log.step,
         "residual_m": found.rms,
         "samples": int(np.isfinite(log.position).sum()),
@@ -252,10 +257,15 @@ def require_right_sign(options, log, found):
 def refuse_units(options, log, problem, found=None):
     """Refuses a log that is hardly in s, N and m, with the units that make it a likely one. A log in milliseconds and
     millimetres fits as well as any, with a handle of tons."""
-    advice = (
-        units_text(options, log, found)
-        or "No usual units explain the log. Is a hand or a spring on the handle?"
-    )
+    advice = units_text(options, log, found)
+    if not advice and found is not None and found.misfit:
+        fail(
+            f"{problem}, but the residual of {found.rms:.3g} m (rms) is more than noise, and other units do not "
+            "explain the log. Is a hand or a spring on the handle, or is the clock wrong? If the units s, N and m are "
+            "right, --scale time=1 writes the device all the same",
+            options.log,
+        )
+    advice = advice or "No usual units explain the log."
     fail(
         f"{problem}: are the units s, N and m? {advice} If the units are right, confirm them with "
         "--scale time=1",
@@ -287,7 +297,8 @@ def shown_end(end):
 def warnings_of(told, found, log):
     warnings = [
         f"{name} cannot be identified from this log: {why}; "
-        f"95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}"
+        f"{'95 % interval' if found.trusted else 'estimated interval'} "
+        f"{' ... '.join(map(shown_end, told[name]['interval']))}"
         for name, why in found.untold.items()
         if name in IN_DEVICE
     ]
@@ -301,7 +312,14 @@ def warnings_of(told, found, log):
             f"the residual of {found.rms:.3g} m is larger than noise: the device has a property that "
             "the model lacks, such as a hand on the handle, elasticity or friction that depends on "
             "the position; see the picture. The parameters are therefore fitted to pieces of "
-            "0.2 s, and their intervals come from leaving out one twelfth of the log at a time"
+            "0.2 s, and their intervals come from leaving out one twelfth of the log at a time. "
+            f"{UNTRUSTED}"
+        )
+    elif not found.trusted:
+        warnings.append(
+            f"the residual of {found.rms:.3g} m is not white: its slow part is larger than noise and encoder explain, "
+            "as with friction that depends on the speed, or with times that are not those of the samples. "
+            f"{UNTRUSTED}"
         )
     return warnings
 
@@ -366,20 +384,23 @@ def play(kind, numbers, out):
         f"{number_text(t)},{number_text(f)}" for t, f in zip(time.tolist(), force.tolist())
     )
     write(Path(out), f"time_s,force_N\n{rows}\n")
-    travel, peak = float(travel_of(time, force, numbers["mass"])), float(np.abs(force).max())
+    peak = float(np.abs(force).max())
+    low, high = map(float, range_of(time, force, numbers["mass"]))
     table = [
-        ["signal", KINDS[kind], "", ""],
-        ["samples", str(len(time)), "", ""],
-        ["largest force [N]", f"{peak:.3g}", "", ""],
-        ["largest identifiable dry friction [N]", f"{FRICTION_TOLD * peak:.3g}", "", ""],
-        [f"travel of {numbers['mass']:g} kg without friction [m]", f"{travel:.3g}", "", ""],
+        ["signal", KINDS[kind]],
+        ["samples", str(len(time))],
+        ["largest force [N]", f"{peak:.3g}"],
+        ["largest identifiable dry friction [N]", f"{FRICTION_TOLD * peak:.3g}"],
+        [f"travel of {numbers['mass']:g} kg or more [m]", f"{high - low:.3g}"],
+        ["positions from the start [m]", f"{low:.3g} ... {high:.3g}"],
     ]
     return table, {
         "file": out,
         "design": kind,
         "samples": len(time),
         "force_max_N": peak,
-        "travel_m": travel,
+        "travel_m": high - low,
+        "range_m": [low, high],
         "warnings": limited_by_travel(kind, numbers, peak),
     }
 

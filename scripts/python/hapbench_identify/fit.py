@@ -1,5 +1,5 @@
 """Least squares on the simulated position, with intervals of 95 %."""
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from hapbench_command import fail
@@ -22,6 +22,9 @@ SMOOTHINGS = (0.02, 0.05, 0.1)  # whole width of a kernel [s]
 GRID = [
     (m, c, d) for m in (0.05, 0.2, 0.8) for c in (0.02, 0.2, 0.5) for d in (1.0, 4.0)
 ]  # kg, of the peak, samples
+WINDOWS = (0.005, 0.02, 0.05, 0.2)  # over which the slow part of a residual is averaged [s]
+# Standard deviations of the slow part from which on the intervals are widened, and from which on they are not trusted.
+WIDENED, DISTRUSTED = 1.5, 4.0
 FROM_REST = 12.0  # sum of squares over the variance by which a first speed must be better than none
 
 
@@ -33,6 +36,7 @@ class Fit:
     rms: float  # of it [m]
     memory: float  # how many samples of the residual count as one, from its autocorrelation
     misfit: bool  # the residual is more than noise and encoder: the device has what the model has not
+    trusted: bool  # the intervals are of 95 %: the residual and its slow part are those of noise and encoder
     untold: dict = field(default_factory=dict)  # names of what the log cannot tell, with the reason
 
 
@@ -139,6 +143,7 @@ def fit(log):
 
 
 def _fit(log, simulate):
+    log = without_unknown_start(log)
     known = np.isfinite(log.position)
     place = np.interp(np.arange(len(log.time)), np.flatnonzero(known), log.position[known])
     noise, way = noise_of(log.position[known]), np.ptp(place)
@@ -173,9 +178,14 @@ def _fit(log, simulate):
         found, spread = _by_pieces(Cost(simulate, log, piece=SHORT_PIECE), found, scale)
     residual = whole(found.x)
     memory = memory_of(residual)
+    slow = slow_part(log, whole, found.x, residual)
     intervals, untold, seen = _intervals(
         whole, log, found, scale, residual, memory, noise, spread if by_pieces else None
     )
+    if slow > WIDENED and not by_pieces:
+        wide = without_blocks(whole, found, scale)
+        intervals[:, 0] = np.minimum(intervals[:, 0], found.x - wide)
+        intervals[:, 1] = np.maximum(intervals[:, 1], found.x + wide)
     half = 0.5 * np.diff(intervals)[:, 0]
     for i, most, said in (
         (MASS, 0.25 * found.x[MASS], "25 % of the value"),
@@ -195,6 +205,7 @@ def _fit(log, simulate):
         float(np.sqrt(np.mean(residual**2))),
         memory,
         misfit,
+        not misfit and slow <= DISTRUSTED,
         {NAMES[i]: f"{why} ({seen})" for i, why in sorted(untold.items()) if i != SPEED},
     )
 
@@ -342,9 +353,14 @@ def _spreads(J, places, encoder_step, rms):
 
 
 def _by_pieces(cost, found, scale):
-    """For a residual that is not noise: the fit on short pieces, and half of the intervals by
-    leaving out one block of the log after another, which assumes nothing about it."""
+    """For a residual that is not noise: the fit on short pieces, and half of the intervals."""
     found = least_squares(cost, found.x, scale, 60, 1e-8)
+    return found, without_blocks(cost, found, scale)
+
+
+def without_blocks(cost, found, scale):
+    """Half of the intervals by leaving out one block of the log after another, which assumes nothing about the
+    residual but that blocks are alike."""
     units = _units(scale, found.x)
     J, residual = cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), cost(
         found.x
@@ -359,7 +375,50 @@ def _by_pieces(cost, found, scale):
         ]
     )
     spread = units * np.sqrt((BLOCKS - 1.0) * np.var(without, axis=0))
-    return found, float(t.ppf(0.975, BLOCKS - 1)) * spread
+    return float(t.ppf(0.975, BLOCKS - 1)) * spread
+
+
+def slow_part(log, cost, x, residual):
+    """By how many standard deviations the slow part of the residual, its means over WINDOWS, is larger than that of
+    noise and encoder alone. Noise and encoder alone are those of simulated logs with the noise that the log shows.
+    """
+    places = cost.simulated(x)
+    places = places + np.mean(log.position[cost.known] - places)
+    random = np.random.default_rng(1)
+
+    def measured(noise):
+        noisy = places + noise * random.standard_normal(len(places))
+        return np.round(noisy / log.encoder_step) * log.encoder_step if log.encoder_step else noisy
+
+    sharp = noise_of(log.position[cost.known])
+    noise = np.sqrt(max(sharp**2 - noise_of(measured(0.0)) ** 2, 0.0))
+    alone = [measured(noise) - places for _ in range(8)]
+    least = 1e-4 * (sharp**2 + log.encoder_step**2)
+    beyond = 0.0
+    for window in WINDOWS:
+        rows = max(2, round(window / log.step))
+        starts = np.arange(0, len(places) - rows + 1, rows)
+        if len(starts) < 10:
+            continue
+        parts = [
+            np.mean((np.add.reduceat(one - one.mean(), starts)[:-1] / rows) ** 2) + least
+            for one in (residual, *alone)
+        ]
+        expected = np.mean(parts[1:])
+        deviation = max(np.sqrt(2.0 / len(starts)), np.std(parts[1:]) / expected)
+        beyond = max(beyond, (parts[0] / expected - 1.0) / deviation)
+    return float(beyond)
+
+
+def without_unknown_start(log):
+    """The log, without the first positions if the handle moves there: forces from before the log still act on it. A
+    first speed then makes up for them."""
+    speed = first_speed(log.position[np.isfinite(log.position)][:200], log.step, log.encoder_step)
+    if speed == 0.0 or len(log.time) < 20.0 * LONGEST:
+        return log
+    position = log.position.copy()
+    position[: int(LONGEST)] = np.nan
+    return replace(log, position=position)
 
 
 def memory_of(residual):

@@ -14,6 +14,15 @@ KINDS = {
 }
 FRICTION_TOLD = 0.6  # of the largest force; more dry friction leaves too little motion
 HIGHEST = 100.0  # frequency [Hz]; more tells little of a handle's mass and friction
+# Friction for which a signal keeps its travel: dry, in shares of the largest force, by viscous over the mass [1/s].
+DRY_SHARES = {
+    0.0: np.linspace(0.0, FRICTION_TOLD, 61),
+    1.0: np.linspace(0.0, FRICTION_TOLD, 13),
+    10.0: np.linspace(0.0, FRICTION_TOLD, 13),
+}
+TRAVEL_USED = (
+    0.9  # of the travel; between the simulated kinds of friction a path is up to 6 % longer
+)
 
 
 class Simulator(subprocess.Popen):
@@ -52,8 +61,8 @@ def positions(time, force, parameters):
 
 
 def design(kind, force, travel, rate, duration, mass):
-    """(time, force): no larger than `force` [N]; a handle of `mass` [kg] or more without friction
-    keeps within `travel` [m]."""
+    """(time, force): no larger than `force` [N]; a handle of `mass` [kg] or more keeps within `travel` [m], without
+    friction and with dry friction up to FRICTION_TOLD of the largest force."""
     steps = int(round(duration * rate))
     if steps < 100:
         fail(
@@ -79,27 +88,32 @@ def design(kind, force, travel, rate, duration, mass):
     else:
         values = _steps(steps, rate, slowest, fastest)
     values *= force / np.abs(values).max()
-    return time, values * min(1.0, travel / travel_of(time, values, mass))
+    # The path is proportional to the force if dry friction is a share of it.
+    return time, values * min(1.0, TRAVEL_USED * travel / np.ptp(range_of(time, values, mass)))
 
 
 def _steps(steps, rate, slowest, fastest):
-    """+ for n samples, - for 2 n, + for n, which brings a handle without friction back to rest
-    where it was; n grows."""
+    """+ for n samples, - for 2 n, + for n, which brings a handle without friction back to rest where it was; n grows.
+    With friction the first push moves the handle furthest, so that it drifts. Therefore each sequence follows with the
+    other sign, which brings it back."""
     values = []
     lengths = np.geomspace(rate / (4.0 * fastest), rate / (4.0 * slowest), 8)
     while len(values) < steps:
         for length in np.maximum(1, np.rint(lengths)).astype(int):
-            values += [1.0] * length + [-1.0] * (2 * length) + [1.0] * length + [0.0] * length
+            pushes = [1.0] * length + [-1.0] * (2 * length) + [1.0] * length + [0.0] * length
+            values += pushes + [-push for push in pushes]
     return np.array(values[:steps])
 
 
-def travel_of(time, force, mass):
-    """The way between the ends of the motion [m] of a handle without friction, and with the
-    friction that it moves in oil."""
-    return max(
-        np.ptp(positions(time, force, (mass, rate * mass, 0.0, 0.0, 0.0, 0.0)))
-        for rate in (0.0, 1.0, 10.0)
-    )
+def range_of(time, force, mass):
+    """Lowest and highest position [m], from where the handle starts, over all DRY_SHARES."""
+    peak, ends = np.abs(force).max(), [0.0]
+    with Simulator(time, force) as simulate:
+        for rate, shares in DRY_SHARES.items():
+            for share in shares:
+                path = simulate((mass, rate * mass, share * peak, 0.0, 0.0, 0.0))
+                ends += [path.min(), path.max()]
+    return min(ends), max(ends)
 
 
 def force_to_ask(kind, numbers):

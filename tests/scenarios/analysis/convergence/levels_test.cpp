@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -55,10 +56,52 @@ TEST(Converge, KnowsTheFormalOrderOfEveryIntegrator) {
     for (const double zeta : {0.0, 0.2}) {
       const ScenarioText scenario{"x.json", spring(zeta, integrator->info.name)};
       EXPECT_EQ(level_sweep(load_scenario(scenario, {}), kStepPath, 3, 2.0).formal_order,
-                zeta > 0.0 ? integrator->damped_order : integrator->order)
+                zeta > 0.0                 ? integrator->damped_order
+                : integrator == &kLeapfrog ? 2
+                                           : integrator->order)
           << integrator->info.name << " " << zeta;
     }
   }
+}
+
+/// Amplitudes of leapfrog on an undamped spring are x0 / sqrt(1 - (w h / 2)^2): order 2.
+TEST(Converge, FindsSecondOrderInTheAmplitudeOfAnUndampedSpring) {
+  Json scene = spring(0.0, "leapfrog");
+  scene["time"]["steps"] = 4000;  // 64 periods, so that the rows come near to the peaks
+  const Study study = convergence_study(scene);
+  const auto levels = study.levels_of("force_max_N");
+  const Convergence c = convergence_of(study.levels, levels, {.smooth = false, .either_sign = false});
+  ASSERT_TRUE(c.order) << c.reason;
+  EXPECT_NEAR(*c.order, 2.0, 0.1);
+  EXPECT_NEAR(*c.extrapolated, kStiffness * kStart, *c.errors.back());
+}
+
+/// The fastest row is the last before the landing. At some step of the row the landing moves to another one, and the
+/// largest speed by what the tool gains in a row: the spread over the choice of rows tells.
+TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
+  Json scene = {{"time", {{"step_s", 1e-3}, {"steps", 200}}},
+                {"environment", {{"type", "springs"}, {"bilateral", false}}},
+                {"initial", {{"position_m", {0, 0, 1e-3}}}},
+                {"hand", {{"type", "force"}, {"z_N", -0.1}}},
+                {"rendering",
+                 {{"algorithm", "summation"},
+                  {"stiffness_N_per_m", 1000},
+                  {"mass_kg", 0.1},
+                  {"damping_N_s_per_m", 100},
+                  {"friction", {{"mu_s_N_s_per_m", 0}, {"mu_f_s_per_m", 0}}}}}};
+  scene["environment"]["groups"] = {{{"direction", {0, 0, -1}}, {"count", 1}}};
+  const Study study = convergence_study(scene, 4);
+  const auto levels = study.levels_of("speed_max_m_per_s");
+  EXPECT_EQ(levels.front().spread, 0.0) << "every row counts";
+  // 1 m/s^2 over a row of 1 ms; the last row before the landing lies up to a row before it.
+  const double gain = 1e-3;
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    EXPECT_GT(levels[i].spread, 0.5 * gain) << i;
+    EXPECT_LT(levels[i].spread, 1.5 * gain) << i;
+  }
+  const Convergence c = convergence_of(study.levels, levels, {.smooth = false, .either_sign = false});
+  const double landing_speed = std::sqrt(2.0 * 1.0 * 1e-3);
+  EXPECT_NEAR(*levels.back().result, landing_speed, *c.errors.back());
 }
 
 /// All levels are measured at the same times: a prescribed motion gives the same force steps, whatever the step, and

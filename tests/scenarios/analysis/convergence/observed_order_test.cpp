@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/scene/metric_sections.hpp"
+
 /// Observed orders of sequences whose order is known, and of sequences without an order. Roache's formulas on a
 /// recurrence are in tests/known_answers.
 
@@ -113,6 +115,63 @@ TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
   expect_no_order(none, "the finest run, at h = 0.062500, has no value of the metric (outcome stuck)");
   for (const auto& error : none.errors) EXPECT_FALSE(error);
   expect_no_order(judged(levels_with({1.0, 2.0}), 1.0), "three levels are needed, got 2");
+}
+
+constexpr MetricTraits kExtreme{.smooth = false, .either_sign = false};
+
+/// A speed before a landing: it looks of first order for some levels, until the landing moves to another row.
+TEST(ObservedOrder, OfExtremesNeedsFiveLevelsAndCountsTheirScatter) {
+  const std::vector<double> halving = {1.0 + 1.0 / 4, 1.0 + 1.0 / 8, 1.0 + 1.0 / 16, 1.0 + 1.0 / 32, 1.0 + 1.0 / 64};
+  for (const std::size_t count : {std::size_t{3}, std::size_t{4}}) {
+    std::vector<LevelResult> levels = levels_with({halving.begin(), halving.begin() + static_cast<long>(count)});
+    levels.back().spread = 0.5;
+    const Convergence c = convergence_of({{}, 2.0, 1.0}, levels, kExtreme);
+    expect_no_order(c, "needs five levels");
+    // The errors hold what the levels beyond add at first order, and the spread; here the limit is 1.
+    EXPECT_NEAR(*c.errors.front(), halving.front() - 1.0 + 0.5, 1e-12) << count;
+    EXPECT_NEAR(c.band->first, halving[count - 1] - 0.5, 1e-12);
+    EXPECT_NEAR(c.band->second, halving[count - 3] + 0.5, 1e-12);
+  }
+  std::vector<LevelResult> levels = levels_with(halving);
+  const Convergence five = convergence_of({{}, 2.0, 1.0}, levels, kExtreme);
+  ASSERT_TRUE(five.order) << five.reason;
+  EXPECT_NEAR(*five.extrapolated, 1.0, 1e-12);
+  EXPECT_NEAR(*five.errors.back(), 1.0 / 16 - 1.0 / 64, 1e-12) << "at least the range of the last three levels";
+  levels.back().spread = 0.5;
+  EXPECT_NEAR(*convergence_of({{}, 2.0, 1.0}, levels, kExtreme).errors.back(), 0.5 + 1.0 / 16 - 1.0 / 64, 1e-12);
+  // All five levels have to agree, not four of them.
+  levels.front().result = 0.9;
+  EXPECT_TRUE(judged(levels, 1.0).order);
+  expect_no_order(convergence_of({{}, 2.0, 1.0}, levels, kExtreme), "change sign");
+}
+
+TEST(ObservedOrder, OfAMetricThatCannotBeNegativeLeadsToNoNegativeValue) {
+  const std::vector<LevelResult> levels = levels_with({0.9, 0.5, 0.2});
+  const MetricTraits rms{.smooth = true, .either_sign = false}, position{.smooth = true, .either_sign = true};
+  expect_no_order(convergence_of({{}, 2.0, 1.0}, levels, rms), "the extrapolated value -0.7 is negative");
+  EXPECT_NEAR(*convergence_of({{}, 2.0, 1.0}, levels, position).extrapolated, -0.7, 1e-12);
+}
+
+TEST(ObservedOrder, MayExceedTwiceTheFormalOrderByWhatAsymptoticLevelsMay) {
+  // d_1 / d_2 = 2^2 * 1.05 and 2^2 * 1.15; the asymptotic range allows a factor of 1.1.
+  EXPECT_TRUE(judged(levels_with({1.0 + 0.42 + 0.1, 1.0 + 0.1, 1.0}), 1.0).order);
+  expect_no_order(judged(levels_with({1.0 + 0.46 + 0.1, 1.0 + 0.1, 1.0}), 1.0), "more than twice the formal order 1");
+}
+
+TEST(ObservedOrder, TraitsAreThoseOfTheMetric) {
+  const MetricList& all = all_metrics();
+  for (const char* name : {"force_max_N", "speed_max_m_per_s", "force_step_p99_N", "landing_force_max_N", "landings",
+                           "force_mean_in_contact_N", "ratio_min", "unknown"}) {
+    EXPECT_FALSE(traits_of(all, name).smooth) << name;
+    EXPECT_FALSE(traits_of(all, name).either_sign) << name;
+  }
+  for (const char* name : {"final_position_m.z", "energy.damping_J", "passivity.energy_end_J"}) {
+    EXPECT_TRUE(traits_of(all, name).smooth) << name;
+    EXPECT_TRUE(traits_of(all, name).either_sign) << name;
+  }
+  EXPECT_TRUE(traits_of(all, "vibration_power_above_30Hz_m2_per_s2").smooth);
+  EXPECT_FALSE(traits_of(all, "vibration_power_above_30Hz_m2_per_s2").either_sign);
+  EXPECT_TRUE(traits_of(all, "passivity.energy_min_J").either_sign);
 }
 
 }  // namespace
