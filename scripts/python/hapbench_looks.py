@@ -2,8 +2,9 @@
 each class of runs, and for what is neither.
 
 Every colour has a contrast of at least 4.5 to the ground it is drawn on (WCAG 2.1, AA), so that names can be written in
-it: `colour` on white, `dark` on the dark page. The hues were spread for readers with and without deuteranopia and
-protanopia; dashes and markers tell apart what colours cannot. An algorithm without an entry gets a look by its name.
+it: `colour` on white, `dark` on the dark page. For readers with deuteranopia, protanopia or tritanopia the colours of
+ALGORITHMS differ by at least 6 (CIEDE2000), those of SERIES by at least 12; a test simulates their vision. Dashes and
+markers are a second code. An algorithm without an entry gets a look by its name.
 """
 import colorsys
 import zlib
@@ -26,35 +27,35 @@ class Look:
 
 
 ALGORITHMS = {
-    "original_averaging": Look("original averaging (DP)", "#0B6BC4", "#6CB4F5", (), "s"),
-    "summation": Look("summation", "#6D122C", "#E98AA0", (5, 1.5), "^"),
-    "mean": Look("mean", "#027A7D", "#4FC9CC", (3, 1, 1, 1), "v"),
-    "virtual_coupling": Look("virtual coupling", "#5A34A9", "#B79BF5", (1, 1), "D"),
+    "original_averaging": Look("original averaging (DP)", "#0567D3", "#83A8FF", (), "s"),
+    "summation": Look("summation", "#780034", "#F68EAD", (5, 1.5), "^"),
+    "mean": Look("mean", "#057478", "#78CDD1", (3, 1, 1, 1), "v"),
+    "virtual_coupling": Look("virtual coupling", "#5322AA", "#CEBAFF", (1, 1), "D"),
     "shaped_stiffness": Look("stiffness shaping (HS)", "#000000", "#F2F2F2", (), "o"),
-    "tandpasta": Look("tandpasta", "#123C04", "#A5C98A", (7, 2, 1, 2), "P"),
-    "normal_projection": Look("normal projection", "#515454", "#B5B9B9", (2, 1), "X"),
-    "exact_shaping": Look("exact shaping (ours)", "#BD1BC3", "#F08CF3", (4, 1, 1, 1, 1, 1), "h"),
+    "tandpasta": Look("tandpasta", "#123F0E", "#94BF86", (7, 2, 1, 2), "P"),
+    "normal_projection": Look("normal projection", "#97426A", "#9B9D99", (2, 1), "X"),
+    "exact_shaping": Look("exact shaping (ours)", "#BD00BC", "#D181B4", (4, 1, 1, 1, 1, 1), "h"),
     "continuous_normal_projection": Look(
-        "contin. projection (ours)", "#775543", "#D3AE97", (3, 1), "*"
+        "contin. projection (ours)", "#7B5843", "#DBBDAB", (3, 1), "*"
     ),
-    "least_squares": Look("least squares (ours)", "#1B06E8", "#8F9BFF", (1, 1.5), "d"),
-    "highest_depth": Look("highest depth", "#09335D", "#C3D3EA", (6, 2), "<"),
-    "mcneely": Look("McNeely, 10/N", "#8A4B00", "#F0B060", (3, 1.5, 1, 1.5), "1"),
-    "static_coupling": Look("static coupling", "#00516B", "#5FC4E8", (2, 2), "2"),
-    "merged_shaping": Look("merged shaping (ours)", "#9F0375", "#F07CC8", (4, 1, 1, 1), "p"),
-    "proxy": Look("proxy (ours)", "#1D6A01", "#7EDB5A", (8, 1), ">"),
+    "least_squares": Look("least squares (ours)", "#0003EA", "#7F8BFF", (1, 1.5), "d"),
+    "highest_depth": Look("highest depth", "#002C50", "#CADBF4", (6, 2), "<"),
+    "mcneely": Look("McNeely, 10/N", "#A2560C", "#EAA330", (3, 1.5, 1, 1.5), "1"),
+    "static_coupling": Look("static coupling", "#00567E", "#0AAED3", (2, 2), "2"),
+    "merged_shaping": Look("merged shaping (ours)", "#961356", "#FF64D1", (4, 1, 1, 1), "p"),
+    "proxy": Look("proxy (ours)", "#005701", "#49CF56", (8, 1), ">"),
 }
 # Numbers of the thesis, in a colour that no algorithm has; hollow diamonds and dotted lines in figures.
 PUBLISHED, PUBLISHED_DARK = "#C2261C", "#FF8A75"
 
 # For curves that are of no algorithm, or all of one.
 SERIES = (
-    Look("", "#00647D", "#5FC4E8", (), "o"),
-    Look("", "#8A5600", "#E9B64C", (4, 1.2), "s"),
+    Look("", "#1F5FD6", "#63A7B5", (), "o"),
+    Look("", "#945200", "#E1A902", (4, 1.2), "s"),
     Look("", "#000000", "#F2F2F2", (1, 1.65), "^"),
-    Look("", "#8A3B75", "#F07CC8", (5, 1.5), "v"),
-    Look("", "#5F5F5F", "#B5B9B9", (3, 1, 1, 1), "D"),
-    Look("", "#1D6A01", "#7EDB5A", (6, 2), "x"),
+    Look("", "#752B6E", "#FC84FE", (5, 1.5), "v"),
+    Look("", "#494944", "#B4B8B3", (3, 1, 1, 1), "D"),
+    Look("", "#14794E", "#8EE288", (6, 2), "x"),
 )
 
 # Class of a run -> its name, colour and hatching; light to dark, so that they can be told apart in grey.

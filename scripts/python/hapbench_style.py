@@ -3,6 +3,7 @@ for curves that cannot show all of theirs, equal curves that show each other, an
 becomes the bytes of a file."""
 import io
 import re
+from dataclasses import dataclass
 
 import matplotlib
 import numpy as np
@@ -21,6 +22,38 @@ from matplotlib.transforms import Bbox  # noqa: E402
 
 WIDTH = 7.0  # of a page's text [inch]
 DPI = 150  # of a PNG
+MM = 1 / 25.4  # [inch]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Room for a picture. Its fonts of 7 to 9 pt are meant for this size."""
+
+    width: float  # [inch]
+    columns: int  # largest number of panels side by side
+    height: float | None = None  # of every picture [inch]; None: as high as its panels need
+
+    def grid(self, count):
+        """Rows and columns for so many panels, with few empty cells."""
+        columns = min(
+            range(1, min(count, self.columns) + 1), key=lambda n: (-(-count // n), -count % n)
+        )
+        return -(-count // columns), columns
+
+    def panels(self, rows, columns, height, **keywords):
+        """Figure with a grid of axes, always a 2-D array; `height` [inch] unless the sheet sets it."""
+        return plt.subplots(
+            rows, columns, figsize=(self.width, self.height or height), squeeze=False, **keywords
+        )
+
+
+# A column and a page of a journal, and a slide of 160 mm x 90 mm, the size of a 16:9 slide in LaTeX (beamer).
+SHEETS = {
+    "single": Sheet(89 * MM, 1),
+    "double": Sheet(183 * MM, 3),
+    "slide": Sheet(160 * MM, 3, 90 * MM),
+}
+SHEET, PAGE = SHEETS["double"], Sheet(WIDTH, 3)
 
 # Lines and texts have a contrast of at least 4.5 to white. These colours are for readings, forces and contacts, not for
 # algorithms. Amber and petrol differ for every kind of colour vision; a third colour comes with a
@@ -101,10 +134,21 @@ def number_ticks(axis, subs=()):
 LINE = 0.17  # height of a line of a legend [inch]
 
 
+LETTER = 0.062  # usual width of a letter of a legend or label [inch]
+
+
+def legend_columns(labels, width, most=4):
+    """The number of columns of a legend with these labels that fit into so many inches."""
+    return max(
+        1, min(most, len(labels), int((width - 0.1) / (0.6 + LETTER * max(map(len, labels)))))
+    )
+
+
 def legend_above(figure, handles, labels, columns=4):
-    """A legend over all panels, with room for it; none without labels."""
+    """A legend over all panels, with room for it; none without labels. `columns`: None for as many as fit."""
     if not labels:
         return
+    columns = columns or legend_columns(labels, figure.get_figwidth(), 6)
     lines = -(-len(labels) // columns)
     figure.get_layout_engine().set(
         rect=(0, 0, 1, 1 - (0.08 + LINE * lines) / figure.get_figheight())

@@ -8,7 +8,7 @@ import numpy as np
 import hapbench_style as style
 from hapbench.columns import numbers, read_records
 from hapbench_pictures.given import axis
-from hapbench_pictures.over_axes import Limits, draw_limits, draw_over
+from hapbench_pictures.limit_plot import Limits, draw_limits, draw_over
 
 from . import scene
 
@@ -140,7 +140,7 @@ def over(results, study):
 
 
 def of_all_devices(results):
-    return draw_limits(results, "device_limits/"), {}
+    return draw_limits(results, style.PAGE, "device_limits/"), {}
 
 
 MEASURED = scene.ROOT / "scenarios" / "library" / "validation" / "measured.csv"

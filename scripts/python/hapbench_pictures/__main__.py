@@ -11,8 +11,13 @@ PLOT_NOTES = [
     "or any column of the runs' tables. force, speed and other vectors are drawn as their length; "
     "--y fx_N,fy_N,fz_N draws components.",
     "Runs: the folder of a comparison stands for all its runs. Each force law has its colour. A "
-    "triangle marks the first touch. A peak of more than three times the range of settled contact "
-    "is cut off and labelled with its value.",
+    "circle marks the start of a path, a square its end, a triangle the first touch. A peak of more "
+    "than three times the range of settled contact is cut off and labelled with its value.",
+    "A comparison with a ranking (several seeds, scenes, or --by): each metric by law, the best on "
+    "top with its rank; --y draws the runs over time instead. --metric draws the metrics of any runs "
+    "by law. Grey: the error of the mean. Failed runs are counted in red and have no value.",
+    "Limits: marks are simulated limits, lines or hollow squares linear limits; with --device a "
+    "colour for each device, dotted lines for published limits.",
     "A sampled sweep: the metric over each field, with the influence of the field: Spearman's rank "
     "correlation and first-order Sobol index.",
     "Files: plot.svg in the folder of the runs; for several runs, in the nearest folder that "
@@ -21,6 +26,7 @@ PLOT_NOTES = [
 PLOT_EXAMPLES = [
     "hapbench plot results/out/drag_molar",
     "hapbench plot results/out/compare_drag_molar --y force,depth --out drag.png",
+    "hapbench plot results/out/compare_tap_wall --metric inside_max_m --width single --out depth.pdf",
     "hapbench plot results/out/sweep_tap_wall --metric force_max_N",
 ]
 REPORT_NOTES = [
@@ -62,7 +68,18 @@ def plot_line():
         "<name,...>",
         "quantities to draw (default: force, depth, ratio, contacts, path, and energy if recorded)",
     )
-    line.text("--metric", "<name>", "for a sweep: column of sweep.csv to draw")
+    line.texts(
+        "--metric",
+        "<name,...>",
+        "metrics to draw by law, with mean, spread and every run; for a sweep: one column of sweep.csv",
+    )
+    line.one_of(
+        ("single", "double", "slide"),
+        "--width",
+        "<name>",
+        "size: single or double column of a journal (89 or 183 mm wide), or slide (160 mm x 90 mm); "
+        "default: double",
+    )
     line.text(
         "--where",
         "<condition>",

@@ -13,7 +13,7 @@ from hapbench_report.markup import column
 from hapbench_report.runs import load_run, load_runs
 
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
-SEED_FOLDER = re.compile(r"seed_\d+")  # of a comparison with --seeds
+SEED_FOLDER = re.compile(r"seed_(\d+)")  # of a comparison with --seeds
 # Titles of fields whose last name says too little, and symbols in formulas.
 TITLES, SYMBOLS = {"time.step_s": "time step", "rendering.damping_ratio": "damping ratio ζ"}, {
     "rendering.stiffness_N_per_m": "K"
@@ -93,12 +93,19 @@ def named(runs):
         for i, fields in enumerate(field_entries(runs))
     ]
     folders = relative_folders(runs)
-    seeded = [f"{group}, seed {run.scenario.get('seed')}" for group, run in zip(groups, runs)]
+    seeded = [f"{group}, seed {seed_of(run)}" for group, run in zip(groups, runs)]
     placed = [f"{group}, {folder}" for group, folder in zip(groups, folders)]
     for names, shared in ((groups, groups), (seeded, groups), (placed, placed)):
         if len(set(names)) == len(names):
             return names, shared
     return folders, folders
+
+
+def seed_of(run):
+    """The number of a run's repetition, as in the name of its folder and in comparison.csv; of a run that is part of no
+    comparison the seed of its scenario."""
+    found = SEED_FOLDER.fullmatch(run.folder.name)
+    return int(found[1]) if found else run.scenario.get("seed")
 
 
 def plain(run):

@@ -22,6 +22,8 @@ LARGEST_RATIO = 30
 GRID = 400  # cells of a section, to a side
 PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axis_z")
 SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at so many places of its way
+SAID = "circle: start; square: end; triangle: first touch"
+TOOL_SAID = "outlines: the tool at four times"
 LEAST_IN_PLANE = 0.85  # of the tool's axis, for its outline to be drawn: no more than 30 degrees out of the plane
 
 
@@ -81,6 +83,8 @@ def draw_over_time(ax, quantity, samples, looks):
         cut_off_peaks(ax, quantity, drawn)
     for (s, one, (time, low, high)), equal in zip(drawn, equal_curves([of for _, _, of in drawn])):
         line = {"color": one.colour, "ls": striped(one.line, *equal)}
+        if one.dash and equal[1] == 1:  # a peak may fall into a gap of the dashes
+            ax.plot(*curve(time, low, high, SPANS), lw=0.4 * one.width, color=one.colour, alpha=0.7)
         if low is high:
             ax.plot(*curve(time, low, high, SPANS), lw=one.width, label=one.label, **line)
         else:
@@ -192,7 +196,7 @@ def plane_of(samples):
 def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
     """The scene with equal axes, in the plane through the middle of the tip's ways: the solid
     filled, the ways, and the first run's tool at four times. `profile`: of the tool [m]; `surface`:
-    points and normals [m]."""
+    hapbench_report.replay.Surface."""
     plane, radius = plane_of(samples), max((radius for _, radius in profile or ()), default=0.0)
     ways = np.vstack([tip_of(s)[framed(s)][:, plane] for s in samples])
     low, high = ways.min(0) - 1.3 * radius, ways.max(0) + 0.7 * radius
@@ -215,10 +219,14 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
     ):
         rows = corners(s.trajectory)
         ax.plot(*way[rows].T, color=one.colour, ls=striped(one.line, *equal), lw=min(1, one.width))
-        ax.plot(*way[0], marker="o", ms=3.5, mfc="none", color=one.colour)
+        # White edges lift the marks off the path and the outlines of the tool.
+        edge = {"ls": "none", "color": one.colour, "mec": paper[1], "mew": 0.8, "zorder": 3}
+        ax.plot(*way[-1], **edge, marker="s", ms=6)
         touching = np.flatnonzero(s.trajectory["colliding"] > 0)
         if touching.size:
-            ax.plot(*way[touching[0]], marker="v", ms=5, color=one.colour)
+            ax.plot(*way[touching[0]], **edge, marker="v", ms=6.5)
+        start = {**edge, "mfc": paper[1], "mec": one.colour, "mew": 1.8, "zorder": 4}
+        ax.plot(*way[0], **start, marker="o", ms=7)
     low, high = 1e3 * (middle - half), 1e3 * (middle + half)
     # The equal aspect widens one of the two intervals. Limits that are not automatic make matplotlib 3.10 warn of that.
     ax.set_xlim(low[0], high[0], auto=True)
@@ -233,20 +241,34 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
         ax.set_title("path continues outside", loc="right")
 
 
+def surface_text(surface):
+    """What the picture shows of the surroundings, as a list of phrases."""
+    if surface is None:
+        return []
+    if surface.is_solid:
+        return ["filled: section of the solid through the middle of the path"]
+    return ["dots: section of the surface, an open scan, through the middle of the path"]
+
+
 def draw_surface(ax, plane, middle, surface, reach, paper):
-    """The surface's points near the plane, and the solid: where the nearest of them has its normal away from."""
+    """The surface's points near the plane; and of a solid its inside, where the nearest point has its normal away
+    from. An open surface has no inside."""
+    points = surface.points
     aside, up = ({0, 1, 2} - set(plane)).pop(), list(plane)
-    away, spacing = np.abs(surface[:, aside] - middle[aside]), spacing_of(surface[:, :3])
-    beside = np.abs(surface[:, up] - middle[up]).max(axis=1) < 4 * reach
-    near = surface[(away <= max(1.5 * spacing, 1.01 * away.min())) & beside]
+    away, spacing = np.abs(points[:, aside] - middle[aside]), spacing_of(points[:, :3])
+    beside = np.abs(points[:, up] - middle[up]).max(axis=1) < 4 * reach
+    near = points[(away <= max(1.5 * spacing, 1.01 * away.min())) & beside]
     if not len(near):
         return
     at, outward = near[:, up], near[:, [3 + axis for axis in plane]]
-    x, y = (np.linspace(middle[axis] - 4 * reach, middle[axis] + 4 * reach, GRID) for axis in plane)
-    cells = np.stack(np.meshgrid(x, y), -1)
-    nearest = cKDTree(at).query(cells)[1]
-    height = ((cells - at[nearest]) * outward[nearest]).sum(-1)
-    ax.contourf(1e3 * x, 1e3 * y, height, levels=(-np.inf, 0), colors=[paper[3]], zorder=0)
+    if surface.is_solid:
+        x, y = (
+            np.linspace(middle[axis] - 4 * reach, middle[axis] + 4 * reach, GRID) for axis in plane
+        )
+        cells = np.stack(np.meshgrid(x, y), -1)
+        nearest = cKDTree(at).query(cells)[1]
+        height = ((cells - at[nearest]) * outward[nearest]).sum(-1)
+        ax.contourf(1e3 * x, 1e3 * y, height, levels=(-np.inf, 0), colors=[paper[3]], zorder=0)
     # Rasterised, because thousands of points would make the file large.
     ax.plot(*(1e3 * at).T, ".", color=paper[4], ms=1.8, zorder=0.5, rasterized=True)
 

@@ -39,7 +39,7 @@ class Quantity:
     @property
     def axis(self):
         title = f"|{self.title}|" if self.kind == "norm" else self.title
-        return f"{title} [{self.unit}]" if self.unit else title
+        return f"{title} [{self.unit or 1}]"
 
     def of(self, table):
         """Lower and upper edge at every row; the same array twice for a curve."""
@@ -66,9 +66,7 @@ SHORT = {
         ),
         Quantity("torque", "lost torque", "mN m", 1e3, TRAJECTORY, vector("t", "Nm"), "norm"),
         Quantity("depth", "largest depth", "mm", 1e3, TRAJECTORY, ("depth_max_m",)),
-        Quantity(
-            "ratio", "stiffness ratio", "K", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"
-        ),
+        Quantity("ratio", "stiffness ratio", "", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"),
         Quantity("contacts", "colliding points", "", 1, TRAJECTORY, ("colliding",)),
         Quantity("rendered", "rendered points", "", 1, TRAJECTORY, ("rendered",)),
         Quantity(

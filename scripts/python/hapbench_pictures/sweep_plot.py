@@ -13,7 +13,7 @@ from hapbench.errors import InputError
 from hapbench.results import at, read_object
 from hapbench_command import asked_of_program, nearest, table_text
 from hapbench_looks import by_class, look_of_class
-from hapbench_style import PETROL, SETTINGS, legend_above, plt
+from hapbench_style import PETROL, SETTINGS, SHEET, legend_above, plt
 
 from .given import axis
 from .over_axes import Axis, look_of, over_axes, spread_logarithmically
@@ -23,7 +23,6 @@ FAILURES = ("diverges", "error")
 # The look of places without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 WIDTH = 100  # of text
-PANELS_WIDE = 3
 MOST_COSINES, ROWS_PER_COSINE = 6, 10
 LEAST_ROWS = 20  # of a sample that tells how much a field matters
 
@@ -126,7 +125,7 @@ class Sweep:
         return len(self.fields) > 2 or self.sampled and len(self.fields) > 1
 
 
-def draw_sweep(sweep):
+def draw_sweep(sweep, sheet=SHEET):
     with plt.rc_context(SETTINGS):
         axes = [
             Axis.of(axis(field, sweep.fields), sweep.column(field), sweep.is_logarithmic(i))
@@ -134,25 +133,22 @@ def draw_sweep(sweep):
         ]
         of_numbers = len(axes) == 2 and not any(of.names for of in axes)
         if sweep.is_cloud or of_numbers and on_grid(axes, sweep.values) is None:
-            return draw_cloud(sweep, axes)
-        figure, ax = plt.subplots(figsize=(6.0, 3.8))
+            return draw_cloud(sweep, axes, sheet)
+        figure, ((ax,),) = sheet.panels(1, 1, 0.9 + 0.4 * sheet.width)
         ax.set_title(sweep.name)
         if of_numbers:
             draw_map(figure, ax, sweep, axes)
         else:
             draw_curves(ax, sweep, axes)
-            legend_above(figure, *ax.get_legend_handles_labels(), columns=3)
+            legend_above(figure, *ax.get_legend_handles_labels(), columns=None)
         return figure
 
 
-def draw_cloud(sweep, over):
+def draw_cloud(sweep, over, sheet):
     """The metric over each field."""
     value = Axis.of(axis(sweep.metric), sweep.values)
-    wide = min(PANELS_WIDE, len(over))
-    high = -(-len(over) // wide)
-    figure, axes = plt.subplots(
-        high, wide, figsize=(0.6 + 2.6 * wide, 0.4 + 2.5 * high), squeeze=False
-    )
+    high, wide = sheet.grid(len(over))
+    figure, axes = sheet.panels(high, wide, 0.5 + 2.4 * high)
     figure.suptitle(sweep.name, x=0.01, ha="left", fontsize=9, weight="bold")
     found = sweep.sensitivities() if sweep.sampled else [None] * len(over)
     for i, (ax, x) in enumerate(zip(axes.flat, over)):
@@ -257,7 +253,7 @@ def draw_map(figure, ax, sweep, over):
             handles=entries, loc="lower right", bbox_to_anchor=(1, 1), ncol=2, borderaxespad=0.2
         )
     if np.isfinite(values).any():
-        figure.colorbar(drawn, label=axis(sweep.metric))
+        figure.colorbar(drawn, label=Axis(axis(sweep.metric), values).label)
 
 
 def edges(values):

@@ -60,9 +60,28 @@ def cell(value, sort_key=None, classes=""):
     return f"<td{attributes}>{value}</td>"
 
 
-def number_cell(value, digits=4):
+def known_number(value, tolerance, most=3):
+    """A number with the digits that its tolerance leaves, at most `most`. Where the tolerance is not smaller than the
+    number, only the bound is known: "≤ 0.4"."""
     value = number_or_none(value)
-    return cell(number(value, digits), "" if value is None else json.dumps(value), "number")
+    if value is not None and tolerance and tolerance >= abs(value):
+        sign = "≤ " if value >= 0 else "0 ± "
+        return sign + number(rounded_up(abs(value) + tolerance), 1)
+    return number(value, deserved_digits(value, tolerance, most))
+
+
+def rounded_up(value):
+    """The smallest number with one significant digit that is not below a positive value."""
+    size = 10.0 ** math.floor(math.log10(value))
+    return math.ceil(value / size * (1 - 1e-12)) * size
+
+
+def number_cell(value, digits=4, tolerance=None):
+    """`tolerance`: by how much the number may be wrong, in its unit."""
+    value = number_or_none(value)
+    return cell(
+        known_number(value, tolerance, digits), "" if value is None else json.dumps(value), "number"
+    )
 
 
 def heading_cell(title, numeric=False, unit=""):
@@ -163,7 +182,7 @@ def columns(names, rows, tolerances):
         [heading_cell(text(title), True, unit) for title, unit, _ in heads],
         [
             [
-                number_cell(None if v is None else v * factor, deserved_digits(v, t, 3))
+                number_cell(None if v is None else v * factor, 3, t and t * factor)
                 for v, t, (_, _, factor) in zip(row, within, heads)
             ]
             for row, within in zip(rows, tolerances)

@@ -4,6 +4,7 @@ base64), and its markup."""
 import json
 import subprocess
 import tempfile
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -36,6 +37,14 @@ NEAR, ALL = 5000, 8000
 SPEEDS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 10)  # as in the player's menu
 WATCHED_S = 10.0  # how long a replay should take at first
 PATIENCE_S = 120
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """The surface that tools touch."""
+
+    points: np.ndarray  # each a row of position and outward normal [m]
+    is_solid: bool  # False for an open mesh, whose inside is not known
 
 
 def replays(runs, labels):
@@ -143,7 +152,8 @@ def packed_recording(recording, label):
 
 def points_of(run, recordings):
     """The surface: from the program, or else the points that were in contact; and what to say about it."""
-    every, failure = shell(run)
+    surface, failure = shell(run)
+    every = surface and surface.points
     if every is None:
         touched = {
             tuple(contact[:3]): contact[8:]
@@ -188,7 +198,7 @@ def some(points, most):
 
 
 def surface_of(runs):
-    """Points and normals of the surface that all runs share; empty where they do not, or there is none to be had."""
+    """The Surface that all runs share; None where they do not, or there is none to be had."""
     environments = [run.scenario.get("environment") for run in runs]
     if any(environment != environments[0] for environment in environments) or not environments[0]:
         return None
@@ -196,13 +206,13 @@ def surface_of(runs):
 
 
 def shell(run):
-    """Points and normals, None with the reason where there are none to be had."""
+    """The Surface and an empty text; None with the reason where there is none to be had."""
     if at(run.scenario, "/environment/type") == "springs":
         return None, ""
     return shell_of(run.folder / "scenario.effective.json")
 
 
-@lru_cache(maxsize=1)  # curves and replay of a page ask for the same one
+@lru_cache(maxsize=4)  # curves and replay of a page ask for the same surfaces
 def shell_of(scenario):
     program = the_program()
     if not program:
@@ -214,7 +224,7 @@ def shell_of(scenario):
         file = Path(scratch) / "shell.csv"
         # Whatever the algorithm: it may have come from a module that is not at hand.
         plain = ["--set", "rendering.algorithm=mean", "--set", "rendering.parameters={}"]
-        line = [program, "validate", str(scenario), "--points", str(file), "--quiet", *plain]
+        line = [program, "validate", str(scenario), "--points", str(file), "--json", *plain]
         try:
             done = subprocess.run(
                 line, capture_output=True, text=True, timeout=PATIENCE_S, stdin=subprocess.DEVNULL
@@ -225,7 +235,9 @@ def shell_of(scenario):
             said = (done.stderr.strip().splitlines() or ["no message"])[-1]
             return None, f"Only points that were in contact are drawn: {said}."
         columns = read_columns(file, SHELL_COLUMNS)
-        return np.column_stack([columns[name] for name in SHELL_COLUMNS]), ""
+        points = np.column_stack([columns[name] for name in SHELL_COLUMNS])
+        closed = at(json.loads(done.stdout), "/0/environment/closed")
+        return Surface(points, closed is not False), ""
 
 
 def player(scenes):

@@ -1,0 +1,80 @@
+"""The levels of `converge` as a picture: the error of each metric over the refined field, and over the
+time of a run."""
+from itertools import cycle
+
+import numpy as np
+
+from hapbench.columns import numbers
+from hapbench.errors import InputError
+from hapbench_looks import SERIES
+from hapbench_report.markup import column
+from hapbench_style import GREY, SHEET, legend_above
+
+from .given import axis
+from .over_axes import Axis, over_axes
+
+ORDERS, LEVELS, TIMES = "converge.csv", "converge_levels.csv", "converge_levels_timing.csv"
+
+
+def draw_converge(files, sheet=SHEET):
+    """The relative error of each metric over the refined field, beside the line of the formal
+    order, and over the time of a run: filled marks where an order is stated, hollow ones of what
+    the levels show without."""
+    orders, levels, times = (
+        files.records(ORDERS),
+        files.records(LEVELS),
+        numbers(files.records(TIMES), "seconds"),
+    )
+    series = []
+    for verdict, own in zip(orders, cycle(SERIES)):
+        rows = [row for row in levels if row["metric"] == verdict["metric"]]
+        error, order = (
+            numbers(rows, "error_estimate") / np.abs(numbers(rows, "result")[-1]),
+            verdict["observed_order"],
+        )
+        label = f"{column(verdict['metric'])[0]}, {f'order {float(order):.2f}' if order else 'no order'}"
+        series.append(
+            (
+                label,
+                numbers(rows, "value"),
+                np.where(np.isfinite(error) & (error > 0), error, np.nan),
+                {
+                    "color": own.colour,
+                    "marker": own.marker,
+                    "ls": own.line if order else "none",
+                    "mfc": own.colour if order else "white",
+                },
+            )
+        )
+    if not any(np.isfinite(error).any() for _, _, error, _ in series):
+        raise InputError(
+            "nothing to draw: no level has an error above 0; column reason of converge.csv explains why"
+        )
+    timed = [(None, times, error, own) for _, _, error, own in series]
+    ordered = [
+        (h, error) for (_, h, error, _), verdict in zip(series, orders) if verdict["observed_order"]
+    ]
+    if ordered:
+        (h, error), formal = ordered[0], float(orders[0]["formal_order"])
+        at = np.nanargmax(error)
+        series.append(
+            (
+                f"formal order {formal:g}",
+                h,
+                error[at] * (h / h[at]) ** formal,
+                {"color": GREY, "lw": 0.8, "ls": ":", "zorder": 1},
+            )
+        )
+    rows, columns = sheet.grid(2)
+    figure, axes = sheet.panels(rows, columns, 0.4 + 2.7 * rows, sharey=True)
+    left, right = axes.flat
+    error = Axis("relative error", np.array([]), log=True)
+    over_axes(
+        right,
+        Axis("processor time per run [s]", times, log=True),
+        Axis("", np.array([]), log=True),
+        timed,
+    )
+    over_axes(left, Axis(axis(orders[0]["field"]), series[0][1], log=True), error, series)
+    legend_above(figure, *left.get_legend_handles_labels(), columns=None)
+    return figure

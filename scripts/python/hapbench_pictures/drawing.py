@@ -1,0 +1,90 @@
+"""Drawings of a page: each once on light and once on dark ground."""
+import base64
+from dataclasses import replace
+
+import numpy as np
+
+from hapbench_looks import look
+from hapbench_report.markup import text
+from hapbench_style import SETTINGS, picture, plt
+
+from .over_axes import Axis, look_of, over_axes, pareto
+from .panels import DARK, LIGHT, RunLook, settings
+
+SIZE, SCENE_SIZE = (4.0, 2.0), (4.0, 2.9)  # [inch]: on a phone as legible as the text around it
+
+
+def drawing(size, draw, light, title, words, **labels):
+    """A figure of one pair of axes. `light`: the looks of what `draw` draws."""
+
+    def of(paper, shown):
+        figure, ax = plt.subplots(figsize=size)
+        draw(ax, shown, paper)
+        ax.set(**labels)
+        return figure
+
+    return on_both_grounds(
+        of, light, [replace(one, colour=one.dark) for one in light], title, words
+    )
+
+
+def on_both_grounds(draw, light, dark, title, words):
+    """`draw(paper, looks)` returns a figure; `words`: the drawing for those who hear it."""
+    images = []
+    for paper, shown, name in ((LIGHT, light, "only-light"), (DARK, dark, "only-dark")):
+        with plt.rc_context({**SETTINGS, **settings(paper)}):
+            figure = draw(paper, shown)
+            data = base64.b64encode(picture(figure, "svg")).decode()
+            plt.close(figure)
+        images.append(
+            f'<img class="{name}" src="data:image/svg+xml;base64,{data}" alt="{text(f"{title}: {words}")}">'
+        )
+    return f"<figure><figcaption>{text(title)}</figcaption>{''.join(images)}</figure>"
+
+
+MOST_LAWS = 2  # that a table tells apart at a glance
+DEEPER, SHAKIER = "inside_max_m", "force_rms_above_30Hz_N"
+
+
+def pareto_section(runs):
+    """Of a comparison with many laws: how deep each lets the tool against how much it vibrates,
+    over all scenes and seeds."""
+    found = {}
+    for run in runs:
+        values = (run.metric(DEEPER), run.metric(SHAKIER))
+        if None not in values:
+            found.setdefault(run.algorithm, []).append(values)
+    if len(found) <= MOST_LAWS:
+        return ""
+    means = {name: np.mean(values, axis=0) * (1e3, 1.0) for name, values in found.items()}
+    front = pareto(np.array(list(means.values())))
+
+    def draw(ax, shown, paper):
+        ax.plot(*front.T, color=ax.xaxis.label.get_color(), lw=0.8, ls=":", zorder=1)
+        series = [
+            (
+                one.label.replace("_", " "),
+                mean[:1],
+                mean[1:],
+                look_of(one.label, color=one.colour, ls="none"),
+            )
+            for one, mean in zip(shown, means.values())
+        ]
+        every = np.array(list(means.values()))
+        over_axes(
+            ax,
+            Axis.of("largest depth inside [mm]", every[:, 0]),
+            Axis.of("force above 30 Hz [N rms]", every[:, 1]),
+            series,
+        )
+        ax.legend(loc="upper left", bbox_to_anchor=(1, 1.05), fontsize=7, handletextpad=0.1)
+        ax.margins(0.08)
+
+    light = [RunLook(name, look(name).colour, look(name).dark, ()) for name in means]
+    words = "; ".join(f"{name} {mean[0]:.3g} mm, {mean[1]:.3g} N" for name, mean in means.items())
+    return (
+        "<p>Mean over all runs of an algorithm. Dotted line: algorithms that no "
+        "other algorithm beats in both depth and vibration.</p><div class=curves>"
+        + drawing(SCENE_SIZE, draw, light, "Depth and vibration", words)
+        + "</div>"
+    )

@@ -1,0 +1,241 @@
+"""The limits that `limit` finds as a picture: alone, over another field, and on devices."""
+from textwrap import wrap
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from hapbench.columns import is_number, numbers
+from hapbench_looks import by_class, look, look_of_class
+from hapbench_style import BLACK, PAGE, PETROL, PLUM, SHEET, legend_above
+
+from .device_plot import draw_devices, draw_devices_over
+from .given import axis
+from .over_axes import Axis, look_of, over_axes
+
+LIMIT, LIMIT_RUNS = "limit.csv", "limit_runs.csv"
+# Closed forms and other known limits, as columns of limit.csv. Where the loop has no theoretical limit, as with dry
+# friction, the closed forms of stability are not drawn.
+KNOWN = {
+    "worst_hand_limit": "linear limit, worst hand",
+    "passive_colgate_schenkel": "passive (Colgate, Schenkel)",
+    "passive_with_delay": "passive, with delay",
+    "stable_gil_hulin": "stable (Gil, Hulin)",
+    "passive_abbott_okamura": "passive (Abbott, Okamura)",
+    "exact_undamped_handle": "exact, undamped handle",
+}
+OF_THEORY = ("stable_gil_hulin", "exact_undamped_handle")
+KNOWN_LOOKS = tuple(
+    {"color": colour, "lw": 1.4, "ls": line}
+    for line in ("-", (0, (5, 2)), (0, (1, 1)))
+    for colour in (PLUM, "#1F4E9E", "#2E6B34")
+)
+THEORY, FOUND = {"color": PETROL, "lw": 2.6}, {"color": BLACK, "lw": 1.1, "ls": (0, (2, 2))}
+
+
+class Limits:
+    """limit.csv and limit_runs.csv: the limit of a field, over the fields of `limit --over`."""
+
+    def __init__(self, files, folder):
+        self.rows, self.runs = (files.records(f"{folder}{name}") for name in (LIMIT, LIMIT_RUNS))
+        self.field, given = self.rows[0]["field"], list(self.rows[0])
+        self.over = [
+            name for name in given[: given.index("algorithm")] if name not in ("scenario", "device")
+        ]
+        if len(self.over) > 1:  # a curve for each value of the others
+            several = len({row["algorithm"] for row in self.rows}) > 1
+            for row in (*self.rows, *self.runs):
+                row["algorithm"] = ", ".join(
+                    [
+                        *(row[name] for name in self.over[:-1]),
+                        *([row["algorithm"]] if several else []),
+                    ]
+                )
+        self.algorithms = list(dict.fromkeys(row["algorithm"] for row in self.rows))
+
+    def along(self, rows):
+        """The values of the last field of --over in these rows; of a field of texts their places in the table."""
+        field = self.over[-1]
+        names = list(dict.fromkeys(row[field] for row in self.rows))
+        if all(map(is_number, names)):
+            return numbers(rows, field)
+        return np.array([names.index(row[field]) for row in rows], float)
+
+    def axis(self):
+        """The axis of the last field of --over."""
+        texts = [row[self.over[-1]] for row in self.rows]
+        return Axis.of(
+            axis(self.over[-1]), self.along(self.rows) if all(map(is_number, texts)) else texts
+        )
+
+    def known(self, rows):
+        """Label, values and look of each known limit that has a number in some row."""
+        found, has_edge = [], np.isfinite(numbers(rows, "theoretical_limit"))
+        for (name, label), own in zip(KNOWN.items(), KNOWN_LOOKS):
+            values = numbers(rows, name) if name in rows[0] else np.array([])
+            if name in OF_THEORY and values.size:
+                values = np.where(has_edge, values, np.nan)
+            if np.isfinite(values).any():
+                found.append((label, values, own))
+        return found
+
+    def lines(self, rows):
+        found = [
+            ("linear limit", numbers(rows, "theoretical_limit"), THEORY),
+            *self.known(rows),
+            ("simulated limit", numbers(rows, "limit"), FOUND),
+        ]
+        return [
+            (label, np.where(values > 0, values, np.nan), own)
+            for label, values, own in found
+            if np.isfinite(values).any()
+        ]
+
+    def theories(self):
+        """The distinct curves of the linear limit, over the last field: its values, and the limits."""
+        found = {}
+        for name in self.algorithms:
+            rows = [row for row in self.rows if row["algorithm"] == name]
+            limits = numbers(rows, "theoretical_limit")
+            found.setdefault(limits.tobytes(), (self.along(rows), limits))
+        return [
+            (x, np.where(np.isfinite(limits), limits, np.nan))
+            for x, limits in found.values()
+            if np.isfinite(limits).any()
+        ]
+
+    def groups(self):
+        """The algorithms whose limits are the same, together; the largest group last."""
+        groups = {}
+        for algorithm in self.algorithms:
+            groups.setdefault(
+                tuple(row["limit"] for row in self.rows if row["algorithm"] == algorithm), []
+            ).append(algorithm)
+        return sorted(groups.values(), key=len)
+
+    def draw_classes(self, ax, algorithm):
+        """The class of every run of the search over the field and the one below it, and the limits as lines."""
+        runs, rows = (
+            [row for row in of if row["algorithm"] == algorithm] for of in (self.runs, self.rows)
+        )
+        x, y, edge = self.along(rows), numbers(runs, self.field), numbers(rows, "limit")
+        marks = [
+            (
+                name,
+                self.along([row for row in runs if row["class"] == name]),
+                numbers([row for row in runs if row["class"] == name], self.field),
+            )
+            for name in by_class(row["class"] for row in runs)
+        ]
+        lines = [(label, x, values, own) for label, values, own in self.lines(rows)]
+        over_axes(ax, self.axis(), Axis(axis(self.field), y, log=True), lines, marks)
+        edge = edge[np.isfinite(edge)]
+        if edge.size:
+            ax.set_ylim(edge.min() / 20, edge.max() * 20)
+
+
+def draw_limits(files, sheet=SHEET, folder=""):
+    """The picture of what `limit` wrote."""
+    found = Limits(files, folder)
+    if "device" in found.rows[0]:
+        return draw_devices_over(found, sheet) if found.over else draw_devices(found, sheet)
+    return draw_over(found, sheet) if found.over else draw_strip(found, sheet)
+
+
+def draw_strip(found, sheet):
+    """A line of marks for each algorithm: the class of every run over the field; bars: the limit,
+    and that of theory."""
+    names = found.algorithms
+    runs = [
+        (
+            name,
+            *zip(
+                *(
+                    (float(row[found.field]), names.index(row["algorithm"]))
+                    for row in found.runs
+                    if row["class"] == name
+                )
+            ),
+        )
+        for name in by_class(row["class"] for row in found.runs)
+    ]
+    bars = [
+        (
+            label,
+            numbers(found.rows, key),
+            np.arange(len(names)),
+            {"color": colour, "mew": wide, "marker": "|", "ms": 18, "ls": "none"},
+        )
+        for key, label, colour, wide in (
+            ("theoretical_limit", "linear limit", PETROL, 3),
+            ("limit", "simulated limit", BLACK, 1.4),
+        )
+        if np.isfinite(numbers(found.rows, key)).any()
+    ]
+    figure, ((ax,),) = sheet.panels(1, 1, 1.6 + 0.3 * len(names))
+    over_axes(
+        ax,
+        Axis.of(axis(found.field), numbers(found.runs, found.field)),
+        Axis.of("", [look(name).label for name in names]),
+        bars,
+        runs,
+    )
+    ax.set_ylim(len(names) - 0.4, -0.6)
+    ax.grid(axis="y", visible=False)
+    legend_above(figure, *ax.get_legend_handles_labels(), columns=None)
+    return figure
+
+
+def draw_over(found, sheet=PAGE):
+    """The limit of every algorithm and its ratio to the linear limit; then the classes of the runs,
+    algorithms with the same limits together."""
+    groups, has_theory = found.groups(), np.isfinite(numbers(found.rows, "theoretical_limit")).any()
+    rows, columns = sheet.grid(1 + has_theory + len(groups))
+    entries = class_legend(found)
+    figure, axes = sheet.panels(rows, columns, 2.5 * rows + 0.3 + 0.17 * -(-len(entries) // 3))
+    limit, *others = axes.flat
+    ratio, x = others.pop(0) if has_theory else None, found.axis()
+    curves = {
+        name: [row for row in found.rows if row["algorithm"] == name] for name in found.algorithms
+    }
+    of = lambda name, column: (found.along(curves[name]), column, look_of(name))
+    limits = [
+        (look(name).label, *of(name, numbers(rows, "limit"))) for name, rows in curves.items()
+    ]
+    over_axes(limit, x, Axis.of(axis(found.field), numbers(found.rows, "limit")), limits)
+    limit.set_title("limits (marks: simulated)" if has_theory else "simulated limit")
+    for theory in found.theories():
+        limit.plot(*theory, **THEORY, zorder=1)
+    if ratio:
+        finite = lambda theory: np.where(
+            np.isfinite(theory), theory, np.nan
+        )  # without an edge of theory there is no ratio
+        ratios = [
+            (None, *of(name, numbers(rows, "limit") / finite(numbers(rows, "theoretical_limit"))))
+            for name, rows in curves.items()
+        ]
+        over_axes(ratio, x, Axis("simulated / linear limit", np.array([])), ratios)
+        low, high = min(ratio.dataLim.y0, 0.998), max(ratio.dataLim.y1, 1.002)
+        room = 0.05 * (high - low)
+        ratio.set(title="ratio to the linear limit", ylim=(low - room, high + room))
+        ratio.ticklabel_format(axis="y", useOffset=False)
+    for ax, group in zip(others, groups):
+        found.draw_classes(ax, group[0])
+        names = ", ".join(look(name).label.removesuffix(" (ours)") for name in group)
+        if group is groups[-1] and len(group) > 3:
+            names = f"{'all others' if len(groups) > 1 else 'all'} ({len(group)})"
+        ax.set_title("\n".join(wrap(f"class of the runs: {names}", 34)), fontsize=7.5)
+    for ax in others[len(groups) :]:
+        ax.set_visible(False)
+    legend_above(figure, *zip(*entries), columns=None)
+    return figure
+
+
+def class_legend(found):
+    """Handles and labels of algorithms, lines and classes."""
+    entries = [(Line2D([], [], **look_of(name)), look(name).label) for name in found.algorithms]
+    entries += [(Line2D([], [], **own), label) for label, _, own in found.lines(found.rows)]
+    for name in by_class(row["class"] for row in found.runs):
+        title, colour, hatch = look_of_class(name)
+        entries.append((Patch(facecolor=colour, hatch=hatch, edgecolor=PETROL, lw=0), title))
+    return entries

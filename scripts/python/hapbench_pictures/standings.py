@@ -1,0 +1,206 @@
+"""The runs of a comparison by scene and law: mean, spread, error and rank of each metric by the rules of
+scenarios/batch/ranking.hpp, so that pictures and pages agree with ranking.csv."""
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from hapbench.columns import read_records
+from hapbench.results import at, number_or_none
+
+from .given import field_entries, plain, seed_of
+
+FAILURES = ("not_dragged", "stuck", "no_contact", "lost_contact", "went_through", "diverges")
+FREE = (None, "free")
+RESOLUTION = 1e-3  # means closer than this ratio share a rank
+RANKING = "ranking.csv"
+USUAL = ("force_rms_above_30Hz_N", "force_step_p99_N", "inside_max_m")
+
+
+def failed(run):
+    """True if the run's metrics do not characterise its law."""
+    wanted = at(run.scenario, "/expect/outcome")
+    wanted = [wanted] if isinstance(wanted, str) else wanted
+    led = run.outcome == "went_through" and at(run.scenario, "/motion/position/type") not in FREE
+    return not led and (run.outcome in FAILURES or bool(wanted) and run.outcome not in wanted)
+
+
+def value_of(run, metric):
+    """A metric of the section metrics, or SECTION.NAME of another section; None without a finite number."""
+    section, _, name = metric.rpartition(".")
+    values = run.summary.get(section or "metrics")
+    return number_or_none(values.get(name)) if isinstance(values, dict) else None
+
+
+def tolerance_of(run, metric):
+    section, _, name = metric.rpartition(".")
+    return run.tolerance(section or "metrics", name)
+
+
+@dataclass
+class Standing:
+    """One law in one scene for one metric."""
+
+    values: dict  # repetition -> value, of the runs that did not fail
+    mean: float | None = None  # over the common repetitions
+    spread: float | None = (
+        None  # standard deviation; None for one repetition, or if the seed changes nothing
+    )
+    tolerance: float | None = None  # error of the mean
+    rank: int | None = None
+
+    @property
+    def error(self):
+        return self.tolerance or 0.0
+
+    @property
+    def shown_error(self):
+        """The error that the digits of the mean follow: as in the ranking that `compare` prints, the largest of the
+        error of its numbers, the standard error over seeds, and a tenth of RESOLUTION."""
+        if self.spread is None or self.mean is None:
+            return self.tolerance
+        of_seeds = self.spread / np.sqrt(max(len(self.values), 1))
+        return max(self.error, of_seeds, 0.1 * RESOLUTION * abs(self.mean))
+
+    @property
+    def is_unknown(self):
+        """True if the error is not smaller than the value, so that only a bound is known."""
+        return self.mean is not None and self.error > 0 and self.error >= abs(self.mean)
+
+
+@dataclass
+class Law:
+    """The runs of one law, with one set of fields, in one scene."""
+
+    label: str
+    algorithm: str
+    runs: dict = field(default_factory=dict)  # repetition -> run
+
+    @cached_property
+    def failures(self):
+        """Repetition -> outcome, of the failed runs."""
+        return {seed: run.outcome for seed, run in self.runs.items() if failed(run)}
+
+    def values(self, metric):
+        found = {
+            seed: value_of(run, metric)
+            for seed, run in self.runs.items()
+            if seed not in self.failures
+        }
+        return {seed: value for seed, value in found.items() if value is not None}
+
+
+class Scene:
+    """The laws of one scene."""
+
+    def __init__(self, name, laws, better=None):
+        self.name, self.laws = name, laws
+        self.better = better or {}  # metric -> "less" or "more", where one is better
+
+    @cached_property
+    def seeds(self):
+        """The repetitions that means are taken over: those in which no law failed that succeeds at all; without any,
+        all in which the laws without a failure ran."""
+        succeeding = [law for law in self.laws if len(law.failures) < len(law.runs)]
+        for laws in (succeeding, [law for law in self.laws if not law.failures]):
+            shared = [set(law.runs) - set(law.failures) for law in laws]
+            common = set.intersection(*shared) if shared else set()
+            if common:
+                return common
+        return set().union(*(law.runs for law in self.laws))
+
+    @cached_property
+    def depends_on_seed(self):
+        return any(len({run.state_hash for run in law.runs.values()}) > 1 for law in self.laws)
+
+    def standings(self, metric):
+        """Label of a law -> its standing, in the order of the laws."""
+        found = {law.label: self.standing(law, metric) for law in self.laws}
+        direction = self.better.get(metric)
+        if direction and any(of.mean is not None for of in found.values()):
+            places = [(len(law.failures), found[law.label]) for law in self.laws]
+            for own in places:
+                own[1].rank = 1 + sum(is_better(*other, *own, direction) for other in places)
+        return found
+
+    def ranks(self, metric):
+        """Label of a law -> its rank. None where the metric has no better direction, where only a bound of the
+        number is known, and for all laws if their numbers cannot be told apart."""
+        found = self.standings(metric)
+        known = {label: None if of.is_unknown else of.rank for label, of in found.items()}
+        succeeding = {known[law.label] for law in self.laws if not law.failures}
+        return known if len(succeeding - {None}) > 1 else dict.fromkeys(found)
+
+    def standing(self, law, metric):
+        values = law.values(metric)
+        common = [value for seed, value in values.items() if seed in self.seeds]
+        errors = [
+            tolerance
+            for seed, run in law.runs.items()
+            if seed in self.seeds and seed not in law.failures
+            for tolerance in [tolerance_of(run, metric)]
+            if tolerance is not None
+        ]
+        return Standing(
+            values,
+            float(np.mean(common)) if common else None,
+            float(np.std(common, ddof=1)) if len(common) > 1 and self.depends_on_seed else None,
+            float(np.mean(errors)) if errors else None,
+        )
+
+    def sorted_laws(self, metric):
+        """The laws, best first: by failures, then by the mean; laws without a mean come last."""
+        found, sign = self.standings(metric), -1 if self.better.get(metric) == "more" else 1
+
+        def key(law):
+            mean = found[law.label].mean
+            return len(law.failures), mean is None, sign * (mean or 0.0)
+
+        return sorted(self.laws, key=key)
+
+
+def is_better(failures, own, other_failures, other, direction):
+    """True if the first law ranks before the other one."""
+    if failures != other_failures:
+        return failures < other_failures
+    if failures or own.mean is None:
+        return False
+    if other.mean is None:
+        return True
+    sign = -1 if direction == "more" else 1
+    more = sign * (other.mean - own.mean)
+    return more > own.error + other.error and more > RESOLUTION * max(
+        abs(own.mean), abs(other.mean)
+    )
+
+
+def scenes_of(runs, words=()):
+    """The scenes of these runs, each with its laws. `words`: the folders that were given, whose ranking.csv has the
+    direction in which each metric is better."""
+    scenes, better = {}, directions(words)
+    for run, fields in zip(runs, field_entries(runs)):
+        laws = scenes.setdefault(run.name, {})
+        label = ", ".join([plain(run), *fields])
+        law = laws.setdefault(label, Law(label, run.algorithm))
+        seed = seed_of(run)
+        law.runs[seed if seed not in law.runs else f"{seed}, {run.path}"] = run
+    return [Scene(name, list(laws.values()), better) for name, laws in scenes.items()]
+
+
+def directions(words):
+    """Metric -> direction, of the ranking.csv in these folders."""
+    return {
+        row["metric"]: row["better"]
+        for word in words
+        for file in [word / RANKING]
+        if file.is_file()
+        for row in read_records(file)
+        if row["better"]
+    }
+
+
+def has_repetitions(scenes):
+    """True if the runs of some law differ in their seeds, and none are the same run in several folders."""
+    laws = [law for scene in scenes for law in scene.laws]
+    is_copied = any(isinstance(seed, str) for law in laws for seed in law.runs)
+    return not is_copied and any(len(law.runs) > 1 for law in laws)

@@ -1,0 +1,21 @@
+"""The picture of a folder of `limit`, `tune` or `converge`, which the files in it tell apart."""
+from hapbench.errors import InputError
+from hapbench.results import Files, MissingResult
+from hapbench_style import SETTINGS, SHEET, plt
+
+from .convergence_plot import LEVELS, draw_converge
+from .limit_plot import LIMIT_RUNS, draw_limits
+from .tuning_plot import TRIALS, draw_tune
+
+PICTURES = {TRIALS: draw_tune, LEVELS: draw_converge, LIMIT_RUNS: draw_limits}
+
+
+def draw_study(path, sheet=SHEET):
+    draw = next(draw for name, draw in PICTURES.items() if (path / name).is_file())
+    try:
+        with plt.rc_context(SETTINGS):
+            return draw(Files(path), sheet)
+    except MissingResult as error:
+        raise InputError(str(error)) from error
+    except (KeyError, ValueError, IndexError) as error:
+        raise InputError(f"{path}: is not a table that hapbench wrote: {error}") from error

@@ -1,0 +1,116 @@
+"""The trials of `tune` as a picture."""
+import numpy as np
+from matplotlib.lines import Line2D
+
+from hapbench.columns import numbers
+from hapbench.errors import InputError
+from hapbench_looks import look
+from hapbench_style import BLACK, GREY, SHEET, legend_above, number_ticks
+
+from .given import axis
+from .over_axes import Axis, look_of, over_axes, pareto, spread_logarithmically, with_room
+
+TRIALS, LAWS = "tune_trials.csv", "tune.csv"
+STIFFNESS, DEPTH, VIBRATION = "stiffness_N_per_m", "inside_max_m", "force_rms_above_30Hz_N"
+SETTING = ("rendering.damping_ratio", "mass_kg", "velocity_filter")
+CHOICE = {"ls": "none", "marker": "o", "ms": 10, "color": BLACK, "mfc": "none", "zorder": 4}
+QUANTITIES = {
+    STIFFNESS: (axis(STIFFNESS), 1.0),
+    DEPTH: ("largest depth inside [mm]", 1e3),
+    VIBRATION: ("force above 30 Hz [N rms]", 1.0),
+}
+
+
+class Trials:
+    """The trials of one law that ran at their K: values of QUANTITIES, which are feasible, and which is the choice."""
+
+    def __init__(self, law, trials):
+        self.name = law["algorithm"]
+        rows = [row for row in trials if row["algorithm"] == self.name and row[VIBRATION]]
+        self.values = np.column_stack(
+            [factor * numbers(rows, name) for name, (_, factor) in QUANTITIES.items()]
+        )
+        self.feasible = np.array([row["feasible"] == "true" for row in rows], dtype=bool)
+        stiffness = float(law[STIFFNESS] or "nan")
+        self.chosen = np.array(
+            [
+                row["feasible"] == "true"
+                and np.isclose(float(row[STIFFNESS]), stiffness, rtol=1e-12)
+                and all(row[name] == law[name] for name in SETTING if name in row)
+                for row in rows
+            ],
+            dtype=bool,
+        )
+
+
+def draw_tune(files, sheet=SHEET):
+    """Stiffness against depth and against vibration, and both against each other with the Pareto front of the
+    feasible trials. Filled marks are feasible, hollow ones are not, and the choice of each law is ringed.
+    """
+    trials, laws = files.records(TRIALS), files.records(LAWS)
+    drawn = [Trials(law, trials) for law in laws]
+    shown = np.vstack([of.values for of in drawn])
+    if not shown.size:
+        raise InputError(
+            "nothing to draw: no trial is settled; column why of tune.csv explains why"
+        )
+    rows, columns = sheet.grid(3)
+    figure, axes = sheet.panels(rows, columns, 0.5 + 2.6 * rows)
+    for ax, x, y in zip(axes.flat, (0, 0, 1), (1, 2, 2)):
+        draw_panel(ax, x, y, drawn, shown)
+    legend_above(figure, *zip(*legend_of(drawn)), columns=None)
+    return figure
+
+
+def draw_panel(ax, x, y, drawn, shown):
+    series = []
+    for of in drawn:
+        own = look_of(of.name, ls="none", ms=4)
+        for which, more in (
+            (~of.feasible, {"mfc": "white"}),
+            (of.feasible, {}),
+            (of.chosen, CHOICE),
+        ):
+            series.append((None, of.values[which, x], of.values[which, y], own | more))
+        if (x, y) == (1, 2):
+            front = pareto(of.values[of.feasible][:, 1:])
+            look_of_front = {"color": own["color"], "lw": 1.0, "ls": "-", "zorder": 1}
+            series.append((None, front[:, 0], front[:, 1], look_of_front))
+    titles = [title for title, _ in QUANTITIES.values()]
+    over_axes(ax, axis_of(titles[x], shown[:, x]), axis_of(titles[y], shown[:, y]), series)
+    for i, limits, along in ((x, ax.set_xlim, ax.xaxis), (y, ax.set_ylim, ax.yaxis)):
+        limits(*range_of(shown[:, i]))
+        number_ticks(along)
+    if x == 0:
+        ax.tick_params(axis="x", labelrotation=40)
+
+
+def axis_of(title, values):
+    """A logarithmic axis only if no value, such as a vibration of 0, would be lost on it."""
+    return Axis(title, np.array([]), log=spread_logarithmically(values))
+
+
+def range_of(values):
+    values = values[np.isfinite(values)]
+    if spread_logarithmically(values):
+        return with_room(values.min(), values.max())
+    room = 0.1 * np.ptp(values) or 0.1 * abs(values.max()) or 1.0
+    return (
+        min(values.min() - room, 0.0) if values.min() < room else values.min() - room,
+        values.max() + room,
+    )
+
+
+def legend_of(drawn):
+    """Handles and labels of what is drawn, and of nothing else."""
+    entries = [
+        (Line2D([], [], **look_of(of.name, ls="none", ms=4)), look(of.name).label)
+        for of in drawn
+        if len(of.values)
+    ]
+    if any((~of.feasible).any() for of in drawn):
+        hollow = Line2D([], [], ls="none", marker="s", color=GREY, mfc="white")
+        entries.append((hollow, "not feasible"))
+    if any(of.chosen.any() for of in drawn):
+        entries.append((Line2D([], [], **{**CHOICE, "ms": 8}), "choice of each law"))
+    return entries
