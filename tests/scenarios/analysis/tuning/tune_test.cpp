@@ -151,11 +151,12 @@ TEST(Tune, IsFeasibleIfAGridIsAndForEveryLooserBound) {
         asked.limits["force_rms_above_30Hz_N"].max = vibration;
         const TunedLaw law = tuned_law(asked, "shaped_stiffness");
         feasible[i].push_back(law.choice.has_value());
-        if (!law.choice)
+        if (!law.choice) {
           EXPECT_FALSE(grid_is_feasible(asked, "shaped_stiffness")) << bounds.depths[i] << " m, " << vibration << " N";
+        }
         const std::size_t j = feasible[i].size() - 1;
-        if (i > 0) EXPECT_LE(feasible[i - 1][j], feasible[i][j]) << bounds.scene;
-        if (j > 0) EXPECT_LE(feasible[i][j - 1], feasible[i][j]) << bounds.scene;
+        EXPECT_LE(feasible[i > 0 ? i - 1 : i][j], feasible[i][j]) << bounds.scene;
+        EXPECT_LE(feasible[i][j > 0 ? j - 1 : j], feasible[i][j]) << bounds.scene;
       }
     }
   }
@@ -178,10 +179,13 @@ TEST(Tune, NamesTheRunThatFailsAndTheOptionThatLeavesItOut) {
 /// A device whose force has steps of 1 kN renders none of the few newtons of the law.
 TEST(Tune, RecommendsNoStiffnessThatRendersNothing) {
   TuneQuestion asked = question("impedance_at_wall", {"device.force_step_N=1000"});
-  Trials trials(asked, "shaped_stiffness");
+  const std::string law = "shaped_stiffness";  // must outlive the trials
+  Trials trials(asked, law);
   const TuneTrial& trial = trials.trial_at({}, 1000.0);
   ASSERT_FALSE(trial.feasible());
-  if (trial.settled) EXPECT_EQ(trial.binding, "no_force");
+  if (trial.settled) {
+    EXPECT_EQ(trial.binding, "no_force");
+  }
 }
 
 }  // namespace
