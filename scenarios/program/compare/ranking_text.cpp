@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "scenarios/program/compare/columns.hpp"
@@ -63,7 +64,7 @@ const char* no_ranks_reason(const Ranking& league) {
 
 std::string first_ranks_text(const Ranking& league) {
   constexpr std::size_t kMaxNamed = 5;
-  if (!is_ranked(league)) return "nothing is ranked: " + no_ranks_reason(league);
+  if (!is_ranked(league)) return std::string("nothing is ranked: ") + no_ranks_reason(league);
   std::size_t rankings = 0;  // equal for all laws
   std::vector<std::string> firsts;
   for (const LawRankingEntry& law : league.laws) {
