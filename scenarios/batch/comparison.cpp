@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "algorithms/registry.hpp"
 #include "scenarios/batch/seed_axis.hpp"
@@ -13,6 +14,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/relation_warnings.hpp"
 #include "scenarios/scene/scenario.hpp"
 
 namespace hapbench {
@@ -40,8 +42,9 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
   }
 }
 
-/// Returns the cases of a scene and appends its warnings. Appends a warning about an unused field only if it occurs
-/// with every algorithm: a field that at least one algorithm reads has an effect in the comparison.
+/// Returns the cases of a scene and appends its warnings. Of the warnings about unused fields (kNoEffect), it appends
+/// only warnings that all algorithms have: a field that at least one algorithm reads has an effect in the
+/// comparison.
 Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::vector<std::string>& warnings) {
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
@@ -52,14 +55,18 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   check_seeds_and_jitter(question, first);
   if (question.seeds > 1 || question.jitter != 0.0)
     axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
-  // Keep only the warnings that occur with every algorithm.
-  std::vector<Warning> common = first.warnings;
+  // Keep the warnings that occur with every algorithm, and warnings about more than an unused field.
+  std::vector<Warning> common = first.warnings, special;
+  const auto is_special = [](const Warning& w) { return w.kind != kNoEffect; };
+  std::ranges::copy_if(first.warnings, std::back_inserter(special), is_special);
   for (std::size_t a = 1; a < alone.size(); ++a) {
     const std::vector<Warning> others = alone.load(a).warnings;
     std::erase_if(common, [&](const Warning& w) { return std::ranges::find(others, w) == others.end(); });
+    std::ranges::copy_if(others, std::back_inserter(special), is_special);
   }
   append_new(warnings, with_files(first, checked_first.file_warnings()));
   append_new(warnings, with_files(first, common));
+  append_new(warnings, with_files(first, special));
   return {{text}, question.overrides, std::move(axes)};
 }
 

@@ -110,6 +110,12 @@ std::string diagnosis_text(std::span<const Result> reports, const Layout& layout
   return text.empty() ? "" : "\n" + text;
 }
 
+/// Returns where an expectation comes from: the scenario's field or its default.
+const char* expectation_source(const Scenario& scenario) {
+  const bool is_default = scenario.expect.outcomes == ExpectFields{}.outcomes && scenario.expect.metrics.empty();
+  return is_default ? "by default, without the field expect" : "field expect";
+}
+
 int run(const RunOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   // Check all input before anything runs or is written.
@@ -149,8 +155,9 @@ int run(const RunOptions& options, ProgramContext& context) {
     Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
     for (const std::string& unmet : result.unmet) {
-      report.fault(fmt::format(R"({}: {} (field expect; --set 'expect={{"outcome":"{}"}}' accepts this outcome))",
-                               scenarios[i].loaded().file.string(), unmet, outcome_name(result.end.outcome)),
+      report.fault(fmt::format(R"({}: {} ({}; --set 'expect={{"outcome":"{}"}}' accepts this outcome))",
+                               scenarios[i].loaded().file.string(), unmet, expectation_source(scenarios[i].scenario()),
+                               outcome_name(result.end.outcome)),
                    kUnexpectedOutcome);
     }
   }

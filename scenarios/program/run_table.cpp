@@ -1,6 +1,7 @@
 #include "scenarios/program/run_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -109,36 +110,61 @@ std::string fidelity_text(std::span<const Result> reports, const Layout& layout)
 }
 
 std::vector<std::string> run_warnings(std::span<const Result> reports) {
-  std::vector<std::string> kinds, texts;
+  /// A warning of one or more algorithms. `others`: further runs of its algorithm with other numbers in the text.
+  struct Merged {
+    std::string kind, text;
+    std::vector<std::string> algorithms;
+    std::size_t others = 0;
+  };
+  std::vector<Merged> all;
   for (const Result& report : reports) {
     for (const auto& [kind, pointer, text] : report.warnings) {
-      if (!pointer.empty()) continue;  // a warning about a field was printed before the run
-      // Add a text for a new kind of warning; otherwise append the algorithm to the text of this kind.
-      const auto known = std::ranges::find(kinds, kind) - kinds.begin();
-      if (known == std::ssize(kinds)) {
-        kinds.push_back(kind);
-        texts.push_back(report.name + ": " + text + (reports.size() > 1 ? " (" + report.algorithm + ")" : ""));
-      } else if (std::string& merged = texts[static_cast<std::size_t>(known)];
-                 reports.size() > 1 && merged.substr(merged.find_last_of("( ") + 1) != report.algorithm + ")") {
-        merged.replace(merged.size() - 1, 1, fmt::format(", {})", report.algorithm));
+      if (!pointer.empty()) continue;  // was printed before the run
+      // Merge equal texts of several algorithms, and texts of one algorithm that differ in their numbers.
+      const auto is_of_algorithm = [&](const Merged& known) {
+        return known.kind == kind && std::ranges::count(known.algorithms, report.algorithm) > 0;
+      };
+      const auto has_text = [&](const Merged& known) { return known.kind == kind && known.text == text; };
+      if (const auto same = std::ranges::find_if(all, has_text); same != all.end()) {
+        if (!is_of_algorithm(*same)) same->algorithms.push_back(report.algorithm);
+      } else if (const auto own = std::ranges::find_if(all, is_of_algorithm); own != all.end()) {
+        ++own->others;
+      } else {
+        all.push_back({kind, text, {report.algorithm}});
       }
     }
+  }
+  std::vector<std::string> texts;
+  for (const Merged& warning : all) {
+    std::string text = reports.front().name + ": " + warning.text;
+    const std::string others =
+        warning.others > 0 ? fmt::format("; {} more of its runs with other numbers", warning.others) : "";
+    if (reports.size() > 1) text += fmt::format(" ({}{})", fmt::join(warning.algorithms, ", "), others);
+    texts.push_back(std::move(text));
   }
   return texts;
 }
 
 std::string step_time_text(std::span<const Result> reports, const Layout& layout) {
-  const auto p99 = [](const Result& report) { return report.timing.step_p99.value_or(0.0); };
+  // Steps that --latency timed one by one have a table of their own: another sample would give other percentiles.
+  const bool has_table = reports.front().timing.latency.has_value();
+  const auto p99 = [](const Result& report) {
+    const auto& timed = report.timing.latency;
+    return timed ? 1e-9 * static_cast<double>(timed->p99) : report.timing.step_p99.value_or(0.0);
+  };
   const Result& slowest = *std::ranges::max_element(reports, {}, p99);
   if (p99(slowest) == 0.0) return "";
   const std::string whose = reports.size() == 1 ? "" : fmt::format(" ({})", slowest.*distinct_name(reports));
   const double step = slowest.duration / static_cast<double>(slowest.end.rows);
   std::string text =
-      fmt::format("99 % of the time steps are computed within {} us{}", cell(1e6 * p99(slowest), 2), whose);
+      has_table ? fmt::format("the 99th percentile of the step times{} is", whose)
+                : fmt::format("99 % of the time steps are computed within {} us{}", cell(1e6 * p99(slowest), 2), whose);
   if (p99(slowest) > step)
-    text +=
-        fmt::format(", longer than the time step of {} us; try fewer points, rendering.reduction or a faster algorithm",
-                    cell(1e6 * step, 2));
+    text += fmt::format(
+        "{} longer than the time step of {} us; try fewer points, rendering.reduction or a faster algorithm",
+        has_table ? "" : ",", cell(1e6 * step, 2));
+  else if (has_table)
+    return "";
   return "\n" + layout.wrapped(text, 0);
 }
 

@@ -53,15 +53,17 @@ std::string run_table(std::span<const Result> reports, bool of_scenes, const Lay
 inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
 
 /// Returns a sentence with the 99th percentile of the time of a step in the slowest run. Returns an empty text
-/// if all runs are too short for it. Precondition: there is at least one run.
+/// if all runs are too short for it, and after --latency, whose table has the percentiles, unless a step is too slow.
+/// Precondition: there is at least one run.
 std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
 /// Returns a table that compares the rendered force with the reference force, for the runs with a reference.
 /// Returns an empty text if there are none.
 std::string fidelity_text(std::span<const Result> reports, const Layout& layout);
 
-/// Returns the warnings about runs, without the warnings that were printed before the runs. Warnings of one
-/// kind are merged into one line with the text of the first run and the names of the algorithms.
+/// Returns the warnings about the runs of one scenario, without the warnings that were printed before the runs. Equal
+/// texts of several algorithms are merged into one line with the names of the algorithms. If the runs of one algorithm
+/// differ in their numbers, its line quotes the first run and counts the others.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
 /// Returns a number with the digits that are significant at its error: one digit if the error is not smaller

@@ -94,13 +94,15 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
   parts.tool = make_tool(scenario, files);
   parts.shell = std::move(shell);
   const RenderingConfig& rendering = scenario.rendering;
+  // A law that finds its contacts itself ignores a trace or a module: its metrics are those of the surface's points.
+  const bool finds_contacts = !find_algorithm(rendering.algorithm)->reported_depth_model.empty();
   // Create the contact source: springs, a recorded trace, a module, or our search over the point shell.
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) {
     parts.springs = std::make_shared<const SpringSet>(make_springs(scenario));
     parts.source = std::make_unique<SpringSource>(parts.springs);
-  } else if (rendering.contact_source == kTrace) {
+  } else if (rendering.contact_source == kTrace && !finds_contacts) {
     parts.source = std::make_unique<TraceSource>(files.at(kContactFile).trace(), scenario.time.step);
-  } else if (rendering.contact_source != kComputedContacts) {
+  } else if (rendering.contact_source != kComputedContacts && !finds_contacts) {
     parts.source = make_module_contacts(scenario, files);
   } else {
     auto search = make_contact_query(*parts.shell, *parts.tool, rendering.skips);

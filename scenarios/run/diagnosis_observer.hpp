@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "results/observe/contact_forces.hpp"
+#include "scenarios/run/outcome.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "sim/core/types.hpp"
 #include "sim/loop/simulation.hpp"
@@ -32,6 +34,7 @@ struct RunObservations {
     std::array<std::uint64_t, 3> high_sign_changes{};  ///< number of sign changes of the force above 30 Hz, per axis
   } last_quarter;
   Vec3 tip = Vec3::Zero();  ///< tip position in the last step [m]
+  OutcomeFacts facts;       ///< of the first trial that has any
 };
 
 /// Accumulates the quantities for the diagnosis rules. Cost: about 20 ns a step; constant memory.
@@ -45,6 +48,12 @@ class DiagnosisObserver final : public Observer {
   /// Called after each trial with its OutcomeObserver::longest_step() [m].
   void add_longest_step(double length) noexcept {
     observations_.longest_step = std::max(observations_.longest_step, length);
+  }
+
+  /// Called after each trial with its OutcomeObserver::facts().
+  void add_facts(OutcomeFacts facts) {
+    OutcomeFacts& known = observations_.facts;
+    if (!known.began_inside && known.scale_question.empty() && !known.holding_friction) known = std::move(facts);
   }
 
   const RunObservations& rows() const noexcept { return observations_; }

@@ -56,6 +56,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     time_ = record.time;
     position_ = record.tool.pose.position;
     force_ = record.force.rendered;
+    hand_force_ = record.hand_force;
+    handle_velocity_ = record.handle.velocity;
     if (record.colliding > 0) last_contact_ = record.time;
     if (inside_) inside_->on_step(record);
     if (approach_) approach_->add(record, !last_contact_);
@@ -85,6 +87,11 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   }
 
   double longest_step() const override { return approach_ ? approach_->longest_step() : 0.0; }
+  OutcomeFacts facts() const override {
+    if (!approach_) return {};
+    return {inside_ && inside_->passage().began_inside,
+            hapbench::scale_question(scenario_, *tool_, approach_->environment()), holding_friction()};
+  }
   const InsideObserver* inside() const override { return inside_ ? &*inside_ : nullptr; }
   const InsideDepths* depths() override {
     if (inside_ && !depths_) depths_ = inside_->depths();
@@ -118,6 +125,17 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return standstill_ ? standstill_->stuck() : std::nullopt;
   }
 
+  /// Returns OutcomeFacts::holding_friction.
+  std::optional<double> holding_friction() const {
+    constexpr double kAtRest = 1e-6;       // speed below which a handle stands still [m/s]
+    constexpr double kSmallestPush = 0.1;  // fraction of the friction from which the hand clearly pushes
+    const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario_.device);
+    if (device == nullptr || !(device->coulomb > 0.0) || last_contact_) return std::nullopt;
+    const double push = hand_force_.cwiseAbs().maxCoeff();
+    const bool is_held = push >= kSmallestPush * device->coulomb && push <= device->coulomb;
+    return is_held && handle_velocity_.norm() < kAtRest ? std::optional(device->coulomb) : std::nullopt;
+  }
+
   /// Returns the most likely cause of a run that lost or never reached the surface. It is phrased as a question
   /// if it is uncertain. `time_to_contact`: time in which the tool would reach the surface [s] (Approach::Closest).
   std::string likely_cause(const std::optional<double>& time_to_contact = {}) const {
@@ -142,9 +160,16 @@ class OutcomeObserverImpl final : public OutcomeObserver {
       return fmt::format("it was approaching at the end and would touch {:.2g} s later: is time.steps too small?",
                          *time_to_contact);
     if (!position_is_free(scenario_.motion)) return "is motion.position right?";
+    if (const auto friction = holding_friction()) {
+      return fmt::format(
+          "the device's dry friction of {:.3g} N (device.coulomb_N) holds the handle against the hand's {:.3g} N: does "
+          "the hand need a larger stiffness or force?",
+          *friction, hand_force_.cwiseAbs().maxCoeff());
+    }
     if (spring_of(scenario_.hand) != nullptr) return "does hand.target lead to the surface?";
-    return std::holds_alternative<NoHandFields>(scenario_.hand) ? "nothing pushes the tool: is hand missing?"
-                                                                : "is initial.position_m right?";
+    return std::holds_alternative<NoHandFields>(scenario_.hand)
+               ? "nothing pushes the tool: is hand missing?"
+               : "are initial.position_m and the hand's direction right?";
   }
 
   bool went_through() {
@@ -262,7 +287,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   std::optional<DragProgress> progress_;  ///< progress of the drag; empty without a drag
   // In the last step.
   double time_ = 0.0;
-  Vec3 position_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< tip position [m]; rendered force [N]
+  Vec3 position_ = Vec3::Zero(), force_ = Vec3::Zero();              ///< tip position [m]; rendered force [N]
+  Vec3 hand_force_ = Vec3::Zero(), handle_velocity_ = Vec3::Zero();  ///< [N], [m/s]
   std::optional<double> last_contact_;  ///< time of the last step in contact [s]; empty before the first contact
 };
 

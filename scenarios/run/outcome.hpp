@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "results/observe/inside_observer.hpp"
@@ -12,6 +14,15 @@
 
 /// Classifies how a run ended (its outcome), and explains the outcome in warnings.
 namespace hapbench {
+
+/// Facts about a trial that explain its outcome, and decide which advice is right.
+struct OutcomeFacts {
+  bool began_inside = false;   ///< the tip centre was inside the environment's solid in the first step
+  std::string scale_question;  ///< question about a size that is probably wrong (scale_question()); usually empty
+  /// Dry friction of the device that holds the handle at the end against a smaller force of the hand, away from the
+  /// surface [N per axis]; empty if friction does not hold the handle.
+  std::optional<double> holding_friction;
+};
 
 /// Observes all quantities of a trial that determine its outcome. Cost: about 40 ns a step, no allocation.
 class OutcomeObserver : public Observer {
@@ -27,6 +38,8 @@ class OutcomeObserver : public Observer {
   /// began no further from the environment's bounding box than the step is long: such a step may have reached
   /// the surface or jumped over it. 0 without a point shell.
   virtual double longest_step() const = 0;
+  /// Returns the facts that explain the outcome. Called after the run; default facts without a point shell.
+  virtual OutcomeFacts facts() const = 0;
   /// Observer of the tool's depth inside the environment's solid; null if the environment has no solid.
   virtual const InsideObserver* inside() const = 0;
   /// Returns the depths of the tool inside the solid. Called after the run; the first call computes them. Null

@@ -200,7 +200,10 @@ class Run {
       else
         inside_ = *depths;
     }
-    if (diagnosis_) diagnosis_->add_longest_step(observer.longest_step());
+    if (diagnosis_) {
+      diagnosis_->add_longest_step(observer.longest_step());
+      diagnosis_->add_facts(observer.facts());
+    }
     // A subject whose trial diverges fails the remaining targets.
     if (outcome == Outcome::diverges) {
       if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();

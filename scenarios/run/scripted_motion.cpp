@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -40,6 +41,13 @@ double largest(const Scenario& scenario, double (*of)(const Profile&)) {
   return orientation ? std::max({result, of(orientation->tilt), of(orientation->azimuth)}) : result;
 }
 
+/// Returns the number of periods of a profile in `duration` [s], or its number of waypoints; 0 for other profiles.
+double turns_of(const Profile& profile, double duration) {
+  if (const double period = period_of(profile); period > 0.0) return duration / period;
+  const auto* waypoints = std::get_if<Profile::Waypoints>(&profile.shape());
+  return waypoints != nullptr ? static_cast<double>(waypoints->points.size()) : 0.0;
+}
+
 }  // namespace
 
 double script_moves_until(const Scenario& scenario) {
@@ -50,6 +58,16 @@ double script_moves_until(const Scenario& scenario) {
 
 double script_period(const Scenario& scenario) {
   return largest(scenario, period_of);
+}
+
+std::optional<double> scripted_lifts(const Scenario& scenario) {
+  const HandFields& hand = scenario.hand;
+  const ImpedanceHandFields* spring = spring_of(hand);
+  if (std::holds_alternative<TrackingHandFields>(hand) || (spring != nullptr && spring->tremor)) return std::nullopt;
+  const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
+  double lifts = 0.0;
+  for (const Profile& script : scripts_of(hand)) lifts = std::max(lifts, turns_of(script, duration));
+  return lifts;
 }
 
 bool has_scripted_motion(const Scenario& scenario) {

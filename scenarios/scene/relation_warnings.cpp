@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "algorithms/registry.hpp"
@@ -18,8 +19,6 @@
 
 namespace hapbench {
 namespace {
-
-constexpr const char* kNoEffect = "no_effect";  ///< kind of a warning: a value in the file is not used
 
 /// Warns about a depth model or reduction in `json` that differs from the depth model or reduction that the
 /// algorithm fixes. Also warns about recorded or external contacts if the algorithm ignores them or is defined
@@ -34,8 +33,11 @@ void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vecto
                                     fixed.algorithm, fixed.depth_model)});
   }
   if (has_external_contacts(scenario) && !entry.reported_depth_model.empty()) {
-    warnings.push_back({kNoEffect, "/rendering/contact_source",
-                        fmt::format("not used: algorithm \"{}\" finds its contacts itself", fixed.algorithm)});
+    warnings.push_back(
+        {"other_contacts", "/rendering/contact_source",
+         fmt::format("not used: algorithm \"{}\" finds its contacts itself, so that its force and metrics are those of "
+                     "the points of the surface",
+                     fixed.algorithm)});
   } else if (has_external_contacts(scenario) && !entry.fixed_depth_model.empty()) {
     warnings.push_back(
         {"other_depths", "/rendering/contact_source",
@@ -78,6 +80,37 @@ void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warning
            "effect on the tool and its force, because this hand does not react to the handle (\"impedance\", \"drag\" "
            "and \"tracking\" do)",
            hand)});
+}
+
+/// Warns about numbers of a device that no haptic device has: probably their unit is wrong. The limits are those by
+/// which "hapbench import device" judges a log.
+void warn_of_unlikely_device(const Scenario& scenario, std::vector<Warning>& warnings) {
+  constexpr std::pair kHandles{1e-3, 20.0}, kCarriages{1e-3, 100.0};      // smallest and largest mass [kg]
+  constexpr double kCoarsestEncoder = 1e-3, kLargestNoise = 1e-3;         // [m]
+  constexpr double kLargestFriction = 100.0, kLargestViscosity = 1000.0;  // [N], [N s/m]
+  constexpr double kLongestDelay = 0.2;                                   // [s]
+  const auto check = [&](const char* field, double value, std::pair<double, double> usual, const char* unit,
+                         const char* question) {
+    if (value == 0.0 || (value >= usual.first && value <= usual.second)) return;
+    const std::string range = usual.first > 0.0 ? fmt::format("{:g} ... {:g}", usual.first, usual.second)
+                                                : fmt::format("at most {:g}", usual.second);
+    warnings.push_back(
+        {"device_units", field,
+         fmt::format("{:.6g} {}; haptic devices have {} {}: is the value in {}?", value, unit, range, unit, question)});
+  };
+  if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
+    check("/device/handle_mass_kg", device->handle_mass, kHandles, "kg", "kg");
+    check("/device/encoder_step_m", device->encoder_step, {0.0, kCoarsestEncoder}, "m", "metres");
+    check("/device/position_noise_m", device->position_noise, {0.0, kLargestNoise}, "m", "metres");
+    check("/device/coulomb_N", device->coulomb, {0.0, kLargestFriction}, "N", "newtons");
+    check("/device/viscous_N_s_per_m", device->viscous, {0.0, kLargestViscosity}, "N s/m", "N s/m");
+    const bool in_seconds = device->delay.has_value();
+    check(in_seconds ? "/device/delay_s" : "/device/delay_samples", device->delay_samples * scenario.time.step,
+          {0.0, kLongestDelay}, "s", in_seconds ? "seconds" : "time steps");
+  } else if (const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device)) {
+    check("/device/mechanics/handle_mass_kg", admittance->mechanics.handle_mass, kHandles, "kg", "kg");
+    check("/device/mechanics/carriage_mass_kg", admittance->mechanics.carriage_mass, kCarriages, "kg", "kg");
+  }
 }
 
 /// Returns true if the algorithm documents the field as one of its parameters.
@@ -169,6 +202,7 @@ std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& jso
   warn_of_fixed_stages(scenario, json, warnings);
   warn_of_idle_integrator(scenario, warnings);
   warn_of_idle_device(scenario, warnings);
+  warn_of_unlikely_device(scenario, warnings);
   warn_of_unread_rendering(scenario, json, warnings);
   warn_of_stiff_bristle(scenario, warnings);
   // Scripts of hand and motion.

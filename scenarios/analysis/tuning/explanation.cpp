@@ -4,80 +4,197 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
-
-#include "scenarios/analysis/tuning/verification.hpp"
 
 namespace hapbench {
 namespace {
 
-/// Returns a clause with the K and the setting that are feasible after the limit is relaxed.
-std::string then_text(const TuneTrial& trial) {
-  return fmt::format("then K = {:.4g} N/m{}", trial.stiffness, setting_text(trial.setting));
+using IsFeasible = std::function<bool(const TuneLimits& limits)>;
+
+constexpr const char* kRules = "the requirement of low vibration";
+
+/// A change of the limits, with its text.
+struct Relaxation {
+  TuneLimits limits;
+  std::string text;
+};
+
+/// Returns the value rounded away from the limit, to the three digits that are printed.
+double printed_beyond(double value, bool up) {
+  constexpr double kRounding = 0.006;  // more than half a unit of the third digit
+  return std::stod(fmt::format("{:.3g}", value + (up ? kRounding : -kRounding) * std::abs(value)));
 }
 
-/// Returns a clause with a relaxed value of a limit, at which the trial keeps the limit. The value includes the
-/// metric's error.
-std::string relaxed(const Trials& trials, const TuneTrial& trial, const std::string& name) {
-  const auto worst = value_in(trial.worst, name);
-  if (!worst) return fmt::format("drop the bound on {}, which has no value here", name);
-  const double more = value_in(trials.error(), name).value_or(0.0);
-  const auto requested = trials.question().limits.find(name);
-  const MetricBound& bound = requested == trials.question().limits.end() ? trials.limit_on(name) : requested->second;
-  if (bound.max)
-    return fmt::format("relax {} to at most {:.3g} (now {:.3g})", name, (*worst + more) * 1.001, *bound.max);
-  return fmt::format("relax {} to at least {:.3g} (now {:.3g})", name, (*worst - more) * 0.999,
-                     bound.min.value_or(0.0));
-}
-
-/// Returns for each limit the smallest relaxation of this limit alone with which a trial keeps all limits; if there is
-/// no such trial, the relaxations that the nearest trial needs.
-std::string relaxations(const Trials& trials, const TuneTrial& nearest) {
-  // For each limit, find among the trials that violate only this limit the trial with the smallest ratio to the
-  // limit.
-  std::map<std::string, std::pair<double, const TuneTrial*>> smallest;
-  for (const auto& [key, trial] : trials.all()) {
-    const TuneMetrics violated = trial.limits_alone ? trials.violated_limits(trial) : TuneMetrics();
-    if (violated.size() != 1) continue;
-    const auto& [name, ratio] = *violated.begin();
-    const auto entry = smallest.try_emplace(name, ratio, &trial).first;
-    if (ratio < entry->second.first) entry->second = {ratio, &trial};
+/// Relaxes one limit of a trial so far that the trial keeps it, and by `factor` further. Returns false if this is not
+/// possible, because the metric has no value.
+bool relax(const Trials& trials, const TuneTrial& trial, const std::string& name, double factor,
+           Relaxation& relaxation) {
+  const auto append = [&](const std::string& text) { relaxation.text += (relaxation.text.empty() ? "" : "; ") + text; };
+  if (trials.is_rule(name)) {
+    if (!relaxation.limits.allow_vibration) append("--allow-vibration drops " + std::string(kRules));
+    relaxation.limits.allow_vibration = true;
+    return true;
   }
+  const auto worst = value_in(trial.worst, name);
+  if (!worst) return false;
+  const double error = value_in(trial.error, name).value_or(0.0);
+  MetricBound& bound = relaxation.limits.metrics.at(name);
+  const MetricBound now = bound;
+  if (now.max && *worst + error > *now.max) {
+    bound.max = printed_beyond((*worst + error) * factor, true);
+    append(fmt::format("relax {} to at most {:.3g} (now {:.3g})", name, *bound.max, *now.max));
+  }
+  if (now.min && *worst - error < *now.min) {
+    bound.min = printed_beyond((*worst - error) / factor, false);
+    append(fmt::format("relax {} to at least {:.3g} (now {:.3g})", name, *bound.min, *now.min));
+  }
+  return true;
+}
+
+/// Returns the confirmed relaxation of all limits that a trial violates; empty if there is none.
+std::optional<std::string> confirmed(Trials& trials, const TuneLimits& limits, const TuneTrial& trial,
+                                     const TuneMetrics& violated, const IsFeasible& is_feasible) {
+  for (const double factor : {1.0, 1.1, 1.5}) {
+    Relaxation relaxation{limits, ""};
+    for (const auto& [name, ratio] : violated)
+      if (!relax(trials, trial, name, factor, relaxation)) return std::nullopt;
+    if (is_feasible(relaxation.limits)) return relaxation.text;
+    if (relaxation.limits.allow_vibration && violated.size() == 1) break;  // a factor changes nothing
+  }
+  return std::nullopt;
+}
+
+/// What a trial would need to become feasible: a single limit, or all low-vibration rules.
+struct Candidate {
+  double excess;
+  const TuneTrial* trial;
+};
+
+/// Returns, for each limit, the trials that violate only this limit, the smallest excess first. All rules of low
+/// vibration count as one limit.
+std::map<std::string, std::vector<Candidate>> candidates(const Trials& trials) {
+  std::map<std::string, std::vector<Candidate>> all;
+  for (const auto& [key, trial] : trials.all()) {
+    if (!trial.limits_alone) continue;
+    std::vector<std::string> names;
+    for (const auto& [name, ratio] : trials.violated_limits(trial)) {
+      const std::string limit = trials.is_rule(name) ? kRules : name;
+      if (std::ranges::count(names, limit) == 0) names.push_back(limit);
+    }
+    if (names.size() == 1) all[names[0]].push_back({trials.excess(trial), &trial});
+  }
+  for (auto& [name, found] : all) std::ranges::stable_sort(found, {}, &Candidate::excess);
+  return all;
+}
+
+/// Returns true if a completed trial still violates no other limit than `name`.
+bool violates_only(const Trials& trials, const TuneTrial& trial, const std::string& name) {
+  return std::ranges::all_of(trials.violated_limits(trial), [&](const auto& entry) {
+    return entry.first == name || (name == kRules && trials.is_rule(entry.first));
+  });
+}
+
+/// Returns for each limit the smallest confirmed relaxation of this limit alone; if there is none, the relaxations that
+/// the nearest trial needs together.
+std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasible& is_feasible) {
+  constexpr std::size_t kMaxCompleted = 8;  // trials of each limit that are evaluated further
+  const TuneLimits limits = trials.limits();
+  // Complete the nearest trials of each limit before the searches with other limits begin.
+  std::vector<std::pair<const TuneTrial*, TuneMetrics>> chosen;
+  for (const auto& [name, found] : candidates(trials)) {
+    for (std::size_t i = 0; i < std::min(kMaxCompleted, found.size()); ++i) {
+      const TuneTrial& trial = trials.completed(*found[i].trial);
+      if (!trial.limits_alone || !violates_only(trials, trial, name)) continue;
+      chosen.emplace_back(&trial, trials.violated_limits(trial));
+      break;
+    }
+  }
+  const TuneTrial& all = trials.completed(nearest);
+  const TuneMetrics of_nearest = all.limits_alone ? trials.violated_limits(all) : TuneMetrics();
   std::vector<std::string> texts;
-  for (const auto& [name, trial] : smallest)
-    texts.push_back(relaxed(trials, *trial.second, name) + "; " + then_text(*trial.second));
-  if (!texts.empty()) return fmt::format("{}", fmt::join(texts, "; or "));
-  // No trial violates a single limit only: name all relaxations that the nearest trial needs.
-  for (const auto& [name, ratio] : trials.violated_limits(nearest)) texts.push_back(relaxed(trials, nearest, name));
-  return fmt::format("{}; {}", fmt::join(texts, "; "), then_text(nearest));
+  for (const auto& [trial, violated] : chosen)
+    if (const auto text = confirmed(trials, limits, *trial, violated, is_feasible)) texts.push_back(*text);
+  if (texts.empty() && !of_nearest.empty())
+    if (const auto text = confirmed(trials, limits, all, of_nearest, is_feasible)) texts.push_back(*text);
+  if (texts.empty()) return "no relaxation of these limits was found that a search confirms";
+  return fmt::format("{}", fmt::join(texts, "; or "));
+}
+
+// ---- Trials whose motion fails
+
+/// Returns the failure that most trials have among the trials that came furthest: a failure of a later variant means
+/// that the scene itself and the earlier variants are settled with the margin.
+const TuneFailure* binding_failure(const Trials& trials) {
+  const auto key_of = [](const TuneFailure& f) {
+    return std::tuple(f.variant_index, f.binding == "margin", f.variant, f.verdict);
+  };
+  std::map<std::tuple<std::size_t, bool, std::string, std::string>, std::pair<std::size_t, const TuneFailure*>> counts;
+  for (const auto& [key, trial] : trials.all()) {
+    if (!trial.failure) continue;
+    auto& [count, failure] = counts[key_of(*trial.failure)];
+    ++count;
+    if (failure == nullptr || failure->unstable_at_K) failure = &*trial.failure;
+  }
+  const TuneFailure* binding = nullptr;
+  std::tuple<std::size_t, std::size_t> best{0, 0};  // variant, number of trials
+  for (const auto& [key, counted] : counts) {
+    const std::tuple rank{std::get<0>(key), counted.first};
+    if (binding == nullptr || rank > best) {
+      best = rank;
+      binding = counted.second;
+    }
+  }
+  return binding;
+}
+
+/// Returns the option or field that changes a failure of a motion.
+std::string remedy(const TuneQuestion& question, const TuneFailure& failure) {
+  std::vector<std::string> others;
+  for (const char* family : kFamilies)
+    if (failure.family != family && std::ranges::count(question.families, family) > 0) others.emplace_back(family);
+  if (others.empty()) others.emplace_back(failure.family == "seeds" ? "hands" : "seeds");
+  const bool contact_fails = failure.verdict == "no_contact" || failure.verdict == "lost_contact" ||
+                             failure.verdict == "not_dragged" || failure.verdict == "stuck" ||
+                             failure.verdict == "went_through" || failure.verdict == "thrown_out";
+  std::string text;
+  if (!failure.family.empty())
+    text = fmt::format("--family {} leaves out {}", fmt::join(others, ","),
+                       failure.variant.empty() ? "these hands" : failure.variant);
+  const bool margin_helps = failure.binding == "margin" && !contact_fails && !failure.unstable_at_K;
+  if (margin_helps) text += std::string(text.empty() ? "" : "; ") + "a smaller --margin";
+  if (!text.empty()) return text;
+  if (failure.binding == "no_force") return "check the device: its encoder, or its force resolution, hides the contact";
+  if (contact_fails)
+    return "no option of tune changes this: change the hand or the start of the scene (\"hapbench run\" explains the "
+           "outcome)";
+  return "no option of tune changes this: another device, hand or time step";
 }
 
 }  // namespace
 
-void explain(Trials& trials, TunedLaw& law) {
-  // Choose the trial to explain.
-  const TuneTrial* nearest = trials.nearest();
-  const auto lacks_margin = [](const auto& tried) { return tried.second.binding == "margin"; };
-  const auto found = std::ranges::find_if(trials.all(), lacks_margin);
-  const TuneTrial& other = found != trials.all().end() ? found->second : trials.all().rbegin()->second;
-  const TuneTrial& trial = nearest != nullptr ? *nearest : other;
-  law.binding = trial.binding;
-  law.why = trial.why;
-  if (nearest == nullptr) {
-    law.relax = law.binding == "margin" ? "a smaller --margin may help; otherwise try" : "no bound is responsible; try";
-    law.relax += " a gentler hand, a wider tool, another device, or other runs with --family";
+void explain(Trials& trials, const IsFeasible& is_feasible, TunedLaw& law) {
+  const std::vector<const TuneTrial*> nearest = trials.nearest(1);
+  if (!nearest.empty()) {
+    const TuneTrial trial = *nearest[0];
+    law.binding = trial.binding;
+    law.why = trial.why;
+    law.relax = relaxations(trials, trial, is_feasible);
     return;
   }
-  if (!trials.requires_low_vibration()) trials.set_error(known_errors(trials, trial));
-  if (const auto error = value_in(trials.error(), law.binding); error.value_or(0.0) > 0.0)
-    law.why += fmt::format(" +- {:.2g}", *error);
-  law.relax = relaxations(trials, trial);
-  if (trials.requires_low_vibration())
-    law.relax +=
-        "; a bound of your own, such as --bound force_rms_above_30Hz_N=0.05, replaces the rules of low vibration";
+  if (const TuneFailure* failure = binding_failure(trials)) {
+    law.binding = failure->binding;
+    law.why = failure->why;
+    law.relax = remedy(trials.question(), *failure);
+    return;
+  }
+  const TuneTrial& last = trials.all().rbegin()->second;
+  law.binding = last.binding;
+  law.why = last.why;
 }
 
 }  // namespace hapbench

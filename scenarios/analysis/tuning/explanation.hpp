@@ -6,9 +6,9 @@
 /// Explains why no setting is feasible.
 namespace hapbench {
 
-/// Writes into `law` why no setting is feasible: the violated constraint, and the limit to relax. Explains the trial
-/// that is nearest to keeping its limits (Trials::nearest). If no trial violates only limits, explains a trial that
-/// lacks only the gain margin. If there is no such trial either, explains the last trial.
-void explain(Trials& trials, TunedLaw& law);
+/// Writes into `law` why no setting is feasible: the violated constraint, the run that fails, and the limit or option
+/// to change. Precondition: the search of `trials` found no feasible trial. `is_feasible` searches with other limits,
+/// and returns true if it finds a verified choice. Only relaxations for which it returns true are named.
+void explain(Trials& trials, const std::function<bool(const TuneLimits& limits)>& is_feasible, TunedLaw& law);
 
 }  // namespace hapbench

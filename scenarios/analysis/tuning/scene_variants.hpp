@@ -19,6 +19,7 @@ inline constexpr const char* kFamilies[] = {"hands", "seeds", "speeds"};
 struct SceneVariant {
   std::string name;                         ///< name for the user, such as "a hand of 0.5 kg and 1000 N/m"
   std::vector<std::string> overrides = {};  ///< overrides that make the variant; empty: the scene itself
+  std::string family = {};                  ///< element of kFamilies; empty for the scene itself
 };
 
 /// Returns the variants of a set. Empty if the scene has nothing to vary, such as a hand whose force is a script.

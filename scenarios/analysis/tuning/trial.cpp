@@ -13,7 +13,7 @@ std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name
 
 std::string setting_text(const TuneSetting& setting) {
   std::string text;
-  if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *setting.damping_ratio);
+  if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g} (of rendering.mass_kg)", *setting.damping_ratio);
   if (setting.mass) text += fmt::format(", {:.3g} kg", *setting.mass);
   return setting.filter.empty() ? text : text + ", " + setting.filter;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <compare>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <optional>
@@ -33,24 +34,48 @@ struct TuneSetting {
 /// Returns the fields of a setting as text, such as ", zeta = 0.3, 0.2 kg".
 std::string setting_text(const TuneSetting& setting);
 
+/// The run of a trial that fails, apart from limits on metrics.
+struct TuneFailure {
+  std::string binding;  ///< as TuneTrial::binding
+  std::string why;      ///< as TuneTrial::why
+  /// Name of the variant; empty for the scene itself.
+  std::string variant = {};
+  std::string family = {};  ///< family of the variant; empty for the scene itself
+  /// Name of the verdict on the run, such as "no_contact"; empty if the linear loop is unstable.
+  std::string verdict = {};
+  bool too_soft = false;          ///< true if a larger K may help
+  bool unstable_at_K = false;     ///< the linear loop is unstable at K itself, so that no margin helps
+  std::size_t variant_index = 0;  ///< 0: the scene itself
+};
+
 /// A setting with a stiffness, evaluated for one law. G: the required gain margin.
 struct TuneTrial {
   TuneSetting setting = {};
   std::string algorithm = {};
   double stiffness = 0.0;  ///< K [N/m]
-  /// Violated constraint; empty if the trial is feasible. "settled": a run at K is not stable by rule_of() (below
-  /// called settled). "margin": a run at G K is not. "runs": the maximum number of runs is reached. "range": K is at
-  /// the end of the range. Otherwise the name of the metric whose limit is violated.
+  /// Violated constraint; empty if the trial is feasible. "settled": not settled at K. "margin": not settled at G K.
+  /// "no_force": no force is rendered. "runs": the maximum number of runs is reached. "range": K is at the end of the
+  /// range. Otherwise the name of the metric whose limit is violated.
   std::string binding = {};
   std::string why = {};       ///< reason of the violation, for the user
   bool too_soft = false;      ///< true if a larger K may keep the constraint
-  bool settled = false;       ///< true if the run of the scene itself, without variants, is settled at K
-  bool limits_alone = false;  ///< true if only limits on metrics are violated
-  TuneMetrics metrics = {};   ///< metrics of the run of the scene itself; empty if not measured
-  /// Worst value of each limited metric over all variants. If the user gave no limits: the numbers of the
-  /// low-vibration rules for the scene itself.
+  bool settled = false;       ///< true if the run of the scene itself is settled at K
+  bool limits_alone = false;  ///< true if only limits on metrics are violated, as far as the trial was evaluated
+  TuneMetrics metrics = {};   ///< of the run of the scene itself; empty if not measured
+  /// Worst value of each limited metric over the evaluated variants, and the low-vibration numbers of the scene itself.
   TuneMetrics worst = {};
-  std::map<std::string, std::string> worst_text = {};  ///< the numbers of `worst` as texts for the user
+  std::map<std::string, std::string> worst_text = {};  ///< `worst`, for the user
+  /// Error estimates of `metrics` (known_errors); empty unless all limits are kept, or nearly, without errors.
+  TuneMetrics error = {};
+
+  // How far the trial was evaluated. A trial is evaluated further only while it keeps the limits.
+  std::size_t judged = 0;    ///< number of variants whose motion was judged, the scene itself first
+  bool is_measured = false;  ///< the limits were measured in the scene's own run
+  bool is_complete = false;  ///< the limits were measured in all variants
+  bool has_error = false;    ///< `error` was computed
+  std::size_t runs = 0;      ///< number of simulations of the trial
+  /// The variant whose motion fails and how it fails; empty if no motion fails. The failure does not depend on limits.
+  std::optional<TuneFailure> failure = {};
   /// Largest eigenvalue of the mean stiffness tensor S at the end of the scene's run, in units of K.
   double lambda_max = 0.0;
 

@@ -9,6 +9,7 @@
 
 #include "scenarios/analysis/stability/limit_question.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
+#include "scenarios/analysis/tuning/metric_errors.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/diagnosis.hpp"
@@ -61,21 +62,19 @@ Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
       algorithm_(algorithm),
       ranges_(tune_ranges(question, algorithm)),
       over_hands_(std::ranges::find(question.families, "hands") != question.families.end()),
-      requires_low_vibration_(question.limits.empty()),
-      limits_(question.limits),
-      variants_({{"the scene's own run"}}),
-      smallest_unstable_(kInfinite),
-      cap_(ranges_.stiffness.to) {
+      limits_{question.limits, question.allow_vibration},
+      variants_({{"the scene's own run"}}) {
+  for (const Diagnosed& rule : diagnosis_rules(/*low_vibration=*/true)) rules_[rule.rule] = rule.threshold;
   // Collect the variants and the stiffness of springs in permanent contact.
   const LoadedScenario own = load({}, ranges_.stiffness.from);
   shell_ = make_shell(own.scenario, own.files);
-  for (const std::string& set : question_.families)
-    for (SceneVariant& variant : scene_variants(own, set)) variants_.push_back(std::move(variant));
+  for (const std::string& family : question_.families) {
+    for (SceneVariant& variant : scene_variants(own, family)) {
+      variant.family = family;
+      variants_.push_back(std::move(variant));
+    }
+  }
   if (has_permanent_springs(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
-  // If the user gave no limits, use the thresholds of the low-vibration rules of the diagnosis.
-  if (requires_low_vibration_)
-    for (const Diagnosed& rule : diagnosis_rules(requires_low_vibration_)) limits_[rule.rule].max = rule.threshold;
-  end_.fail("range", "the end of the search range");
 }
 
 // ---- The question
@@ -105,16 +104,38 @@ LoadedScenario Trials::load(const TuneSetting& setting, double stiffness, const 
   return load_scenario(question_.scenario, fields);
 }
 
+// ---- Searches
+
+void Trials::begin_search(TuneLimits limits) {
+  limits_ = std::move(limits);
+  requested_.clear();
+  refutations_.clear();
+  exact_refutations_ = false;
+  smallest_unstable_ = std::numeric_limits<double>::infinity();
+  search_runs_ = 0;
+}
+
+void Trials::recall_all() {
+  for (auto& [key, trial] : all_) {
+    requested_.insert(&trial);
+    judge(trial);
+  }
+}
+
 // ---- Trials
 
 TuneTrial& Trials::mutable_trial(const TuneSetting& setting, double stiffness) {
   const auto [entry, is_new] = all_.try_emplace({setting, stiffness});
   TuneTrial& trial = entry->second;
-  if (!is_new) return trial;
-  trial.setting = setting;
-  trial.algorithm = algorithm_;
-  trial.stiffness = stiffness;
-  judge(trial);
+  if (is_new) {
+    trial.setting = setting;
+    trial.algorithm = algorithm_;
+    trial.stiffness = stiffness;
+  }
+  if (requested_.insert(&trial).second) {
+    search_runs_ += trial.runs;  // as if this search had made the runs
+    judge(trial);
+  }
   return trial;
 }
 
@@ -122,31 +143,56 @@ const TuneTrial& Trials::trial_at(const TuneSetting& setting, double stiffness) 
   return mutable_trial(setting, stiffness);
 }
 
-const TuneTrial& Trials::beyond(const TuneSetting& setting, double K) {
-  return K <= cap_ ? trial_at(setting, K) : end_;
-}
-
 void Trials::evaluate_and_measure(const TuneSetting& setting, double stiffness) {
   TuneTrial& trial = mutable_trial(setting, stiffness);
-  if (trial.settled) measure(trial);
+  if (trial.settled) measure_scene(trial);
 }
 
-void Trials::measure(TuneTrial& trial) {
-  if (!trial.metrics.empty()) return;
-  in_parallel(1, [&](std::size_t) {
-    trial.metrics = metrics_of(run_with_shell(checked(load(trial.setting, trial.stiffness)), shell_));
-  });
+const TuneTrial* Trials::stiffest_feasible() const {
+  const TuneTrial* stiffest = nullptr;
+  for (const auto& [key, trial] : all_)
+    if (requested_.contains(&trial) && trial.feasible() &&
+        (stiffest == nullptr || trial.stiffness > stiffest->stiffness))
+      stiffest = &trial;
+  return stiffest;
+}
+
+std::vector<double> Trials::feasible_stiffnesses(const TuneSetting& setting) const {
+  std::vector<double> stiffnesses;
+  for (const auto& [key, trial] : all_)
+    if (key.first == setting && requested_.contains(&trial) && trial.feasible()) stiffnesses.push_back(key.second);
+  return stiffnesses;
+}
+
+std::vector<const TuneTrial*> Trials::nearest(std::size_t count) const {
+  std::map<TuneSetting, const TuneTrial*> best;
+  for (const auto& [key, trial] : all_) {
+    if (!requested_.contains(&trial) || !trial.limits_alone) continue;
+    const auto entry = best.try_emplace(trial.setting, &trial).first;
+    if (excess(trial) < excess(*entry->second)) entry->second = &trial;
+  }
+  std::vector<const TuneTrial*> trials;
+  for (const auto& [setting, trial] : best) trials.push_back(trial);
+  std::ranges::stable_sort(trials, {}, [this](const TuneTrial* trial) { return excess(*trial); });
+  if (trials.size() > count) trials.resize(count);
+  return trials;
+}
+
+const TuneTrial& Trials::completed(const TuneTrial& trial) {
+  TuneTrial& own = mutable_trial(trial.setting, trial.stiffness);
+  judge(own, /*in_full=*/true);
+  return own;
 }
 
 std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t count,
                                              const std::function<std::string(std::size_t run)>& more) {
   const double lambda = lambda_of(trial), K = trial.stiffness;
   std::vector<std::string> why(count);
-  in_parallel(count, [&](std::size_t i) {
+  in_parallel(nullptr, count, [&](std::size_t i) {
     // Check the linear loop in contact, then run.
     const SceneVariant& variant = variants_[i % variants_.size()];
     const CheckedScenario scene = checked(load(trial.setting, K, variant, more(i)));
-    if (unstable_loop(scene.scenario(), lambda, K, scene.scenario().rendering.stiffness)) {
+    if (unstable_loop(scene.scenario(), lambda, K, scene.scenario().rendering.stiffness, over_hands_)) {
       why[i] = "the contact loop is unstable" + with(variant);
       return;
     }
@@ -158,8 +204,12 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
   return std::nullopt;
 }
 
-void Trials::in_parallel(std::size_t count, const std::function<void(std::size_t)>& job) {
+void Trials::in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job) {
   runs_ += count;
+  if (trial != nullptr) {
+    trial->runs += count;
+    search_runs_ += count;
+  }
   for_each_job(count, {question_.threads, ""}, job);
   if (question_.on_runs) question_.on_runs(runs_);
 }
@@ -176,152 +226,235 @@ TuneMetrics Trials::metrics_of(const Result& run) const {
 
 // ---- Evaluation of the constraints, the cheapest first
 
-void Trials::judge(TuneTrial& trial) {
-  if (springs_lambda_ && !judge_loop(trial, variants_[0], *springs_lambda_, "the device alone")) return;
-  if (runs_ >= kMaxTuneRuns) {
-    trial.fail("runs", fmt::format("the search ended after {} runs", runs_));
+/// Evaluates a trial as far as its limits require, and writes the violated constraint.
+void Trials::judge(TuneTrial& trial, bool in_full) {
+  trial.binding.clear();
+  trial.why.clear();
+  trial.too_soft = trial.limits_alone = false;
+  if (is_exhausted() && trial.runs == 0) {
+    trial.fail("runs", fmt::format("the search ended after {} runs", search_runs_));
     return;
   }
-  judge_motion(trial, 0, 1);
-  if (trial.feasible() && variants_.size() > 1) judge_motion(trial, 1, variants_.size());
-  if (trial.feasible()) judge_limits(trial);
+  evaluate(trial, in_full);
+  if (trial.failure) {
+    trial.fail(trial.failure->binding, trial.failure->why);
+    trial.too_soft = trial.failure->too_soft;
+    return;
+  }
+  judge_limits(trial);
+  if (!trial.feasible()) return;
+  if (const Refutation* refuted = refutation_of(trial)) trial.fail(refuted->constraint, refuted->reason);
+}
+
+/// Runs the trial until a motion fails, or a limit is violated unless `in_full`.
+void Trials::evaluate(TuneTrial& trial, bool in_full) {
+  constexpr double kNear = 1.5;  // factor beyond a limit from which errors are estimated, so that a search can approach
+  // The scene itself: its loop, its motion, its metrics.
+  if (trial.judged == 0 && !trial.failure) {
+    if (springs_lambda_) trial.failure = loop_failure(trial, 0, *springs_lambda_);
+    if (!trial.failure) judge_motion(trial, 0, 1);
+  }
+  if (trial.failure) return;
+  measure_scene(trial);
+  if (trial.failure || (!in_full && excess(trial) > kNear)) return;
+  // The other variants.
+  if (trial.judged < variants_.size()) judge_motion(trial, 1, variants_.size());
+  if (trial.failure) return;
+  measure_variants(trial);
+  if (in_full || excess(trial) <= kNear) estimate_error(trial);
 }
 
 /// Returns the first hand with which the loop in contact is unstable at a stiffness between K and `most` [N/m]; empty
 /// if all loops are stable. Samples the stiffness in steps of 10 %.
-std::optional<std::string> Trials::unstable_loop(Scenario scenario, double lambda, double K, double most) const {
+std::optional<std::string> Trials::unstable_loop(Scenario scenario, double lambda, double K, double most,
+                                                 bool over_hands) const {
   constexpr double kStiffnessStep = 1.1;
   for (double at = most; lambda > 0.0 && at * kStiffnessStep > K; at /= kStiffnessStep) {
     scenario.rendering.stiffness = at;
-    for (const auto& [hand, step] : contact_step_matrices(scenario, lambda, over_hands_))
+    for (const auto& [hand, step] : contact_step_matrices(scenario, lambda, over_hands))
       if (!is_stable_step(step)) return hand;
   }
   return std::nullopt;
 }
 
-/// Returns false, and fails the trial, if the loop of a variant in contact is unstable between K and G K.
-bool Trials::judge_loop(TuneTrial& trial, const SceneVariant& variant, double lambda,
-                        const std::string& own_hand) const {
-  const double K = trial.stiffness;
-  const auto hand = unstable_loop(load(trial.setting, K, variant).scenario, lambda, K, question_.margin * K);
-  if (!hand) return true;
-  trial.fail("margin", fmt::format("between K and {:g} K the contact loop is unstable with {}", question_.margin,
-                                   hand->empty() ? own_hand : *hand));
-  return false;
+/// Returns the failure of a variant whose loop in contact is unstable between K and G K; empty if it is stable.
+std::optional<TuneFailure> Trials::loop_failure(const TuneTrial& trial, std::size_t variant, double lambda) const {
+  const double K = trial.stiffness, G = question_.margin;
+  const Scenario scenario = load(trial.setting, K, variants_[variant]).scenario;
+  const auto hand = unstable_loop(scenario, lambda, K, G * K, over_hands_);
+  if (!hand) return std::nullopt;
+  const std::string own = springs_lambda_ ? "the device alone" : variants_[variant].name;
+  const std::string who = hand->empty() ? own : *hand + with(variants_[variant]);
+  TuneFailure failure{"margin", fmt::format("between K and {:g} K the contact loop is unstable with {}", G, who)};
+  failure.variant = hand->empty() && variant == 0 ? "" : who;
+  // A loop that is unstable only with other hands fails because of the family "hands".
+  const bool is_own = unstable_loop(scenario, lambda, K, G * K, false).has_value();
+  failure.family = is_own ? variants_[variant].family : "hands";
+  failure.unstable_at_K = unstable_loop(scenario, lambda, K, K, over_hands_).has_value();
+  failure.variant_index = variant;
+  return failure;
 }
 
-/// Runs the variants [first, last) at K and at G K. Fails the trial at the first run that is not settled.
+/// Runs the variants [first, last) at K and at G K. Records the first run that is not settled.
 void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
-  std::vector<RunStability> judged(2 * (last - first));  // for each variant: the verdict at K, then at G K
-  in_parallel(judged.size(), [&](std::size_t job) {
+  std::vector<RunStability> judged(2 * (last - first));  // of each variant at K, then at G K
+  in_parallel(&trial, judged.size(), [&](std::size_t job) {
     const double gain = job % 2 != 0 ? question_.margin : 1.0;
     const CheckedScenario scene = checked(load(trial.setting, gain * trial.stiffness, variants_[first + job / 2]));
     judged[job] = stability_of(scene, shell_, rule_of(scene.scenario()));
   });
+  trial.judged = last;
   if (first == 0) trial.lambda_max = judged[0].settled.lambda_max;
-  for (std::size_t i = first; i < last; ++i) {
+  for (std::size_t i = first; i < last && !trial.failure; ++i) {
     const RunStability &at_K = judged[2 * (i - first)], &at_GK = judged[2 * (i - first) + 1];
+    const auto fail = [&](const char* binding, const std::string& where, const RunStability& run) {
+      trial.failure = TuneFailure{binding, where + verdict_with(run, variants_[i])};
+      trial.failure->variant = i > 0 ? variants_[i].name : "";
+      trial.failure->family = variants_[i].family;
+      trial.failure->verdict = run_verdict_name(run.verdict);
+      trial.failure->variant_index = i;
+    };
     if (!is_stable(at_K.verdict)) {
-      trial.too_soft = at_K.verdict >= RunVerdict::thrown_out && at_K.verdict <= RunVerdict::went_through;
-      return trial.fail("settled", verdict_with(at_K, variants_[i]));
+      fail("settled", "at K: ", at_K);
+      trial.failure->too_soft = at_K.verdict >= RunVerdict::thrown_out && at_K.verdict <= RunVerdict::went_through;
+      return;
     }
-    trial.settled = true;
-    if (!is_stable(at_GK.verdict))
-      return trial.fail("margin", fmt::format("at {:g} K: {}", question_.margin, verdict_with(at_GK, variants_[i])));
-    // For springs in permanent contact, judge() checked the loop before the runs.
-    if (!springs_lambda_ && !judge_loop(trial, variants_[i], at_K.settled.lambda_max, variants_[i].name)) return;
+    if (i == 0) trial.settled = true;
+    if (!is_stable(at_GK.verdict)) return fail("margin", fmt::format("at {:g} K: ", question_.margin), at_GK);
+    // For springs in permanent contact, evaluate() checked the loop before the runs.
+    if (!springs_lambda_) trial.failure = loop_failure(trial, i, at_K.settled.lambda_max);
   }
 }
 
-/// Measures the limited metrics over the variants. Fails the trial at the first violated limit.
-void Trials::judge_limits(TuneTrial& trial) {
-  // The low-vibration rules apply only to the run of the scene itself. Limits of the user apply to all variants.
-  std::vector<TuneMetrics> metrics(requires_low_vibration_ ? 1 : variants_.size());
-  in_parallel(metrics.size(), [&](std::size_t i) {
-    const CheckedScenario scene = checked(load(trial.setting, trial.stiffness, variants_[i]));
+/// Measures metrics and low-vibration numbers in the run of the scene itself. A trial whose force is zero fails.
+void Trials::measure_scene(TuneTrial& trial) {
+  if (trial.is_measured) return;
+  trial.is_measured = true;
+  in_parallel(&trial, 1, [&](std::size_t) {
+    const CheckedScenario scene = checked(load(trial.setting, trial.stiffness));
     const Result run = run_with_shell(scene, shell_);
-    metrics[i] = metrics_of(run);
-    if (!requires_low_vibration_) return;
+    trial.metrics = metrics_of(run);
     for (const Diagnosed& number : low_vibration_numbers(scene.loaded(), run)) {
       trial.worst[number.rule] = number.value;
       trial.worst_text[number.rule] = number.says;
     }
+    // Forces below half the resolution of the device are rounded to zero.
+    const auto* device = std::get_if<ImpedanceDeviceConfig>(&scene.scenario().device);
+    const double smallest = device != nullptr ? 0.5 * device->force_step : 0.0;
+    const double largest = number_of(run.metrics, "force_max_N").value_or(0.0);
+    if (!(largest > smallest)) {
+      trial.failure = TuneFailure{
+          "no_force", fmt::format("no force is rendered: the largest force of the law is {:.3g} N", largest)};
+      trial.failure->too_soft = true;
+    }
   });
-  trial.metrics = metrics[0];
-  for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, metrics, variants_);
-  judge_worst(trial);
+  for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, {&trial.metrics, 1}, variants_);
 }
 
-/// Fails the trial at the first violated limit. Precondition: TuneTrial::worst is filled.
-void Trials::judge_worst(TuneTrial& trial) const {
+/// Measures the limited metrics of the user in all variants.
+void Trials::measure_variants(TuneTrial& trial) {
+  if (trial.is_complete) return;
+  trial.is_complete = true;
+  if (question_.limits.empty()) return;
+  std::vector<TuneMetrics> metrics(variants_.size());
+  metrics[0] = trial.metrics;
+  in_parallel(&trial, metrics.size() - 1, [&](std::size_t i) {
+    metrics[i + 1] =
+        metrics_of(run_with_shell(checked(load(trial.setting, trial.stiffness, variants_[i + 1])), shell_));
+  });
+  for (const auto& [name, bound] : question_.limits) {
+    trial.worst.erase(name);
+    note_worst(trial, name, bound, metrics, variants_);
+  }
+}
+
+/// Estimates the errors of the user's metrics.
+void Trials::estimate_error(TuneTrial& trial) {
+  if (trial.has_error || question_.limits.empty()) return;
+  trial.has_error = true;
+  std::size_t count = 0;
+  trial.error = known_errors(question_, overrides(trial.setting, trial.stiffness), trial.metrics, count);
+  runs_ += count;
+  search_runs_ += count;
+  trial.runs += count;
+}
+
+/// Fails the trial at the first violated limit. Precondition: the metrics of the scene were measured.
+void Trials::judge_limits(TuneTrial& trial) const {
   const TuneMetrics violated = violated_limits(trial);
-  trial.binding.clear();
-  trial.too_soft = false;
   trial.limits_alone = !violated.empty();
   if (violated.empty()) return;
-  const std::string& name = violated.begin()->first;
-  const bool is_depth = name.starts_with("inside") || name.starts_with("depth");
-  trial.too_soft = limits_.at(name).max && trial.worst.contains(name) && is_depth;
-  trial.fail(name, trial.worst_text.at(name));
+  // Limits of the user come first.
+  auto first = std::ranges::find_if(violated, [this](const auto& entry) { return !is_rule(entry.first); });
+  if (first == violated.end()) first = violated.begin();
+  const std::string& name = first->first;
+  const auto is_depth = [](const auto& entry) {
+    return entry.first.starts_with("inside") || entry.first.starts_with("depth");
+  };
+  const auto limit = limits_.metrics.find(name);
+  trial.too_soft = limit != limits_.metrics.end() && limit->second.max && std::ranges::all_of(violated, is_depth);
+  const double error = value_in(trial.error, name).value_or(0.0);
+  trial.fail(name, trial.worst_text.at(name) + (error > 0.0 ? fmt::format(" +- {:.2g}", error) : ""));
 }
 
 // ---- Limits on metrics
 
 TuneMetrics Trials::violated_limits(const TuneTrial& trial) const {
   TuneMetrics violated;
-  for (const auto& [name, bound] : limits_) {
+  for (const auto& [name, bound] : limits_.metrics) {
     const auto value = value_in(trial.worst, name);
-    if (!value && !requires_low_vibration_) violated[name] = kInfinite;
-    if (value && bound.min && *value < *bound.min) violated[name] = ratio_beyond(*bound.min, *value);
-    if (value && bound.max && *value > *bound.max) violated[name] = ratio_beyond(*value, *bound.max);
+    const double error = value_in(trial.error, name).value_or(0.0);
+    if (!value) violated[name] = kInfinite;
+    if (value && bound.min && *value - error < *bound.min) violated[name] = ratio_beyond(*bound.min, *value - error);
+    if (value && bound.max && *value + error > *bound.max) violated[name] = ratio_beyond(*value + error, *bound.max);
+  }
+  if (limits_.allow_vibration) return violated;
+  for (const auto& [rule, threshold] : rules_) {
+    const auto value = value_in(trial.worst, rule);
+    if (value && *value > threshold) violated[rule] = ratio_beyond(*value, threshold);
   }
   return violated;
 }
 
-std::pair<std::size_t, double> Trials::excess(const TuneTrial& trial) const {
-  const TuneMetrics violated = violated_limits(trial);
-  double largest = 0.0;
-  for (const auto& [name, times] : violated) largest = std::max(largest, times);
-  return {violated.size(), largest};
+double Trials::excess(const TuneTrial& trial) const {
+  double largest = 1.0;
+  for (const auto& [name, times] : violated_limits(trial)) largest = std::max(largest, times);
+  return largest;
 }
 
-const TuneTrial* Trials::nearest() const {
-  const TuneTrial* nearest = nullptr;
-  for (const auto& [key, trial] : all_)
-    if (trial.limits_alone && (nearest == nullptr || excess(trial) < excess(*nearest))) nearest = &trial;
-  return nearest;
+// ---- Verification
+
+const Trials::Refutation* Trials::refutation_of(const TuneTrial& trial) const {
+  constexpr double kNearby = 4.0 / 3.0;
+  const auto is_near = [](const std::optional<double>& a, const std::optional<double>& b) {
+    return a == b || (a && b && *a < kNearby * *b && *b < kNearby * *a);
+  };
+  const auto applies = [&](const Refutation& refuted) {
+    const TuneSetting &a = trial.setting, &b = refuted.setting;
+    if (trial.stiffness < refuted.from || trial.stiffness > refuted.to) return false;
+    if (exact_refutations_) return a == b;
+    return a.filter == b.filter && is_near(a.damping_ratio, b.damping_ratio) && is_near(a.mass, b.mass);
+  };
+  const auto found = std::ranges::find_if(refutations_, applies);
+  return found == refutations_.end() ? nullptr : &*found;
 }
 
-bool Trials::tighten_limits(const TuneTrial& choice) {
-  bool is_beyond = false;
-  for (const auto& [name, bound] : question_.limits) {
-    const auto worst = value_in(choice.worst, name), error = value_in(error_, name);
-    if (!worst || !error) continue;
-    MetricBound& allowed = limits_[name];
-    if (bound.max && *worst + *error > *bound.max) {
-      allowed.max = std::min(*allowed.max * (1.0 - kTuneResolution), std::max(*bound.max - *error, 0.0));
-      is_beyond = true;
-    }
-    if (bound.min && *worst - *error < *bound.min) {
-      allowed.min = *bound.min + *error;
-      is_beyond = true;
-    }
-  }
-  if (!is_beyond) return false;
+void Trials::refute(const TuneSetting& setting, double from, double to, std::string constraint, std::string reason) {
+  refutations_.push_back({setting, from, to, std::move(constraint), std::move(reason)});
   for (auto& [key, trial] : all_)
-    if (trial.limits_alone || trial.feasible()) judge_worst(trial);
+    if (requested_.contains(&trial) && trial.feasible()) judge(trial);
+}
+
+bool Trials::restrict_refutations() {
+  if (exact_refutations_ || refutations_.empty()) return false;
+  exact_refutations_ = true;
+  for (auto& [key, trial] : all_)
+    if (requested_.contains(&trial)) judge(trial);
   return true;
 }
 
-// ---- The largest K
-
 void Trials::note_unstable(double K) {
   smallest_unstable_ = std::min(smallest_unstable_, K);
-}
-
-void Trials::set_cap(double cap, std::string constraint, std::string reason) {
-  cap_ = cap;
-  end_.fail(std::move(constraint), std::move(reason));
 }
 
 }  // namespace hapbench

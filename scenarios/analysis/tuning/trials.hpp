@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,12 +28,21 @@ struct Failing {
   std::string why;  ///< reason, for the user
 };
 
+/// The limits of a search.
+struct TuneLimits {
+  std::map<std::string, MetricBound> metrics = {};  ///< limits of the user
+  bool allow_vibration = false;                     ///< see TuneQuestion
+};
+
 /// Evaluates and stores all trials of one law.
 ///
 /// Invariants:
-/// - each setting and stiffness is run once, when it is first requested;
-/// - the result of every trial agrees with the current limits: tighten_limits() re-evaluates all trials;
-/// - cap(), the largest K of the search, only decreases: a K that failed a verification is not chosen again;
+/// - each run of a setting and stiffness is made once, when a search first needs it;
+/// - whether a trial is feasible depends only on the trial, on the limits and on its verification, not on other trials.
+///   A trial that keeps some limits therefore keeps all looser limits. Its metrics keep the limits including their own
+///   errors;
+/// - a search sees only the trials that it requested itself, and what it costs does not depend on earlier searches: it
+///   gives the same result in a new program;
 /// - runs() counts every simulation.
 class Trials {
  public:
@@ -46,27 +57,41 @@ class Trials {
   std::size_t variant_count() const { return variants_.size(); }
   /// Returns true if the variants have other hands.
   bool over_hands() const { return over_hands_; }
-  /// Returns true if the user gave no limits. Then the run of the scene itself must have low vibration.
-  bool requires_low_vibration() const { return requires_low_vibration_; }
   /// Returns the overrides that apply a setting and K [N/m] to the scene.
   std::vector<std::string> overrides(const TuneSetting& setting, double stiffness) const;
   /// Loads the scene with a setting and K [N/m].
   LoadedScenario load(const TuneSetting& setting, double stiffness) const;
 
+  // ---- Searches
+
+  /// Starts a search with these limits: forgets which trials were requested and which were refuted.
+  void begin_search(TuneLimits limits);
+  const TuneLimits& limits() const { return limits_; }
+  /// Returns true if the search has reached its largest number of runs. Later trials fail.
+  bool is_exhausted() const { return search_runs_ >= kMaxTuneRuns; }
+  /// Requests all trials of all searches and evaluates them with the current limits.
+  void recall_all();
+
   // ---- Trials
 
   /// Returns the trial of a setting at K [N/m]. Runs it first if necessary.
   const TuneTrial& trial_at(const TuneSetting& setting, double stiffness);
-  /// Returns the trial of a setting at K [N/m], like trial_at(). For K above cap(), returns end() without a run.
-  const TuneTrial& beyond(const TuneSetting& setting, double K);
   /// Returns true if a setting is feasible at K [N/m].
-  bool feasible(const TuneSetting& setting, double K) { return beyond(setting, K).feasible(); }
+  bool feasible(const TuneSetting& setting, double K) { return trial_at(setting, K).feasible(); }
   /// Evaluates a trial, and measures its metrics if the run of the scene itself is settled.
   void evaluate_and_measure(const TuneSetting& setting, double stiffness);
-  /// Fills TuneTrial::metrics by a run of the scene itself, unless they are filled.
-  void measure(TuneTrial& trial);
-  /// Returns all trials so far, by setting and K.
+  /// Returns all trials of all searches, by setting and K.
   const std::map<std::pair<TuneSetting, double>, TuneTrial>& all() const { return all_; }
+  /// Returns the feasible trial of this search with the largest K; null without any.
+  const TuneTrial* stiffest_feasible() const;
+  /// Returns the stiffnesses of the feasible trials of a setting in this search [N/m].
+  std::vector<double> feasible_stiffnesses(const TuneSetting& setting) const;
+  /// Returns up to `count` trials of this search that violate only limits, at most one for each setting, the smallest
+  /// excess() first.
+  std::vector<const TuneTrial*> nearest(std::size_t count) const;
+  /// Evaluates a trial that violates limits as if it kept them: its motion in all variants, its metrics and their
+  /// errors.
+  const TuneTrial& completed(const TuneTrial& trial);
   /// Returns the largest eigenvalue of the stiffness tensor in contact, in units of K.
   double lambda_of(const TuneTrial& trial) const { return springs_lambda_.value_or(trial.lambda_max); }
   /// Makes `count` runs of a trial that cycle through the variants. `more`: additional override of a run, such as a
@@ -77,37 +102,25 @@ class Trials {
 
   // ---- Limits on metrics
 
-  /// Returns the current bound on a metric. Precondition: the metric has a limit.
-  const MetricBound& limit_on(const std::string& metric) const { return limits_.at(metric); }
-  /// Returns the violated limits of a trial, each with the factor > 1 by which the worst value is beyond its limit. A
-  /// limited metric without a value has an infinite factor; a low-vibration rule whose number has no value counts as
-  /// satisfied. Precondition: TuneTrial::worst is filled.
+  /// Returns the violated limits of a trial, each with the factor > 1 by which the worst value and its error are beyond
+  /// the limit. A limited metric without a value has an infinite factor; a low-vibration rule without a value is kept.
   TuneMetrics violated_limits(const TuneTrial& trial) const;
-  /// Returns the number of violated limits and the largest factor of violated_limits(). Precondition:
-  /// TuneTrial::worst is filled.
-  std::pair<std::size_t, double> excess(const TuneTrial& trial) const;
-  /// Returns the trial with the smallest excess() among the trials that violate only limits on metrics; null if there
-  /// is no such trial.
-  const TuneTrial* nearest() const;
-  /// Returns the error estimates of the metrics of the last verified trial.
-  const TuneMetrics& error() const { return error_; }
-  void set_error(TuneMetrics error) { error_ = std::move(error); }
-  /// Tightens each limit of the user that the choice violates within error(), and re-evaluates all trials. Returns true
-  /// if a limit was tightened.
-  bool tighten_limits(const TuneTrial& choice);
+  /// Returns true for the name of a low-vibration rule.
+  bool is_rule(const std::string& name) const { return rules_.contains(name); }
+  /// Returns the largest factor of violated_limits(); 1 if no limit is violated.
+  double excess(const TuneTrial& trial) const;
 
-  // ---- The largest K
+  // ---- Verification
 
+  /// Marks trials of a choice's setting from `from` to `to` [N/m] as infeasible, because the choice failed a
+  /// verification. Unless `exact_refutations`, also marks settings whose numbers differ by less than a third.
+  void refute(const TuneSetting& setting, double from, double to, std::string constraint, std::string reason);
+  /// Restricts every refutation to its own setting. Returns false if they were already restricted.
+  bool restrict_refutations();
   /// Returns the smallest K that is known to be unstable for a choice [N/m]; infinite if none is known.
   double smallest_unstable() const { return smallest_unstable_; }
   /// Records that a choice is unstable at K [N/m].
   void note_unstable(double K);
-  /// Returns the largest K of the search [N/m].
-  double cap() const { return cap_; }
-  /// Limits the search to K <= `cap` [N/m]. Trials at a larger K fail with this constraint and reason.
-  void set_cap(double cap, std::string constraint, std::string reason);
-  /// Returns the infeasible trial that represents all K above the cap.
-  const TuneTrial& end() const { return end_; }
 
   // ---- Cost
 
@@ -117,34 +130,44 @@ class Trials {
   void count_runs(std::size_t count) { runs_ += count; }
 
  private:
+  struct Refutation {
+    TuneSetting setting;
+    double from, to;
+    std::string constraint, reason;
+  };
+
   LoadedScenario load(const TuneSetting& setting, double stiffness, const SceneVariant& variant,
                       const std::string& more = {}) const;
-  void in_parallel(std::size_t count, const std::function<void(std::size_t)>& job);
+  void in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job);
   TuneMetrics metrics_of(const Result& run) const;
-  std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double K, double most) const;
-  bool judge_loop(TuneTrial& trial, const SceneVariant& variant, double lambda, const std::string& own_hand) const;
+  std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double K, double most,
+                                           bool over_hands) const;
+  std::optional<TuneFailure> loop_failure(const TuneTrial& trial, std::size_t variant, double lambda) const;
   void judge_motion(TuneTrial& trial, std::size_t first, std::size_t last);
-  void judge_limits(TuneTrial& trial);
-  void judge_worst(TuneTrial& trial) const;
-  void judge(TuneTrial& trial);
+  void measure_scene(TuneTrial& trial);
+  void measure_variants(TuneTrial& trial);
+  void estimate_error(TuneTrial& trial);
+  void judge_limits(TuneTrial& trial) const;
+  void evaluate(TuneTrial& trial, bool in_full);
+  void judge(TuneTrial& trial, bool in_full = false);
+  const Refutation* refutation_of(const TuneTrial& trial) const;
   TuneTrial& mutable_trial(const TuneSetting& setting, double stiffness);
 
   const TuneQuestion& question_;
   const std::string& algorithm_;
   TuneRanges ranges_;
   bool over_hands_;
-  bool requires_low_vibration_;
-  /// Current bounds of metrics: the limits of the question, tightened by the error estimates.
-  std::map<std::string, MetricBound> limits_;
+  std::map<std::string, double> rules_;  ///< low-vibration rules with their thresholds
+  TuneLimits limits_;
   std::vector<SceneVariant> variants_;  ///< the scene itself first
   std::shared_ptr<const PointShell> shell_;
   std::optional<double> springs_lambda_;  ///< lambda_of() for springs in permanent contact; empty otherwise
-  double smallest_unstable_;
-  double cap_;
-  TuneTrial end_;
-  TuneMetrics error_;
+  double smallest_unstable_ = std::numeric_limits<double>::infinity();
   std::map<std::pair<TuneSetting, double>, TuneTrial> all_;
-  std::size_t runs_ = 0;
+  std::set<const TuneTrial*> requested_;  ///< trials of this search
+  std::vector<Refutation> refutations_;
+  bool exact_refutations_ = false;
+  std::size_t runs_ = 0, search_runs_ = 0;
 };
 
 }  // namespace hapbench

@@ -1,7 +1,12 @@
 #include "scenarios/analysis/tuning/tune.hpp"
 
+#include <fmt/format.h>
+
+#include <optional>
+
 #include "scenarios/analysis/stability/interval_search.hpp"
 #include "scenarios/analysis/tuning/explanation.hpp"
+#include "scenarios/analysis/tuning/metric_errors.hpp"
 #include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/analysis/tuning/tune_search.hpp"
 #include "scenarios/analysis/tuning/verification.hpp"
@@ -18,25 +23,67 @@ void evaluate_along_stiffness(Trials& trials, const TuneTrial& choice) {
   }
 }
 
+/// Searches with the current limits until a choice passes its verification; `any`: a choice that need not be the
+/// stiffest. Returns an empty choice if no trial is feasible.
+std::optional<TuneTrial> verified_choice(Trials& trials, bool any, TunedLaw& law) {
+  constexpr int kMaxVerifications = 60;
+  TuneSearch search(trials);
+  for (int i = 0; i < kMaxVerifications; ++i) {
+    const std::optional<TuneTrial> choice = any ? search.first_feasible() : search.best();
+    // A choice that fails its verification refutes trials of similar settings, at last only trials of its own setting.
+    if (!choice && trials.restrict_refutations()) continue;
+    if (choice && !is_verified(trials, *choice, law)) continue;
+    if (choice) {
+      law.binding = search.beyond().binding;
+      law.why = search.beyond().why;
+    }
+    return choice;
+  }
+  return std::nullopt;
+}
+
+/// Explains why nothing is feasible. The searches with other limits may find a trial that keeps all limits after all:
+/// then it is the choice.
+void explain_or_find(Trials& trials, TunedLaw& law) {
+  const TuneLimits limits = trials.limits();
+  const auto is_feasible = [&](const TuneLimits& other) {
+    TunedLaw unused;
+    trials.begin_search(other);
+    return verified_choice(trials, /*any=*/true, unused).has_value();
+  };
+  const bool was_exhausted = trials.is_exhausted();
+  explain(trials, is_feasible, law);
+  trials.begin_search(limits);
+  trials.recall_all();
+  if (trials.stiffest_feasible() != nullptr) law.choice = verified_choice(trials, /*any=*/false, law);
+  if (law.choice) {
+    law.relax.clear();
+    return;
+  }
+  law.verified = 0;
+  law.edge = {};
+  if (was_exhausted) {
+    law.why =
+        fmt::format("none was found in {} runs, the largest number of a search; nearest: {}", kMaxTuneRuns, law.why);
+  }
+}
+
 }  // namespace
 
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
   TunedLaw law;
   law.algorithm = algorithm;
   Trials trials(question, algorithm);
-  TuneSearch search(trials);
-  // Search and verify. A choice that fails its verification lowers cap() or a limit for the next search.
-  do {
-    law.choice = search.best();
-  } while (law.choice && !is_verified(trials, *law.choice, law));
+  law.choice = verified_choice(trials, /*any=*/false, law);
+  if (!law.choice) explain_or_find(trials, law);
   if (law.choice) {
-    law.binding = search.beyond().binding;
-    law.why = search.beyond().why;
-    law.margins = margins_of(trials, *law.choice);
+    std::size_t error_runs = 0;
     law.overrides = trials.overrides(law.choice->setting, law.choice->stiffness);
+    law.error = law.choice->has_error ? law.choice->error
+                                      : known_errors(question, law.overrides, law.choice->metrics, error_runs);
+    trials.count_runs(error_runs);
+    law.margins = margins_of(trials, *law.choice);
     evaluate_along_stiffness(trials, *law.choice);
-  } else {
-    explain(trials, law);
   }
   for (const auto& [key, trial] : trials.all()) law.trials.push_back(trial);
   law.runs = trials.runs();

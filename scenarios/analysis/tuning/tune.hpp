@@ -22,7 +22,7 @@ struct TunedLaw {
   /// nearest trial violates.
   std::string binding;
   std::string why;    ///< reason of the violation, for the user
-  std::string relax;  ///< if there is no choice: the limit to relax, and its new value, for the user
+  std::string relax;  ///< without a choice: which limit to relax, and by how much; or which option to change
   TuneMargins margins;
   FieldLimit edge;  ///< stability limits of K in the scene with the choice and the scene's hand
   /// Error estimates: largest change of each metric of the scene's run if the step is halved, the point spacing is
@@ -37,15 +37,19 @@ struct TunedLaw {
 /// Tunes one law. The result does not depend on the number of threads. G: TuneQuestion::margin.
 ///
 /// A setting at K is feasible if
-/// - every variant of the scene, including the scene itself, is settled at K (rule_of) and keeps the limits on metrics.
-///   Without limits of the user, the run of the scene itself must have low vibration (low_vibration_numbers in
+/// - every variant of the scene, including the scene itself, is settled at K (rule_of) and keeps the limits on metrics,
+///   even if its metrics are off by their errors.
+/// - unless TuneQuestion::allow_vibration, the run of the scene itself has low vibration (low_vibration_numbers in
 ///   diagnosis.hpp).
+/// - the run of the scene itself renders a force.
 /// - every variant is settled at G K.
 /// - the loop in contact has stable eigenvalues from K to G K (contact_step_matrices; with every hand of
 ///   typical_hands() if a hand holds an impedance device).
 ///
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified
-/// (verification.hpp). If the verification fails, the search is repeated with stricter bounds. Throws InputError for a
+/// (verification.hpp). If the verification fails, the search is repeated without this choice. If nothing is feasible,
+/// searches with relaxed limits confirm the relaxations that are named; a trial of theirs that keeps all limits is the
+/// choice. Throws InputError for a
 /// scene without a free position, and Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 

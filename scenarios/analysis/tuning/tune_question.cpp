@@ -1,6 +1,5 @@
 #include "scenarios/analysis/tuning/tune_question.hpp"
 
-#include <cmath>
 #include <variant>
 
 #include "scenarios/analysis/stability/limit_question.hpp"
@@ -16,13 +15,6 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
   if (!scene.rendering.hunt_crossley) {
     ranges.damping_ratio = question.damping_ratio;
     ranges.damping_ratio->logarithmic = true;
-    // Convert the range of zeta: in the question it refers to the mass of the handle, which moves; in the scenario it
-    // refers to the virtual mass.
-    if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scene.device)) {
-      const double scale = std::sqrt(device->handle_mass / scene.rendering.mass);
-      ranges.damping_ratio->from *= scale;
-      ranges.damping_ratio->to *= scale;
-    }
   }
   if (std::holds_alternative<AdmittanceDeviceConfig>(scene.device))
     ranges.mass = question.mass.value_or(Range{0.5 * scene.rendering.mass, 2.0 * scene.rendering.mass, true});

@@ -48,10 +48,7 @@ TuneSearch::TuneSearch(Trials& trials) : trials_(trials) {
 }
 
 std::optional<TuneTrial> TuneSearch::best() {
-  // Search K for each initial setting.
-  best_.reset();
-  for (const TuneSetting& setting : settings_) improve(setting);
-  if (!best_) approach();
+  search_settings();
   if (!best_) return best_;
   // Search velocity filters, then refine.
   for (const char* filter : filters_)
@@ -59,6 +56,46 @@ std::optional<TuneTrial> TuneSearch::best() {
       if (setting.mass == best_->setting.mass) improve({setting.damping_ratio, setting.mass, filter});
   refine();
   return best_;
+}
+
+std::optional<TuneTrial> TuneSearch::first_feasible() {
+  search_settings();
+  return best_;
+}
+
+/// Finds the best trial of the initial settings; if there is none, a feasible trial by finer searches.
+void TuneSearch::search_settings() {
+  constexpr std::size_t kStarts = 3;  // descents, from different settings
+  // A trial that this search knows already may be the only feasible trial.
+  best_.reset();
+  if (const TuneTrial* known = trials_.stiffest_feasible()) improve(TuneTrial(*known).setting);
+  for (const TuneSetting& setting : settings_) improve(setting);
+  if (best_) return;
+  for (const TuneSetting& setting : settings_) scan_finely(setting);
+  for (const char* filter : filters_)
+    for (const TuneSetting& setting : settings_)
+      if (!best_) improve({setting.damping_ratio, setting.mass, filter});
+  if (!best_)
+    for (const TuneTrial* start : trials_.nearest(kStarts))
+      if (!best_) approach(*start);
+}
+
+/// Evaluates K of a setting in steps of a third of the scan's steps, next to values at which the scene's own run is
+/// settled. Stops at the first feasible trial, and improves it.
+void TuneSearch::scan_finely(const TuneSetting& setting) {
+  constexpr int kParts = 3;
+  if (best_) return;
+  const IntervalSearchOptions options{.range = stiffnesses(), .resolution = kTuneResolution};
+  const auto settled = [&](int i) {
+    return trials_.trial_at(setting, options.value_at(static_cast<double>(i) / kScanIntervals)).settled;
+  };
+  for (int i = kScanIntervals - 1; i >= 0; --i) {
+    if (!settled(i) && !settled(i + 1)) continue;
+    for (int part = kParts - 1; part > 0; --part) {
+      const double K = options.value_at((i + static_cast<double>(part) / kParts) / kScanIntervals);
+      if (trials_.feasible(setting, K)) return static_cast<void>(improve(setting));
+    }
+  }
 }
 
 Range TuneSearch::stiffnesses() const {
@@ -75,18 +112,34 @@ bool TuneSearch::improve(const TuneSetting& setting) {
     options.range.from = best_->stiffness * (1.0 + kTuneResolution);
     if (!(options.range.from < options.range.to)) return false;
     if (!trials_.feasible(setting, options.range.from)) {
-      if (setting == best_->setting) beyond_ = trials_.beyond(setting, options.range.from);
+      if (setting == best_->setting) beyond_ = trials_.trial_at(setting, options.range.from);
       return false;
     }
   }
   const auto holds = [&](double t) { return trials_.feasible(setting, options.value_at(t)); };
   EvaluatedParameters scan = evaluate_scan(kScanIntervals, holds);
+  if (!best_) add_known(setting, options, scan);
   if (const auto between = window(setting, options, scan)) scan[*between] = true;
   const StableInterval interval = find_stable_interval(options, scan, holds, false);
   if (!interval.stable) return false;
   best_ = trials_.trial_at(setting, options.value_at(*interval.stable));
-  beyond_ = interval.beyond ? trials_.beyond(setting, options.value_at(*interval.beyond)) : trials_.end();
+  // The stiffness of a known trial may be rounded differently here.
+  if (!best_->feasible()) best_ = trials_.trial_at(setting, trials_.feasible_stiffnesses(setting).back());
+  if (interval.beyond) {
+    beyond_ = trials_.trial_at(setting, options.value_at(*interval.beyond));
+  } else {
+    beyond_ = {};
+    beyond_.fail("range", "the end of the search range");
+  }
   return true;
+}
+
+/// Adds the feasible trials of a setting that this search knows between the scan's values.
+void TuneSearch::add_known(const TuneSetting& setting, const IntervalSearchOptions& options,
+                           EvaluatedParameters& scan) const {
+  const auto [from, to, logarithmic] = options.range;
+  for (const double K : trials_.feasible_stiffnesses(setting))
+    if (K >= from && K <= to) scan[std::clamp(math::log(K / from) / math::log(to / from), 0.0, 1.0)] = true;
 }
 
 bool TuneSearch::is_too_soft(const TuneSetting& setting, const IntervalSearchOptions& options, double t) {
@@ -129,21 +182,21 @@ void TuneSearch::refine() {
     }
 }
 
-/// Called if no trial is feasible. Descends by a pattern search from the trial that is nearest to keeping its limits,
-/// until a trial is feasible.
-void TuneSearch::approach() {
-  const TuneTrial* at = trials_.nearest();
-  if (at == nullptr) return;
+/// Called if no trial is feasible. Descends by a pattern search from a trial that violates only limits, until a trial
+/// is feasible.
+void TuneSearch::approach(const TuneTrial& start) {
+  const TuneTrial* at = &start;
   const auto is_better = [&](const TuneTrial& neighbour) {
     const Range range = stiffnesses();
-    const double K = std::clamp(neighbour.stiffness, range.from, std::min(trials_.cap(), range.to));
+    const double K = std::clamp(neighbour.stiffness, range.from, range.to);
     const TuneTrial& next = trials_.trial_at(neighbour.setting, K);
     if (next.feasible()) best_ = next;
     if (!best_ && !(next.limits_alone && trials_.excess(next) < trials_.excess(*at))) return false;
     at = &next;
     return true;
   };
-  for (double ratio = math::pow(10.0, 0.25); ratio > kFinestRatio && !best_; ratio = std::sqrt(ratio))
+  constexpr double kFinestDescent = 1.01;  // factor on K, zeta and mass at which a descent ends
+  for (double ratio = math::pow(10.0, 0.25); ratio > kFinestDescent && !best_; ratio = std::sqrt(ratio))
     while (!best_ && std::ranges::any_of(neighbours(*at, ratio), is_better)) {
     }
   if (best_) improve(best_->setting);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,10 +14,10 @@ namespace hapbench {
 /// Searches the settings of a law for the largest feasible K.
 ///
 /// Starts from damping ratios zeta in factors of 10^(1/4), with the scene's mass and both ends of the range of the
-/// virtual mass. For each setting at which a K 0.5 % above the best K is feasible, searches the largest feasible K.
-/// If no trial is feasible but some trials violate only limits on metrics, searches for a feasible trial, by a
-/// pattern search that starts at the trial nearest to keeping its limits. Then evaluates velocity filters with the
-/// best mass. Finally refines zeta and mass until a change by 0.4 % no longer raises K.
+/// virtual mass. For each setting that allows a K larger than the best K by 0.5 %, searches its largest feasible K. If
+/// no trial is feasible, evaluates K in steps of 2^(1/3) wherever the scene's own run is settled, also with the
+/// velocity filters, and descends from the nearest trials of several settings towards the limits. Then evaluates
+/// velocity filters with the best mass. Finally refines zeta and mass until a change by 0.4 % no longer raises K.
 class TuneSearch {
  public:
   /// `trials` must outlive this.
@@ -24,6 +25,8 @@ class TuneSearch {
 
   /// Returns the feasible trial with the largest K; empty if no trial is feasible.
   std::optional<TuneTrial> best();
+  /// Returns any feasible trial; empty under the same condition as best(). Cheaper.
+  std::optional<TuneTrial> first_feasible();
   /// Returns the infeasible trial just above the best trial's K. Precondition: best() returned a trial.
   const TuneTrial& beyond() const { return beyond_; }
 
@@ -34,9 +37,12 @@ class TuneSearch {
                                const EvaluatedParameters& scan);
   std::optional<double> feasible_between(const TuneSetting& setting, const IntervalSearchOptions& options, double soft,
                                          double stiff);
+  void add_known(const TuneSetting& setting, const IntervalSearchOptions& options, EvaluatedParameters& scan) const;
   bool is_too_soft(const TuneSetting& setting, const IntervalSearchOptions& options, double t);
+  void search_settings();
+  void scan_finely(const TuneSetting& setting);
   void refine();
-  void approach();
+  void approach(const TuneTrial& start);
   std::vector<TuneTrial> neighbours(const TuneTrial& trial, double ratio) const;
 
   Trials& trials_;

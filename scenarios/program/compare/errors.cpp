@@ -104,8 +104,9 @@ std::string vibration_text(const Ranking& league, const Layout& layout) {
   std::vector<std::string> failing;
   for (std::size_t a = 0; a < league.algorithms.size(); ++a)
     if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
-  // Compare the vibration of the force. If a law without failures has no value for it, compare the vibration of the
-  // tool.
+  if (failing.size() == league.algorithms.size())
+    return "\n" + layout.wrapped("every run failed: there is no vibration to compare", 0);
+  // Compare the force; if a law without failures has no value of it, compare the tool.
   for (const auto& [of, metric, threshold] : kVibrations) {
     const auto metric_index =
         static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
@@ -121,7 +122,8 @@ std::string vibration_text(const Ranking& league, const Layout& layout) {
     if (known + failing.size() == league.algorithms.size()) break;
   }
   if (!failing.empty()) says += fmt::format("; failed: {}", fmt::join(failing, ", "));
-  return "\n" + layout.wrapped(says + "; --errors checks this order with finer runs", 0);
+  const bool has_order = failing.size() + 1 < league.algorithms.size();
+  return "\n" + layout.wrapped(says + (has_order ? "; --errors checks this order with finer runs" : ""), 0);
 }
 
 }  // namespace hapbench

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "scenarios/program/compare/columns.hpp"
@@ -49,10 +50,22 @@ RankCount rank_count(const Ranking& league, const std::string& algorithm) {
   return count;
 }
 
+bool is_ranked(const Ranking& league) {
+  return league.laws.front().mean_rank.has_value();
+}
+
+/// Returns why no algorithm has a rank.
+const char* no_ranks_reason(const Ranking& league) {
+  if (std::ranges::count(league.failed, false) == 0) return "every run failed";
+  const auto has_direction = [](Better better) { return better != Better::none; };
+  if (std::ranges::none_of(league.better, has_direction)) return "none of these metrics has a better direction";
+  return "no successful run has a value of these metrics";
+}
+
 std::string first_ranks_text(const Ranking& league) {
   constexpr std::size_t kMaxNamed = 5;
-  if (!league.laws.front().mean_rank) return "nothing is ranked: none of these metrics has a better direction";
-  std::size_t rankings = 0;  // number of rankings, which is equal for all laws
+  if (!is_ranked(league)) return std::string("nothing is ranked: ") + no_ranks_reason(league);
+  std::size_t rankings = 0;  // equal for all laws
   std::vector<std::string> firsts;
   for (const LawRankingEntry& law : league.laws) {
     const RankCount count = rank_count(league, law.algorithm);
@@ -69,6 +82,7 @@ std::string first_ranks_text(const Ranking& league) {
 /// Summarizes which algorithms are first, and whether the seeds give a spread.
 std::string verdict(const Ranking& league, const Layout& layout) {
   const std::string text = layout.wrapped(first_ranks_text(league), 0);
+  if (!is_ranked(league)) return text;
   if (league.seeds < 2) return text + "one seed: the spread is unknown; --seeds K estimates it\n";
   std::vector<std::string> alike;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s)
@@ -92,7 +106,9 @@ std::string ranking_text(const Ranking& league, const Layout& layout) {
           ? ranking_columns(league.seeds > 1).text(ranked(league), layout)
           : fmt::format("{} ranks are in ranking.csv; --wide prints them\n", league.standings.size());
   const std::string note =
-      layout.wrapped("rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %", 0);
+      is_ranked(league)
+          ? layout.wrapped("rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %", 0)
+          : "";
   return fmt::format("{}\n{}\n{}{}", table, law_ranking_columns().text(league.laws, layout), note,
                      verdict(league, layout));
 }

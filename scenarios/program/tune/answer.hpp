@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "results/summary/summary.hpp"
 #include "scenarios/analysis/tuning/tune.hpp"
 
 /// The results of `tune`.
@@ -18,6 +19,8 @@ struct Tuning {
   std::vector<TunedLaw> laws;
   std::vector<const TunedLaw*> ranking;  ///< laws with a feasible choice, best first
   std::size_t runs = 0;                  ///< number of simulations over all laws
+  /// What the diagnosis of `run` reports for the choice of the best law.
+  std::vector<Diagnosed> findings;
 };
 
 /// Returns the laws with a choice, best first. The best law has the smallest settled depth (inside_settled_m);

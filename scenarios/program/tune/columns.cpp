@@ -32,9 +32,9 @@ Columns<TunedLaw> choice_columns() {
        of_choice(&TuneTrial::stiffness)},
       {"K [N/m]", "N/m", "of tune: largest stiffness that keeps the margin and all bounds [N/m]", stiffness,
        only_printed()},
-      {kRatioColumn, "1", "damping ratio zeta at this K; empty if the search does not vary it",
+      {kRatioColumn, "1", "damping ratio zeta of rendering.mass_kg at this K; empty if the search does not vary it",
        of_setting(&TuneSetting::damping_ratio), under("zeta", 3, kOnlyCsv)},
-      {"damping_ratio", "1", "damping ratio zeta at this K; empty if the search does not vary it",
+      {"damping_ratio", "1", "damping ratio zeta of rendering.mass_kg at this K; empty if the search does not vary it",
        of_setting(&TuneSetting::damping_ratio), kOnlyJson},
       {"mass_kg", "kg", "virtual mass at this K; empty if the search does not vary it (the scene's mass)",
        of_setting(&TuneSetting::mass)},
@@ -46,11 +46,14 @@ Columns<TunedLaw> choice_columns() {
        "stiffness is K lambda_max",
        of_choice(&TuneTrial::lambda_max)},
       {"binding", "",
-       "binding constraint, the first constraint that a larger K violates: settled, margin, a bounded metric, or "
-       "range (the end of the search range)",
+       "binding constraint, the first constraint that a larger K violates: settled, margin, no_force, a bounded metric, a "
+       "rule of low vibration, or range (the end of the search range)",
        &Row::binding},
       {"why", "", "explanation of the binding constraint", &Row::why},
-      {"relax", "", "if no stiffness keeps all constraints: the bound to relax, and its new value", &Row::relax}};
+      {"relax", "",
+       "if no stiffness keeps all constraints: the bound to relax, and its new value, which a second search confirms; or "
+       "the option to change",
+       &Row::relax}};
 }
 
 }  // namespace
@@ -100,7 +103,7 @@ Columns<TuneTrial> trial_columns() {
   Columns<Row> columns = {
       {"algorithm", "", "force algorithm of the trial", &Row::algorithm},
       {"stiffness_N_per_m", "N/m", "K", &Row::stiffness},
-      {kRatioColumn, "1", "damping ratio zeta of the trial; empty if the search does not vary it",
+      {kRatioColumn, "1", "damping ratio zeta of rendering.mass_kg in the trial; empty if the search does not vary it",
        of_setting(&TuneSetting::damping_ratio)},
       {"mass_kg", "kg", "virtual mass of the trial; empty if the search does not vary it",
        of_setting(&TuneSetting::mass)},
@@ -109,8 +112,8 @@ Columns<TuneTrial> trial_columns() {
        of_setting(&TuneSetting::filter)},
       {"feasible", "", "true if the trial keeps all constraints", &Row::feasible},
       {"binding", "",
-       "first violated constraint: settled (at K), margin (at stiffnesses up to G K), a bounded metric, or runs (the "
-       "largest number of runs was reached)",
+       "first violated constraint: settled (at K), margin (at stiffnesses up to G K), no_force (no force is rendered), a "
+       "bounded metric, a rule of low vibration, or runs (the largest number of runs was reached)",
        &Row::binding},
       {"why", "", "explanation of the violated constraint", &Row::why}};
   for (const char* name : {kTuneMetrics[0], kTuneMetrics[1], kTuneMetrics[2]}) {

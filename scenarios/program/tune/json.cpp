@@ -23,7 +23,7 @@ Json law_json(const TunedLaw& law) {
 }
 
 Json limits_json(const TuneQuestion& question) {
-  Json limits = {{"margin", question.margin}};
+  Json limits = {{"margin", question.margin}, {"low_vibration", !question.allow_vibration}};
   for (const auto& [name, bound] : question.limits) {
     if (bound.min) limits[name]["min"] = *bound.min;
     if (bound.max) limits[name]["max"] = *bound.max;

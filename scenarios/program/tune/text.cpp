@@ -19,9 +19,10 @@ std::string limits_text(const Tuning& tuning) {
   std::string text =
       fmt::format("largest K for which all runs settle at stiffnesses up to {:g} K{}", tuning.question.margin,
                   tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m) at each stiffness" : "");
-  if (tuning.question.limits.empty())
+  if (!tuning.question.allow_vibration)
     text +=
-        ", and the run at K has low vibration (rules buzz, pop, chatter and energy of \"hapbench describe diagnosis\")";
+        ", and the run at K has low vibration (rules buzz, pop, shake, bounces, chatter and energy of \"hapbench describe "
+        "diagnosis\")";
   for (const auto& [name, bound] : tuning.question.limits) {
     if (bound.min) text += fmt::format(", and {} >= {:g}", name, *bound.min);
     if (bound.max) text += fmt::format(", and {} <= {:g}", name, *bound.max);
@@ -29,7 +30,8 @@ std::string limits_text(const Tuning& tuning) {
   const auto range = [](const char* name, const std::optional<Range>& found) {
     return found ? fmt::format("; {} {:.3g} ... {:.3g}", name, found->from, found->to) : "";
   };
-  return text + range("zeta", tuning.ranges.damping_ratio) + range("virtual mass [kg]", tuning.ranges.mass);
+  return text + range("zeta (of rendering.mass_kg)", tuning.ranges.damping_ratio) +
+         range("virtual mass [kg]", tuning.ranges.mass);
 }
 
 std::string choice_text(const TuneTrial& choice) {
@@ -62,6 +64,11 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
                    "unstable (95 % confidence); {} runs in total",
                    best->verified, tuning.question.margin, 100.0 * may_fail_share(kVerificationSamples), tuning.runs));
+  std::vector<std::string> findings;
+  for (const Diagnosed& found : tuning.findings)
+    findings.push_back(fmt::format("{} ({:.3g})", found.rule, found.value));
+  line("diagnosis", findings.empty() ? "\"hapbench run\" reports no problem at K"
+                                     : fmt::format("\"hapbench run\" reports at K: {}", fmt::join(findings, ", ")));
   line("metrics at K",
        "+-: change with half the time step, half the point spacing, and the depth evaluated at every step");
   for (const auto& [name, value] : best->choice->metrics)

@@ -20,6 +20,7 @@
 #include "scenarios/program/tune/text.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
@@ -41,6 +42,12 @@ void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& t
   }
   tuning.question.on_runs = {};
   tuning.ranking = ranking_of(tuning.laws);
+}
+
+/// Returns what the diagnosis reports for a run of the law's choice.
+std::vector<Diagnosed> findings_at(const Tuning& tuning, const TunedLaw& law) {
+  const CheckedScenario choice = checked(load_scenario(tuning.question.scenario, law.overrides));
+  return *run_scenario(choice, std::nullopt, false, nullptr, /*diagnose=*/true).diagnosis;
 }
 
 int tune(const TuneOptions& options, ProgramContext& context) {
@@ -65,17 +72,18 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
   report.write("tune_trials.csv", trial_columns(), trials);
-  report.say(tuning_text(tuning, layout));
-  if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
   // Write the scenario with the best choice. Remove the scenario of an earlier tune if nothing is feasible.
   const std::filesystem::path tuned_file = out / (file.stem().string() + "_tuned.json");
   std::filesystem::path tuned;
   if (tuning.ranking.empty()) report.files().remove(tuned_file);
   if (!tuning.ranking.empty()) {
     tuned = tuned_file;
+    tuning.findings = findings_at(tuning, *tuning.ranking[0]);
     report.files().write(tuned, json_text(tuned_scenario(tuning, *tuning.ranking[0], out)));
-    report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
   }
+  report.say(tuning_text(tuning, layout));
+  if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
+  if (!tuned.empty()) report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
   report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", out.string(), shell_file(out)));
   report.json() = tuning_json(tuning, tuned);
   return report.finish();
@@ -96,13 +104,14 @@ void add_tune(CommandLine& line) {
               "runs must be stable at K and at this factor times K (default: 2; more than 1, at most 16)");
   command.add("--bound <metric=range>", options.bounds,
               "runs at K must keep METRIC=MAX or METRIC=MIN:MAX, such as inside_max_m=3e-4 or "
-              "force_rms_above_30Hz_N=0.05; repeatable (default: low vibration, see below)");
+              "force_rms_above_30Hz_N=0.05; repeatable");
+  command.flag("--allow-vibration", options.question.allow_vibration,
+               "do not require low vibration of the scenario's run at K");
   command.add("--family <name,...>", options.family,
               "further runs that must be stable: hands, seeds, speeds, or all (default: hands)",
               {.comma_separated = true});
   command.add("--damping-ratio <a:b>", options.damping_ratio,
-              "range of the damping ratio zeta (default: 0.01:10); on an impedance device, B follows from zeta and the "
-              "mass of the handle");
+              "range of the damping ratio zeta of the virtual mass rendering.mass_kg (default: 0.01:10)");
   command.add("--mass <a:b>", options.mass,
               "range of the virtual mass on an admittance device [kg] (default: half to twice the scenario's)");
   command.flag("--filters", options.question.filters, "on an impedance device, choose the velocity filter too");
@@ -110,14 +119,16 @@ void add_tune(CommandLine& line) {
   command.footer(fmt::format(
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
       "limit "
-      "is at least margin x K, and every --bound holds at K. Without --bound the scenario's run must have low "
-      "vibration: no buzz, pop, chatter or created energy (\"hapbench describe diagnosis\").\n\n"
+      "is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is given, the "
+      "scenario's run has low vibration: none of the rules buzz, pop, shake, bounces, chatter and energy applies "
+      "(\"hapbench describe diagnosis\").\n\n"
       "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with "
       "their errors. {} verification samples between K and margin x K check the choice. If nothing is feasible, tune "
-      "names the bound to relax.\n\n"
+      "names the bound to relax, with a value that a second search confirms, or the run that fails and the option that "
+      "changes it.\n\n"
       "Files: NAME_tuned.json is the tuned scenario, for \"hapbench run\". tune.csv has one row per law, "
       "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder.\n\n"
-      "Time: seconds to minutes; the search for a law ends after {} runs.\n\n"
+      "Time: seconds to minutes; a search for a law ends after {} runs.\n\n"
       "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
       kVerificationSamples + kSamplesNearLimit, kMaxTuneRuns));
 }

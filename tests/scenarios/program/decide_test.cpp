@@ -148,6 +148,23 @@ TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
   EXPECT_LE(law["metrics"]["inside_max_m"].get<double>() + error, 0.5e-3);
 }
 
+/// A bound of the user leaves the requirement of low vibration in place; --allow-vibration drops it.
+TEST_F(TuneCommand, KeepsLowVibrationBesideABound) {
+  const auto findings = [&](const Words& more, const std::string& out) {
+    tune(more, out);
+    return hapbench({"run", file(out + "/tap_wall_tuned.json"), "--json", "--out", file(out + "_run")})
+        .json()[0]["diagnosis"];
+  };
+  for (const Json& finding : findings({"--bound", "inside_max_m=0.01", "--quiet"}, "bound"))
+    for (const char* rule : {"buzz", "pop", "shake", "bounces", "chatter", "energy"})
+      EXPECT_NE(finding["rule"], rule) << finding;
+  const Json bound = tune({"--bound", "inside_max_m=0.01", "--json"}).json();
+  const Json any = tune({"--allow-vibration", "--json"}).json();
+  EXPECT_EQ(bound["limits"]["low_vibration"], true);
+  EXPECT_EQ(any["limits"]["low_vibration"], false);
+  EXPECT_GE(any["algorithms"][0]["stiffness_N_per_m"], bound["algorithms"][0]["stiffness_N_per_m"]);
+}
+
 /// Without limits the recommendation keeps what the diagnosis calls quiet.
 TEST_F(TuneCommand, RecommendsAQuietRunInTheSameBytesHoweverManyJobs) {
   tune({"--jobs", "1", "--quiet"}, "a");
@@ -156,7 +173,8 @@ TEST_F(TuneCommand, RecommendsAQuietRunInTheSameBytesHoweverManyJobs) {
     EXPECT_EQ(read_file(directory_ / "a" / name), read_file(directory_ / "b" / name)) << name;
   const Json run = hapbench({"run", file("a/tap_wall_tuned.json"), "--json", "--out", file("run")}).json();
   for (const Json& finding : run[0]["diagnosis"])
-    for (const char* rule : {"buzz", "pop", "chatter", "energy"}) EXPECT_NE(finding["rule"], rule) << finding;
+    for (const char* rule : {"buzz", "pop", "shake", "bounces", "chatter", "energy"})
+      EXPECT_NE(finding["rule"], rule) << finding;
 }
 
 class ConvergeCommand : public Decide {

@@ -107,6 +107,23 @@ TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   EXPECT_NE(run.err.find("a law or source of contacts from outside failed once"), std::string::npos) << run.err;
 }
 
+/// The proxy finds its contacts itself: neither its force nor its metrics are those of a module, and compare says so.
+TEST_F(PluginCommand, LeavesContactsOfAModuleOutWhereTheLawFindsItsOwn) {
+  const std::string sphere =
+      R"(rendering.contact_source={"type":"plugin","file":")" + plugin("sphere") + R"(","config":{"radius_m":0.002}})";
+  const Words words = {"compare", "plane_wiped_round", "--algorithms", "mean,proxy", "--json"};
+  const auto compare = [&](Words more, const std::string& folder) {
+    more.insert(more.begin(), words.begin(), words.end());
+    more.insert(more.end(), {"--out", out(folder)});
+    return hapbench(more);
+  };
+  const ProgramRun with = compare({"--set", sphere}, "with"), without = compare({}, "without");
+  EXPECT_NE(with.err.find("algorithm \"proxy\" finds its contacts itself"), std::string::npos) << with.err;
+  EXPECT_EQ(without.err.find("finds its contacts itself"), std::string::npos) << without.err;
+  EXPECT_EQ(with.json()[1]["metrics"], without.json()[1]["metrics"]);
+  EXPECT_NE(with.json()[0]["metrics"], without.json()[0]["metrics"]);
+}
+
 TEST_F(PluginCommand, FailsWhenALawEndsTheProgram) {
   const EnvironmentVariable how("HOSTILE", "exits");
   const ProgramRun run = hapbench({"run", "single_spring", "--module", plugin("hostile"), "--set",

@@ -134,6 +134,7 @@ TEST_F(Latency, TimesEveryStepAndPrintsATable) {
   const auto lines = lines_of(run.out);
   const auto header = std::ranges::find_if(lines, [](const auto& line) { return line.find("p99.9 us") != line.npos; });
   ASSERT_LT(header + 3, lines.end()) << run.out;
+  EXPECT_EQ(run.out.find("99 % of the time steps"), std::string::npos) << "a second set of percentiles";
   EXPECT_EQ(header[2].find("drill_in_hole"), 0u);
   EXPECT_EQ(header[3].find("single_damper"), 0u);
   EXPECT_EQ(json_file("out/drill_in_hole/timing.json")["step_latency"]["steps"], summary("out/drill_in_hole")["steps"]);

@@ -219,6 +219,19 @@ TEST_F(CompareCommand, EqualsARunOfEachAlgorithmAlone) {
 }
 
 /// A round tip pressed onto a plane, from two heights.
+TEST_F(CompareCommand, SaysThatEveryRunFailed) {
+  // 100 mm above the tooth, no law touches it.
+  const Words words = {"compare",       "mesh_molar", "--algorithms", "mean,summation", "--set",
+                       "time.steps=20", "--set",      "expect={}",    "--set",          "initial.position_m=[0,0,0.1]",
+                       "--out",         at("out")};
+  Words ranked = words;
+  ranked.insert(ranked.end(), {"--by", "force_max_N"});
+  const std::string said = hapbench(ranked).out;
+  EXPECT_NE(said.find("nothing is ranked: every run failed"), std::string::npos) << said;
+  EXPECT_EQ(said.find("rank: 1 is best"), std::string::npos) << said;
+  EXPECT_NE(hapbench(words).out.find("every run failed: there is no vibration"), std::string::npos);
+}
+
 TEST_F(CompareCommand, GivesTheSameBytesWhateverTheJobs) {
   for (const auto& [name, height] : {std::pair{"press", "0.0001"}, {"poke", "0.0003"}}) {
     test::write_plainly(directory_ / (std::string(name) + ".json"),

@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "algorithms/registry.hpp"
 #include "scenarios/program/digits.hpp"
+#include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/program/text.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
@@ -49,6 +52,23 @@ TEST(Fitted, BreaksWideLinesAtBlanksAndKeepsTheirIndent) {
   EXPECT_EQ(fitted("  aa bb cc dd\nshort\n", 9), "  aa bb\n    cc dd\nshort\n");
   EXPECT_EQ(fitted("aaaaaaaaaaaa\n", 5), "aaaaaaaaaaaa\n");
   EXPECT_EQ(fitted("a  b\n\n", 80), "a  b\n\n");
+}
+
+/// A warning is merged only with equal texts: each law has its own number.
+TEST(RunWarnings, QuoteEachLawsOwnNumber) {
+  const auto run = [](const char* law, const char* text) {
+    Result result;
+    result.name = "scene";
+    result.algorithm = law;
+    result.warnings = {{"went_through", "", text}};
+    return result;
+  };
+  const std::vector<Result> runs = {run("mean", "2 mm deep"), run("proxy", "1 mm deep"), run("summation", "2 mm deep"),
+                                    run("proxy", "1.5 mm deep")};
+  EXPECT_EQ(run_warnings(runs),
+            (std::vector<std::string>{"scene: 2 mm deep (mean, summation)",
+                                      "scene: 1 mm deep (proxy; 1 more of its runs with other numbers)"}));
+  EXPECT_EQ(run_warnings({runs.data(), 1}), std::vector<std::string>{"scene: 2 mm deep"});
 }
 
 TEST(Deserved, EndsWithTheLeadingDigitOfTheTolerance) {

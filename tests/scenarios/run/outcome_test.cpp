@@ -86,7 +86,7 @@ TEST(Outcome, NoContactIsMeasuredToTheSurface) {
 
 TEST(Outcome, NoContactTellsTheLikelyCause) {
   for (const auto& [patch, cause] : {
-           std::pair{R"({"hand": {"z_N": 1}})", "; is initial.position_m right?"},
+           std::pair{R"({"hand": {"z_N": 1}})", "; are initial.position_m and the hand's direction right?"},
            {R"({"hand": {"type": "impedance", "z_N": null, "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
                         "target": {"x_m": 0, "y_m": 0, "z_m": 0.003}}})",
             "; does hand.target lead to the surface?"},
@@ -247,6 +247,8 @@ std::vector<Pair> pairs() {
       {"reduction",
        {"mesh_molar", {R"(rendering.reduction={"threshold":0.9})"}},
        {"mesh_molar", {R"(rendering.reduction=null)"}}},
+      {"loop", {"single_spring", {"rendering.damping_N_s_per_m=500"}}, {"single_spring_unstable"}},
+      {"shake", {"peg_in_hole_2d_original_averaging"}, {"peg_in_hole_2d_shaped_stiffness"}},
       {"facets", {"bur_fissure", {"environment.spacing_m=0.0006"}}, {"bur_fissure"}},
       {"deep", {"impedance_at_wall", {"rendering.stiffness_N_per_m=3600"}}, {"impedance_at_wall"}},
       {"soft", {"corner_shaped_stiffness", {"rendering.algorithm=mean"}}, {"corner_shaped_stiffness"}},
@@ -260,8 +262,8 @@ std::vector<Pair> pairs() {
        {"impedance_at_wall", {"device.force_max_N=0.5"}},
        {"impedance_at_wall", {"device.force_max_N=10"}}},
       {"limiter", {"device_at_wall", {"device.force_limit_N=0.3"}}, {"device_at_wall"}},
-      {"bounces", {"peg_in_hole_2d_original_averaging_passive"}, {"peg_in_hole_2d_shaped_stiffness"}},
-      {"chatter", {"peg_in_hole_2d_continuous_normal_projection"}, {"turned_into_wall"}},
+      {"bounces", {"bounce_plane", {R"(hand={"type":"force","z_N":-0.2})", "time.steps=4000"}}, {"bounce_plane"}},
+      {"chatter", {"drag_molar", {kOmega}}, molar},
       {"energy", {"peg_in_hole_2d_original_averaging"}, {"peg_in_hole_2d_mean"}},
       {"drift",
        {"incline_dry", {"hand.x_N=0.4", R"(rendering.friction={"mu_s_N_s_per_m":5,"mu_f_s_per_m":10})"}},
@@ -344,6 +346,163 @@ TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
     for (const Diagnosed& found : findings)
       EXPECT_FALSE(std::regex_search(found.attempt, std::regex("\\b" + law + "\\b"))) << law << ": " << found.attempt;
   }
+}
+
+/// A run as a rule might misread it, with the advice that would be wrong.
+struct Trap {
+  const char* rule;
+  Scene scene;
+  std::vector<std::pair<const char*, double>> metrics;
+  const char *right, *wrong;  ///< what the advice contains, and what it does not; `right` empty: the rule is silent
+  Outcome outcome = Outcome::completes;
+  const char* fault = "";
+  RunObservations observations = {};
+};
+
+RunObservations contact(std::uint64_t saturated = 0) {
+  RunObservations rows;
+  rows.in_contact = 100;
+  rows.at_force_limit = saturated;
+  return rows;
+}
+
+RunObservations inside() {
+  RunObservations rows;
+  rows.facts.began_inside = true;
+  return rows;
+}
+
+RunObservations held() {
+  RunObservations rows;
+  rows.facts.holding_friction = 0.8;
+  return rows;
+}
+
+RunObservations long_step() {
+  RunObservations rows;
+  rows.longest_step = 1.0;
+  return rows;
+}
+
+RunObservations moved_in_last_quarter() {
+  RunObservations rows;
+  rows.last_quarter.rows = 100;
+  rows.last_force = {0.0, 0.0, 1.0};
+  rows.tip = {0.01, 0.0, 0.0};
+  return rows;
+}
+
+const Scene kMolar = {"drag_molar"}, kOmegaMolar = {"drag_molar", {kOmega}}, kLed = {"recorded_wipe"};
+constexpr const char* kMean = "force_mean_in_contact_N";
+
+std::vector<Trap> traps() {
+  const std::vector<std::pair<const char*, double>> buzz = {{kMean, 1.0}, {"force_rms_above_30Hz_N", 0.5}};
+  const Scene passive = {"peg_in_hole_2d_shaped_stiffness"};  // nothing presses this tool
+  return {
+      // A law that fails is not the matter of the step, nor a hand that runs away of K.
+      {"diverged", kMolar, {}, "correct the law", "time.step_s", Outcome::diverges, "gives a force that is not finite"},
+      {"diverged", kMolar, {}, "without contact", "smaller K", Outcome::diverges},
+      {"edge", kMolar, {{"ratio_max", 1e9}}, "", "smaller K", Outcome::diverges, "gives a force that is not finite"},
+      // No K helps a tool that starts inside, and no hand a script.
+      {"sank", kMolar, {}, "initial.position_m", "larger K", Outcome::went_through, "", inside()},
+      {"sank", kLed, {}, "motion.position", "larger K", Outcome::went_through},
+      {"lost", kOmegaMolar, {}, "device.coulomb_N", "initial.position_m", Outcome::no_contact, "", held()},
+      {"lost", kLed, {}, "motion.position", "hand's direction", Outcome::no_contact},
+      {"stuck", {"impedance_at_wall"}, {}, "device.coulomb_N", "rendering.friction", Outcome::stuck},
+      {"stuck", {"drag_molar_dry"}, {}, "rendering.friction", "device.coulomb_N", Outcome::stuck},
+      // What flies apart makes long steps; a script is no slow hand.
+      {"step", kMolar, {}, "", "", Outcome::diverges, "", long_step()},
+      {"step", kLed, {}, "motion.position", "slower hand", Outcome::completes, "", long_step()},
+      // A script makes the same contacts at any K.
+      {"buzz", kLed, buzz, "another algorithm", "smaller K"},
+      {"buzz", passive, buzz, "", ""},
+      {"pop", passive, {{kMean, 0.05}, {"settled_force_step_max_N", 1.0}}, "", ""},
+      {"chatter", passive, {{"force_reversals_per_s", 28.0}}, "", ""},
+      {"chatter", kLed, {{"force_reversals_per_s", 28.0}}, "another algorithm", "smaller K"},
+      {"shake",
+       kMolar,
+       {{kMean, 1.0}, {"force_rms_above_30Hz_N", 0.01}, {"vibration_power_above_30Hz_m2_per_s2", 1.0}},
+       "",
+       ""},
+      {"encoder", kOmegaMolar, {{kMean, 1.0}, {"force_rms_above_30Hz_N", 0.01}}, "", ""},
+      {"encoder",
+       {"drag_molar", {kOmega, R"(device.velocity_filter={"type":"low_pass","cutoff_Hz":1e4})"}},
+       buzz,
+       "a lower cutoff_Hz",
+       "a low-pass"},
+      {"deep", kLed, {{"inside_settled_m", 0.1}}, "motion.position", "larger K"},
+      {"deep",
+       kMolar,
+       {{"inside_settled_m", 0.1}},
+       "smaller hand force",
+       "larger K",
+       Outcome::completes,
+       "",
+       contact(50)},
+      // In equilibrium a force is the hand's.
+      {"saturated", kOmegaMolar, {}, "smaller hand force", "smaller K", Outcome::completes, "", contact(50)},
+      {"damping",
+       {"drag_molar", {"rendering.damping_N_s_per_m=1e4"}},
+       {{"ratio_max", 1.0}},
+       "rendering.damping_N_s_per_m",
+       "zeta"},
+      {"damping",
+       {"drag_molar", {R"(rendering.damping={"type":"hunt_crossley","chi_s_per_m":1})"}},
+       {{"ratio_max", 1e6}},
+       "",
+       ""},
+      // Seven waypoints of tap_wall lift the tool.
+      {"bounces", {"tap_wall"}, {{"landings", 8.0}}, "", ""},
+      {"bounces", kMolar, {{"landings", 1.0}}, "", ""},
+      {"energy",
+       {"drag_molar", {"rendering.passivity_controller=true"}},
+       {{"passivity.net_created_J", 1.0}},
+       "smaller K",
+       "passivity_controller"},
+      {"drift", {"impedance_at_wall"}, {}, "", "", Outcome::completes, "", moved_in_last_quarter()},
+      {"drift",
+       {"incline_dry", {"hand.x_N=0.4"}},
+       {},
+       "a larger rendering.friction.mu",
+       "viscous",
+       Outcome::completes,
+       "",
+       moved_in_last_quarter()},
+      {"soft", {"single_spring"}, {{"ratio_min", 0.1}}, "shaped_stiffness", "proxy"},
+  };
+}
+
+TEST(Diagnosis, AdvisesNothingThatIsWrongInTheScene) {
+  for (const Trap& trap : traps()) {
+    const LoadedScenario loaded = load_scenario(find_scenario(trap.scene.name), trap.scene.overrides);
+    Result result;
+    result.algorithm = loaded.scenario.rendering.algorithm;
+    result.duration = 0.1;
+    result.end.outcome = trap.outcome;
+    result.end.divergence.fault = trap.fault;
+    for (const auto& [name, value] : trap.metrics) result.metrics.push_back({name, "1", "", value});
+    const auto tool = make_tool(loaded.scenario, loaded.files);
+    const auto all = diagnosis_findings(loaded, result, trap.observations, *tool);
+    const auto found = std::ranges::find(all, trap.rule, &Diagnosed::rule);
+    const std::string what = std::string(trap.rule) + " in " + trap.scene.name;
+    if (std::string_view(trap.right).empty()) {
+      EXPECT_EQ(found, all.end()) << what;
+      continue;
+    }
+    ASSERT_NE(found, all.end()) << what;
+    EXPECT_NE(found->attempt.find(trap.right), std::string::npos) << what << ": " << found->attempt;
+    EXPECT_EQ(found->attempt.find(trap.wrong), std::string::npos) << what << ": " << found->attempt;
+  }
+}
+
+/// 0.8 N of dry friction against 100 N/m and 4.5 mm: the handle never leaves its place.
+TEST(Diagnosis, NamesTheFrictionThatHoldsTheHandle) {
+  const Result result = run({"impedance_at_wall", {"device.coulomb_N=0.8", "hand.stiffness_N_per_m=100"}});
+  ASSERT_EQ(result.end.outcome, Outcome::no_contact);
+  ASSERT_FALSE(result.warnings.empty());
+  EXPECT_NE(result.warnings[0].text.find("device.coulomb_N"), std::string::npos) << result.warnings[0].text;
+  ASSERT_NE(finding(result, "lost"), nullptr);
+  EXPECT_NE(finding(result, "lost")->attempt.find("device.coulomb_N"), std::string::npos);
 }
 
 /// A step in which the tool flies past the tooth is not the fault of where it started.

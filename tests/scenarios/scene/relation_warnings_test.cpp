@@ -51,5 +51,26 @@ TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
   EXPECT_TRUE(warnings(R"({"type": "impedance", "target": {"x_m": 0, "y_m": 0, "z_m": 0}})", kDelay).empty());
 }
 
+/// A device of millimetres or grams in place of metres and kilograms; presets and light or heavy devices are usual.
+TEST(ImpedanceDevice, WarnsOfNumbersThatNoDeviceHas) {
+  const auto warnings = [](const std::string& fields) {
+    return warnings_with({R"(device={"type":"impedance",)" + fields + "}"});
+  };
+  for (const auto& [fields, field] : {std::pair{R"("handle_mass_kg":80)", "/device/handle_mass_kg"},
+                                      {R"("handle_mass_kg":1e-4)", "/device/handle_mass_kg"},
+                                      {R"("preset":"touch","encoder_step_m":0.02)", "/device/encoder_step_m"},
+                                      {R"("preset":"touch","position_noise_m":0.05)", "/device/position_noise_m"},
+                                      {R"("preset":"touch","coulomb_N":200)", "/device/coulomb_N"},
+                                      {R"("preset":"touch","delay_samples":1000)", "/device/delay_samples"}}) {
+    const auto found = warnings(fields);
+    ASSERT_EQ(found.size(), 1u) << fields;
+    EXPECT_TRUE(found[0].starts_with(field)) << found[0];
+    EXPECT_NE(found[0].find("; haptic devices have "), std::string::npos) << found[0];
+  }
+  for (const char* fields : {R"("preset":"touch")", R"("preset":"omega.3")", R"("handle_mass_kg":10)",
+                             R"("handle_mass_kg":0.002,"encoder_step_m":0.0009)"})
+    EXPECT_TRUE(warnings(fields).empty()) << fields;
+}
+
 }  // namespace
 }  // namespace hapbench::relation_warnings_test

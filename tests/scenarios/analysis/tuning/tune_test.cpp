@@ -78,7 +78,7 @@ TEST(Tune, OfTheDeviceAtAWallIsTheEdgeOfTheWorstHand) {
   TuneQuestion asked = question("device_at_wall", {"device.force_limit_N=null", "time.steps=8000"});
   asked.threads = 2;
   asked.damping_ratio = {0.5, 3.0};
-  asked.limits["force_max_N"].max = 1e9;  // nothing needs to be quiet
+  asked.allow_vibration = true;
   const TunedLaw law = tuned_law(asked, "shaped_stiffness");
   ASSERT_TRUE(law.choice) << law.why;
   EXPECT_EQ(law.verified, kVerificationSamples + kSamplesNearLimit);
@@ -119,8 +119,73 @@ TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {
   double needed = 0.0;
   ASSERT_EQ(std::sscanf(none.relax.c_str(), "relax inside_max_m to at most %lf (now 1e-06)", &needed), 1) << none.relax;
   EXPECT_GT(needed, 1e-6);
-  asked.limits["inside_max_m"].max = 1.01 * needed;  // it is printed with three digits
+  asked.limits["inside_max_m"].max = needed;
+  EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice) << none.relax;
+}
+
+/// True if a grid of K and zeta has a trial that keeps all constraints.
+bool grid_is_feasible(const TuneQuestion& asked, const std::string& algorithm) {
+  Trials trials(asked, algorithm);
+  const Range stiffnesses = trials.ranges().stiffness, zetas = *trials.ranges().damping_ratio;
+  for (int i = 0; i <= 4; ++i)
+    for (double K = stiffnesses.from; K < stiffnesses.to / asked.margin; K *= 1.4)
+      if (trials.feasible({zetas.value_at(i / 4.0), std::nullopt, ""}, K)) return true;
+  return false;
+}
+
+/// A looser bound never makes a question infeasible, and what a grid finds, tune finds.
+TEST(Tune, IsFeasibleIfAGridIsAndForEveryLooserBound) {
+  struct Bounds {
+    const char* scene;
+    std::vector<double> depths, vibrations;  // from tight to loose
+  };
+  for (const Bounds& bounds :
+       {Bounds{"impedance_at_wall", {1e-4, 4e-4}, {0.002, 0.02}}, {"tap_wall", {1e-4, 6e-4}, {0.01, 0.1}}}) {
+    std::vector<std::vector<bool>> feasible(bounds.depths.size());
+    for (std::size_t i = 0; i < bounds.depths.size(); ++i) {
+      for (const double vibration : bounds.vibrations) {
+        TuneQuestion asked = question(bounds.scene, {"time.duration_s=0.6"});
+        asked.threads = 2;
+        asked.damping_ratio = {0.1, 0.6};
+        asked.limits["inside_max_m"].max = bounds.depths[i];
+        asked.limits["force_rms_above_30Hz_N"].max = vibration;
+        const TunedLaw law = tuned_law(asked, "shaped_stiffness");
+        feasible[i].push_back(law.choice.has_value());
+        if (!law.choice) {
+          EXPECT_FALSE(grid_is_feasible(asked, "shaped_stiffness")) << bounds.depths[i] << " m, " << vibration << " N";
+        }
+        const std::size_t j = feasible[i].size() - 1;
+        EXPECT_LE(feasible[i > 0 ? i - 1 : i][j], feasible[i][j]) << bounds.scene;
+        EXPECT_LE(feasible[i][j > 0 ? j - 1 : j], feasible[i][j]) << bounds.scene;
+      }
+    }
+  }
+}
+
+/// 0.8 N of dry friction hold the handle against a hand of 100 N/m that pulls by 4.5 mm: this hand never touches.
+TEST(Tune, NamesTheRunThatFailsAndTheOptionThatLeavesItOut) {
+  TuneQuestion asked = question("impedance_at_wall", {"device.coulomb_N=0.8"});
+  asked.threads = 2;
+  asked.damping_ratio = {0.1, 0.3};
+  const TunedLaw none = tuned_law(asked, "shaped_stiffness");
+  ASSERT_FALSE(none.choice);
+  EXPECT_EQ(none.binding, "settled");
+  EXPECT_EQ(none.why, "at K: no_contact (a hand of 0.1 kg and 100 N/m)");
+  EXPECT_EQ(none.relax, "--family seeds leaves out a hand of 0.1 kg and 100 N/m");
+  asked.families = {"seeds"};
   EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
+}
+
+/// A device whose force has steps of 1 kN renders none of the few newtons of the law.
+TEST(Tune, RecommendsNoStiffnessThatRendersNothing) {
+  TuneQuestion asked = question("impedance_at_wall", {"device.force_step_N=1000"});
+  const std::string law = "shaped_stiffness";  // must outlive the trials
+  Trials trials(asked, law);
+  const TuneTrial& trial = trials.trial_at({}, 1000.0);
+  ASSERT_FALSE(trial.feasible());
+  if (trial.settled) {
+    EXPECT_EQ(trial.binding, "no_force");
+  }
 }
 
 }  // namespace

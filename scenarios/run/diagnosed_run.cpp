@@ -1,0 +1,214 @@
+#include "scenarios/run/diagnosed_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "device_model/impedance_device.hpp"
+#include "scenarios/input/rounding.hpp"
+#include "scenarios/run/expectations.hpp"
+#include "scenarios/run/scene_distances.hpp"
+#include "scenarios/run/scene_loop.hpp"
+#include "scenarios/run/scripted_motion.hpp"
+#include "scenarios/run/vibration_limit.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Smallest number of steps in a quarter from which motion and frequency are computed.
+constexpr std::uint64_t kMinQuarterSteps = 10;
+/// Smallest stiffness of the search for the linear limit, in units of K. A loop that is unstable there is unstable at
+/// any stiffness.
+constexpr double kSmallestStiffness = 1e-9;
+
+/// Returns K divided by the largest stable K of the linear loop in contact. The loop uses the stiffest contact
+/// of the run (largest stiffness ratio lambda). Empty without contact or without a loop. Rounded to six digits,
+/// so that the result does not depend on how a build rounds.
+Number ratio_to_stability_limit(const DiagnosedRun& run) {
+  const Number lambda = run.metric("ratio_max");
+  const double K = run.scenario().rendering.stiffness;
+  if (!lambda || !(*lambda > 0.0) || !(K > 0.0) || !run.is_free()) return std::nullopt;
+  if (contact_step_matrix(run.scenario(), *lambda).size() == 0) return std::nullopt;
+  constexpr double kMax = 2.0;  // search range, in units of K; above it, K is far below the limit
+  Scenario at = run.scenario();
+  const double limit = first_stability_limit(kSmallestStiffness * K, kMax * K, [&](double stiffness) {
+    at.rendering.stiffness = stiffness;
+    return contact_step_matrix(at, *lambda);
+  });
+  return rounded_to_digits(K / std::max(kSmallestStiffness * K, limit), 6);
+}
+
+/// Returns ratio_to_stability_limit() if the run diverged, lost contact or vibrates, else an empty value. Divergence
+/// that a law or a contact module reports as its own fault is not a matter of the loop.
+Number ratio_in_vibration(const DiagnosedRun& run) {
+  if (!run.result.end.divergence.fault.empty()) return std::nullopt;
+  const bool vibrates = run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates();
+  if (!vibrates && !(buzz(run).value_or(0.0) > kMaxBuzz) && !(shake(run).value_or(0.0) > kMaxShake))
+    return std::nullopt;
+  if (!run.ratio_to_limit) run.ratio_to_limit = ratio_to_stability_limit(run);
+  return *run.ratio_to_limit;
+}
+
+bool is_unstable_at_any_stiffness(double ratio) {
+  constexpr double kRounding = 1e-3;  // of six digits
+  return ratio >= (1.0 - kRounding) / kSmallestStiffness;
+}
+
+}  // namespace
+
+Number quotient(const Number& a, const Number& b) {
+  return a && b && *b > 0.0 ? Number(*a / *b) : std::nullopt;
+}
+
+Number DiagnosedRun::of_mean_force(const char* name) const {
+  const bool is_pressed = !is_free() || has_hand() || has_springs();
+  return is_pressed ? quotient(metric(name), metric("force_mean_in_contact_N")) : std::nullopt;
+}
+
+bool DiagnosedRun::vibrates() const {
+  return metric("vibration_last_quarter_m_per_s").value_or(0.0) > kMaxVibration;
+}
+
+Number DiagnosedRun::if_completed(const Number& number) const {
+  if (has_springs() && !vibrates()) return std::nullopt;
+  return ended(Outcome::diverges, Outcome::went_through, Outcome::no_contact) ? std::nullopt : number;
+}
+
+Number fault(const DiagnosedRun& run) {
+  return run.ended(Outcome::diverges) && is_fault(run.result.end.divergence) ? Number(1.0) : std::nullopt;
+}
+
+Number diverged(const DiagnosedRun& run) {
+  return fault(run) ? std::nullopt : ended<Outcome::diverges>(run);
+}
+
+Number measured_force_angle(const DiagnosedRun& run) {
+  constexpr double kMinRows = 10.0;
+  const Number rows = run.metric("fidelity.direction_rows");
+  const bool is_measured = !run.scenario().reference_force && rows && *rows >= kMinRows;
+  return is_measured ? run.metric("fidelity.force_direction_error_rad") : std::nullopt;
+}
+
+Number longest_step(const DiagnosedRun& run) {
+  // The steps of a tool that is flung away are a consequence, not a cause.
+  if (run.ended(Outcome::diverges)) return std::nullopt;
+  return quotient(run.observations.longest_step, run.half_width());
+}
+
+bool step_exceeds_half_width(const DiagnosedRun& run) {
+  return longest_step(run).value_or(0.0) > 1.0;
+}
+
+Number buzz(const DiagnosedRun& run) {
+  return run.if_completed(run.of_mean_force("force_rms_above_30Hz_N"));
+}
+
+Number pop(const DiagnosedRun& run) {
+  return run.if_completed(run.of_mean_force("settled_force_step_max_N"));
+}
+
+Number shake(const DiagnosedRun& run) {
+  const Number power = run.metric("vibration_power_above_30Hz_m2_per_s2");
+  if (run.has_springs() || !run.is_free() || run.of_mean_force("force_rms_above_30Hz_N") || !power) return std::nullopt;
+  return run.if_completed(std::sqrt(*power));
+}
+
+Number chatter(const DiagnosedRun& run) {
+  // Without a press, the force changes its side whenever the tool moves from wall to wall.
+  const bool is_pressed = !run.is_free() || run.has_hand() || run.has_springs();
+  return is_pressed ? run.if_completed(run.metric("force_reversals_per_s")) : std::nullopt;
+}
+
+Number stability_limit_ratio(const DiagnosedRun& run) {
+  const Number ratio = ratio_in_vibration(run);
+  return ratio && !is_unstable_at_any_stiffness(*ratio) ? ratio : std::nullopt;
+}
+
+Number unstable_loop(const DiagnosedRun& run) {
+  const Number ratio = ratio_in_vibration(run);
+  return ratio && is_unstable_at_any_stiffness(*ratio) ? Number(1.0) : std::nullopt;
+}
+
+Number coarseness(const DiagnosedRun& run) {
+  constexpr double kSufficientContacts = 4.0,
+                   kMinSpacings = 10.0;  // contacts in a step; multiples of the point spacing
+  const auto distance = point_distance(run.loaded);
+  const Number contacts = quotient(run.metric("colliding_mean"), run.metric("contact_share"));
+  // The contacts of a module or a recording do not depend on the spacing of our points.
+  if (!distance || !contacts || has_external_contacts(run.scenario()) ||
+      run.observations.path_in_contact < kMinSpacings * distance->metres)
+    return std::nullopt;
+  return run.if_completed(std::sqrt(kSufficientContacts / *contacts));
+}
+
+Number encoder_force(const DiagnosedRun& run) {
+  const ImpedanceDeviceConfig* device = run.impedance();
+  const bool is_rough = buzz(run).value_or(0.0) > kMaxBuzz || pop(run).value_or(0.0) > kMaxBuzz ||
+                        chatter(run).value_or(0.0) > kMaxChatter || run.vibrates();
+  if (device == nullptr || !is_rough || run.scenario().rendering.hunt_crossley) return std::nullopt;
+  // Steps in which a velocity filter of any order reaches its peak or passes almost nothing.
+  constexpr int kSamples = 100;
+  VelocityFilter filter(device->velocity_filter, run.scenario().time.step);
+  filter.reset(Vec3::Zero());
+  double fastest = 0.0;
+  for (int i = 0; i < kSamples; ++i) fastest = std::max(fastest, filter.read(Vec3(device->encoder_step, 0.0, 0.0)).x());
+  const Number mean = run.metric("force_mean_in_contact_N");
+  return quotient(normal_damping(run.scenario().rendering) * fastest, mean);
+}
+
+Number damping_share(const DiagnosedRun& run) {
+  const Scenario& s = run.scenario();
+  const ImpedanceDeviceConfig* device = run.impedance();
+  const Number lambda = run.metric("ratio_max");
+  // Hunt and Crossley's damping replaces B and grows with the depth.
+  if (!lambda || !run.is_free() || s.rendering.hunt_crossley) return std::nullopt;
+  double B = *lambda * normal_damping(s.rendering);
+  if (const auto& most = s.rendering.max_damping) B = std::min(B, *most);
+  const double mass = device != nullptr ? device->handle_mass : s.rendering.mass;
+  return B * s.time.step / mass / (device != nullptr ? 2.0 : s.integrator.type->damper_limit);
+}
+
+Number drift(const DiagnosedRun& run) {
+  const RunObservations& rows = run.observations;
+  const RunObservations::Quarter& last = rows.last_quarter;
+  const HandFields& hand = run.scenario().hand;
+  const bool is_constant =
+      std::holds_alternative<ForceHandFields>(hand) || std::holds_alternative<PushHandFields>(hand);
+  if (last.rows < kMinQuarterSteps || !last.always_in_contact || !is_constant || has_scripted_motion(run.scenario()) ||
+      !run.is_free())
+    return std::nullopt;
+  // Remove the component along the force.
+  const Vec3 push = rows.last_force.normalized(), motion = rows.tip - last.start;
+  return run.if_completed(quotient((motion - motion.dot(push) * push).norm(), run.half_width()));
+}
+
+Number depth_in_half_widths(const DiagnosedRun& run) {
+  return run.if_completed(quotient(run.metric("inside_settled_m"), run.half_width()));
+}
+
+Number softness(const DiagnosedRun& run) {
+  return quotient(1.0, run.metric("ratio_min"));
+}
+
+Number saturation(const DiagnosedRun& run) {
+  return quotient(static_cast<double>(run.observations.at_force_limit),
+                  static_cast<double>(run.observations.in_contact));
+}
+
+Number bounces(const DiagnosedRun& run) {
+  const Number landings = run.metric("landings"), lifts = scripted_lifts(run.scenario());
+  if (!landings || !lifts || !run.is_free()) return std::nullopt;
+  return quotient(std::max(*landings - 1.0 - *lifts, 0.0), run.result.duration);
+}
+
+std::string buzz_frequency(const DiagnosedRun& run) {
+  const RunObservations::Quarter& last = run.observations.last_quarter;
+  Eigen::Index axis = 0;
+  if (last.rows < kMinQuarterSteps || !(last.high_squares.maxCoeff(&axis) > 0.0)) return "";
+  const double turns = static_cast<double>(last.high_sign_changes[static_cast<std::size_t>(axis)]);
+  return fmt::format(", at about {:.0f} Hz", 0.5 * turns / (run.scenario().time.step * static_cast<double>(last.rows)));
+}
+
+}  // namespace hapbench

@@ -1,0 +1,259 @@
+#include "scenarios/run/diagnosis_advice.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/run/scene_distances.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr const char* kShorterStep = "a shorter time.step_s: in one step the tool moves by more than its half width";
+
+/// Joins alternatives: "a, b, or c".
+std::string either(const std::vector<std::string>& options) {
+  if (options.size() < 2) return fmt::format("{}", fmt::join(options, ""));
+  const std::vector<std::string> first(options.begin(), options.end() - 1);
+  return fmt::format("{}{} or {}", fmt::join(first, ", "), options.size() > 2 ? "," : "", options.back());
+}
+
+/// Returns the names in `laws` without the run's own law, joined by "or". Leaves out laws that the scene cannot use or
+/// whose contacts would not be the scene's: a law that finds its contacts itself, on springs or with a contact module.
+std::string other_laws(const DiagnosedRun& run, std::initializer_list<const char*> laws) {
+  std::vector<std::string> names;
+  for (const char* law : laws) {
+    const bool finds_contacts = !find_algorithm(law)->reported_depth_model.empty();
+    if (finds_contacts && (run.has_springs() || has_external_contacts(run.scenario()))) continue;
+    if (run.result.algorithm != law) names.emplace_back(law);
+  }
+  return fmt::format("{}", fmt::join(names, " or "));
+}
+
+std::string laws_that_never_soften(const DiagnosedRun& run) {
+  return "an algorithm whose stiffness does not fall with the number of contacts, such as " +
+         other_laws(run, {"shaped_stiffness", "exact_shaping", "proxy"});
+}
+
+/// Returns the field that sets the damping of the contacts.
+std::string damping_field(const RenderingConfig& rendering) {
+  if (rendering.hunt_crossley) return parameter::kChi.field;
+  return rendering.damping ? parameter::kDamping.field : std::string(parameter::kDampingRatio.field) + " (zeta)";
+}
+
+bool is_beyond(const Number& number, double threshold) {
+  return number.value_or(0.0) > threshold;
+}
+
+/// Returns true if K is a measured cause: it is near or beyond the stability limit.
+bool is_too_stiff(const DiagnosedRun& run) {
+  return is_beyond(stability_limit_ratio(run), kMaxEdge);
+}
+
+/// Returns the remedies for measured causes of a rough force.
+std::vector<std::string> against_measured_causes(const DiagnosedRun& run) {
+  std::vector<std::string> remedies;
+  const Scenario& s = run.scenario();
+  if (is_too_stiff(run)) remedies.emplace_back("a smaller K");
+  if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
+  if (is_beyond(encoder_force(run), kMaxEncoderForce)) remedies.push_back(against_encoder(run));
+  if (is_beyond(run.of_mean_force("reduction_force_step_max_N"), kMaxReduction))
+    remedies.emplace_back("rendering.reduction null");
+  if (run.tool != nullptr && is_beyond(coarseness(run), kMaxCoarseness)) remedies.push_back(against_coarseness(run));
+  if (const auto* device = run.impedance(); device != nullptr && device->position_noise > 0.0)
+    remedies.emplace_back("a velocity filter against device.position_noise_m");
+  if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&s.device);
+      device != nullptr && device->sensor.noise > 0.0)
+    remedies.emplace_back("a smaller device.sensor.noise_N");
+  return remedies;
+}
+
+/// Returns the advice against a rough force: remedies for the measured causes or, if no cause was measured, a smaller K
+/// for a tool that is free to move. `laws`: what a comparison of the laws shows.
+std::string against_roughness(const DiagnosedRun& run, const char* laws) {
+  std::vector<std::string> remedies = against_measured_causes(run);
+  const std::string comparison =
+      fmt::format("\"hapbench compare --algorithms all\" shows which algorithm has {}", laws);
+  if (!remedies.empty()) return either(remedies) + "; " + comparison;
+  // A script that moves the tool makes the same contacts at any K: all forces scale alike.
+  if (!run.is_free()) return "another algorithm or a smoother motion; " + comparison;
+  return "a smaller K or another algorithm; " + comparison;
+}
+
+}  // namespace
+
+std::string against_fault(const DiagnosedRun& run) {
+  const Divergence& divergence = run.result.end.divergence;
+  const char* what = std::string_view(divergence.quantity) == "contacts" ? "contact module" : "law or module";
+  if (!divergence.fault.empty())
+    return fmt::format("correct the {} that reports: {}; neither the time step nor K is the cause", what,
+                       divergence.fault);
+  return fmt::format(
+      "other code of this {}, such as a test for a division by 0: neither the time step nor K is the cause", what);
+}
+
+std::string against_divergence(const DiagnosedRun& run) {
+  if (run.observations.in_contact == 0)
+    return "check the hand, the device (servo gains, delay) and time.step_s: the tool diverged without contact, so that K "
+           "has no effect";
+  std::vector<std::string> remedies;
+  if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
+  if (is_beyond(damping_share(run), 1.0)) remedies.push_back("a smaller " + damping_field(run.scenario().rendering));
+  if (is_beyond(run.metric("explicit_friction_rows_beyond"), 0.0)) remedies.push_back(against_friction(run));
+  if (is_too_stiff(run) || remedies.empty()) remedies.emplace_back("a shorter time.step_s or a smaller K");
+  return either(remedies) + (run.is_free() ? "; \"hapbench tune\" finds K and zeta" : "");
+}
+
+std::string against_sinking(const DiagnosedRun& run) {
+  const OutcomeFacts& facts = run.observations.facts;
+  if (!facts.scale_question.empty()) return "check the sizes: " + facts.scale_question;
+  if (facts.began_inside)
+    return run.is_free() ? "another initial.position_m: the tool starts inside the environment"
+                         : "another motion.position: the script starts inside the environment";
+  if (step_exceeds_half_width(run)) return kShorterStep;
+  if (!run.is_free()) return "another motion.position, because the script moves the tool there";
+  return "a larger K or a smaller hand force; if the rule \"soft\" is listed, another algorithm";
+}
+
+std::string against_loss(const DiagnosedRun& run) {
+  const OutcomeFacts& facts = run.observations.facts;
+  if (!facts.scale_question.empty()) return "check the sizes: " + facts.scale_question;
+  if (step_exceeds_half_width(run)) return kShorterStep;
+  if (run.ended(Outcome::no_contact)) {
+    if (facts.holding_friction)
+      return fmt::format(
+          "a hand with a larger stiffness or force: the device's dry friction of {:.3g} N (device.coulomb_N) holds the "
+          "handle",
+          *facts.holding_friction);
+    if (!run.is_free()) return "another motion.position: the script does not lead the tool to the surface";
+    return "check environment.scale, initial.position_m and the hand's direction (\"hapbench validate\" prints sizes "
+           "and distances); if the tool came nearer until the end of the run, more time.steps";
+  }
+  if (is_too_stiff(run)) return "a smaller K: the rule \"edge\" names the stability limit";
+  return "a hand whose path ends on the surface";
+}
+
+std::string against_standstill(const DiagnosedRun& run) {
+  std::vector<std::string> remedies = {"a stiffer hand"};
+  if (run.scenario().rendering.has_friction()) remedies.emplace_back("a smaller rendering.friction");
+  if (const auto* device = run.impedance(); device != nullptr && device->coulomb > 0.0)
+    remedies.emplace_back("a device with a smaller device.coulomb_N");
+  return either(remedies) + "; \"hapbench compare --algorithms all\" shows with which algorithms the tool moves on";
+}
+
+std::string against_long_steps(const DiagnosedRun& run) {
+  return run.is_free() ? "a shorter time.step_s or a slower hand" : "a shorter time.step_s or a slower motion.position";
+}
+
+std::string against_unstable_stiffness(const DiagnosedRun& run) {
+  std::vector<std::string> remedies = {"a smaller K", "a shorter time.step_s"};
+  if (const auto* device = run.impedance()) {
+    const bool has_filter =
+        device->position_filter || !std::holds_alternative<DifferenceFilter>(device->velocity_filter);
+    if (has_filter) remedies.emplace_back("a filter with a higher cutoff");
+    if (device->delay_samples > 0.0) remedies.emplace_back("a shorter delay of the device");
+  }
+  return either(remedies) + "; \"hapbench tune\" finds a stable setting";
+}
+
+std::string against_unstable_loop(const DiagnosedRun& run) {
+  std::vector<std::string> remedies = {"a shorter time.step_s", "a smaller " + damping_field(run.scenario().rendering)};
+  if (std::holds_alternative<AdmittanceDeviceConfig>(run.scenario().device))
+    remedies.emplace_back("smaller gains or a shorter delay of device.servo");
+  return either(remedies);
+}
+
+std::string against_buzz(const DiagnosedRun& run) {
+  return against_roughness(run, "the smallest vibration");
+}
+
+std::string against_pops(const DiagnosedRun& run) {
+  return against_roughness(run, "the smallest force steps");
+}
+
+std::string against_shaking(const DiagnosedRun& run) {
+  return against_roughness(run, "the smallest vibration");
+}
+
+std::string against_coarseness(const DiagnosedRun& run) {
+  return fmt::format("half of {}; \"hapbench compare --errors\" shows which metrics depend on it",
+                     point_distance(run.loaded)->path);
+}
+
+std::string against_depth(const DiagnosedRun& run) {
+  const OutcomeFacts& facts = run.observations.facts;
+  if (!facts.scale_question.empty()) return "check the sizes: " + facts.scale_question;
+  if (!run.is_free()) return "another motion.position, because the script moves the tool there";
+  if (is_beyond(saturation(run), kMaxSaturation)) return "a smaller hand force: the rendered force is at its limit";
+  if (is_beyond(softness(run), kMaxSoftness)) return laws_that_never_soften(run);
+  if (is_too_stiff(run)) return "a smaller hand force: K is already near its stability limit";
+  return "a larger K, or a smaller hand force if \"hapbench tune --bound inside_max_m=3e-4\" finds no stable K that "
+         "keeps this depth";
+}
+
+std::string against_softness(const DiagnosedRun& run) {
+  return laws_that_never_soften(run);
+}
+
+std::string against_sums(const DiagnosedRun& run) {
+  return "K divided by this number, or an algorithm whose contacts do not add up, such as " +
+         other_laws(run, {"shaped_stiffness", "mean"});
+}
+
+std::string against_damping(const DiagnosedRun& run) {
+  std::vector<std::string> remedies = {"a smaller " + damping_field(run.scenario().rendering), "a shorter time.step_s"};
+  if (run.scenario().rendering.max_damping) remedies.emplace_back("a smaller rendering.limits.max_damping_N_s_per_m");
+  return either(remedies);
+}
+
+std::string against_friction(const DiagnosedRun&) {
+  return R"(a smaller rendering.friction.mu_f_s_per_m, {"type": "dry"}, or a shorter step)";
+}
+
+std::string against_encoder(const DiagnosedRun& run) {
+  const bool is_filtered = std::holds_alternative<LowPassFilter>(run.impedance()->velocity_filter);
+  return either({"a smaller " + damping_field(run.scenario().rendering), "a finer encoder",
+                 is_filtered ? "a lower cutoff_Hz of device.velocity_filter" : "a low-pass device.velocity_filter"});
+}
+
+std::string against_saturation(const DiagnosedRun& run) {
+  const auto& rendered = run.scenario().rendering.max_force;
+  const ImpedanceDeviceConfig* device = run.impedance();
+  const bool device_binds = device != nullptr && device->force_max && (!rendered || *device->force_max <= *rendered);
+  const std::string limit = device_binds ? "a stronger device" : "a larger rendering.limits.max_force_N";
+  if (!run.is_free()) return either({"a smaller K", "a motion.position that is less deep", limit});
+  // In equilibrium the force is the hand's at any K; only a vibration gets weaker with K.
+  return is_too_stiff(run) || run.vibrates() ? either({"a smaller K", "a smaller hand force", limit})
+                                             : either({"a smaller hand force", limit});
+}
+
+std::string against_bounces(const DiagnosedRun& run) {
+  if (is_too_stiff(run)) return "a smaller K";
+  const std::string field = damping_field(run.scenario().rendering);
+  return is_beyond(damping_share(run), kMaxDampingShare) ? "a smaller " + field
+                                                         : "a larger " + field + " or a smaller K";
+}
+
+std::string against_chatter(const DiagnosedRun& run) {
+  return against_roughness(run, "the fewest reversals in this scene");
+}
+
+std::string against_energy(const DiagnosedRun& run) {
+  return run.scenario().rendering.passivity_controller ? "a smaller K"
+                                                       : "a smaller K, or rendering.passivity_controller, which is off";
+}
+
+std::string against_reversed_force(const DiagnosedRun&) {
+  return "\"hapbench import stroke --set force_by_tool=true\", which reverses the measured force; if its sign is right, the "
+         "orientation of the tool or the normals of the surface may be reversed";
+}
+
+std::string against_drift(const DiagnosedRun& run) {
+  if (run.scenario().rendering.dry_friction)
+    return "a larger rendering.friction.mu, with which friction holds the tool";
+  return "rendering.friction {\"type\": \"dry\"} with a sufficient mu; viscous friction cannot hold a tool";
+}
+
+}  // namespace hapbench

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "scenarios/run/diagnosed_run.hpp"
+
+/// Advice of the diagnosis rules: what to change in a run. Advice depends on what was measured in the run, names fields
+/// that the scenario has, and never names the run's own law.
+namespace hapbench {
+
+std::string against_fault(const DiagnosedRun& run);
+std::string against_divergence(const DiagnosedRun& run);
+std::string against_sinking(const DiagnosedRun& run);
+std::string against_loss(const DiagnosedRun& run);
+std::string against_standstill(const DiagnosedRun& run);
+std::string against_long_steps(const DiagnosedRun& run);
+std::string against_unstable_stiffness(const DiagnosedRun& run);
+std::string against_unstable_loop(const DiagnosedRun& run);
+std::string against_buzz(const DiagnosedRun& run);
+std::string against_pops(const DiagnosedRun& run);
+std::string against_shaking(const DiagnosedRun& run);
+std::string against_coarseness(const DiagnosedRun& run);
+std::string against_depth(const DiagnosedRun& run);
+std::string against_softness(const DiagnosedRun& run);
+std::string against_sums(const DiagnosedRun& run);
+std::string against_damping(const DiagnosedRun& run);
+std::string against_friction(const DiagnosedRun& run);
+std::string against_encoder(const DiagnosedRun& run);
+std::string against_saturation(const DiagnosedRun& run);
+std::string against_bounces(const DiagnosedRun& run);
+std::string against_chatter(const DiagnosedRun& run);
+std::string against_energy(const DiagnosedRun& run);
+std::string against_reversed_force(const DiagnosedRun& run);
+std::string against_drift(const DiagnosedRun& run);
+
+}  // namespace hapbench
