@@ -71,7 +71,7 @@ std::string components_text(const MeshFindings& found) {
                                                   found.component_count > 1 ? "s, the largest first: " : ": ")
                                     : "";
     text += fmt::format("  {:<11}  {}{}, {}, {}\n", i == 0 ? "mesh" : "", head, size_text(component.box),
-                        count_of(component.triangles, "triangle"), closedness_text(component, found));
+                        component.triangles == 1 ? "1 triangle" : fmt::format("{} triangles", component.triangles), closedness_text(component, found));
   }
   if (found.component_count > found.components.size())
     text += fmt::format("               and {} smaller components\n", found.component_count - found.components.size());

@@ -6,8 +6,9 @@ from hapbench_style import SETTINGS, SHEET, plt
 from .convergence_plot import LEVELS, draw_converge
 from .limit_plot import LIMIT_RUNS, draw_limits
 from .tuning_plot import TRIALS, draw_tune
+from .work_precision_plot import ERRORS, draw_work_precision
 
-PICTURES = {TRIALS: draw_tune, LEVELS: draw_converge, LIMIT_RUNS: draw_limits}
+PICTURES = {TRIALS: draw_tune, ERRORS: draw_work_precision, LEVELS: draw_converge, LIMIT_RUNS: draw_limits}
 
 
 def draw_study(path, sheet=SHEET):
