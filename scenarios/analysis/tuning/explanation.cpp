@@ -178,7 +178,10 @@ std::string remedy(const TuneQuestion& question, const TuneFailure& failure) {
 }  // namespace
 
 void explain(Trials& trials, const IsFeasible& is_feasible, TunedLaw& law) {
-  const std::vector<const TuneTrial*> nearest = trials.nearest(1);
+  // A trial that violates limits in the scene's own run may also fail in another variant: then no limit is responsible.
+  constexpr std::size_t kMaxCompleted = 8;
+  std::vector<const TuneTrial*> nearest = trials.nearest(kMaxCompleted);
+  std::erase_if(nearest, [&](const TuneTrial* trial) { return trials.completed(*trial).failure.has_value(); });
   if (!nearest.empty()) {
     const TuneTrial trial = *nearest[0];
     law.binding = trial.binding;
