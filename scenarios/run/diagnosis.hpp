@@ -12,9 +12,9 @@
 namespace hapbench {
 
 /// Returns all rules with their thresholds but without values and advice, in the order of the report: first how
-/// the run ended, then possible causes. `says` has {} in place of the value. With `low_vibration`, returns only the rules for disturbances that a
-/// hand feels in addition to the force (vibration, force steps, force reversals, created energy). These rules
-/// use metrics only.
+/// the run ended, then possible causes. `says` has {} in place of the value. With `low_vibration`, returns only the
+/// rules for disturbances that a hand feels in addition to the force (vibration, force steps, force reversals, created
+/// energy). These rules use metrics only.
 std::vector<Diagnosed> diagnosis_rules(bool low_vibration = false);
 
 /// Returns the values of the diagnosis_rules(true) for this result, also values below their thresholds. A rule

@@ -7,7 +7,7 @@ from .clock import clock_of, clock_warnings
 from .contacts import contacts_of
 from .device import device_limit
 from .diagnosis import findings_of
-from .energy import Port, contact_energy, energy_of
+from .energy import Port, contact_energy, energy_of, stored_at
 from .force import force_of, peaks_of, spectrum_of
 from .log import FASTEST
 from .stiffness import FEWEST, stiffness_of
@@ -22,22 +22,17 @@ def audit_log(log, device=None, touch=None):
     contacts = contacts_of(log, touch)
     clock, port = clock_of(log), Port(log, contacts)
     force, spectrum = force_of(log, contacts), spectrum_of(log, contacts)
-    every = each_contact(log, contacts, port)
+    every = each_contact(log, contacts)
     main = main_contact(log, contacts, every)
-    seconds = contacts.in_contact.sum() * log.interval
-    created = sum(one["created_J"] for one in every)
-    worst = max(every, key=lambda one: one["created_J"], default=None)
+    for one, (first, after) in zip(every, contacts.runs.tolist()):
+        stored = stored_at(log, contacts, first, known_spring(one["spring"]) or main)
+        one |= contact_energy(port, first, after, stored)
     audit = {
         "clock": clock,
         "contact_rule": contacts.rule,
         "metrics": force,
-        "energy": energy_of(log, contacts, port)
-        | {
-            "created_per_contact_J": created / len(every) if every else None,
-            "created_per_s_in_contact_W": created / seconds if seconds else None,
-            "worst_contact": worst
-            and {name: worst[name] for name in ("start_s", "end_s", "created_J", "error_J")},
-        },
+        "energy": energy_of(log, port, stored_at(log, contacts, 0, main))
+        | energy_by_contact(log, contacts, every),
         "buzz": peaks_of(spectrum, force["force_mean_in_contact_N"]),
         "stiffness": main,
         "stiffness_range": stiffness_range(every),
@@ -51,7 +46,22 @@ def audit_log(log, device=None, touch=None):
     return audit, contacts, spectrum
 
 
-def each_contact(log, contacts, port):
+def energy_by_contact(log, contacts, every):
+    """Means over the contacts, and the contact that created the most."""
+    known = [one for one in every if one["created_J"] is not None]
+    seconds = contacts.in_contact.sum() * log.interval
+    created = sum(one["created_J"] for one in known)
+    worst = max(known, key=lambda one: one["created_J"], default=None)
+    return {
+        "created_per_contact_J": created / len(known) if known else None,
+        "created_per_s_in_contact_W": created / seconds if known else None,
+        "worst_contact": worst
+        and {name: worst[name] for name in ("start_s", "end_s", "created_J", "error_J")},
+    }
+
+
+def each_contact(log, contacts):
+    """Time, force and spring of each contact."""
     found = []
     for first, after in contacts.runs.tolist():
         rows = np.arange(first, after)
@@ -64,18 +74,22 @@ def each_contact(log, contacts, port):
                 "is_complete": bool(first > 0 and after < len(log.time)),
                 "force_max_N": float(np.linalg.norm(log.force[rows], axis=1).max()),
             }
-            | contact_energy(port, first, after)
             | {"spring": spring_of(log, contacts, rows) if len(rows) >= FEWEST else None}
         )
     return found
 
 
 def spring_of(log, contacts, rows):
-    """stiffness_of() the settled rows where these are half of the rows or more: an impact is not the law's spring alone."""
+    """stiffness_of() the settled rows where these are half of the rows or more: an impact is more than a spring."""
     settled = rows[contacts.settled[rows]]
     used = settled if len(settled) >= max(FEWEST, len(rows) // 2) else rows
     span = {"start_s": float(log.time[used[0]]), "end_s": float(log.time[used[-1]])}
     return stiffness_of(log, used) | span
+
+
+def known_spring(spring):
+    """The spring if it has a stiffness, or None."""
+    return spring if has_stiffness(spring) else None
 
 
 def has_stiffness(spring):
@@ -103,8 +117,7 @@ def main_contact(log, contacts, every):
         key=lambda span: contacts.runs[span[1] - 1][1] - contacts.runs[span[0]][0],
     )
     rows = np.arange(contacts.runs[first][0], contacts.runs[after - 1][1])
-    spring = spring_of(log, contacts, rows[contacts.in_contact[rows]])
-    return spring if has_stiffness(spring) else None
+    return known_spring(spring_of(log, contacts, rows[contacts.in_contact[rows]]))
 
 
 def stiffness_range(every):
@@ -195,6 +208,11 @@ def missing(log, audit, device):
             )
     if audit["metrics"]["force_mean_in_contact_N"] is None and audit["contacts"]:
         found.append("vibration: there is less than 1/30 s of contact after the landings")
-    elif audit["clock"]["rate_Hz"] <= 60.0:
+    if audit["energy"]["net_created_J"] is None:
+        found.append(
+            "created energy: the log begins in contact, and without a stiffness the energy stored there is unknown; "
+            "a log that begins without contact"
+        )
+    if audit["clock"]["rate_Hz"] <= 60.0:
         found.append("vibration above 30 Hz: a log of more than 60 Hz")
     return found

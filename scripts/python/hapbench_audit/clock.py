@@ -2,6 +2,8 @@
 import numpy as np
 from hapbench_import.holds import hold_of
 
+from .log import LONG_INTERVALS
+
 JITTER = 0.05  # of the interval, standard deviation: above, the clock is warned about
 
 
@@ -21,6 +23,7 @@ def clock_of(log):
         "jitter_s": float(np.std(usual)) if len(usual) else 0.0,
         "rows_missing": int(missing.sum()),
         "rows_missing_in_a_row": int(missing.max()),
+        "gaps": int((steps > LONG_INTERVALS * interval).sum()),
         "rows_per_position": 1.0 if log.held is None else log.held.rows,
         "rows_per_force": 1.0 if forces is None else forces.rows,
         "position_resolution_m": float(log.quantum_m.max()),
@@ -40,6 +43,11 @@ def clock_warnings(clock):
         found.append(
             f"{clock['rows_missing']} rows are missing, at most {clock['rows_missing_in_a_row']} in a row: force steps "
             "across them are not counted"
+        )
+    if clock["gaps"]:
+        found.append(
+            f"the clock has {clock['gaps']} gaps of more than {LONG_INTERVALS:g} intervals: they end a contact, and "
+            "energy is not counted across them"
         )
     for what in ("position", "force"):
         rows = clock[f"rows_per_{what}"]

@@ -8,6 +8,7 @@ from hapbench_command import asked_of_program
 from .text import expected_text
 
 AT_LIMIT = 0.999  # of the largest force
+CONSTANT = 0.9  # share of the rows at the largest force from which the force is constant
 FLAT = 20  # rows at the largest force from which it is a limit
 HAS_BUZZ = 0.1  # of the mean force; as in the rule "edge" of the program
 GAIN_MARGIN = 2.0
@@ -75,13 +76,16 @@ def findings_of(log, contacts, audit):
     found.add("chatter", force["force_reversals_per_s"], against_chatter(vibration))
     energy = audit["energy"]
     created, error = energy["net_created_J"], energy["net_created_error_J"]
-    found.add(
-        "energy",
-        created if created > error else None,
-        against_energy(audit),
-        f" until {energy['time_of_max_s']:.6g} s (at most {error:.2g} J of it are the resolution of the log)",
-    )
+    if created is not None and created > error:
+        found.add("energy", created, against_energy(audit), energy_text(energy))
     return found.list()
+
+
+def energy_text(energy):
+    return (
+        f" until {energy['time_of_max_s']:.6g} s (at most {energy['net_created_error_J']:.2g} J of it are the "
+        "resolution of the log)"
+    )
 
 
 def buzz_text(buzz):
@@ -160,8 +164,8 @@ def against_pop(log, contacts, force):
             )
     if (force["contacts_lost_per_s"] or 0.0) > 1.0:
         return (
-            f"contact is lost {force['contacts_lost_per_s']:.3g} times per second: a smaller stiffness or more damping, "
-            "and a force that starts at zero at touch"
+            f"contact is lost {force['contacts_lost_per_s']:.3g} times per second: a smaller stiffness or more "
+            "damping, and a force that starts at zero at touch"
         )
     return "look at the contacts at that time; a log with a column of their number shows whether they change there"
 
@@ -185,18 +189,25 @@ def against_encoder(audit):
 
 
 def saturated_share(log, contacts):
-    """Share of the rows in contact at the largest force; None if too few rows are there to be a limit."""
+    """Share of the rows in contact at the largest force; None if too few rows are there to be a limit, or if nearly
+    all are there: the force is then constant."""
     size = np.linalg.norm(log.force, axis=1)
     at = contacts.in_contact & (size >= AT_LIMIT * size.max())
     # A limit cuts peaks flat: consecutive rows have the same force.
     flat = at[1:] & at[:-1] & (np.abs(np.diff(size)) <= 1e-6 * size.max())
-    return share(float(at.sum()), float(contacts.in_contact.sum())) if flat.sum() >= FLAT else None
+    part = share(float(at.sum()), float(contacts.in_contact.sum()))
+    return part if flat.sum() >= FLAT and part < CONSTANT else None
 
 
 def against_chatter(vibration):
     if (vibration or 0.0) > HAS_BUZZ:
         return 'what the rule "buzz" says: the vibration is larger than the force'
     return "friction without a jump at zero speed, and contact normals that do not flip"
+
+
+def half_hold(stiffness, interval):
+    """Damping that pays for the energy which holding the force of a spring over an interval creates [N s/m]."""
+    return 0.5 * stiffness["stiffness_N_per_m"] * interval
 
 
 def against_energy(audit):
@@ -207,17 +218,16 @@ def against_energy(audit):
             "damping of more than "
             f"{stiffness['stiffness_N_per_m'] * (stiffness['delay_s'] + 0.5 * interval):.3g} N s/m would pay for it"
         )
-    if energy["net_created_path_J"] < 0.1 * energy["net_created_J"] and not energy["is_integrated"]:
-        needed = (
-            ""
-            if not stiffness
-            else f" of more than K T / 2 = {0.5 * stiffness['stiffness_N_per_m'] * interval:.3g} N s/m"
-        )
+    is_of_hold = energy["net_created_path_J"] < 0.1 * energy["net_created_J"]
+    if is_of_hold and not energy["is_integrated"]:
         return (
             "a higher rate, or damping"
-            + needed
-            + ": the contact is passive along the path, and holding each force "
-            "until the next row creates the energy"
+            + (
+                f" of more than K T / 2 = {half_hold(stiffness, interval):.3g} N s/m"
+                if stiffness
+                else ""
+            )
+            + ": the contact is passive along the path, and holding each force until the next row creates the energy"
         )
     if stiffness and (stiffness.get("damping_N_s_per_m") or 0.0) < 0.0:
         return "the contact has negative damping: look for a filter or a delay in its velocity"

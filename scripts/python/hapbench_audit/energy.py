@@ -51,34 +51,50 @@ def is_integrated(log, moved):
     return bool(np.abs(off).max() <= SAME * max(float(np.abs(moved).max()), 1e-9))
 
 
-def energy_of(log, contacts, port):
-    """Numbers of the whole log."""
+def stored_at(log, contacts, row, spring):
+    """Energy that the spring stores where the log, or the clock after a gap, begins in contact [J]; 0 elsewhere, None
+    if the stiffness is unknown."""
+    if not contacts.in_contact[row] or (row > 0 and not contacts.gap[row - 1]):
+        return 0.0
+    stiffness = (spring or {}).get("stiffness_N_per_m", 0.0)
+    return float(log.force[row] @ log.force[row]) / (2.0 * stiffness) if stiffness > 0.0 else None
+
+
+def created(given, stored):
+    """Energy that was given beyond what was stored at the start; None if that is unknown."""
+    return None if stored is None else float(max(given.max() - stored, 0.0))
+
+
+def energy_of(log, port, stored):
+    """Numbers of the whole log. `stored`: stored_at() the first row."""
     held = np.concatenate([[0.0], np.cumsum(port.held)])
     path = np.concatenate([[0.0], np.cumsum(port.path)])
     worst = int(np.argmax(held))
     error = port.error(0, worst) if worst else 0.0
     work_end = float(held[-1])
     return {
-        "net_created_J": float(held[worst]),
+        "net_created_J": created(held, stored),
         "net_created_error_J": error,
         "time_of_max_s": float(log.time[worst]),
         "work_J": work_end,
         "work_error_J": port.error(0, len(log.time) - 1),
-        "net_created_path_J": float(path.max()),
+        "net_created_path_J": created(path, stored),
+        "stored_at_start_J": stored,
         "work_path_J": float(path[-1]),
         "is_integrated": port.is_integrated,
     }
 
 
-def contact_energy(port, first, after):
-    """Numbers of one contact. It starts without stored energy, so work that it has given at any time is created."""
+def contact_energy(port, first, after, stored):
+    """Numbers of one contact. Work that it has given at any time, beyond the energy `stored` at its start, is
+    created."""
     last = min(after, len(port.held))
     given = np.cumsum(port.held[first:last]) if last > first else np.zeros(1)
     # The path begins and ends outside, where the force is zero.
     path = np.cumsum(port.path[max(first - 1, 0) : last]) if last > first else np.zeros(1)
     return {
         "work_J": float(given[-1]),
-        "created_J": float(max(given.max(), 0.0)),
-        "created_path_J": float(max(path.max(), 0.0)),
+        "created_J": created(given, stored),
+        "created_path_J": created(path, stored),
         "error_J": port.error(first, last),
     }

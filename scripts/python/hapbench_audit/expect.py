@@ -12,10 +12,11 @@ def metrics_of(audit):
         for name, value in audit[section].items()
         if value is None or isinstance(value, (int, float)) and not isinstance(value, bool)
     }
+    created = audit["energy"]["net_created_J"]
     spring, device = audit["stiffness"] or {}, audit["device"] or {}
     buzz = audit["buzz"][0] if audit["buzz"] else {"frequency_Hz": None, "amplitude_N": 0.0}
     return found | {
-        "energy_mJ": 1e3 * audit["energy"]["net_created_J"],
+        "energy_mJ": None if created is None else 1e3 * created,
         "stiffness_N_per_m": spring.get("stiffness_N_per_m"),
         "damping_N_s_per_m": spring.get("damping_N_s_per_m"),
         "delay_s": spring.get("delay_s"),

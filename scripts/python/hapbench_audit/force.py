@@ -10,9 +10,10 @@ CUTOFF = 30.0  # of the high-pass [Hz], kVibrationCutoff of the program
 LEAST_SETTLED = 1.0 / CUTOFF  # [s]
 STEP_SHARE = 0.1  # of the mean force: steps above it are counted
 MOST_PEAKS = 3
+SMALLEST_PEAK = 0.1  # of the amplitude of the strongest peak
 LOWEST_PEAK = 10.0  # [Hz]; voluntary motion of a hand is slower
 HARMONIC = 0.02  # relative: multiples of a stronger peak
-LEAST_PEAK = 0.01  # amplitude of a peak, as a share of the mean force
+LEAST_PEAK = 0.01  # amplitude of the strongest peak, as a share of the mean force
 SHORTEST_SPECTRUM = 64  # rows
 
 
@@ -164,8 +165,7 @@ def is_same(frequency, other, resolution):
 
 def peaks_of(spectrum, mean):
     """The strongest oscillations above LOWEST_PEAK, largest first: frequency and amplitude. A peak stands out from the
-    median of its neighbourhood by a factor of 4, has at least LEAST_PEAK of the mean force, and is no multiple of a
-    stronger one."""
+    median of its neighbourhood by a factor of 4 and is no multiple of a stronger one."""
     if spectrum is None or not mean:
         return []
     frequency, amplitude, seconds = spectrum
@@ -177,7 +177,8 @@ def peaks_of(spectrum, mean):
     top[-1] = amplitude[-1] > amplitude[-2]
     found = []
     for i in sorted(np.flatnonzero(top & above), key=lambda i: -amplitude[i]):
-        if amplitude[i] < LEAST_PEAK * mean or len(found) == MOST_PEAKS:
+        least = SMALLEST_PEAK * found[0]["amplitude_N"] if found else LEAST_PEAK * mean
+        if amplitude[i] < least or len(found) == MOST_PEAKS:
             break
         near = np.abs(frequency - frequency[i]) < max(10.0 * resolution, 0.2 * frequency[i])
         is_peak = amplitude[i] > 4.0 * np.median(amplitude[near])

@@ -88,7 +88,7 @@ def contacts_table(audit):
                 number_cell(one["end_s"] - one["start_s"]),
                 number_cell(one["force_max_N"], 3),
                 number_cell(1e3 * one["work_J"], 3),
-                number_cell(1e3 * one["created_J"], 3),
+                number_cell(one["created_J"] and 1e3 * one["created_J"], 3),
                 number_cell(1e3 * one["error_J"], 1),
                 number_cell(spring.get("stiffness_N_per_m"), 4),
                 number_cell(spring.get("damping_N_s_per_m"), 3),

@@ -48,18 +48,23 @@ class Drawing:
         ax.plot(*curve(self.time, held, held, SPANS), color=colours[0], lw=1.0)
         energy = self.audit["energy"]
         ax.axhline(0.0, color=colours[2], lw=0.6)
+        if energy["net_created_J"] is not None:
+            self.created(ax, energy, colours[1])
+        ax.set(xlabel="time [s]", ylabel="work on the tool [mJ]")
+
+    def created(self, ax, energy, colour):
+        stored = energy["stored_at_start_J"]
         ax.errorbar(
             [energy["time_of_max_s"]],
-            [1e3 * energy["net_created_J"]],
+            [1e3 * (energy["net_created_J"] + stored)],
             [1e3 * energy["net_created_error_J"]],
             marker="o",
-            color=colours[1],
+            color=colour,
             capsize=2,
             ls="none",
             label=f"created {1e3 * energy['net_created_J']:.3g} mJ",
         )
         ax.legend(loc="best")
-        ax.set(xlabel="time [s]", ylabel="work on the tool [mJ]")
 
     def spring(self, ax, colours):
         spring, log = self.audit["stiffness"], self.log

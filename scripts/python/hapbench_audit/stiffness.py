@@ -6,6 +6,7 @@ import numpy as np
 
 FEWEST = 20  # rows of a contact
 MOST_DELAY = 50  # rows
+LONGEST_MEMORY = 1000  # rows
 FEWEST_COUNTS = 10  # travel in steps of the position's resolution
 EXPLAINED = 0.5  # share of the variance that a spring must explain
 NEARLY_BEST = 2.0  # times the smallest mean square: delays that explain the force as well
@@ -165,7 +166,7 @@ def memory(residual):
     power, total = float(residual @ residual), 1.0
     if power == 0.0:
         return 1.0
-    for lag in range(1, len(residual) // 4):
+    for lag in range(1, min(len(residual) // 4, LONGEST_MEMORY)):
         correlation = float(residual[lag:] @ residual[:-lag]) / power
         if correlation < 0.05:
             break

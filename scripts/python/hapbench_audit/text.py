@@ -7,6 +7,8 @@ def number(value, digits=3, none="-"):
 
 
 def millijoules(value, error=None):
+    if value is None:
+        return "unknown"
     text = f"{1e3 * value:.3g}"
     return f"{text} mJ" if error is None else f"{text} +- {1e3 * error:.1g} mJ"
 
@@ -76,6 +78,13 @@ def energy_rows(energy):
         ("without holding", f"{millijoules(energy['net_created_path_J'])} created along the path"),
         ("work on tool", f"{millijoules(energy['work_J'], energy['work_error_J'])}: {giver}"),
     ]
+    if energy["stored_at_start_J"]:
+        rows.append(
+            (
+                "stored",
+                f"{millijoules(energy['stored_at_start_J'])} where the log begins, in contact",
+            )
+        )
     worst = energy["worst_contact"]
     if worst is None:
         return rows
