@@ -74,6 +74,7 @@ constexpr CommandGuide kCommands[] = {
      "describe shaped_stiffness\n"
      "describe scenarios --grep molar",
      "scenarios/README.md, section \"Commands\""},
+    {"look", "audit", "report energy, vibration and stiffness in a log of any engine", nullptr},
     {"look", "plot", "draw results as a picture", nullptr},
     {"look", "report", "write a page with replay, or compare two result folders", nullptr}};
 

@@ -21,6 +21,7 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/exit_status.hpp"
+#include "scenarios/program/linear_loop_request.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/program_context.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -189,6 +190,8 @@ int run_python_command(const ProgramArguments& arguments, ProgramContext& contex
   const ProgramArguments given(arguments.begin() + 1, arguments.end());
   if (arguments[0] == "import") return run_import(given, context);
   if (arguments[0] == "plot" && !given.empty() && given[0] == kRunsWhere) return print_runs_where(given, context);
+  if (arguments[0] == "audit" && !given.empty() && given[0] == kLinearLoop) return print_linear_loop(given, context);
+  if (arguments[0] == "audit") return run({"hapbench_audit"}, given, context);
   return run({"hapbench_pictures", arguments[0]}, given, context);
 }
 

@@ -160,7 +160,7 @@ std::vector<Diagnosed> diagnosis_rules(bool low_vibration) {
   std::vector<Diagnosed> rules;
   for (const Rule& rule : kRules)
     if (rule.low_vibration || !low_vibration)
-      rules.push_back({rule.name, rule.number, rule.unit, 0.0, rule.threshold, "", ""});
+      rules.push_back({rule.name, rule.number, rule.unit, 0.0, rule.threshold, rule.says, ""});
   return rules;
 }
 

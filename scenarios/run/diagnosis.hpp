@@ -11,10 +11,10 @@
 /// quantity that DiagnosisObserver measures) with a threshold.
 namespace hapbench {
 
-/// Returns all rules with their thresholds but without values and texts, in the order of the report: first how
-/// the run ended, then possible causes. With `low_vibration`, returns only the rules for disturbances that a
-/// hand feels in addition to the force (vibration, force steps, force reversals, created energy). These rules
-/// use metrics only.
+/// Returns all rules with their thresholds but without values and advice, in the order of the report: first how
+/// the run ended, then possible causes. `says` has {} in place of the value. With `low_vibration`, returns only the
+/// rules for disturbances that a hand feels in addition to the force (vibration, force steps, force reversals, created
+/// energy). These rules use metrics only.
 std::vector<Diagnosed> diagnosis_rules(bool low_vibration = false);
 
 /// Returns the rules of diagnosis_rules(true) with their values for this result, including values below the

@@ -137,8 +137,11 @@ Description describe_diagnosis(const Layout& layout) {
   for (const Diagnosed& rule : diagnosis_rules()) {
     const std::string unit = rule.unit == "1" ? "" : " " + rule.unit;
     d.text += layout.entry(rule.rule, fmt::format("{} > {:g}{}", rule.number, rule.threshold, unit), 2, 14);
-    d.json.push_back(
-        {{"rule", rule.rule}, {"number", rule.number}, {"unit", rule.unit}, {"threshold", rule.threshold}});
+    d.json.push_back({{"rule", rule.rule},
+                      {"number", rule.number},
+                      {"unit", rule.unit},
+                      {"threshold", rule.threshold},
+                      {"says", rule.says}});
   }
   return d;
 }

@@ -4,7 +4,8 @@
     r = hapbench.run("peg_in_hole_2d", {"rendering.stiffness_N_per_m": 4e4})
     r.trajectory["fx_N"], r.summary["metrics"]["force_max_N"]
 
-Reading results (`load`) needs numpy alone; everything else the compiled module that comes with the program."""
+Reading results (`load`) needs numpy alone, `audit` also scipy and the program; everything else the compiled module
+that comes with the program."""
 from .errors import InputError, ResultError, ScenarioError, ScenarioWarning
 from .results import Folder, Run, Trial, load
 from .table import Table
@@ -22,6 +23,7 @@ __all__ = [
     "Trial",
     "algorithms",
     "allow_modules",
+    "audit",
     "command",
     "compare",
     "force_law",
@@ -33,16 +35,16 @@ __all__ = [
     "sweep",
 ]
 
-_COMPILED = {"Parameter": "laws", "force_law": "laws"}
+_MODULES = {"Parameter": "laws", "audit": "auditing", "force_law": "laws"}
 
 
 def __getattr__(name):
-    """Imports names that need the compiled module when they are first used."""
+    """Imports names when they are first used: most need the compiled module, or scipy."""
     if name not in __all__:
         raise AttributeError(f"module 'hapbench' has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module("." + _COMPILED.get(name, "engine"), __name__), name)
+    return getattr(import_module("." + _MODULES.get(name, "engine"), __name__), name)
 
 
 def __dir__():

@@ -1,0 +1,51 @@
+"""hapbench.audit: what a log of any haptic or contact engine shows."""
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+_HERE = Path(__file__)
+# The packages of the commands, in the source tree and in an installation.
+_PACKAGES = (
+    _HERE.resolve().parents[1],
+    _HERE.parents[4] / "share" / "hapbench" / "scripts" / "python",
+)
+_PROGRAM = _HERE.absolute().parents[4] / "bin" / "hapbench"
+
+
+def audit(
+    table: Mapping[str, Any],
+    device: str | os.PathLike | None = None,
+    *,
+    columns: Mapping[str, str | int] | None = None,
+    scale: Mapping[str, float] | None = None,
+    force_by_tool: bool = False,
+    touch: float | None = None,
+) -> dict:
+    """Report energy, vibration and stiffness of a log, as `hapbench audit --json` does.
+
+    `table`: columns of numbers by name, such as a Table, a dict of arrays or a pandas.DataFrame, with time, position
+    of the tool and force on it. `device`: a preset or FILE.json, with whose linear limit the stiffness is compared.
+    `columns`, `scale`, `force_by_tool`, `touch`: as the options of the command. Raises InputError.
+    """
+    _find_packages()
+    from hapbench_audit.audit import audit_log
+    from hapbench_audit.log import log_of_table
+
+    log = log_of_table(table, columns or {}, scale or {}, force_by_tool)
+    found = audit_log(log, None if device is None else os.fspath(device), touch)[0]
+    return found | {
+        "columns": log.columns,
+        "columns_not_read": log.columns_not_read,
+        "scales": log.scales,
+    }
+
+
+def _find_packages():
+    """Makes the packages of the commands importable, and names the program that belongs to this package."""
+    folder = next((one for one in _PACKAGES if (one / "hapbench_audit").is_dir()), None)
+    if folder is not None and str(folder) not in sys.path:
+        sys.path.append(str(folder))
+    if _PROGRAM.is_file():
+        os.environ.setdefault("HAPBENCH_PROGRAM", str(_PROGRAM))

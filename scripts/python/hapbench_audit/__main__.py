@@ -1,0 +1,142 @@
+"""python -m hapbench_audit WORDS…; the program calls it for `hapbench audit`: what a log of any engine shows."""
+import sys
+from pathlib import Path
+
+from hapbench_command import (
+    DIFFERENT,
+    CommandLine,
+    answer,
+    exit_status,
+    leave,
+    say_error,
+    shell_line,
+    stop_on_ctrl_c,
+    table_text,
+    write,
+)
+from hapbench_import.options import DECIMALS, ORIENTATIONS
+
+NOTES = [
+    "Log: a CSV file (or a text table) with time, position of the tool and force on it, one row per step. Usual "
+    "column names are found (t, px, py, pz, fx, fy, fz); --columns names others: time, position, force, orientation, "
+    "velocity, contacts (their number) and measured (force by a sensor). Logs of one axis have one column of position "
+    'and one of force. Units in names, such as "x [mm]", are applied.',
+    "Energy: the sum of f . dp, with the force of a row held until the next row. Positive work is energy that the "
+    'engine gives to the hand; the largest sum is the net created energy. "Along the path" the force changes '
+    "linearly between rows, without the effect of holding it. The error follows from the resolution of the log.",
+    "Contacts: from touch to release. The first 0.05 s are a landing, the rest is settled contact, as in `run`.",
+    "Stiffness: regression of the force on position and velocity, along the main direction of the force, over "
+    "delays of whole rows, for each contact of 20 rows or more.",
+    "Expectations: any number of audit.json, such as energy_mJ=1, force_rms_above_30Hz_N=0.1 or "
+    "stiffness_N_per_m=900:1100.",
+    "Files: audit.json, audit.svg and audit.html in results/out/audit_LOG. They replace earlier ones.",
+    "Exit status: 0 also with a diagnosis; 2 bad input; 3 an expectation is not met.",
+]
+EXAMPLES = [
+    "hapbench audit log.csv",
+    "hapbench audit log.csv --device touch --expect energy_mJ=1,force_rms_above_30Hz_N=0.1",
+    "hapbench audit rec.csv --columns time=stamp_ns,position=tip_x,force=f_x \\\n"
+    "    --scale time=1e-9 --force-by-tool",
+]
+
+
+def command_line():
+    line = CommandLine(
+        "audit",
+        "Report what a log of any haptic or contact engine shows: energy, vibration, stiffness, and what to try.",
+        NOTES,
+        EXAMPLES,
+        "results/AUDIT.md",
+    )
+    line.text("log", "<log.csv>", "log of time, position and force")
+    line.text(
+        "--device",
+        "<device>",
+        "compare the stiffness with the linear limit of this device: a preset or FILE.json",
+    )
+    line.texts(
+        "--columns",
+        "<name=column,...>",
+        "columns of the quantities, by name or number from 1 (default: usual names)",
+    )
+    line.texts(
+        "--scale",
+        "<name=factor,...>",
+        "units of the log: seconds per unit of time, and so on for position [m], force [N] and angle [rad]",
+    )
+    line.flag("--force-by-tool", "the forces act on the object; their sign is changed")
+    line.text(
+        "--touch", "<N>", "force from which a row is in contact (default: any force)", type=float
+    )
+    line.one_of(
+        list(ORIENTATIONS),
+        "--orientation",
+        "<kind>",
+        "what the orientation columns hold (default: found from their names)",
+    )
+    line.one_of(
+        DECIMALS,
+        "--decimal",
+        "<sign>",
+        "decimal sign: comma, point or auto (default: auto; found from the numbers)",
+    )
+    line.text("--preset", "<preset>", "layout of the log, as in import stroke: a name or FILE.json")
+    line.text(
+        "--set",
+        "<field=value>",
+        'any field of a preset (see "hapbench import stroke --help"); repeatable',
+        action="append",
+        default=[],
+    )
+    line.flag(
+        "--skip-bad-rows", "leave out invalid rows and list them, instead of refusing the log"
+    )
+    line.texts(
+        "--expect",
+        "<metric=max,...>",
+        "exit status 3 unless each number is at most MAX, or within MIN:MAX",
+    )
+    line.text("--out", "<dir>", "folder of the results (default: results/out/audit_LOG)", type=Path)
+    line.add_output_options()
+    return line
+
+
+def run(options):
+    # These modules load numpy, scipy and matplotlib, which the help does without.
+    import json
+
+    from hapbench_import.stroke import columns_text
+
+    from .audit import audit_log
+    from .expect import expectations, unmet_text
+    from .log import read_log
+    from .page import page_of
+    from .picture import Drawing, draw
+    from .text import below_table, table_rows
+
+    log = read_log(options)
+    audit, contacts, spectrum = audit_log(log, options.device, options.touch)
+    audit["expectations"] = expectations(options.expect, audit)
+    audit["columns"], audit["columns_not_read"] = log.columns, log.columns_not_read
+    audit["scales"] = log.scales
+    out = options.out or Path("results/out") / f"audit_{Path(options.log).stem}"
+    drawing = Drawing(log, audit, contacts, spectrum)
+    write(out / "audit.json", json.dumps(audit, indent=2, ensure_ascii=False) + "\n")
+    write(out / "audit.svg", draw(drawing))
+    line = shell_line("hapbench", "audit", *sys.argv[1:])
+    write(out / "audit.html", page_of(log, audit, drawing, line).encode(errors="replace"))
+    unmet = [unmet_text(one) for one in audit["expectations"] if not one["met"]]
+    table = table_text(["audit of", Path(options.log).name, ""], table_rows(audit), options.wide)
+    columns = columns_text(log.columns, log.columns_not_read, log.scales)
+    below = "\n".join(below_table(audit))
+    answer(options, f"{columns}\n\n{table}\n{below}\n\nresults in {out}", audit)
+    for one in unmet:
+        say_error(one)
+    return DIFFERENT if unmet else None
+
+
+if __name__ == "__main__":
+    stop_on_ctrl_c("audit")
+    asked_for = command_line().parse(sys.argv[1:])
+    doing = "" if asked_for.quiet else "auditing"
+    leave(exit_status("audit", doing, lambda: run(asked_for)))

@@ -1,0 +1,218 @@
+"""The audit of a log: numbers of clock, energy, force and stiffness, the limit of a device, diagnosis, and what is
+missing."""
+import numpy as np
+from hapbench_import.stroke import likely_unit
+
+from .clock import clock_of, clock_warnings
+from .contacts import contacts_of
+from .device import device_limit
+from .diagnosis import findings_of
+from .energy import Port, contact_energy, energy_of, stored_at
+from .force import force_of, peaks_of, spectrum_of
+from .log import FASTEST
+from .stiffness import FEWEST, stiffness_of
+
+WELL_KNOWN = (
+    0.25  # half-width of the interval of a stiffness, as its share, for the comparison with a limit
+)
+
+
+def audit_log(log, device=None, touch=None):
+    """(numbers for the JSON, Contacts, spectrum). `device`: a preset or FILE.json; `touch`: as in contacts_of()."""
+    contacts = contacts_of(log, touch)
+    clock, port = clock_of(log), Port(log, contacts)
+    force, spectrum = force_of(log, contacts), spectrum_of(log, contacts)
+    every = each_contact(log, contacts)
+    main = main_contact(log, contacts, every)
+    for one, (first, after) in zip(every, contacts.runs.tolist()):
+        stored = stored_at(log, contacts, first, known_spring(one["spring"]) or main)
+        one |= contact_energy(port, first, after, stored)
+    audit = {
+        "clock": clock,
+        "contact_rule": contacts.rule,
+        "metrics": force,
+        "energy": energy_of(log, port, stored_at(log, contacts, 0, main))
+        | energy_by_contact(log, contacts, every),
+        "buzz": peaks_of(spectrum, force["force_mean_in_contact_N"]),
+        "stiffness": main,
+        "stiffness_range": stiffness_range(every),
+        "device": device_limit(device, log.interval, main) if device else None,
+        "measured": measured_lag(log, contacts),
+        "contacts": every,
+    }
+    audit["diagnosis"] = findings_of(log, contacts, audit)
+    audit["missing"] = missing(log, audit, device)
+    audit["warnings"] = log.notes + clock_warnings(clock) + doubts(log, audit)
+    return audit, contacts, spectrum
+
+
+def energy_by_contact(log, contacts, every):
+    """Means over the contacts, and the contact that created the most."""
+    known = [one for one in every if one["created_J"] is not None]
+    seconds = contacts.in_contact.sum() * log.interval
+    created = sum(one["created_J"] for one in known)
+    worst = max(known, key=lambda one: one["created_J"], default=None)
+    return {
+        "created_per_contact_J": created / len(known) if known else None,
+        "created_per_s_in_contact_W": created / seconds if known else None,
+        "worst_contact": worst
+        and {name: worst[name] for name in ("start_s", "end_s", "created_J", "error_J")},
+    }
+
+
+def each_contact(log, contacts):
+    """Time, force and spring of each contact."""
+    found = []
+    for first, after in contacts.runs.tolist():
+        rows = np.arange(first, after)
+        last = min(after, len(log.time) - 1)
+        found.append(
+            {
+                "start_s": float(log.time[first]),
+                "end_s": float(log.time[last]),
+                "rows": after - first,
+                "is_complete": bool(first > 0 and after < len(log.time)),
+                "force_max_N": float(np.linalg.norm(log.force[rows], axis=1).max()),
+            }
+            | {"spring": spring_of(log, contacts, rows) if len(rows) >= FEWEST else None}
+        )
+    return found
+
+
+def spring_of(log, contacts, rows):
+    """stiffness_of() the settled rows where these are half of the rows or more: an impact is more than a spring."""
+    settled = rows[contacts.settled[rows]]
+    used = settled if len(settled) >= max(FEWEST, len(rows) // 2) else rows
+    span = {"start_s": float(log.time[used[0]]), "end_s": float(log.time[used[-1]])}
+    return stiffness_of(log, used) | span
+
+
+def known_spring(spring):
+    """The spring if it has a stiffness, or None."""
+    return spring if has_stiffness(spring) else None
+
+
+def has_stiffness(spring):
+    return bool(spring) and "stiffness_N_per_m" in spring
+
+
+def main_contact(log, contacts, every):
+    """The spring of the contact with the median stiffness by duration; of contacts too short for one, that of all rows
+    of the longest stretch of contacts."""
+    known = sorted(
+        (one["spring"]["stiffness_N_per_m"], one["rows"], i)
+        for i, one in enumerate(every)
+        if has_stiffness(one["spring"])
+    )
+    if known:
+        half, total = 0.5 * sum(rows for _, rows, _ in known), 0
+        for _, rows, i in known:
+            total += rows
+            if total >= half:
+                return every[i]["spring"]
+    if not contacts.stretches:
+        return None
+    first, after = max(
+        contacts.stretches,
+        key=lambda span: contacts.runs[span[1] - 1][1] - contacts.runs[span[0]][0],
+    )
+    rows = np.arange(contacts.runs[first][0], contacts.runs[after - 1][1])
+    return known_spring(spring_of(log, contacts, rows[contacts.in_contact[rows]]))
+
+
+def stiffness_range(every):
+    """Smallest and largest stiffness of contacts that determine it."""
+    values = [
+        one["spring"]["stiffness_N_per_m"]
+        for one in every
+        if has_stiffness(one["spring"])
+        and np.ptp(one["spring"]["stiffness_interval"])
+        < 2.0 * WELL_KNOWN * abs(one["spring"]["stiffness_N_per_m"])
+    ]
+    return [min(values), max(values)] if values else None
+
+
+def measured_lag(log, contacts):
+    """How a measured force follows the commanded one: delay in rows by the largest correlation, and gain."""
+    if log.measured is None or not contacts.in_contact.any():
+        return None
+    a, b = log.force - log.force.mean(axis=0), log.measured - log.measured.mean(axis=0)
+    most = min(200, len(a) // 4)
+    products = [float(np.sum(a[: len(a) - lag] * b[lag:])) for lag in range(most + 1)]
+    lag = int(np.argmax(products))
+    return {
+        "delay_s": lag * log.interval,
+        "gain": products[lag] / max(float(np.sum(a[: len(a) - lag] ** 2)), 1e-300),
+    }
+
+
+def doubts(log, audit):
+    """Warnings about units and signs."""
+    found = []
+    speeds = np.linalg.norm(np.diff(log.position, axis=0), axis=1) / np.diff(log.time)
+    fast = float(np.percentile(speeds, 90))
+    if fast > FASTEST:
+        unit = likely_unit(log.interval, fast)
+        found.append(
+            f"the position moves at {fast:.3g} m/s: are the units s and m? (--scale position=0.001 is for millimetres, "
+            f"--scale time={unit:g} for another clock)"
+        )
+    known = [one["spring"] for one in audit["contacts"] if has_stiffness(one["spring"])]
+    known = known or ([audit["stiffness"]] if audit["stiffness"] else [])
+    negative = [one for one in known if one["stiffness_interval"][1] < 0.0]
+    if known and 2 * len(negative) > len(known):
+        found.append(
+            f"the force grows along its own direction ({negative[0]['stiffness_N_per_m']:.4g} N/m), unlike that of a "
+            "surface on a tool: is it the force of the tool on the object? (--force-by-tool); otherwise energy and "
+            "stiffness have the wrong sign"
+        )
+    return found
+
+
+def missing(log, audit, device):
+    """What the log cannot show, and what would."""
+    found = []
+    if not len(audit["contacts"]):
+        found.append("contact: no row has a force")
+    if audit["stiffness"] is None and audit["contacts"]:
+        whys = [
+            one["spring"]["why"]
+            for one in audit["contacts"]
+            if one["spring"] and "why" in one["spring"]
+        ]
+        why = whys[0] if whys else f"no contact has {FEWEST} rows"
+        found.append(
+            f"stiffness: {why}; press and release slowly, so that position and force change"
+        )
+    elif audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
+        found.append(
+            f"damping: {audit['stiffness']['why_no_damping']}; a column of velocities, or more digits"
+        )
+    if device is None:
+        found.append("whether the device can render this stiffness: --device FILE.json or a preset")
+    elif audit["device"] is None:
+        found.append("the limit of the device: it needs the stiffness of a contact")
+    if log.contacts is None:
+        found.append(
+            "whether force steps are changes of contacts: a column with the number of contacts"
+        )
+    if log.measured is None:
+        found.append(
+            "whether the device renders the force: a column of the measured force (measured=...)"
+        )
+    if log.turn is not None:
+        turned = float((log.turn[0].inv() * log.turn).magnitude().max())
+        if turned > 0.01:
+            found.append(
+                f"energy of rotation: the tool turns by up to {turned:.3g} rad, and the log has no torque"
+            )
+    if audit["metrics"]["force_mean_in_contact_N"] is None and audit["contacts"]:
+        found.append("vibration: there is less than 1/30 s of contact after the landings")
+    if audit["energy"]["net_created_J"] is None:
+        found.append(
+            "created energy: the log begins in contact, and without a stiffness the energy stored there is unknown; "
+            "a log that begins without contact"
+        )
+    if audit["clock"]["rate_Hz"] <= 60.0:
+        found.append("vibration above 30 Hz: a log of more than 60 Hz")
+    return found

@@ -1,0 +1,91 @@
+"""Contacts of a log, from touch to release, and the rows of landings and of settled contact as `run` has them."""
+from dataclasses import dataclass
+
+import numpy as np
+
+from .log import LONG_INTERVALS
+
+SETTLING = 0.05  # [s], as metrics.settling_s of a scenario
+SOME_ZEROS = 0.01  # share of rows without force from which any force is a contact
+TOUCH_SHARE = 0.05  # of the 99th percentile of the force; where the force is never zero
+
+
+@dataclass
+class Contacts:
+    in_contact: np.ndarray  # by row
+    runs: np.ndarray  # first row, and row after the last, of each contact
+    stretches: list  # (first, after the last) contact of contacts that follow each other within SETTLING
+    landings: np.ndarray  # first rows of contacts after at least SETTLING without contact
+    landing: np.ndarray  # by row: within SETTLING of a landing
+    settled: np.ndarray  # by row: in contact, and no landing
+    touch_N: float  # force from which a row is in contact; 0: any force, or the log counts contacts
+    rule: str  # how contact was found
+    gap: np.ndarray  # by interval: so long that a contact ends in it
+
+    @property
+    def lost(self):
+        """Number of contacts that were lost for less than SETTLING."""
+        return sum(after - first - 1 for first, after in self.stretches)
+
+
+def contacts_of(log, touch=None):
+    """`touch`: force from which a row is in contact [N]; None: as the log shows."""
+    size = np.linalg.norm(log.force, axis=1)
+    in_contact, threshold, rule = rows_in_contact(log, size, touch)
+    interval = log.interval
+    gap = np.diff(log.time) > LONG_INTERVALS * interval
+    runs = runs_of(in_contact, gap)
+    settling = round(SETTLING / interval)
+    landings, stretches, before = [], [], -settling - 1
+    for number, (first, after) in enumerate(runs.tolist()):
+        # After a gap of the clock the rows say nothing about the time without contact.
+        away = first - before if before >= 0 else settling
+        new = away >= settling and (away > 0 or number == 0)
+        if new or gap[before - 1 : first].any():
+            stretches.append([number, number + 1])
+        else:
+            stretches[-1][1] = number + 1
+        if new:
+            landings.append(first)
+        before = after
+    landing = np.zeros(len(size), bool)
+    for first in landings:
+        landing[first : first + settling] = True
+    return Contacts(
+        in_contact,
+        runs,
+        [tuple(one) for one in stretches],
+        np.array(landings, int),
+        landing,
+        in_contact & ~landing,
+        threshold,
+        rule,
+        gap,
+    )
+
+
+def rows_in_contact(log, size, touch):
+    """(in contact by row, threshold [N], the rule in words)."""
+    if touch is not None:
+        return size > touch, touch, f"force above {touch:g} N (--touch)"
+    if log.contacts is not None:
+        return log.contacts > 0, 0.0, "the column of contacts is above 0"
+    if np.mean(size == 0.0) >= SOME_ZEROS or not size.any():
+        return size > 0.0, 0.0, "any force"
+    threshold = TOUCH_SHARE * float(np.percentile(size, 99))
+    return (
+        size > threshold,
+        threshold,
+        f"force above {threshold:.3g} N, 5 % of its 99th percentile, because the log has no rows without force "
+        "(--touch sets it)",
+    )
+
+
+def runs_of(flags, gap):
+    """First row, and row after the last, of each run of True; a gap between two rows ends a run."""
+    edges = np.diff(np.concatenate([[False], flags, [False]]).astype(int))
+    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    cuts = np.flatnonzero(gap & flags[1:] & flags[:-1]) + 1
+    return np.column_stack(
+        [np.sort(np.concatenate([starts, cuts])), np.sort(np.concatenate([ends, cuts]))]
+    ).astype(int)

@@ -1,0 +1,237 @@
+"""What is wrong, in the words and with the thresholds of the diagnosis of `run`, and what to try in another engine."""
+import json
+from functools import lru_cache
+
+import numpy as np
+from hapbench_command import asked_of_program
+
+from .text import expected_text
+
+AT_LIMIT = 0.999  # of the largest force
+CONSTANT = 0.9  # share of the rows at the largest force from which the force is constant
+FLAT = 20  # rows at the largest force from which it is a limit
+HAS_BUZZ = 0.1  # of the mean force; as in the rule "edge" of the program
+GAIN_MARGIN = 2.0
+
+
+@lru_cache
+def rules():
+    """Rules of the program by name: number, unit, threshold and says (with {} for the number)."""
+    answer = asked_of_program("has the rules of the diagnosis", "describe", "diagnosis", "--json")
+    return {rule["rule"]: rule for rule in json.loads(answer)}
+
+
+class Findings:
+    """Rules whose number is above the threshold, in the order of the program."""
+
+    def __init__(self):
+        self._found = {}
+
+    def add(self, name, value, attempt, more=""):
+        """`value`: number of the rule, or None if the log does not show it."""
+        rule = rules()[name]
+        if value is None or not value > rule["threshold"]:
+            return
+        self._found[name] = {
+            "rule": name,
+            "value": float(value),
+            "unit": rule["unit"],
+            "threshold": rule["threshold"],
+            "says": rule["says"].replace("{}", f"{value:.3g}") + more,
+            "try": attempt,
+        }
+
+    def list(self):
+        return [self._found[name] for name in rules() if name in self._found]
+
+
+def share(value, of):
+    return None if value is None or not of else value / of
+
+
+def findings_of(log, contacts, audit):
+    """The list for the JSON. `audit`: what was measured so far."""
+    found, force = Findings(), audit["metrics"]
+    mean, device = force["force_mean_in_contact_N"], audit["device"]
+    vibration = share(force["force_rms_above_30Hz_N"], mean)
+    vibrates = (vibration or 0.0) > HAS_BUZZ or (force["contacts_lost_per_s"] or 0.0) > 1.0
+    ratio = device["ratio"] if device and vibrates else None
+    if ratio is not None:
+        found.add("edge", ratio, against_edge(device), edge_text(device, audit["buzz"]))
+    found.add("buzz", vibration, against_buzz(audit, ratio), buzz_text(audit["buzz"]))
+    found.add(
+        "pop",
+        share(force["settled_force_step_max_N"], mean),
+        against_pop(log, contacts, force),
+        f", at {force['time_of_largest_step_s']:.6g} s",
+    )
+    found.add("encoder", encoder_share(audit, mean), against_encoder(audit))
+    found.add(
+        "saturated",
+        saturated_share(log, contacts),
+        "a smaller stiffness, or a larger force limit in engine or device",
+    )
+    landings = force["landings"] / max(audit["clock"]["duration_s"], 1e-9)
+    found.add("bounces", landings, "more damping or a smaller stiffness")
+    found.add("chatter", force["force_reversals_per_s"], against_chatter(vibration))
+    energy = audit["energy"]
+    created, error = energy["net_created_J"], energy["net_created_error_J"]
+    if created is not None and created > error:
+        found.add("energy", created, against_energy(audit), energy_text(energy))
+    return found.list()
+
+
+def energy_text(energy):
+    return (
+        f" until {energy['time_of_max_s']:.6g} s (at most {energy['net_created_error_J']:.2g} J of it are the "
+        "resolution of the log)"
+    )
+
+
+def buzz_text(buzz):
+    return (
+        f", at {buzz[0]['frequency_Hz']:.0f} Hz with {buzz[0]['amplitude_N']:.3g} N" if buzz else ""
+    )
+
+
+def edge_text(device, buzz):
+    text = (
+        f" of {device['device']} ({device['linear_limit_N_per_m']:.4g} N/m at {device['delay_samples']:.3g} samples of "
+        "delay)"
+    )
+    return (
+        text
+        if device["expected_frequency_Hz"] is None
+        else f"{text}: {expected_text(device, buzz)}"
+    )
+
+
+def against_edge(device):
+    good = device["linear_limit_N_per_m"] / GAIN_MARGIN
+    text = f"a stiffness of {good:.3g} N/m (half the limit), a higher rate"
+    return (
+        text
+        + (", a shorter delay" if device["delay_samples"] > 0.0 else "")
+        + ", or some damping of the contact"
+    )
+
+
+def against_buzz(audit, ratio):
+    stiffness, buzz = audit["stiffness"], audit["buzz"]
+    half_rate = 0.5 * audit["clock"]["rate_Hz"]
+    if buzz and buzz[0]["frequency_Hz"] > 0.9 * half_rate:
+        return (
+            "a shorter time step, or an implicit contact: the force alternates from row to row, as that of an "
+            "integrator at its stability limit does"
+        )
+    if ratio is not None and ratio > rules()["edge"]["threshold"]:
+        return 'what the rule "edge" says'
+    if stiffness and stiffness["delay_s"] > 0.0:
+        return (
+            f"a shorter delay: the force lags the position by {1e3 * stiffness['delay_s']:.3g} ms, which acts like a "
+            f"damping of {-stiffness['stiffness_N_per_m'] * stiffness['delay_s']:.3g} N s/m"
+        )
+    encoder = encoder_share(audit, audit["metrics"]["force_mean_in_contact_N"])
+    if (encoder or 0.0) > rules()["encoder"]["threshold"]:
+        return 'what the rule "encoder" says'
+    lost = audit["metrics"]["contacts_lost_per_s"] or 0.0
+    if lost > 1.0:
+        text = f"a smaller stiffness or more damping: the tool hammers and loses contact {lost:.3g} times per second"
+        return text + ("; --device FILE.json shows the limit" if audit["device"] is None else "")
+    if audit["device"] is None:
+        return (
+            "a smaller stiffness or a shorter time step; --device FILE.json compares the stiffness with the limit of "
+            "the device"
+        )
+    return (
+        "a smoother geometry, or forces that do not depend on which contacts are found: the stiffness is below the "
+        "limit"
+    )
+
+
+def against_pop(log, contacts, force):
+    if log.contacts is not None:
+        step = np.linalg.norm(np.diff(log.force, axis=0), axis=1)
+        large = contacts.settled[1:] & (step > 0.5 * (force["force_mean_in_contact_N"] or 0.0))
+        changed = np.diff(log.contacts) != 0.0
+        if large.any():
+            part = float(changed[large].mean())
+            said = f"the number of contacts changes in {100.0 * part:.0f} % of these steps"
+            return said + (
+                ": forces that fade in and out with depth, or contacts that are kept from step to step"
+                if part > 0.5
+                else ": look at normals and depths of the contacts there"
+            )
+    if (force["contacts_lost_per_s"] or 0.0) > 1.0:
+        return (
+            f"contact is lost {force['contacts_lost_per_s']:.3g} times per second: a smaller stiffness or more "
+            "damping, and a force that starts at zero at touch"
+        )
+    return "look at the contacts at that time; a log with a column of their number shows whether they change there"
+
+
+def encoder_share(audit, mean):
+    """Force that one step of the position causes through the damping, divided by the mean force."""
+    stiffness, device = audit["stiffness"], audit["device"] or {}
+    damping = stiffness and stiffness.get("damping_N_s_per_m")
+    step = device.get("encoder_step_m") or audit["clock"]["position_resolution_m"]
+    if not damping or damping <= 0.0 or not step:
+        return None
+    return share(damping * step / audit["clock"]["interval_s"], mean)
+
+
+def against_encoder(audit):
+    step = (audit["device"] or {}).get("encoder_step_m") or audit["clock"]["position_resolution_m"]
+    return (
+        f"a low-pass on the velocity, less damping, or a finer position than {1e6 * step:.3g} um (if that is only the "
+        "resolution of the log, more digits in the log)"
+    )
+
+
+def saturated_share(log, contacts):
+    """Share of the rows in contact at the largest force; None if too few rows are there to be a limit, or if nearly
+    all are there: the force is then constant."""
+    size = np.linalg.norm(log.force, axis=1)
+    at = contacts.in_contact & (size >= AT_LIMIT * size.max())
+    # A limit cuts peaks flat: consecutive rows have the same force.
+    flat = at[1:] & at[:-1] & (np.abs(np.diff(size)) <= 1e-6 * size.max())
+    part = share(float(at.sum()), float(contacts.in_contact.sum()))
+    return part if flat.sum() >= FLAT and part < CONSTANT else None
+
+
+def against_chatter(vibration):
+    if (vibration or 0.0) > HAS_BUZZ:
+        return 'what the rule "buzz" says: the vibration is larger than the force'
+    return "friction without a jump at zero speed, and contact normals that do not flip"
+
+
+def half_hold(stiffness, interval):
+    """Damping that pays for the energy which holding the force of a spring over an interval creates [N s/m]."""
+    return 0.5 * stiffness["stiffness_N_per_m"] * interval
+
+
+def against_energy(audit):
+    energy, stiffness, interval = audit["energy"], audit["stiffness"], audit["clock"]["interval_s"]
+    if stiffness and stiffness["delay_s"] > 0.0:
+        return (
+            f"a shorter delay: the force lags the position by {1e3 * stiffness['delay_s']:.3g} ms; "
+            "damping of more than "
+            f"{stiffness['stiffness_N_per_m'] * (stiffness['delay_s'] + 0.5 * interval):.3g} N s/m would pay for it"
+        )
+    is_of_hold = energy["net_created_path_J"] < 0.1 * energy["net_created_J"]
+    if is_of_hold and not energy["is_integrated"]:
+        return (
+            "a higher rate, or damping"
+            + (
+                f" of more than K T / 2 = {half_hold(stiffness, interval):.3g} N s/m"
+                if stiffness
+                else ""
+            )
+            + ": the contact is passive along the path, and holding each force until the next row creates the energy"
+        )
+    if stiffness and (stiffness.get("damping_N_s_per_m") or 0.0) < 0.0:
+        return "the contact has negative damping: look for a filter or a delay in its velocity"
+    return (
+        "a passivity controller, or contacts whose force follows from the position alone: the energy appears along the "
+        "path too, so that contacts, weights or an internal state changed the force while the tool moved"
+    )

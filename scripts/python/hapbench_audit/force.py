@@ -1,0 +1,193 @@
+"""Steps, vibration and frequencies of the force. Metrics have the names and definitions of `run`."""
+import math
+
+import numpy as np
+from scipy.signal import sosfilt
+
+from .contacts import SETTLING
+
+CUTOFF = 30.0  # of the high-pass [Hz], kVibrationCutoff of the program
+LEAST_SETTLED = 1.0 / CUTOFF  # [s]
+STEP_SHARE = 0.1  # of the mean force: steps above it are counted
+MOST_PEAKS = 3
+SMALLEST_PEAK = 0.1  # of the amplitude of the strongest peak
+LOWEST_PEAK = 10.0  # [Hz]; voluntary motion of a hand is slower
+HARMONIC = 0.02  # relative: multiples of a stronger peak
+LEAST_PEAK = 0.01  # amplitude of the strongest peak, as a share of the mean force
+SHORTEST_SPECTRUM = 64  # rows
+
+
+def high_pass(rate):
+    """Second-order sections of the Butterworth high-pass of order 4, prewarped, as class HighPass of the program; None
+    at 60 Hz or less."""
+    if rate <= 2.0 * CUTOFF:
+        return None
+    k, sections = math.tan(math.pi * CUTOFF / rate), []
+    for angle in (math.pi / 8.0, 3.0 * math.pi / 8.0):
+        over_q = 2.0 * k * math.cos(angle)
+        n = 1.0 / (1.0 + over_q + k * k)
+        sections.append([n, -2.0 * n, n, 1.0, 2.0 * n * (k * k - 1.0), n * (1.0 - over_q + k * k)])
+    return np.array(sections)
+
+
+def filtered(sections, values):
+    """The output for rows of components, started in the steady state of the first row."""
+    state = np.zeros((2, 2, values.shape[1]))
+    state[0, 0], state[0, 1] = -sections[0, 0] * values[0], sections[0, 0] * values[0]
+    return sosfilt(sections, values, axis=0, zi=state)[0]
+
+
+def even(log, contacts):
+    """(force, settled rows, landing rows) at even times: as they are, or where the clock is not even or rows are
+    missing with the force on lines between rows."""
+    interval, steps = log.interval, np.diff(log.time)
+    if np.abs(steps - interval).max() <= 0.05 * interval:
+        return log.force, contacts.settled, contacts.landing
+    count = min(int((log.time[-1] - log.time[0]) / interval) + 1, 20_000_000)
+    at = log.time[0] + np.arange(count) * interval
+    row = np.clip(np.searchsorted(log.time, at + 0.5 * interval) - 1, 0, len(log.time) - 1)
+    force = np.column_stack([np.interp(at, log.time, column) for column in log.force.T])
+    return force, contacts.settled[row], contacts.landing[row]
+
+
+def force_of(log, contacts):
+    """Metrics of the force. Steps across missing rows are not counted."""
+    interval = log.interval
+    size = np.linalg.norm(log.force, axis=1)
+    change = np.diff(log.force, axis=0, prepend=log.force[:1])
+    step = np.linalg.norm(change, axis=1)
+    step[1:][np.diff(log.time) > 1.5 * interval] = 0.0
+    reverses = np.append(False, np.einsum("ij,ij->i", log.force[1:], log.force[:-1]) < 0.0)
+    settled, landing = contacts.settled, contacts.landing
+    settled_s = float(settled.sum() * interval)
+    enough = settled_s >= LEAST_SETTLED
+    mean = float(size[settled].mean()) if enough else None
+    speed = None if log.velocity is None else np.linalg.norm(log.velocity, axis=1)
+    found = {
+        "force_max_N": float(size.max()),
+        "force_step_max_N": float(step.max()),
+        "force_reversals": int(reverses.sum()),
+        "steps_in_contact": int(contacts.in_contact.sum()),
+        "contact_share": float(contacts.in_contact.mean()),
+        "speed_max_m_per_s": None if speed is None else float(speed.max()),
+        "landings": len(contacts.landings),
+        "landing_force_max_N": float(size[landing].max()) if landing.any() else None,
+        "landing_force_step_max_N": float(step[landing].max()) if landing.any() else None,
+        "settled_s": settled_s,
+        "force_mean_in_contact_N": mean,
+        "settled_force_max_N": float(size[settled].max()) if enough else None,
+        "force_step_p99_N": nearest_rank(step[settled], 0.99) if enough else None,
+        "settled_force_step_max_N": float(step[settled].max()) if enough else None,
+        "force_rms_above_30Hz_N": rms_above_cutoff(log, contacts) if enough else None,
+        "force_reversals_per_s": float(reverses[settled].sum() / settled_s) if enough else None,
+        "steps_above_share_per_s": float((step[settled] > STEP_SHARE * mean).sum() / settled_s)
+        if enough
+        else None,
+        "contacts": len(contacts.runs),
+        "contacts_lost_per_s": lost_per_s(log, contacts),
+    }
+    worst = int(np.argmax(np.where(settled, step, 0.0))) if enough else int(np.argmax(step))
+    found["time_of_largest_step_s"] = float(log.time[worst])
+    return found
+
+
+def nearest_rank(values, fraction):
+    return float(np.sort(values)[max(math.ceil(fraction * len(values)) - 1, 0)])
+
+
+def lost_per_s(log, contacts):
+    """Contacts that were lost for less than SETTLING, per second from touch to final release."""
+    if not len(contacts.runs):
+        return None
+    seconds = sum(
+        (contacts.runs[after - 1][1] - contacts.runs[first][0]) * log.interval
+        for first, after in contacts.stretches
+    )
+    return contacts.lost / seconds
+
+
+def rms_above_cutoff(log, contacts):
+    """Root mean square of the force above 30 Hz over settled rows. The filter starts in the steady state of the first
+    settled row after each landing."""
+    sections = high_pass(1.0 / log.interval)
+    if sections is None:
+        return None
+    force, settled, landing = even(log, contacts)
+    starts = np.flatnonzero(settled & ~np.append(False, settled[:-1]))
+    ends = np.append(np.flatnonzero(landing & ~np.append(False, landing[:-1])), len(force))
+    total, after = 0.0, 0
+    for start in starts.tolist():
+        if start < after:
+            continue
+        after = int(ends[np.searchsorted(ends, start)])
+        above = filtered(sections, force[start:after])
+        total += float(np.sum(above[settled[start:after]] ** 2))
+    return math.sqrt(total / max(int(settled.sum()), 1))
+
+
+def longest_stretch(log, contacts):
+    """First row, and row after the last, of the longest time in contact; without landings where enough rows remain."""
+    if not contacts.stretches:
+        return None
+    spans = [
+        (contacts.runs[first][0], contacts.runs[after - 1][1])
+        for first, after in contacts.stretches
+    ]
+    first, after = max(spans, key=lambda span: span[1] - span[0])
+    settling = round(SETTLING / log.interval)
+    return (first + settling, after) if after - first > 3 * settling else (first, after)
+
+
+def spectrum_of(log, contacts):
+    """(frequencies [Hz], amplitudes [N], duration [s]) of the force less its mean in the longest contact, with a Hann
+    window; None without enough rows."""
+    span = longest_stretch(log, contacts)
+    if span is None or span[1] - span[0] < SHORTEST_SPECTRUM:
+        return None
+    first, after = span
+    times = log.time[first:after]
+    even_times = np.linspace(times[0], times[-1], len(times))
+    force = np.column_stack([np.interp(even_times, times, c) for c in log.force[first:after].T])
+    force = force - force.mean(axis=0)
+    window = np.hanning(len(force))
+    padded = 1 << int(math.ceil(math.log2(4 * len(force))))
+    transform = np.fft.rfft(force * window[:, None], padded, axis=0)
+    amplitude = 2.0 * np.linalg.norm(transform, axis=1) / window.sum()
+    rate = (len(times) - 1) / (times[-1] - times[0])
+    return np.fft.rfftfreq(padded, 1.0 / rate), amplitude, float(times[-1] - times[0])
+
+
+def is_same(frequency, other, resolution):
+    """True for a frequency within the resolution of another, or of a multiple of it."""
+    times = max(round(frequency / other), 1)
+    return abs(frequency - times * other) <= max(resolution, HARMONIC * frequency)
+
+
+def peaks_of(spectrum, mean):
+    """The strongest oscillations above LOWEST_PEAK, largest first: frequency and amplitude. A peak stands out from the
+    median of its neighbourhood by a factor of 4 and is no multiple of a stronger one."""
+    if spectrum is None or not mean:
+        return []
+    frequency, amplitude, seconds = spectrum
+    resolution = 4.0 / seconds  # width of a peak of the Hann window
+    above = frequency > max(LOWEST_PEAK, resolution)
+    top = np.r_[
+        False, (amplitude[1:-1] > amplitude[:-2]) & (amplitude[1:-1] >= amplitude[2:]), False
+    ]
+    top[-1] = amplitude[-1] > amplitude[-2]
+    found = []
+    for i in sorted(np.flatnonzero(top & above), key=lambda i: -amplitude[i]):
+        least = SMALLEST_PEAK * found[0]["amplitude_N"] if found else LEAST_PEAK * mean
+        if amplitude[i] < least or len(found) == MOST_PEAKS:
+            break
+        near = np.abs(frequency - frequency[i]) < max(10.0 * resolution, 0.2 * frequency[i])
+        is_peak = amplitude[i] > 4.0 * np.median(amplitude[near])
+        if is_peak and not any(
+            is_same(frequency[i], one["frequency_Hz"], resolution) for one in found
+        ):
+            # At half the rate both halves of the spectrum are one line.
+            both = 0.5 if i == len(frequency) - 1 else 1.0
+            found.append(
+                {"frequency_Hz": float(frequency[i]), "amplitude_N": float(both * amplitude[i])}
+            )
+    return found

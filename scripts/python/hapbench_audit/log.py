@@ -1,0 +1,328 @@
+"""A log of any engine: times, positions and forces in SI units, and whatever else its columns hold."""
+import re
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import numpy as np
+from hapbench_command import fail, quoted, require_name
+from hapbench_import.columns import Names
+from hapbench_import.holds import hold_of
+from hapbench_import.options import QUANTITIES, options_of
+from hapbench_import.recording import EXACT, Recording, open_recording
+from hapbench_import.samples import read_samples
+from hapbench_import.stroke import resolution_of
+
+FEWEST = 20  # samples
+LONG_INTERVALS = 10.0  # median intervals; a longer gap ends a contact
+LATEST_START = 1e6  # first time that is kept [s]
+FASTEST = 5.0  # of a hand [m/s]
+ZERO = "absent"  # begins the names of the columns that a log of one axis lacks
+# Names of the first column of each quantity in usual logs: lower case, without units, signs and blanks.
+USUAL = {
+    "time": "time times t ts timestamp stamp secs simtime headerstamp clock",
+    "position": "px posx positionx poseposition posepositionx tipx toolx tcpx eex hipx pos0 p0 position0 x",
+    "force": "fx forcex wrenchforcex contactforcex fextx fcmdx commandedx commandedforcex forcecommandedx force0 f0",
+    "velocity": "vx velx velocityx twistlinearx vel0 v0",
+    "measured": "measuredx measuredforcex forcemeasuredx fmeasuredx fsensorx",
+    "contacts": "colliding contacts ncontacts ncon numcontacts contactcount",
+    "orientation": "qw qx quatw quatx orientationw orientationx poseorientationx",
+}
+# Of a log of one axis.
+ALONE = {"position": "position pos x y z", "force": "force f", "velocity": "velocity vel v"}
+ALONE["measured"] = "measured measuredforce forcemeasured"
+EXTRA = ("velocity", "measured", "contacts")  # quantities that an import does not read
+ALL = [name for name in QUANTITIES] + list(EXTRA)
+
+
+@dataclass
+class Log:
+    file: str
+    time: np.ndarray  # [s], increasing
+    position: np.ndarray  # rows of x, y, z [m]
+    force: np.ndarray  # on the tool, held or continuous from row to row [N]
+    turn: object = None  # Rotation of each row, or None
+    velocity: np.ndarray | None = None  # [m/s]
+    measured: np.ndarray | None = None  # force that a sensor measured [N]
+    contacts: np.ndarray | None = None  # number of contacts in each row
+    axes: int = 3  # 1: a log of one axis
+    columns: dict = field(default_factory=dict)  # by quantity, as those of import stroke
+    columns_not_read: list = field(default_factory=list)
+    scales: dict = field(default_factory=dict)  # by quantity
+    notes: list = field(default_factory=list)
+    quantum_m: np.ndarray | None = (
+        None  # resolution of each position component [m]; 0: full precision
+    )
+    quantum_N: np.ndarray | None = None  # of each force component [N]
+    held: object = None  # Hold of the positions, or None
+
+    @property
+    def interval(self):
+        """Seconds from row to row: the mean of an even clock, else the median."""
+        steps = np.diff(self.time)
+        mean = (self.time[-1] - self.time[0]) / len(steps)
+        off = self.time - self.time[0] - np.arange(len(self.time)) * mean
+        return float(mean if np.abs(off).max() <= 1e-3 * mean else np.median(steps))
+
+
+def read_log(options):
+    """The log that the command line names (__main__)."""
+    layout, wanted = layout_of(options)
+    return log_of(open_recording(options.log, layout), layout, wanted)
+
+
+def layout_of(options):
+    """(options of an import, names of columns by quantity of EXTRA)."""
+    own = [word for word in options.columns if word.partition("=")[0] in EXTRA]
+    asked = SimpleNamespace(
+        **{name: getattr(options, name) for name in ("preset", "set", "scale", "decimal")},
+        columns=[word for word in options.columns if word not in own],
+        orientation=options.orientation,
+        skip_bad_rows=options.skip_bad_rows,
+        **dict.fromkeys(("format", "frame", "smooth", "rate")),
+    )
+    for word in options.columns:
+        require_name("columns: got", word.partition("=")[0], ALL)
+    layout = options_of(asked)
+    if options.force_by_tool:
+        layout.force_by_tool = True
+    if not any(word.startswith("max_speed") for word in options.set):
+        layout.max_speed = float("inf")
+    layout.held_rows = "keep"
+    return layout, dict(word.split("=", 1) for word in own if "=" in word)
+
+
+def log_of_table(table, columns, scale, force_by_tool):
+    """The log in a mapping of names to arrays, such as a Table or a pandas.DataFrame. `columns` and `scale`: by
+    quantity, as the options of the command line."""
+    asked = SimpleNamespace(
+        log=None,
+        columns=[f"{quantity}={column}" for quantity, column in columns.items()],
+        scale=[f"{quantity}={factor!r}" for quantity, factor in scale.items()],
+        force_by_tool=force_by_tool,
+        set=[],
+        skip_bad_rows=False,
+        **dict.fromkeys(("preset", "decimal", "orientation")),
+    )
+    layout, wanted = layout_of(asked)
+    return log_of(recording_of(table), layout, wanted)
+
+
+def recording_of(table):
+    """The table's columns of numbers as a recording."""
+    columns = {str(name): np.asarray(table[name]) for name in table}
+    numeric = {
+        name: (values - values[0] if is_large(values) else values).astype(float)
+        for name, values in columns.items()
+        if values.ndim == 1 and np.issubdtype(values.dtype, np.number)
+    }
+    lengths = {len(values) for values in numeric.values()}
+    if len(lengths) != 1:
+        fail(f"the table has columns of {sorted(lengths)} numbers; allowed: one length")
+    rows = np.rec.fromarrays(list(numeric.values()), names=list(numeric))
+    return Recording("table", list(numeric), rows, range(1, len(rows) + 1), "row")
+
+
+def is_large(values):
+    """True for whole numbers that a double does not hold, such as nanoseconds since 1970. They count from the first."""
+    return (
+        np.issubdtype(values.dtype, np.integer) and len(values) > 0 and abs(int(values[-1])) > EXACT
+    )
+
+
+def log_of(recording, options, wanted):
+    """`options`: those of an import. `wanted`: names of columns by quantity of EXTRA."""
+    recording, axes = with_usual_columns(recording, options)
+    read = read_samples(recording, options)
+    samples, kept = read.samples, read.kept
+    if len(kept) < FEWEST:
+        fail(f"{len(kept)} usable samples; allowed: at least {FEWEST}", recording.file)
+    if samples.force is None:
+        fail("columns: force: is missing (--columns force=NAME)", recording.file)
+    names = Names(recording)
+    extra, used = {}, {name: parts for name, parts in read.columns.items() if parts}
+    for quantity in EXTRA:
+        found = extra_columns(names, quantity, wanted.get(quantity), axes)
+        if not found:
+            continue
+        scale = 1.0 if quantity != "measured" else read.scales.get("force", 1.0)
+        values = np.column_stack([scale * recording.column(column)[kept] for column in found])
+        if not np.isfinite(values).all():
+            read.notes.append(f"{quantity}: not a number in some rows: left out")
+            continue
+        extra[quantity] = values
+        used[quantity] = [
+            {"component": part, "column": column + 1, "name": names.names[column]}
+            for part, column in zip("xyz" if len(found) == 3 else [quantity], found)
+        ]
+    used = {
+        quantity: [part for part in parts if not part["name"].startswith(ZERO)]
+        for quantity, parts in used.items()
+    }
+    frame = np.array(options.frame).T
+    sign = -1.0 if options.force_by_tool else 1.0
+    log = Log(
+        recording.file,
+        times_of(read),
+        samples.position,
+        samples.force,
+        samples.turn if samples.has_roll else None,
+        vector(extra.get("velocity"), frame),
+        None if "measured" not in extra else sign * vector(extra["measured"], frame),
+        extra["contacts"][:, 0] if "contacts" in extra else None,
+        axes,
+        used,
+        [title for title in names.others(used) if f" {ZERO}" not in title],
+        read.scales,
+        [note for note in read.notes if not note.startswith("each pose is repeated")],
+    )
+    if read.rows_left_out:
+        log.notes.append(
+            f"{read.rows_left_out} bad rows were left out, the first: "
+            f"{read.left_out[0][0]}: {read.left_out[0][1]}"
+        )
+    log.quantum_m, log.quantum_N = quanta(log.position), quanta(log.force)
+    log.held = hold_of(log.position)
+    return log
+
+
+def times_of(read):
+    """Times of the rows; of a clock that counts from long before the log, since the first row."""
+    start = read.origin + read.samples.time[0]
+    if start < LATEST_START:
+        return read.origin + read.samples.time
+    read.notes.append(f"times count from the first row, at {start:.9g} s")
+    return read.samples.time - read.samples.time[0]
+
+
+def vector(values, frame):
+    """Rows of three components in the frame of the scene; those that a log of one axis lacks are 0."""
+    if values is None:
+        return None
+    return np.pad(values, ((0, 0), (0, 3 - values.shape[1]))) @ frame
+
+
+def quanta(values):
+    """The resolution of each column, 0 where its numbers have full precision or do not change."""
+    return np.array([resolution_of(column) or 0.0 for column in values.T])
+
+
+def key_of(name):
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+class UsualNames:
+    """Columns by usual names."""
+
+    def __init__(self, names):
+        self._keys = {}
+        for name, bare, unit in zip(names.names, names.bare, names.units):
+            for text in (name, bare, bare.removesuffix(f"_{unit.text}") if unit else bare):
+                key = key_of(text)
+                for ending in ("", "mpers", "m", "s", "n"):  # SI units in names such as px_m
+                    if ending == "" or re.search(r"_(m|s|N|m_per_s)$", text):
+                        self._keys.setdefault(key.removesuffix(ending) or key, name)
+
+    def find(self, words):
+        return next((self._keys[word] for word in words.split() if word in self._keys), None)
+
+
+def with_usual_columns(recording, options):
+    """(recording, number of axes). Completes options.columns by usual names. A log of one axis gets columns of
+    zeros."""
+    names = Names(recording)
+    usual = UsualNames(names)
+    parts = {"position": ("px", "py", "pz"), "force": ("mfx", "mfy", "mfz")}
+    given = {
+        quantity
+        for quantity in ("time", "position", "force", "orientation")
+        if quantity in options.columns or set(parts.get(quantity, ())) & set(options.columns)
+    }
+    if options.sample_rate_Hz:
+        given.add("time")
+    for quantity in ("time", "position", "force"):
+        if quantity in given:
+            continue
+        name = usual.find(USUAL[quantity]) or usual.find(ALONE.get(quantity, ""))
+        if name is None:
+            names.fail(quantity, f"no usual name; --columns {quantity}=NAME or number names it")
+        options.columns[quantity] = [name]
+    if "orientation" not in given and not options.orientation:
+        name = usual.find(USUAL["orientation"])
+        if name is not None:
+            options.columns["orientation"] = [name]
+            options.optional = options.optional | {"orientation"}
+    alone = {
+        quantity: alone_column(names, options.columns[quantity])
+        for quantity in parts
+        if quantity in options.columns
+    }
+    if len(alone) < 2 or None in alone.values():
+        return recording, 3
+    for quantity, components in parts.items():
+        del options.columns[quantity]
+        columns = [alone[quantity] + 1, len(names.names) + 1, len(names.names) + 2]
+        if quantity == "force":
+            columns = [alone[quantity] + 1, len(names.names) + 3, len(names.names) + 4]
+        options.columns |= {part: [str(at)] for part, at in zip(components, columns)}
+    return with_zeros(recording, 4), 1
+
+
+def alone_column(names, words):
+    """The column of a quantity whose name does not say which columns are the other components, or None."""
+    column, by_number = names.find("", words, ("_x", ".x", "x", "[0]", "_0", ".0", "0"))
+    if column is None or by_number:
+        return None
+    return column if names.components(column, ("x", "y", "z")) is None else None
+
+
+def with_zeros(recording, count):
+    """The recording with so many columns of zeros."""
+    added = [f"{ZERO}_{i}" for i in range(count)]
+    if recording.is_binary:
+        zeros = [np.zeros(len(recording.rows))] * count
+        arrays = [recording.rows[name] for name in recording.names] + zeros
+        rows = np.rec.fromarrays(arrays, names=recording.names + added)
+        return Recording(recording.file, recording.names + added, rows, recording.places, "row")
+    width = len(recording.names)
+    rows = [row + [b"0"] * count if len(row) == width else row for row in recording.rows]
+    return Recording(
+        recording.file,
+        recording.names + added,
+        rows,
+        recording.places,
+        recording.row_word,
+        recording.notes,
+        recording._decimal,
+    )
+
+
+def extra_columns(names, quantity, word, axes):
+    """The columns of a quantity of EXTRA, by the name that the user gave or by a usual name; None without them."""
+    if word is not None:
+        column, by_number = names.find(quantity, [word], ("_x", ".x", "x", "[0]", "_0", ".0", "0"))
+        if column is None:
+            names.unknown(quantity, [word])
+    else:
+        usual = UsualNames(names)
+        name = usual.find(USUAL[quantity])
+        if name is None and axes == 1:
+            name = usual.find(ALONE.get(quantity, ""))
+        if name is None:
+            return None
+        column, by_number = names.index(quantity, name), False
+    if quantity == "contacts":
+        return [column]
+    if axes == 1:
+        return [column]
+    if by_number:
+        if column + 3 > len(names.names):
+            names.fail(quantity, f"takes columns {column + 1} ... {column + 3}")
+        return [column, column + 1, column + 2]
+    found = names.components(column, ("x", "y", "z"))
+    if found is None and word is not None:
+        names.fail(
+            quantity,
+            f"the names do not say which columns go with {quoted(names.names[column])}; "
+            f"allowed: {quantity}={column + 1} for it and the two columns after it",
+        )
+    return found

@@ -1,0 +1,249 @@
+"""An audit as rows of a table: subject, quantity and its numbers in words; and the lines below the table."""
+from hapbench_import.text_table import counted
+
+
+def number(value, digits=3, none="-"):
+    return none if value is None else f"{value:.{digits}g}"
+
+
+def millijoules(value, error=None):
+    if value is None:
+        return "unknown"
+    text = f"{1e3 * value:.3g}"
+    return f"{text} mJ" if error is None else f"{text} +- {1e3 * error:.1g} mJ"
+
+
+def rows_of(audit):
+    """(subject, quantity, text) of each number."""
+    return [
+        (subject, quantity, text)
+        for subject, rows in (
+            ("clock", clock_rows(audit["clock"])),
+            ("contact", contact_rows(audit)),
+            ("energy", energy_rows(audit["energy"])),
+            ("force", force_rows(audit["metrics"])),
+            ("vibration", vibration_rows(audit)),
+            ("stiffness", stiffness_rows(audit)),
+            ("device", device_rows(audit)),
+            ("measured", measured_rows(audit["measured"])),
+        )
+        for quantity, text in rows
+    ]
+
+
+def clock_rows(clock):
+    interval, jitter = clock["interval_s"], clock["jitter_s"]
+    # Rounding of the times themselves is no jitter.
+    shown = "none" if jitter < 1e-6 * interval else f"{1e6 * jitter:.3g} us rms"
+    rows = [
+        ("rate", f"{clock['rate_Hz']:.6g} Hz, {clock['rows']} rows in {clock['duration_s']:.4g} s"),
+        ("jitter", f"{shown}; intervals {interval_text(1e3, clock)} ms"),
+        ("missing", f"{counted(clock['rows_missing'], 'row')}"),
+    ]
+    for what in ("position", "force"):
+        if clock[f"rows_per_{what}"] > 1.0:
+            rows.append((f"held {what}", f"each in {clock[f'rows_per_{what}']:.4g} rows"))
+    place, force = clock["position_resolution_m"], clock["force_resolution_N"]
+    shown = [f"{1e6 * place:.3g} um" if place else "position to all digits"]
+    shown.append(f"{force:.3g} N" if force else "force to all digits")
+    return [*rows, ("resolution", ", ".join(shown))]
+
+
+def interval_text(factor, clock):
+    low, high = factor * clock["interval_min_s"], factor * clock["interval_max_s"]
+    return f"{low:.4g} to {high:.4g}"
+
+
+def contact_rows(audit):
+    metrics = audit["metrics"]
+    return [
+        (
+            "contacts",
+            f"{metrics['contacts']} in {counted(metrics['landings'], 'landing')}, "
+            f"{100.0 * metrics['contact_share']:.3g} % of the rows",
+        ),
+        ("in contact", audit["contact_rule"]),
+        ("lost", f"{number(metrics['contacts_lost_per_s'])} per second of contact"),
+    ]
+
+
+def energy_rows(energy):
+    giver = "the engine gave it to the hand"
+    if energy["work_J"] < 0.0:
+        giver = "the hand gave it to the engine"
+    elif energy["work_J"] == 0.0:
+        giver = "none"
+    rows = [
+        ("net created", millijoules(energy["net_created_J"], energy["net_created_error_J"])),
+        ("without holding", f"{millijoules(energy['net_created_path_J'])} created along the path"),
+        ("work on tool", f"{millijoules(energy['work_J'], energy['work_error_J'])}: {giver}"),
+    ]
+    if energy["stored_at_start_J"]:
+        rows.append(
+            (
+                "stored",
+                f"{millijoules(energy['stored_at_start_J'])} where the log begins, in contact",
+            )
+        )
+    worst = energy["worst_contact"]
+    if worst is None:
+        return rows
+    return [
+        *rows,
+        (
+            "created",
+            f"{millijoules(energy['created_per_contact_J'])} per contact, "
+            f"{1e3 * energy['created_per_s_in_contact_W']:.3g} mJ per second of contact",
+        ),
+        (
+            "worst contact",
+            f"{millijoules(worst['created_J'], worst['error_J'])} created from {worst['start_s']:.6g} to "
+            f"{worst['end_s']:.6g} s",
+        ),
+    ]
+
+
+def force_rows(metrics):
+    return [
+        ("mean", f"{number(metrics['force_mean_in_contact_N'])} N in settled contact"),
+        ("largest", f"{number(metrics['force_max_N'])} N"),
+        (
+            "largest step",
+            f"{number(metrics['settled_force_step_max_N'])} N in settled contact, at "
+            f"{metrics['time_of_largest_step_s']:.6g} s; {number(metrics['force_step_max_N'])} N with landings",
+        ),
+        (
+            "large steps",
+            f"{number(metrics['steps_above_share_per_s'])} per second above 10 % of the mean",
+        ),
+        ("reversals", f"{number(metrics['force_reversals_per_s'])} per second"),
+    ]
+
+
+def vibration_rows(audit):
+    peaks = ", ".join(
+        f"{one['amplitude_N']:.3g} N at {one['frequency_Hz']:.4g} Hz" for one in audit["buzz"]
+    )
+    return [
+        ("above 30 Hz", f"{number(audit['metrics']['force_rms_above_30Hz_N'])} N rms"),
+        ("amplitudes", peaks or "no dominant frequency"),
+    ]
+
+
+def stiffness_rows(audit):
+    spring = audit["stiffness"]
+    if spring is None:
+        return [("K", "not identifiable; see below")]
+    x, y, z = (component + 0.0 for component in spring["direction"])
+    rows = [
+        (
+            "K",
+            f"{spring['stiffness_N_per_m']:.4g} N/m, 95 % {ends_text(spring['stiffness_interval'])}",
+        ),
+        (
+            "B",
+            "not identifiable"
+            if spring["damping_N_s_per_m"] is None
+            else f"{spring['damping_N_s_per_m']:.3g} N s/m, 95 % {ends_text(spring['damping_interval'])}",
+        ),
+    ]
+    if spring["dry_friction_N"]:
+        rows.append(("dry friction", f"{spring['dry_friction_N']:.3g} N"))
+    rows += [
+        (
+            "delay",
+            f"force {counted(spring['delay_rows'], 'row')} ({1e3 * spring['delay_s']:.3g} ms) behind the position"
+            if spring["delay_rows"]
+            else "none from position to force",
+        ),
+        (
+            "along",
+            f"({x:.2g}, {y:.2g}, {z:.2g}); explains {100.0 * spring['explained']:.4g} % of the variance",
+        ),
+    ]
+    if spring["linearity"] is not None:
+        rows.append(
+            (
+                "linearity",
+                f"the deeper half is {spring['linearity']:.3g} times as stiff as the other",
+            )
+        )
+    span = audit["stiffness_range"]
+    if span and span[1] > 1.05 * span[0]:
+        rows.append(("contacts", f"have {span[0]:.4g} to {span[1]:.4g} N/m"))
+    return rows
+
+
+def ends_text(interval):
+    low, high = interval
+    return f"{low:.4g} to {high:.4g}"
+
+
+def device_rows(audit):
+    device = audit["device"]
+    if device is None:
+        return []
+    limit, ratio = device["linear_limit_N_per_m"], device["ratio"]
+    if limit is None:
+        return [(device["device"], "every stiffness is stable in the linear theory")]
+    if ratio is None:
+        return [
+            (
+                device["device"],
+                "no stiffness is stable in the linear theory, at this damping and delay",
+            )
+        ]
+    rows = [
+        (
+            "linear limit",
+            f"{limit:.4g} N/m for {device['device']} without a hand, at {audit['clock']['rate_Hz']:.4g} Hz, "
+            f"{device['delay_samples']:.3g} samples of delay, B = {device['damping_N_s_per_m']:.3g} N s/m",
+        ),
+        ("K", f"{ratio:.3g} times the limit"),
+    ]
+    if device["worst_hand_limit_N_per_m"] is not None:
+        rows.append(
+            (
+                "with a hand",
+                f"{device['worst_hand_limit_N_per_m']:.4g} N/m, smallest of typical hands",
+            )
+        )
+    if device["expected_frequency_Hz"] is not None:
+        rows.append(("buzz", f"{expected_text(device, audit['buzz'])}"))
+    return rows
+
+
+def expected_text(device, buzz):
+    """What the linear loop predicts, beside what the log shows."""
+    text = f"expect a buzz near {device['expected_frequency_Hz']:.0f} Hz; the log "
+    return text + (f"buzzes at {buzz[0]['frequency_Hz']:.0f} Hz" if buzz else "does not buzz")
+
+
+def measured_rows(measured):
+    if measured is None:
+        return []
+    return [
+        (
+            "force",
+            f"{1e3 * measured['delay_s']:.3g} ms late, {measured['gain']:.3g} times the commanded",
+        )
+    ]
+
+
+def table_rows(audit):
+    """rows_of() with each subject once."""
+    shown, last = [], None
+    for subject, *rest in rows_of(audit):
+        shown.append(["" if subject == last else subject, *rest])
+        last = subject
+    return shown
+
+
+def below_table(audit):
+    """Lines below the table: diagnosis, and what is missing."""
+    lines = ["diagnosis" if audit["diagnosis"] else "diagnosis: no rule exceeds its threshold"]
+    for one in audit["diagnosis"]:
+        lines += [f"  {one['rule']}: {one['says']}", f"    try: {one['try']}"]
+    if audit["missing"]:
+        lines += ["", "to say more, the log lacks"] + [f"  {one}" for one in audit["missing"]]
+    return lines

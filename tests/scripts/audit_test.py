@@ -1,0 +1,363 @@
+"""`hapbench audit` and hapbench.audit on logs of known answer, and on runs of our own."""
+import json
+import math
+import os
+import unittest
+
+import numpy as np
+from fixture import PROGRAM, hapbench, ran, scratch_folder
+
+os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
+
+from hapbench import InputError, audit  # noqa: E402  (finds the program in the environment)
+
+T = 0.001  # sampling period of the logs [s]
+# Least squares of exact data: rounding of the normal equations, and 1e-6 that every interval has.
+EXACT = 1e-5
+
+
+def pressed(cycles, amplitude=1e-3, per_cycle=100, depth=3e-3):
+    """Positions of a tool that lands within 50 rows and moves `cycles` times up and down within the surface z < 0."""
+    landing = np.concatenate([np.full(100, 1e-3), np.linspace(1e-3, -depth, 50, endpoint=False)])
+    phase = 2.0 * np.pi / per_cycle * np.arange(cycles * per_cycle + 1)
+    return np.concatenate([landing, -depth - amplitude * np.sin(phase)])
+
+
+def late(values, rows):
+    return np.concatenate([np.full(rows, values[0]), values[: len(values) - rows]])
+
+
+def table(z, force, **more):
+    """A log whose tool moves along z."""
+    zero = np.zeros(len(z))
+    return {
+        "t": T * np.arange(len(z)),
+        "x": zero,
+        "y": zero,
+        "z": z,
+        "fx": zero,
+        "fy": zero,
+        "fz": force,
+    } | more
+
+
+def csv_text(columns):
+    rows = zip(*(values.tolist() for values in columns.values()))
+    return "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n"
+
+
+def wall(z, stiffness, damping=0.0):
+    """Force of a one-sided spring and damper, with the velocity by the difference of positions."""
+    speed = np.diff(z, prepend=z[0]) / T
+    return np.where(z < 0.0, -stiffness * z - damping * speed, 0.0)
+
+
+def rules_of(found):
+    return {one["rule"]: one for one in found["diagnosis"]}
+
+
+class KnownAnswers(unittest.TestCase):
+    def test_sampled_spring_with_delay(self):
+        """Held for a row, f_k = −K x_(k−d) on A sin(k φ) gives K A² N sin((d + ½) φ) sin(φ/2) per cycle of
+        N rows."""
+        stiffness, amplitude, per_cycle = 1200.0, 1e-3, 100
+        for delay in (0, 1, 3):
+            found = []
+            for cycles in (10, 30):
+                z = pressed(cycles, amplitude, per_cycle)
+                found.append(audit(table(z, wall(late(z, delay), stiffness))))
+            spring = found[1]["stiffness"]
+            self.assertEqual(spring["delay_rows"], delay)
+            self.assertAlmostEqual(spring["stiffness_N_per_m"] / stiffness, 1.0, delta=EXACT)
+            self.assertAlmostEqual(spring["damping_N_s_per_m"], 0.0, delta=EXACT * stiffness * T)
+            angle = 2.0 * math.pi / per_cycle
+            per = (
+                stiffness
+                * amplitude**2
+                * per_cycle
+                * math.sin((delay + 0.5) * angle)
+                * math.sin(angle / 2.0)
+            )
+            work = (found[1]["energy"]["work_J"] - found[0]["energy"]["work_J"]) / 20.0
+            # Sums of 3000 products of about 4 N and 0.1 mm, each rounded to 1e-16 of it.
+            self.assertAlmostEqual(work, per, delta=1e-12)
+
+    def test_limit_and_frequency_in_closed_form(self):
+        """An undamped handle at K, B: K T²/m < 2 β (2 − β)/(2 + β), and at the limit cos θ = 1 − κ/4 −
+        β/2."""
+        mass, damping = 0.1, 5.0
+        beta = damping * T / mass
+        limit = 2.0 * beta * (2.0 - beta) / (2.0 + beta) * mass / T**2
+        scratch = scratch_folder(self)
+        device = scratch / "mine.json"
+        device.write_text(json.dumps({"type": "impedance", "handle_mass_kg": mass}))
+        for factor in (0.5, 1.001):
+            z = pressed(20)
+            found = audit(table(z, wall(z, factor * limit, damping)), device)["device"]
+            # B is known to 1e-5 of its value, and the limit is nearly proportional to it.
+            self.assertAlmostEqual(found["linear_limit_N_per_m"] / limit, 1.0, delta=2 * EXACT)
+            self.assertAlmostEqual(found["ratio"] / factor, 1.0, delta=3 * EXACT)
+            if factor < 1.0:
+                self.assertIsNone(found["expected_frequency_Hz"])
+                continue
+            kappa = limit * T**2 / mass
+            frequency = math.acos(1.0 - kappa / 4.0 - beta / 2.0) / (2.0 * math.pi * T)
+            # At 1.001 times the limit, the square of the frequency is 1.001 times as large at most.
+            self.assertAlmostEqual(found["expected_frequency_Hz"] / frequency, 1.0, delta=1e-3)
+        answer = hapbench(
+            "limit", "wall_on_handle", "--device", device, "--json", "--out", scratch / "limit",
+            "--set", f"time.step_s={T}", "--set", f"rendering.damping_N_s_per_m={damping}",
+        )  # fmt: skip
+        same = json.loads(answer)["limits"][0]["linear_limit"]
+        self.assertAlmostEqual(found["linear_limit_N_per_m"] / same, 1.0, delta=2 * EXACT)
+
+    def test_passive_spring_and_damper(self):
+        """With B > K T / 2 a held spring and damper creates nothing; without damping it does, and its path does not."""
+        rng = np.random.default_rng(1)
+        z = pressed(20) + 2e-4 * np.cumsum(rng.normal(size=len(pressed(20)))) / 100.0
+        stiffness = 1000.0
+        damped = audit(table(z, wall(z, stiffness, 1.0)))["energy"]
+        # A contact that begins between rows adds at most K d²/2 with d the step of 80 um at touch.
+        touch = 0.5 * stiffness * 1e-4**2
+        self.assertLessEqual(damped["net_created_J"], damped["net_created_error_J"] + touch)
+        bare = audit(table(z, wall(z, stiffness)))["energy"]
+        self.assertGreater(bare["work_J"] - bare["work_path_J"], 1e-4)
+        self.assertLessEqual(bare["net_created_path_J"], bare["net_created_error_J"] + touch)
+
+    def test_quantised_position(self):
+        """The encoder's step widens the intervals and the error, which hold the truth."""
+        rng = np.random.default_rng(2)
+        for step in (1e-5, 5e-5):
+            z = (
+                pressed(20, per_cycle=317)
+                + 1e-5 * np.cumsum(rng.normal(size=len(pressed(20, per_cycle=317)))) / 10.0
+            )
+            seen = step * np.round(z / step)
+            force = wall(seen, 1500.0)
+            found = audit(table(seen, force))
+            self.assertAlmostEqual(found["clock"]["position_resolution_m"] / step, 1.0, delta=1e-6)
+            low, high = found["stiffness"]["stiffness_interval"]
+            self.assertTrue(low <= 1500.0 <= high, (low, high))
+            true_work = float(np.sum(force[:-1] * np.diff(z)))
+            energy = found["energy"]
+            self.assertLessEqual(abs(energy["work_J"] - true_work), energy["work_error_J"])
+            # The bound is of use: below the energy that one cycle stores.
+            self.assertLess(energy["work_error_J"], 20.0 * 1500.0 * 3e-3 * 1e-3)
+
+    def test_position_that_moves_by_few_counts(self):
+        z = 1e-4 * np.round(pressed(10, amplitude=2e-4) / 1e-4)
+        z[100:] = np.where(z[100:] < -2.5e-3, z[100:], -2.8e-3)
+        found = audit(table(z, np.where(z < 0.0, -1000.0 * z, 0.0)))
+        self.assertIsNone(found["stiffness"])
+        self.assertTrue(
+            any("steps of its resolution" in one for one in found["missing"]), found["missing"]
+        )
+
+    def test_dry_friction(self):
+        """Friction of c takes 4 A c per cycle."""
+        stiffness, friction, amplitude = 800.0, 0.4, 1e-3
+
+        def log(cycles):
+            z = pressed(cycles, amplitude)
+            sign = np.sign(np.diff(z, prepend=z[0]))
+            return audit(table(z, np.where(z < 0.0, -stiffness * z - friction * sign, 0.0)))
+
+        found, shorter = log(20), log(10)
+        spring = found["stiffness"]
+        self.assertAlmostEqual(spring["stiffness_N_per_m"] / stiffness, 1.0, delta=0.01)
+        self.assertAlmostEqual(spring["dry_friction_N"] / friction, 1.0, delta=0.01)
+        lost = (found["energy"]["work_path_J"] - shorter["energy"]["work_path_J"]) / 10.0
+        # Twice per cycle, in the row of the turn, the sign holds for half a step too long: A (1 − cos φ) each.
+        self.assertAlmostEqual(lost / (-4.0 * amplitude * friction), 1.0, delta=0.005)
+        self.assertNotIn("energy", rules_of(found))
+
+    def test_buzz_of_a_device_with_delay(self):
+        """A handle of 0.08 kg with a delay of 2 samples at 2.3 times its limit buzzes near the frequency of
+        the theory."""
+        mass, viscous, delay = 0.08, 1.0, 2
+        scratch = scratch_folder(self)
+        device = scratch / "late.json"
+        device.write_text(
+            json.dumps(
+                {
+                    "type": "impedance",
+                    "handle_mass_kg": mass,
+                    "viscous_N_s_per_m": viscous,
+                    "delay_samples": delay,
+                }
+            )
+        )
+        stiffness = 2.3 * viscous / (T * (0.5 + delay))  # about, by Gil and Hulin
+        log = handle_at_wall(mass, viscous, delay, stiffness)
+        found = audit(log, device)
+        self.assertAlmostEqual(
+            found["stiffness"]["stiffness_N_per_m"] / stiffness, 1.0, delta=EXACT
+        )
+        self.assertAlmostEqual(
+            found["device"]["ratio"], 2.3, delta=0.14 * 2.3
+        )  # the formula is that good
+        expected, seen = found["device"]["expected_frequency_Hz"], found["buzz"][0]["frequency_Hz"]
+        # The wall pushes only: a growing oscillation loses contact and then has a longer period.
+        self.assertTrue(0.6 * expected < seen < 1.1 * expected, (expected, seen))
+        edge = rules_of(found)["edge"]
+        self.assertIn(f"expect a buzz near {expected:.0f} Hz", edge["says"])
+        self.assertIn("energy", rules_of(found))
+
+
+def handle_at_wall(mass, viscous, delay, stiffness, seconds=3.0):
+    """Log of a handle that a hand of 200 N/m presses into a wall, integrated in twenty parts of a period."""
+    z, v, waiting, rows = 1e-3, 0.0, [0.0] * delay, []
+    parts = 20
+    for k in range(int(seconds / T)):
+        force = -stiffness * min(z, 0.0)
+        rows.append((z, force))
+        waiting.append(force)
+        acting = waiting.pop(0)
+        target = 1e-3 - min(k * T, 1.0) * 8e-3
+        for _ in range(parts):
+            v += (acting + 200.0 * (target - z) - viscous * v) / mass * T / parts
+            z += v * T / parts
+    z, force = np.array(rows).T
+    return table(z, force)
+
+
+class Clocks(unittest.TestCase):
+    def test_jitter_missing_and_held(self):
+        z = pressed(20)
+        log = table(z, wall(z, 1000.0))
+        rng = np.random.default_rng(3)
+        jittered = log | {"t": log["t"] + 1e-4 * rng.uniform(-0.5, 0.5, len(z))}
+        clock = audit(jittered)["clock"]
+        # Differences of two uniform errors of width w scatter by w/√6; 2000 of them by 3 % more or less.
+        self.assertAlmostEqual(clock["jitter_s"] / (1e-4 / math.sqrt(6.0)), 1.0, delta=0.1)
+        kept = np.ones(len(z), bool)
+        kept[[500, 900, 901]] = False
+        gaps = audit({name: values[kept] for name, values in log.items()})
+        self.assertEqual(gaps["clock"]["rows_missing"], 3)
+        self.assertEqual(gaps["clock"]["rows_missing_in_a_row"], 2)
+        self.assertTrue(any("3 rows are missing" in one for one in gaps["warnings"]))
+        held = np.repeat(z[::4], 4)[: len(z)]
+        found = audit(table(held, wall(held, 1000.0)))
+        self.assertEqual(found["clock"]["rows_per_position"], 4.0)
+        self.assertAlmostEqual(found["stiffness"]["stiffness_N_per_m"] / 1000.0, 1.0, delta=EXACT)
+
+    def test_a_gap_ends_a_contact(self):
+        z = pressed(20)
+        log = table(z, wall(z, 1000.0))
+        log["t"] = log["t"] + np.where(np.arange(len(z)) >= 1000, 0.2, 0.0)
+        self.assertEqual(audit(log)["metrics"]["contacts"], 2)
+
+
+class Formats(unittest.TestCase):
+    def test_other_engine(self):
+        """Nanoseconds since 1970, millimetres, a quaternion, and the force by the tool on the object."""
+        z = pressed(20)
+        force = wall(z, 1000.0, 1.0)
+        start = 1_700_000_000_000_000_000
+        scratch = scratch_folder(self)
+        file = scratch / "engine.csv"
+        lines = ["stamp_ns,tip.x [mm],tip.y [mm],tip.z [mm],qw,qx,qy,qz,load_x,load_y,load_z"]
+        lines += [
+            f"{start + 1_000_000 * k},0,0,{1e3 * z[k]!r},1,0,0,0,0,0,{-force[k]!r}"
+            for k in range(len(z))
+        ]
+        file.write_text("\n".join(lines) + "\n")
+        words = (
+            "--columns",
+            "time=stamp_ns,position=tip.x,force=load_x",
+            "--json",
+            "--out",
+            scratch / "out",
+        )
+        done = ran(PROGRAM, "audit", file, *words)
+        self.assertIn("--force-by-tool", done.stderr)
+        found = json.loads(hapbench("audit", file, "--force-by-tool", *words))
+        self.assertAlmostEqual(found["stiffness"]["stiffness_N_per_m"] / 1000.0, 1.0, delta=EXACT)
+        self.assertEqual(found["clock"]["rows_missing"], 0)
+        self.assertEqual(found["columns"]["orientation"][0]["name"], "qw")
+        for name in ("audit.json", "audit.svg", "audit.html"):
+            self.assertTrue((scratch / "out" / name).is_file(), name)
+        self.assertEqual(json.loads((scratch / "out" / "audit.json").read_text()), found)
+
+    def test_one_axis_and_usual_names(self):
+        z = pressed(20)
+        for names in (
+            ("time_s", "position_m", "force_N"),
+            ("t", "pos", "f"),
+            ("Time [ms]", "position [mm]", "force [mN]"),
+        ):
+            factors = (1e3, 1e3, 1e3) if "[ms]" in names[0] else (1.0, 1.0, 1.0)
+            columns = (T * np.arange(len(z)), z, wall(z, 1000.0))
+            log = {name: factor * values for name, factor, values in zip(names, factors, columns)}
+            spring = audit(log)["stiffness"]
+            self.assertAlmostEqual(
+                spring["stiffness_N_per_m"] / 1000.0, 1.0, delta=EXACT, msg=names
+            )
+        with self.assertRaisesRegex(InputError, "columns: force: no usual name"):
+            audit({"t": T * np.arange(len(z)), "x": z, "load": z})
+
+    def test_command_and_function_agree(self):
+        z = pressed(20)
+        log = table(z, wall(z, 1000.0, 1.0), contacts=(z < 0.0).astype(float))
+        scratch = scratch_folder(self)
+        file = scratch / "log.csv"
+        file.write_text(csv_text(log))
+        by_command = json.loads(hapbench("audit", file, "--json", "--out", scratch / "out"))
+        by_function = audit(log)
+        for section in ("clock", "metrics", "energy", "stiffness", "diagnosis", "missing"):
+            self.assertEqual(
+                by_command[section], json.loads(json.dumps(by_function[section])), section
+            )
+
+    def test_expectations(self):
+        z = pressed(20)
+        scratch = scratch_folder(self)
+        file = scratch / "log.csv"
+        file.write_text(csv_text(table(z, wall(z, 1000.0, 1.0))))
+        words = ("audit", file, "--quiet", "--out", scratch / "out", "--expect")
+        hapbench(*words, "energy_mJ=1,stiffness_N_per_m=990:1010")
+        said = ran(PROGRAM, *words, "stiffness_N_per_m=900,force_max_N=1e3")
+        self.assertEqual(said.returncode, 3)
+        self.assertIn("expected stiffness_N_per_m of at most 900, got 1000", said.stderr)
+        self.assertNotIn("force_max_N", said.stderr)
+        said = ran(PROGRAM, *words, "stiffness_of_limit=1")
+        self.assertEqual((said.returncode, "no value" in said.stderr), (3, True))
+        said = ran(PROGRAM, *words, "energy_mj=1")
+        self.assertEqual(
+            (said.returncode, 'nearest valid name: "energy_mJ"' in said.stderr), (2, True)
+        )
+
+
+class OwnRuns(unittest.TestCase):
+    def test_numbers_are_those_of_the_summary(self):
+        """Of an ideal device, of a handle with a device, and of a run with several landings."""
+        scratch = scratch_folder(self)
+        for scene in ("device_at_wall", "tap_wall", "impedance_at_wall"):
+            run = scratch / scene
+            hapbench("run", scene, "--quiet", "--out", run)
+            summary = json.loads((run / "summary.json").read_text())
+            found = json.loads(
+                hapbench("audit", run / "trajectory.csv", "--json", "--out", scratch / "audit")
+            )
+            shared = set(found["metrics"]) & set(summary["metrics"])
+            self.assertGreater(len(shared), 14)
+            for name in sorted(shared):
+                self.agree(scene, name, found["metrics"][name], summary, name)
+            # No turn, so that the port of the translation is the whole port.
+            created = summary["passivity"]["net_created_J"]
+            self.assertAlmostEqual(
+                found["energy"]["net_created_J"], created, delta=1e-9 + 1e-9 * created
+            )
+
+    def agree(self, scene, name, value, summary, metric):
+        stated = summary["metrics"][metric]
+        if stated is None or value is None:
+            self.assertEqual(value, stated, (scene, name))
+            return
+        # Sums in another order round otherwise; the histogram of steps states its error.
+        within = 1e-9 * abs(stated) + summary["tolerances"].get(metric, 0.0) + 1e-12
+        self.assertAlmostEqual(value, stated, delta=within, msg=(scene, name))
+
+
+if __name__ == "__main__":
+    unittest.main()
