@@ -49,6 +49,7 @@ KNOWN_LOOKS = tuple(
     for colour in (PLUM, "#1F4E9E", "#2E6B34")
 )
 THEORY, FOUND = {"color": PETROL, "lw": 2.6}, {"color": BLACK, "lw": 1.1, "ls": (0, (2, 2))}
+QUOTED = {"color": BLACK, "ls": "none", "marker": "o", "ms": 4}
 
 
 @dataclass
@@ -166,6 +167,7 @@ class Limits:
             ("theoretical limit", numbers(rows, "theoretical_limit"), THEORY),
             *self.known(rows),
             ("simulated limit", numbers(rows, "limit"), FOUND),
+            ("limit to quote", numbers(rows, "quoted_limit"), QUOTED),
         ]
         return [
             (label, np.where(values > 0, values, np.nan), own)
@@ -243,6 +245,7 @@ def draw_strip(found):
         for key, label, colour, wide in (
             ("theoretical_limit", "theoretical limit", PETROL, 3),
             ("limit", "simulated limit", BLACK, 1.4),
+            ("quoted_limit", "limit to quote", PLUM, 2.4),
         )
         if np.isfinite(numbers(found.rows, key)).any()
     ]
@@ -281,10 +284,11 @@ def draw_over(found):
     }
     of = lambda name, column: (numbers(curves[name], found.over[-1]), column, look_of(name))
     limits = [
-        (look(name).label, *of(name, numbers(rows, "limit"))) for name, rows in curves.items()
+        (look(name).label, *of(name, numbers(rows, "quoted_limit")))
+        for name, rows in curves.items()
     ]
     over_axes(limit, x, Axis.of(axis(found.field), numbers(found.rows, "limit")), limits)
-    limit.set_title("simulated limit")
+    limit.set_title("limit to quote")
     if ratio:
         finite = lambda theory: np.where(
             np.isfinite(theory), theory, np.nan
@@ -347,7 +351,7 @@ def draw_devices(files, folder):
             series.append(
                 (
                     look(algorithm).label,
-                    numbers(mine, "limit"),
+                    numbers(mine, "quoted_limit"),
                     places,
                     look_of(algorithm, ls="none"),
                 )
@@ -359,7 +363,7 @@ def draw_devices(files, folder):
         }
         over_axes(
             ax,
-            Axis("largest stable stiffness K [N/m]", np.array([]), log=True),
+            Axis("stiffness K to quote [N/m]", np.array([]), log=True),
             Axis.of("", devices),
             series,
         )
