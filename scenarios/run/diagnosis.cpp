@@ -104,13 +104,30 @@ Number ratio_to_stability_limit(const DiagnosedRun& run) {
     at.rendering.stiffness = stiffness;
     return contact_step_matrix(at, *lambda);
   });
-  return rounded_to_digits(K / std::max(kMin * K, limit), 6);
+  if (limit == 0.0) return std::nullopt;  // no K is stable: the rule "servo" names the cause
+  return rounded_to_digits(K / limit, 6);
+}
+
+/// Returns true if a run vibrates, diverges or loses contact, as it does with an unstable loop.
+bool looks_unstable(const DiagnosedRun& run) {
+  return run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates() || buzz(run).value_or(0.0) > 0.1;
+}
+
+/// Returns 1 for a run that looks unstable and whose loop of hand and device is unstable without contact, by its
+/// eigenvalues.
+Number unstable_alone(const DiagnosedRun& run) {
+  if (!run.is_free() || !looks_unstable(run)) return std::nullopt;
+  return unstable_without_wall(run.scenario()).empty() ? Number(std::nullopt) : Number(1.0);
+}
+
+/// Returns the part that is unstable alone, as text.
+std::string unstable_part(const DiagnosedRun& run) {
+  return ": " + unstable_without_wall(run.scenario());
 }
 
 /// Returns ratio_to_stability_limit() if the run diverged, lost contact or vibrates, else an empty value.
 Number stability_limit_ratio(const DiagnosedRun& run) {
-  const bool vibrates = run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates();
-  return vibrates || buzz(run).value_or(0.0) > 0.1 ? ratio_to_stability_limit(run) : std::nullopt;
+  return looks_unstable(run) ? ratio_to_stability_limit(run) : std::nullopt;
 }
 
 /// Returns the point spacing divided by the spacing at which four points would be in contact. The number of
@@ -242,6 +259,10 @@ constexpr Rule kRules[] = {
     {"step", "largest displacement of the tip in one time step near the surface, divided by the tool's half width", "1",
      1.0, "near the surface the tool moves by up to {} of its half widths in one time step", longest_step,
      "a shorter time.step_s or a slower hand"},
+    {"servo", "1 if hand and device are unstable without contact, by the eigenvalues of their loop", "1", 0.5,
+     "the loop is unstable without contact", unstable_alone,
+     "a shorter delay, a softer servo (device.servo.stiffness_N_per_m) or a hand with more damping; no K helps",
+     unstable_part},
     {"edge",
      "K divided by the linear limit of the loop of device, tool and stiffest contact (without dry friction), in a run "
      "that vibrates, diverges or loses contact",
