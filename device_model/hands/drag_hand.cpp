@@ -182,12 +182,29 @@ Vec3 DragHand::force(double t, const HandView& view) noexcept {
   // moving the full distance would overshoot on curved paths.
   nearest_ += 0.5 * path_->direction(nearest_).dot(x - path_->at(nearest_).position);
   nearest_ = std::clamp(nearest_, 0.0, path_->length());
-  const Vec3 n = path_->normal_near(x, nearest_);
+  find_progress(x, std::min(drag_.speed * t, path_->length()));
+  const Vec3 n = normal_ = path_->normal_near(x, nearest_);
 
   const double s = drag_.speed * t;
   Vec3 pull = drag_.stiffness * (path_->at(s).position - x) - drag_.damping * v;
   if (s < path_->length()) pull += drag_.damping * drag_.speed * path_->direction(s);
   return pull - n.dot(pull) * n - (drag_.force(t) + drag_.normal_damping * n.dot(v)) * n;
+}
+
+/// Sets progress_ for the handle at x and the moving point at arc length s. Moves nearest_ to the leg of the moving
+/// point if that leg is clearly nearer: nearest_ moves along the path only, and cannot turn back with a path that
+/// returns.
+void DragHand::find_progress(const Vec3& x, double s) noexcept {
+  const double on_leg = std::clamp(s + path_->direction(s).dot(x - path_->at(s).position), 0.0, s);
+  const double distance = (x - path_->at(nearest_).position).norm(),
+               distance_on_leg = (x - path_->at(on_leg).position).norm(), radius = path_->radius();
+  if (distance_on_leg < distance - radius) nearest_ = on_leg;
+  progress_ = distance_on_leg <= distance + SurfacePath::spacing(radius) ? on_leg : nearest_;
+}
+
+HandImpedance DragHand::impedance() const noexcept {
+  const Mat3 along = normal_ * normal_.transpose(), across = Mat3::Identity() - along;
+  return {drag_.stiffness * across, drag_.damping * across + drag_.normal_damping * along};
 }
 
 }  // namespace hapbench

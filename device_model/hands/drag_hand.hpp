@@ -54,6 +54,7 @@ class SurfacePath {
   /// comes within about 6 degrees of `direction`.
   static SurfacePath along(const SmoothedSurface& surface, const Vec3& start, const Vec3& direction, double length);
 
+  double radius() const noexcept { return radius_; }
   /// Returns the largest distance between table entries [m], a tenth of the smoothing radius.
   static double spacing(double radius) { return 0.1 * radius; }
 
@@ -113,18 +114,27 @@ class DragHand final : public Hand {
  public:
   DragHand(Drag drag, std::shared_ptr<const SurfacePath> path) : drag_(std::move(drag)), path_(std::move(path)) {}
 
-  void reset() noexcept override { nearest_ = 0.0; }
+  void reset() noexcept override { nearest_ = progress_ = 0.0; }
   Vec3 force(double t, const HandView& view) noexcept override;
+  /// Linearisation with the normal n held constant, without the curvature of the surface.
+  HandImpedance impedance() const noexcept override;
 
   const Drag& drag() const noexcept { return drag_; }
   const SurfacePath& path() const noexcept { return *path_; }
   /// Arc length of the path position nearest to the handle [m], from the last call of force().
   double nearest() const noexcept { return nearest_; }
+  /// Arc length up to which the handle has followed the path [m], from the last call of force(): of the path position
+  /// nearest to the handle. If several legs of the path pass there, the leg of the moving point counts.
+  double progress() const noexcept { return progress_; }
 
  private:
   Drag drag_;
   std::shared_ptr<const SurfacePath> path_;
-  double nearest_ = 0.0;  ///< see nearest() [m]
+  void find_progress(const Vec3& x, double s) noexcept;
+
+  double nearest_ = 0.0;         ///< see nearest() [m]
+  double progress_ = 0.0;        ///< see progress() [m]
+  Vec3 normal_ = Vec3::UnitZ();  ///< n of the last force()
 };
 
 /// Tool orientation of a DragHand: holds the tool's axis at an angle to the normal at the point that moves along

@@ -105,6 +105,9 @@ class ImpedanceHand final : public Hand {
     }
     return stiffness_ * (position - view.handle.position) + damping_ * (velocity - view.handle.velocity);
   }
+  HandImpedance impedance() const noexcept override {
+    return {stiffness_ * Mat3::Identity(), damping_ * Mat3::Identity()};
+  }
 
  private:
   double stiffness_;

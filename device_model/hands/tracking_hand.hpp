@@ -50,6 +50,10 @@ class TrackingHand final : public Hand {
 
   void reset() noexcept override;
   Vec3 force(double t, const HandView& view) noexcept override;
+  /// Linearisation with the intended position held constant; the subject corrects it more slowly than 1 Hz.
+  HandImpedance impedance() const noexcept override {
+    return {subject_.stiffness * Mat3::Identity(), subject_.damping * Mat3::Identity()};
+  }
   const TargetTask* task() const noexcept override { return &task_; }
 
   /// The handle position x_e that the subject intends [m].

@@ -32,42 +32,54 @@ bool is_pair(const LowPassMode& mode) {
   return mode.gain.imag() != 0.0;
 }
 
+/// Returns true if a sampled hand holds the handle.
+bool has_sampled_hand(const SampledLoop& loop) {
+  return loop.sampled_stiffness != 0.0 || loop.sampled_damping != 0.0;
+}
+
 /// Returns motion_rate for an elastic transmission; the state is (x, T v) of the motors, (x, T v) of the handle and
-/// the scaled force.
+/// the scaled forces.
 Eigen::MatrixXd elastic_motion_rate(const SampledLoop& loop, const Transmission& transmission) {
   const double T = loop.period, motor = transmission.motor_share * loop.device.handle_mass,
                handle = loop.moving_mass() - motor, k = transmission.stiffness * T * T, d = transmission.damping * T;
-  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(5, 5);
+  const Eigen::Index n = has_sampled_hand(loop) ? 6 : 5;
+  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(n, n);
   rate(0, 1) = rate(2, 3) = 1.0;
-  rate.row(1) << -k / motor, -(d + loop.device.viscous * T) / motor, k / motor, d / motor, loop.moving_mass() / motor;
-  rate.row(3) << k / handle, d / handle, -(k + loop.hand.stiffness * T * T) / handle,
+  rate.row(1).head(5) << -k / motor, -(d + loop.device.viscous * T) / motor, k / motor, d / motor,
+      loop.moving_mass() / motor;
+  rate.row(3).head(5) << k / handle, d / handle, -(k + loop.hand.stiffness * T * T) / handle,
       -(d + loop.hand.damping * T) / handle, 0.0;
+  if (n == 6) rate(3, 5) = loop.moving_mass() / handle;
   return rate;
 }
 
 /// Returns the matrix A of the motion dz/ds = A z, where s is time in periods, z = (x, T v, T^2/m f) and the force
-/// f is constant. All matrices in this file have dynamic sizes, so that the compiler instantiates the matrix
-/// exponential only once.
+/// f is constant; with a sampled hand, its constant force T^2/m f_hand is the last component. Sizes here and below
+/// are dynamic, so that the compiler instantiates the matrix exponential only once.
 Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
   if (loop.device.transmission) return elastic_motion_rate(loop, *loop.device.transmission);
   const double m = loop.moving_mass(), T = loop.period;
-  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(3, 3);
+  const Eigen::Index n = has_sampled_hand(loop) ? 4 : 3;
+  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(n, n);
   rate(0, 1) = 1.0;
-  rate.row(1) << -loop.hand.stiffness * T * T / m, -loop.total_damping() * T / m, 1.0;
+  rate.row(1).head(3) << -loop.hand.stiffness * T * T / m, -loop.total_damping() * T / m, 1.0;
+  if (n == 4) rate(1, 3) = 1.0;
   return rate;
 }
 
 /// Writes the motion over one period into the rows of the map A that belong to the state components `body`. The
-/// force is `before` for the fraction `fraction` of the period and `after` for the rest; both are row vectors over
-/// the state.
+/// force is `before` for the fraction `fraction` of the period and `after` for the rest. `hand` is the force of a
+/// sampled hand over the whole period, empty without one. The forces are row vectors over the state.
 void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, double fraction, const Eigen::MatrixXd& rate,
-                const Eigen::RowVectorXd& before, const Eigen::RowVectorXd& after) {
+                const Eigen::RowVectorXd& before, const Eigen::RowVectorXd& after, const Eigen::RowVectorXd& hand) {
   const auto n = static_cast<Eigen::Index>(body.size());
   const Eigen::MatrixXd first = (rate * fraction).exp(), second = (rate * (1.0 - fraction)).exp();
   Eigen::MatrixXd moving = Eigen::MatrixXd::Zero(n, A.cols());
   for (Eigen::Index i = 0; i < n; ++i) moving.col(body[static_cast<std::size_t>(i)]) = first.col(i).head(n);
   if (fraction > 0.0) moving += first.col(n).head(n) * before;
-  const Eigen::MatrixXd next = second.topLeftCorner(n, n) * moving + second.col(n).head(n) * after;
+  if (hand.size() > 0) moving += first.col(n + 1).head(n) * hand;
+  Eigen::MatrixXd next = second.topLeftCorner(n, n) * moving + second.col(n).head(n) * after;
+  if (hand.size() > 0) next += second.col(n + 1).head(n) * hand;
   for (Eigen::Index i = 0; i < n; ++i) A.row(body[static_cast<std::size_t>(i)]) = next.row(i);
 }
 
@@ -142,7 +154,12 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
   const Eigen::RowVectorXd before = part > 0.0 ? force_of(whole + 1) : Eigen::RowVectorXd();
   std::vector<Eigen::Index> body = {kPosition, kVelocity};
   if (device.transmission) body.insert(body.end(), {n - 2, n - 1});
-  add_motion(A, body, part, motion_rate(*this), before, force_of(whole));
+  Eigen::RowVectorXd sampled_hand;
+  if (has_sampled_hand(*this)) {
+    const Eigen::Index handle = device.transmission ? n - 2 : Eigen::Index{kPosition};
+    sampled_hand = -(sampled_stiffness * T * T / m) * unit(handle) - (sampled_damping * T / m) * unit(handle + 1);
+  }
+  add_motion(A, body, part, motion_rate(*this), before, force_of(whole), sampled_hand);
   for (Eigen::Index age = 0; age < kept; ++age) A.row(forces + age) = force_of(age);
   return A;
 }
@@ -163,6 +180,7 @@ std::span<const AttachedHand> typical_hands() {
 
 double worst_hand_stability_limit(SampledLoop loop) {
   double smallest = kInfinity;
+  loop.sampled_stiffness = loop.sampled_damping = 0.0;
   for (const AttachedHand& hand : typical_hands()) {
     loop.hand = hand;
     smallest = std::min(smallest, linear_stability_limit(loop));
@@ -186,34 +204,170 @@ static Eigen::MatrixXd mechanics_step(const HandleMechanicsConfig& m, double dt)
   return (Eigen::MatrixXd::Identity(4, 4) - 0.5 * dt * rate).partialPivLu().solve(right);
 }
 
-Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
-  // Indices of the state.
+/// Motion of the virtual mass over one step in d dimensions: the maps of its state (x, v) and of a held force [N].
+struct ToolStep {
+  Eigen::MatrixXd state;  ///< 2 d x 2 d
+  Eigen::MatrixXd force;  ///< 2 d x d
+};
+
+/// Returns the state matrix of an admittance device in d dimensions, with d components for each component of
+/// AdmittanceLoop::state_matrix(). `hand_stiffness`, `hand_damping`: of the hand. `input`: derivative of the force
+/// that drives the virtual mass with respect to the hand's force. All three are d x d.
+static Eigen::MatrixXd admittance_matrix(const AdmittanceLoop& loop, const ToolStep& tool,
+                                         const Eigen::MatrixXd& hand_stiffness, const Eigen::MatrixXd& hand_damping,
+                                         const Eigen::MatrixXd& input) {
+  // Indices of the state, in blocks of d.
   enum { kTool, kToolVelocity, kCarriage, kCarriageVelocity, kHandle, kHandleVelocity, kCommands };
-  const auto delay = static_cast<Eigen::Index>(servo.delay);
-  const Eigen::Index n = kCommands + delay;
-  const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
+  const auto delay = static_cast<Eigen::Index>(loop.servo.delay);
+  const Eigen::Index d = input.rows(), n = kCommands + delay;
+  const auto unit = [n, d](Eigen::Index i) -> Eigen::MatrixXd {
+    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(d, n * d);
+    block.middleCols(i * d, d).setIdentity();
+    return block;
+  };
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n * d, n * d);
+  const auto rows = [&A, d](Eigen::Index i) { return A.middleRows(i * d, d); };
 
   // Virtual mass under the forces of hand and wall.
-  const Eigen::RowVectorXd hand = -hand_stiffness * unit(kHandle) - hand_damping * unit(kHandleVelocity);
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
-  A.block<2, 2>(kTool, kTool) = tool.step_matrix();
-  A.middleRows<2>(kTool) += tool.input_step() * hand;
+  const Eigen::MatrixXd hand = -hand_stiffness * unit(kHandle) - hand_damping * unit(kHandleVelocity);
+  A.block(kTool * d, kTool * d, 2 * d, 2 * d) = tool.state;
+  A.middleRows(kTool * d, 2 * d) += tool.force * (input * hand);
 
   // Carriage and handle under the delayed servo force and the hand's force.
-  const Eigen::RowVectorXd command = servo.stiffness * (A.row(kTool) - unit(kCarriage)) +
-                                     servo.damping * (A.row(kToolVelocity) - unit(kCarriageVelocity));
-  const Eigen::RowVectorXd actuator = delay == 0 ? command : unit(kCommands + delay - 1);
-  const Eigen::MatrixXd mechanics_of = mechanics_step(mechanics, tool.dt);
-  A.block<4, 4>(kCarriage, kCarriage) = mechanics_of.leftCols(4);
-  A.middleRows<4>(kCarriage) += mechanics_of.col(4) * actuator + mechanics_of.col(5) * hand;
-
-  for (Eigen::Index i = 0; i < delay; ++i) A.row(kCommands + i) = i == 0 ? command : unit(kCommands + i - 1);
+  const Eigen::MatrixXd command = loop.servo.stiffness * (rows(kTool) - unit(kCarriage)) +
+                                  loop.servo.damping * (rows(kToolVelocity) - unit(kCarriageVelocity));
+  const Eigen::MatrixXd actuator = delay == 0 ? command : unit(kCommands + delay - 1);
+  const Eigen::MatrixXd mechanics = mechanics_step(loop.mechanics, loop.tool.dt);
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    for (Eigen::Index j = 0; j < 4; ++j) rows(kCarriage + i) += mechanics(i, j) * unit(kCarriage + j);
+    rows(kCarriage + i) += mechanics(i, 4) * actuator + mechanics(i, 5) * hand;
+  }
+  for (Eigen::Index i = 0; i < delay; ++i) rows(kCommands + i) = i == 0 ? command : unit(kCommands + i - 1);
 
   // Scale all components to metres.
-  Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
-  for (const Eigen::Index velocity : {kToolVelocity, kCarriageVelocity, kHandleVelocity}) scale[velocity] = tool.dt;
-  scale.tail(delay).setConstant(tool.dt * tool.dt / tool.M);
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(n * d);
+  for (const Eigen::Index velocity : {kToolVelocity, kCarriageVelocity, kHandleVelocity})
+    scale.segment(velocity * d, d).setConstant(loop.tool.dt);
+  scale.tail(delay * d).setConstant(loop.tool.dt * loop.tool.dt / loop.tool.M);
   return scale.asDiagonal() * A * scale.cwiseInverse().asDiagonal();
+}
+
+Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
+  const auto scalar = [](double value) -> Eigen::MatrixXd { return Eigen::MatrixXd::Constant(1, 1, value); };
+  return admittance_matrix(*this, {tool.step_matrix(), tool.input_step()}, scalar(hand_stiffness), scalar(hand_damping),
+                           scalar(1.0));
+}
+
+namespace {
+
+/// Returns the Kronecker product of A with a 3 x 3 matrix: three components for each component of the state.
+Eigen::MatrixXd in_three_axes(const Eigen::MatrixXd& A, const Mat3& of_axes) {
+  Eigen::MatrixXd product(3 * A.rows(), 3 * A.cols());
+  for (Eigen::Index i = 0; i < A.rows(); ++i)
+    for (Eigen::Index j = 0; j < A.cols(); ++j) product.block<3, 3>(3 * i, 3 * j) = A(i, j) * of_axes;
+  return product;
+}
+
+/// Returns the map of one step of the virtual mass under a linear contact.
+ToolStep tool_step(const SpringDamper& tool, const LinearContact& contact) {
+  const Eigen::Matrix<double, 6, 9> map = step_map(*tool.integrator, tool.M, tool.dt, contact.rendered);
+  return {map.leftCols<6>(), map.rightCols<3>()};
+}
+
+/// Returns the rows and columns of a state matrix in three dimensions that belong to two axes.
+Eigen::MatrixXd part_of_axes(const Eigen::MatrixXd& A, Eigen::Index row_axis, Eigen::Index column_axis) {
+  const Eigen::Index n = A.rows() / 3;
+  Eigen::MatrixXd part(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) part(i, j) = A(3 * i + row_axis, 3 * j + column_axis);
+  return part;
+}
+
+/// Returns true if axes drive each other in both directions, directly or through the third axis.
+bool has_feedback_between_axes(const Eigen::MatrixXd& A) {
+  constexpr double kNegligible = 1e-9;  // the derivatives of a rendered force are known to about 1e-8
+  Eigen::Matrix3i drives;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    for (Eigen::Index j = 0; j < 3; ++j)
+      drives(i, j) = i != j && part_of_axes(A, i, j).cwiseAbs().maxCoeff() > kNegligible;
+  const Eigen::Matrix3i twice = drives * drives;
+  return twice.trace() > 0 || (twice * drives).trace() > 0;
+}
+
+/// Returns matrices whose eigenvalues are those of A, a state matrix with three components for each component of the
+/// state of one axis: one matrix for each axis in a frame without feedback between the axes, otherwise A itself.
+std::vector<Eigen::MatrixXd> by_axes(const Eigen::MatrixXd& A, const LinearContact& contact) {
+  constexpr Eigen::Index kMaxRows = 300;
+  const auto& [rendered, hand, input] = contact;
+  // Frames to try: the world's, and the principal axes of the contact and of the hand.
+  std::vector<Mat3> frames = {Mat3::Identity()};
+  for (const Mat3& M : {rendered.stiffness, rendered.damping, hand.damping})
+    frames.push_back(Eigen::SelfAdjointEigenSolver<Mat3>(M * M.transpose()).eigenvectors());
+  for (const Mat3& Q : frames) {
+    const Eigen::MatrixXd rotation = in_three_axes(Eigen::MatrixXd::Identity(A.rows() / 3, A.rows() / 3), Q);
+    const Eigen::MatrixXd rotated = rotation.transpose() * A * rotation;
+    if (has_feedback_between_axes(rotated)) continue;
+    std::vector<Eigen::MatrixXd> axes;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const auto acts = [&Q, i](const Mat3& M) {
+        return std::abs((Q.transpose() * M * Q)(i, i)) > 1e-9 * M.cwiseAbs().maxCoeff();
+      };
+      if (acts(rendered.stiffness) || acts(rendered.damping) || acts(hand.stiffness) || acts(hand.damping))
+        axes.push_back(part_of_axes(rotated, i, i));
+    }
+    return axes;
+  }
+  if (A.rows() > kMaxRows) return {};
+  return {A};
+}
+
+}  // namespace
+
+bool is_stable_loop(const std::vector<Eigen::MatrixXd>& loop) {
+  constexpr double kNearOne = 1e-5, kTolerance = 1e-6, kRounding = 1e-13;
+  return std::ranges::all_of(loop, [](const Eigen::MatrixXd& A) {
+    const Eigen::VectorXcd all = eigenvalues(A);
+    return std::ranges::all_of(all, [](const std::complex<double>& z) {
+      return std::sqrt(std::norm(z)) <= 1.0 + (std::norm(z - 1.0) < kNearOne * kNearOne ? kTolerance : kRounding);
+    });
+  });
+}
+
+std::vector<Eigen::MatrixXd> contact_loop(const SampledLoop& loop, const LinearContact& contact) {
+  // The map is linear in the four coefficients of wall and sampled hand. `unit` makes their effect comparable to 1.
+  const double unit = loop.moving_mass() / (loop.period * loop.period), damping_unit = unit * loop.period;
+  const auto map = [&loop](double K, double B, double k, double c) {
+    SampledLoop at = loop;
+    at.stiffness = K;
+    at.wall_damping = B;
+    at.sampled_stiffness = k;
+    at.sampled_damping = c;
+    return at.state_matrix();
+  };
+  const Eigen::MatrixXd free = map(0.0, 0.0, 0.0, 0.0);
+  Eigen::MatrixXd A = in_three_axes(free, Mat3::Identity());
+  A += in_three_axes(map(unit, 0.0, 0.0, 0.0) - free, contact.rendered.stiffness / unit);
+  A += in_three_axes(map(0.0, damping_unit, 0.0, 0.0) - free, contact.rendered.damping / damping_unit);
+  A += in_three_axes(map(0.0, 0.0, unit, 0.0) - free, contact.hand.stiffness / unit);
+  A += in_three_axes(map(0.0, 0.0, 0.0, damping_unit) - free, contact.hand.damping / damping_unit);
+  return by_axes(A, contact);
+}
+
+std::vector<Eigen::MatrixXd> contact_loop(const AdmittanceLoop& loop, const LinearContact& contact) {
+  return by_axes(admittance_matrix(loop, tool_step(loop.tool, contact), contact.hand.stiffness, contact.hand.damping,
+                                   contact.input),
+                 contact);
+}
+
+std::vector<Eigen::MatrixXd> contact_loop(const SpringDamper& tool, const LinearContact& contact) {
+  const auto [state, force] = tool_step(tool, contact);
+  Eigen::MatrixXd hand(3, 6);
+  hand << -contact.hand.stiffness, -contact.hand.damping;
+  Eigen::MatrixXd A = state + force * (contact.input * hand);
+  // Scale the velocities to metres.
+  A.topRightCorner<3, 3>() /= tool.dt;
+  A.bottomLeftCorner<3, 3>() *= tool.dt;
+  return by_axes(A, contact);
 }
 
 namespace {
@@ -294,7 +448,8 @@ std::optional<double> gil_hulin(const SampledLoop& loop) {
   constexpr double kLowDamping = 0.15;
   const double damping = loop.total_damping() + loop.wall_damping;
   const double delay = loop.period * (1.0 + loop.device.delay_samples);
-  if (loop.device.transmission || !differentiates(loop) || damping * delay / loop.moving_mass() > kLowDamping)
+  if (loop.device.transmission || has_sampled_hand(loop) || !differentiates(loop) ||
+      damping * delay / loop.moving_mass() > kLowDamping)
     return std::nullopt;
   return std::max(0.0, damping / (loop.period * (0.5 + loop.device.delay_samples)));
 }
@@ -307,7 +462,7 @@ std::optional<double> abbott_okamura(const SampledLoop& loop) {
 }
 
 std::optional<double> undamped_handle(const SampledLoop& loop) {
-  const bool bare = loop.total_damping() == 0.0 && loop.hand.stiffness == 0.0;
+  const bool bare = loop.total_damping() == 0.0 && loop.hand.stiffness == 0.0 && !has_sampled_hand(loop);
   if (loop.device.transmission || !bare || loop.device.delay_samples != 0.0 || !differentiates(loop))
     return std::nullopt;
   const double m = loop.moving_mass(), T = loop.period, beta = loop.wall_damping * T / m;

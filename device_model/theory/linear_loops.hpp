@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "device_model/admittance_device.hpp"
 #include "device_model/impedance_device.hpp"
@@ -58,12 +59,17 @@ double first_stability_limit(double lowest, double highest, StepMatrix step_matr
 /// is y' after the position filter, and F is the low-pass of the velocity filter. The wall acts for positive and
 /// negative y (bilateral contact). With an elastic transmission, y, b and the force belong to the motors, and the
 /// hand to the handle, a second mass.
+///
+/// Two kinds of hands can hold the handle. An attached hand moves with the handle between samples. A sampled hand
+/// renders the force -k x_k - c v_k of the handle's true position and velocity, held over the period, without delay.
 struct SampledLoop {
-  ImpedanceDeviceConfig device;  ///< contains m, b, d and the filters
-  AttachedHand hand;             ///< all zero: no hand
-  double period = 0.001;         ///< T [s]
-  double stiffness = 0.0;        ///< K of the wall [N/m]
-  double wall_damping = 0.0;     ///< B of the wall [N s/m]
+  ImpedanceDeviceConfig device;    ///< contains m, b, d and the filters
+  AttachedHand hand;               ///< all zero: no attached hand
+  double sampled_stiffness = 0.0;  ///< k of the sampled hand [N/m]
+  double sampled_damping = 0.0;    ///< c of the sampled hand [N s/m]
+  double period = 0.001;           ///< T [s]
+  double stiffness = 0.0;          ///< K of the wall [N/m]
+  double wall_damping = 0.0;       ///< B of the wall [N s/m]
 
   double moving_mass() const { return device.handle_mass + hand.mass; }   ///< mass of handle and hand [kg]
   double total_damping() const { return device.viscous + hand.damping; }  ///< damping of handle and hand [N s/m]
@@ -126,6 +132,33 @@ struct AdmittanceLoop {
 
 /// Largest delay for which eigenvalues are computed [samples]; with longer delays they would take seconds.
 inline constexpr double kMaxLoopDelay = 200.0;
+
+/// Linearisation of a tool in contact that a hand holds, in three dimensions: stiffness and damping of the rendered
+/// force and of the hand. The axes may be coupled.
+struct LinearContact {
+  LinearForce rendered;  ///< derivatives of the rendered force with respect to position and velocity of the tool
+  HandImpedance hand;    ///< sampled hand
+  /// Derivative of the force that drives a virtual mass with respect to the hand's force. Not the identity if the
+  /// input-force limiter acts.
+  Mat3 input = Mat3::Identity();
+};
+
+/// Returns the matrices that map the state at one step to the state at the next, for the loop of a device in three
+/// dimensions. Their eigenvalues together are the eigenvalues of the loop. One matrix for each axis if no axis drives
+/// another in both directions, otherwise a single matrix for all axes. Omits axes in which neither contact nor hand
+/// acts. All components of the state are in metres. Returns an empty list if the axes are coupled and the matrix would
+/// be larger than 300 x 300, which takes a second.
+///
+/// The stiffness and damping of the wall, of the sampled hand and of the tool in the loop itself are ignored.
+std::vector<Eigen::MatrixXd> contact_loop(const SampledLoop& loop, const LinearContact& contact);
+std::vector<Eigen::MatrixXd> contact_loop(const AdmittanceLoop& loop, const LinearContact& contact);
+/// The loop without a device: the hand's force drives the virtual mass of `tool`.
+std::vector<Eigen::MatrixXd> contact_loop(const SpringDamper& tool, const LinearContact& contact);
+
+/// Returns true if the matrices of contact_loop() have no eigenvalue outside the unit circle by more than rounding.
+/// Eigenvalues within 1e-5 of 1 may be outside by 1e-6: they belong to a tool that moves freely in some direction,
+/// whose double eigenvalue 1 is computed to the square root of rounding only.
+bool is_stable_loop(const std::vector<Eigen::MatrixXd>& loop);
 
 /// Linear loop of device, hand and wall, valid while nothing saturates and the contact lasts.
 struct DeviceLoop {

@@ -77,10 +77,10 @@ std::optional<HighPass> vibration_filter(double dt) {
 void Vibration::add(std::uint64_t row, const Vec3& signal, bool counts) noexcept {
   if (!high_pass_) return;
   if (row == 0) high_pass_->settle_at(signal);
-  const double squared = high_pass_->filter(signal).squaredNorm();
+  last_square_ = high_pass_->filter(signal).squaredNorm();
   if (!counts) return;
   ++rows_;
-  sum_ += squared;
+  sum_ += last_square_;
 }
 
 std::optional<double> Vibration::mean_square(std::optional<std::uint64_t> rows) const noexcept {
@@ -95,7 +95,8 @@ std::optional<double> Vibration::rms(std::optional<std::uint64_t> rows) const no
 
 void LastQuarterVibration::begin() noexcept {
   of_earlier_trials_ = value();
-  quarter_ = 0;
+  quarter_ = rows_ = 0;
+  squares_.clear();
   vibration_.restart_count();
 }
 
@@ -104,10 +105,26 @@ void LastQuarterVibration::add(std::uint64_t step, const Vec3& velocity) noexcep
   const std::uint64_t quarter = step * 4 / steps_;
   if (quarter != std::exchange(quarter_, quarter)) vibration_.restart_count();
   vibration_.add(step, velocity);
+  // Keep the squares of the last quarter of any shorter run. The memory was reserved in the constructor.
+  if (squares_.size() < squares_.capacity())
+    squares_.push_back(vibration_.last_square());
+  else
+    squares_[rows_ % squares_.size()] = vibration_.last_square();
+  ++rows_;
+}
+
+std::optional<double> LastQuarterVibration::of_trial() const noexcept {
+  if (rows_ == steps_ || rows_ == 0) return vibration_.rms();
+  // The run ended early: sum over its own last quarter, the rows i with 4 i >= 3 rows_.
+  const std::uint64_t from = (3 * rows_ + 3) / 4;
+  double sum = 0.0;
+  for (std::uint64_t i = from; i < rows_; ++i) sum += squares_[i % squares_.size()];
+  return if_any(vibration_.rms().has_value() && from < rows_,
+                std::sqrt(sum / static_cast<double>(std::max<std::uint64_t>(1, rows_ - from))));
 }
 
 std::optional<double> LastQuarterVibration::value() const noexcept {
-  return std::max(of_earlier_trials_, vibration_.rms());  // an empty optional compares less than any number
+  return std::max(of_earlier_trials_, of_trial());  // an empty optional compares less than any number
 }
 
 void EvaluationWindow::touch(std::uint64_t step) noexcept {

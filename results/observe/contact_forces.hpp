@@ -80,6 +80,8 @@ class Vibration {
   /// Adds step number `row` of a trial; row 0 sets the filter to the steady state of `signal`. If `counts` is
   /// false, the sample is filtered but not added to the mean.
   void add(std::uint64_t row, const Vec3& signal, bool counts = true) noexcept;
+  /// Returns the squared norm of the last sample after the filter; 0 at 60 Hz or less.
+  double last_square() const noexcept { return last_square_; }
   /// Restarts the mean, but keeps the filter's state.
   void restart_count() noexcept { rows_ = 0, sum_ = 0.0; }
   /// Return the mean square and its root. The sum is divided by the number of counted samples, or by `rows` if given.
@@ -91,22 +93,30 @@ class Vibration {
   std::optional<HighPass> high_pass_;
   std::uint64_t rows_ = 0;
   double sum_ = 0.0;
+  double last_square_ = 0.0;
 };
 
-/// Root mean square of the handle's velocity above kVibrationCutoff in the last quarter of a run [m/s].
+/// Root mean square of the handle's velocity above kVibrationCutoff in the last quarter of a run [m/s]. Of a run that
+/// ends early, this is the last quarter of the steps that were made. Uses two bytes for each planned step.
 class LastQuarterVibration {
  public:
-  /// The run has `steps` steps of `dt` seconds.
-  LastQuarterVibration(std::uint64_t steps, double dt) : steps_(steps), vibration_(dt) {}
+  /// The run has at most `steps` steps of `dt` seconds. Allocates here only.
+  LastQuarterVibration(std::uint64_t steps, double dt) : steps_(steps), vibration_(dt) {
+    if (steps > 0) squares_.reserve(steps / 4 + 1);
+  }
   /// Begins the next trial of the run.
   void begin() noexcept;
   void add(std::uint64_t step, const Vec3& velocity) noexcept;
-  /// Returns the root mean square over the current quarter of the run; after several trials, the largest of their
-  /// values. Returns nothing at sampling rates of 60 Hz or less, and nothing without samples.
+  /// Returns the root mean square over the last quarter of the steps so far; the largest value if there were several
+  /// trials. Nothing at 60 Hz or less, and nothing without samples.
   std::optional<double> value() const noexcept;
 
  private:
+  std::optional<double> of_trial() const noexcept;
+
   std::uint64_t steps_, quarter_ = 0;
+  std::uint64_t rows_ = 0;       ///< steps of this trial so far
+  std::vector<double> squares_;  ///< ring buffer of squared velocities, a quarter of the planned steps long
   Vibration vibration_;
   std::optional<double> of_earlier_trials_;
 };

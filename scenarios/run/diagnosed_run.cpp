@@ -40,13 +40,17 @@ Number ratio_to_stability_limit(const DiagnosedRun& run) {
   return rounded_to_digits(K / std::max(kSmallestStiffness * K, limit), 6);
 }
 
-/// Returns ratio_to_stability_limit() if the run diverged, lost contact or vibrates, else an empty value. Divergence
-/// that a law or a contact module reports as its own fault is not a matter of the loop.
+/// Returns true if a run vibrates, diverges or loses contact, as it does with an unstable loop. Divergence that a law
+/// or a contact module reports as its own fault is not a matter of the loop.
+bool looks_unstable(const DiagnosedRun& run) {
+  if (!run.result.end.divergence.fault.empty()) return false;
+  return run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates() || buzz(run).value_or(0.0) > kMaxBuzz ||
+         shake(run).value_or(0.0) > kMaxShake;
+}
+
+/// Returns ratio_to_stability_limit() if the run looks unstable, else an empty value.
 Number ratio_in_vibration(const DiagnosedRun& run) {
-  if (!run.result.end.divergence.fault.empty()) return std::nullopt;
-  const bool vibrates = run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates();
-  if (!vibrates && !(buzz(run).value_or(0.0) > kMaxBuzz) && !(shake(run).value_or(0.0) > kMaxShake))
-    return std::nullopt;
+  if (!looks_unstable(run)) return std::nullopt;
   if (!run.ratio_to_limit) run.ratio_to_limit = ratio_to_stability_limit(run);
   return *run.ratio_to_limit;
 }
@@ -126,9 +130,14 @@ Number stability_limit_ratio(const DiagnosedRun& run) {
   return ratio && !is_unstable_at_any_stiffness(*ratio) ? ratio : std::nullopt;
 }
 
+Number unstable_alone(const DiagnosedRun& run) {
+  if (!run.is_free() || !looks_unstable(run)) return std::nullopt;
+  return unstable_without_wall(run.scenario()).empty() ? Number(std::nullopt) : Number(1.0);
+}
+
 Number unstable_loop(const DiagnosedRun& run) {
   const Number ratio = ratio_in_vibration(run);
-  return ratio && is_unstable_at_any_stiffness(*ratio) ? Number(1.0) : std::nullopt;
+  return ratio && is_unstable_at_any_stiffness(*ratio) && !unstable_alone(run) ? Number(1.0) : std::nullopt;
 }
 
 Number coarseness(const DiagnosedRun& run) {

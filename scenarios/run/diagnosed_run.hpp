@@ -82,8 +82,11 @@ Number chatter(const DiagnosedRun& run);
 /// Returns K divided by the largest stable K of the linear loop in contact, if the run diverged, lost contact or
 /// vibrates. Empty without a loop, and if the loop is unstable at any K (unstable_loop()). Rounded to six digits.
 Number stability_limit_ratio(const DiagnosedRun& run);
-/// Returns 1 if the linear loop is unstable even with a stiffness of almost zero, under the conditions of
+/// Returns 1 if hand and device are unstable without contact by the eigenvalues of their loop, under the conditions of
 /// stability_limit_ratio().
+Number unstable_alone(const DiagnosedRun& run);
+/// Returns 1 if the linear loop with a contact is unstable even with a stiffness of almost zero, under the conditions
+/// of stability_limit_ratio().
 Number unstable_loop(const DiagnosedRun& run);
 /// Returns the point spacing divided by the spacing at which four points would be in contact. The number of
 /// contacts is proportional to 1 / spacing^2. Empty if the tip moved less than ten spacings in contact.

@@ -7,6 +7,7 @@
 #include "scenarios/run/expectations.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_distances.hpp"
+#include "scenarios/run/scene_loop.hpp"
 
 namespace hapbench {
 namespace {
@@ -51,6 +52,9 @@ constexpr Rule kRules[] = {
     {"step", "largest displacement of the tip in one time step near the surface, divided by the tool's half width", "1",
      1.0, "near the surface the tool moves by up to {} of its half widths in one time step", longest_step,
      against_long_steps},
+    {"servo", "1 if hand and device are unstable without contact, by the eigenvalues of their loop", "1", 0.5,
+     "the loop is unstable without contact", unstable_alone, against_unstable_servo,
+     [](const DiagnosedRun& r) { return ": " + unstable_without_wall(r.scenario()); }},
     {"edge",
      "K divided by the linear limit of the loop of device, tool and stiffest contact (without dry friction), in a run "
      "that vibrates, diverges or loses contact",

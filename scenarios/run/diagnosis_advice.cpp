@@ -158,6 +158,10 @@ std::string against_unstable_stiffness(const DiagnosedRun& run) {
   return either(remedies) + "; \"hapbench tune\" finds a stable setting";
 }
 
+std::string against_unstable_servo(const DiagnosedRun&) {
+  return "a shorter delay, a softer servo (device.servo.stiffness_N_per_m) or a hand with more damping; no K helps";
+}
+
 std::string against_unstable_loop(const DiagnosedRun& run) {
   std::vector<std::string> remedies = {"a shorter time.step_s", "a smaller " + damping_field(run.scenario().rendering)};
   if (std::holds_alternative<AdmittanceDeviceConfig>(run.scenario().device))

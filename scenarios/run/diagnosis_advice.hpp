@@ -15,6 +15,7 @@ std::string against_loss(const DiagnosedRun& run);
 std::string against_standstill(const DiagnosedRun& run);
 std::string against_long_steps(const DiagnosedRun& run);
 std::string against_unstable_stiffness(const DiagnosedRun& run);
+std::string against_unstable_servo(const DiagnosedRun& run);
 std::string against_unstable_loop(const DiagnosedRun& run);
 std::string against_buzz(const DiagnosedRun& run);
 std::string against_pops(const DiagnosedRun& run);

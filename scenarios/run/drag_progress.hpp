@@ -16,8 +16,8 @@ class DragProgress {
   /// `hand` must outlive this object. `width`: width of the tool [m]; `duration`: duration of the run [s].
   DragProgress(const DragHand& hand, double width, double duration);
 
-  /// Adds a step at `time` [s].
-  void add(double time) noexcept;
+  /// Adds a step at `time` [s] with the tool at `position` [m].
+  void add(double time, const Vec3& position) noexcept;
 
   /// Returns the interval in which the tool stood still until the end of the run; empty if it did not. The tool
   /// stands still if, while the target point advances by one tool width, the tool advances by less than a tenth of
@@ -25,15 +25,16 @@ class DragProgress {
   std::optional<Stuck> stuck() const;
   double progress() const { return now_.tool; }           ///< largest progress of the tool along the path [m]
   double target_progress() const { return now_.target; }  ///< progress of the target point along the path [m]
-  /// Returns the lag of the tool behind the target point at the end [m]. Empty unless the lag exceeds each of these
-  /// three lengths: a tenth of the target's progress, half the tool width, and twice the lag at half of the path. The
-  /// last condition excludes a tool that friction holds back at a constant lag.
+  /// Returns the lag of the tool along the path behind the target point at the end [m]. Empty unless the lag exceeds a
+  /// tenth of the target's progress, half the tool width, and twice the lag at half of the path. The last condition
+  /// excludes a tool that friction holds back at a constant lag.
   std::optional<double> left_behind() const;
 
  private:
   /// Progress of target point and tool along the path at one time.
   struct Sample {
     double time = 0.0, target = 0.0, tool = 0.0;
+    Vec3 position = Vec3::Zero();  ///< of the tool [m]
   };
   static constexpr std::size_t kSamples = 4;
   const DragHand& hand_;

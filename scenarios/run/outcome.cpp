@@ -61,7 +61,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     if (record.colliding > 0) last_contact_ = record.time;
     if (inside_) inside_->on_step(record);
     if (approach_) approach_->add(record, !last_contact_);
-    if (progress_) progress_->add(record.time);
+    if (progress_) progress_->add(record.time, record.tool.pose.position);
     if (standstill_) standstill_->add(record);
   }
 

@@ -20,10 +20,19 @@ class LastTensor final : public Observer {
   Mat3 S = Mat3::Zero();
 };
 
-/// Returns true for a hand whose force does not depend on the handle's motion.
-bool force_ignores_handle(const HandFields& hand) {
-  return std::holds_alternative<NoHandFields>(hand) || std::holds_alternative<ForceHandFields>(hand) ||
-         std::holds_alternative<PushHandFields>(hand);
+/// Stiffness [N/m] and damping [N s/m] of a sampled hand along one axis.
+struct SampledHand {
+  double stiffness = 0.0, damping = 0.0;
+};
+
+/// Returns the sampled hand along the normal of the surface; zero for a hand whose force does not depend on the handle,
+/// and for a hand that is attached to the handle. A subject's intended position is held constant.
+SampledHand sampled_hand(const Scenario& scenario) {
+  if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) return {hand->stiffness, hand->damping};
+  if (const auto* drag = std::get_if<DragHandFields>(&scenario.hand)) return {0.0, drag->drag.normal_damping};
+  if (const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand))
+    return {tracking->subjects[0].stiffness, tracking->subjects[0].damping};
+  return {};
 }
 
 /// Returns the loop of an impedance device at a wall of stiffness lambda K and damping lambda B.
@@ -36,8 +45,9 @@ DeviceLoop impedance_loop(const Scenario& scenario, const ImpedanceDeviceConfig&
   loop.wall_damping = lambda * normal_damping(scenario.rendering);
   if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&scenario.hand))
     loop.hand = {hand->mass, hand->spring.stiffness, hand->spring.damping};
-  else if (!force_ignores_handle(scenario.hand))
-    result.no_theory = "the hand's force is sampled";
+  const SampledHand hand = sampled_hand(scenario);
+  loop.sampled_stiffness = hand.stiffness;
+  loop.sampled_damping = hand.damping;
   if (const char* nonlinearity = loop.nonlinearity()) result.no_theory = nonlinearity;
   return result;
 }
@@ -49,12 +59,9 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
   loop.tool = tool_on_spring(scenario, lambda);
   loop.servo = device.servo;
   loop.mechanics = device.mechanics;
-  if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
-    loop.hand_stiffness = hand->stiffness;
-    loop.hand_damping = hand->damping;
-  } else if (!force_ignores_handle(scenario.hand)) {
-    result.no_theory = "the hand is not a linear spring and damper";
-  }
+  const SampledHand hand = sampled_hand(scenario);
+  loop.hand_stiffness = hand.stiffness;
+  loop.hand_damping = hand.damping;
   return result;
 }
 
@@ -160,6 +167,12 @@ std::string unmodelled_fields(const Scenario& scenario) {
   return unknown;
 }
 
+Eigen::Matrix2d step_matrix_with_hand(const Scenario& scenario, double lambda) {
+  const SpringDamper tool = tool_on_spring(scenario, lambda);
+  const SampledHand hand = sampled_hand(scenario);
+  return tool.step_matrix() - tool.input_step() * Eigen::RowVector2d(hand.stiffness, hand.damping);
+}
+
 DeviceLoop device_loop(const Scenario& scenario, double lambda) {
   const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
@@ -172,10 +185,48 @@ DeviceLoop device_loop(const Scenario& scenario, double lambda) {
   return result;
 }
 
+bool has_linear_loop(const Scenario& scenario) {
+  return !has_device(scenario) || (delay_of(scenario) <= kMaxLoopDelay && unmodelled_fields(scenario).empty());
+}
+
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda) {
-  if (!has_device(scenario)) return tool_on_spring(scenario, lambda).step_matrix();
-  if (delay_of(scenario) > kMaxLoopDelay || !unmodelled_fields(scenario).empty()) return {};
+  if (!has_device(scenario)) return step_matrix_with_hand(scenario, lambda);
+  if (!has_linear_loop(scenario)) return {};
   return device_loop(scenario, lambda).state_matrix();
+}
+
+static std::vector<Eigen::MatrixXd> loop_with(const Scenario& scenario, const LinearContact& contact) {
+  if (!has_device(scenario)) return contact_loop(tool_on_spring(scenario, 1.0), contact);
+  return std::visit([&contact](const auto& loop) { return contact_loop(loop, contact); },
+                    device_loop(scenario, 1.0).loop);
+}
+
+std::vector<Eigen::MatrixXd> contact_loop(const Scenario& scenario, const LinearContact& contact) {
+  if (!has_linear_loop(scenario)) return {};
+  std::vector<Eigen::MatrixXd> loop = loop_with(scenario, contact);
+  if (loop.empty() || !scenario.rendering.dry_friction) return loop;
+  // Add the loop across the stiffest direction, along the surface, while dry friction holds the tool there.
+  const Scenario stuck = stuck_scene(scenario);
+  const Mat3& K = contact.rendered.stiffness;
+  const Vec3 normal = Eigen::SelfAdjointEigenSolver<Mat3>(K * K.transpose()).eigenvectors().col(2);
+  const Mat3 along = Mat3::Identity() - normal * normal.transpose();
+  LinearContact held = contact;
+  held.rendered.stiffness = stuck.rendering.stiffness * along;
+  held.rendered.damping = stuck.rendering.damping.value_or(0.0) * along;
+  held.rendered.assumed = {held.rendered.stiffness, held.rendered.damping};
+  const std::vector<Eigen::MatrixXd> more = loop_with(stuck, held);
+  loop.insert(loop.end(), more.begin(), more.end());
+  return loop;
+}
+
+std::string unstable_without_wall(const Scenario& scenario) {
+  if (!has_linear_loop(scenario)) return "";
+  Scenario alone = scenario;
+  alone.rendering.stiffness = 0.0;
+  alone.rendering.damping = 0.0;
+  if (is_stable_loop({contact_step_matrix(alone, 1.0)})) return "";
+  alone.hand = NoHandFields{};
+  return is_stable_loop({contact_step_matrix(alone, 1.0)}) ? "hand and device" : "the device's servo";
 }
 
 std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_step_matrices(const Scenario& scenario, double lambda,
@@ -189,6 +240,7 @@ std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_step_matrices(const
   const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
   if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
   SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);
+  loop.sampled_stiffness = loop.sampled_damping = 0.0;
   for (const AttachedHand& hand : typical_hands()) {
     loop.hand = hand;
     all.emplace_back(

@@ -51,9 +51,26 @@ inline const char* delay_path(const Scenario& scenario) {
   return has_servo ? "device.servo.delay_samples" : "device.delay_samples";
 }
 
+/// Returns the map of (x, v) in one step of the tool on a spring of stiffness lambda K and damping lambda B, without a
+/// device. The hand's force is held over the step.
+Eigen::Matrix2d step_matrix_with_hand(const Scenario& scenario, double lambda);
+
+/// Returns true if the linear theory covers the scenario's device: its delay is short enough for eigenvalues, and
+/// unmodelled_fields() is empty. True without a device.
+bool has_linear_loop(const Scenario& scenario);
+
+/// Returns the matrices of the scenario's loop of hand, device and contact in three dimensions (contact_loop() in
+/// linear_loops.hpp). Empty without has_linear_loop(), or if the loop is too large to solve.
+std::vector<Eigen::MatrixXd> contact_loop(const Scenario& scenario, const LinearContact& contact);
+
+/// Returns the name of the part of the loop that is unstable without contact, by the eigenvalues: "the device's servo"
+/// if the device is unstable also without a hand, otherwise "hand and device". Empty if the loop is stable, or without
+/// has_linear_loop().
+std::string unstable_without_wall(const Scenario& scenario);
+
 /// Returns the state matrix of one step of the tool in contact with a wall of stiffness lambda K and damping
-/// lambda B. With an ideal device, this is the step matrix of the integrator; with another device, the state matrix
-/// of device_loop(). Empty if the delay makes the loop too large to solve, or if unmodelled_fields() is not empty.
+/// lambda B. With an ideal device, this is step_matrix_with_hand(); with another device, the matrix of
+/// device_loop(). Empty without has_linear_loop().
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda);
 
 /// Returns the state matrices (contact_step_matrix()) of several variants of the scenario's loop at a wall of

@@ -21,6 +21,12 @@ struct HandView {
   const Vec3& spring_force;  ///< f_spring of the previous step [N], an input of the hand's target task
 };
 
+/// Linearisation of a hand's force for small motions of the handle: df = -stiffness dx - damping dv.
+struct HandImpedance {
+  Mat3 stiffness = Mat3::Zero();  ///< [N/m]
+  Mat3 damping = Mat3::Zero();    ///< [N s/m]
+};
+
 /// Model of the human hand: its force on the handle as a function of time and perception. One instance holds
 /// the state of one run.
 class Hand {
@@ -30,6 +36,8 @@ class Hand {
   virtual void reset() noexcept {}
   /// Returns the force of the hand on the handle at time t [N]. Called once in every step.
   virtual Vec3 force(double t, const HandView& view) noexcept = 0;
+  /// Returns the linearisation of the last force(). Zero for a hand whose force does not depend on the handle.
+  virtual HandImpedance impedance() const noexcept { return {}; }
   /// Returns the target task that the hand performs, or null. The task lives as long as the hand.
   virtual const TargetTask* task() const noexcept { return nullptr; }
   /// Returns true once the hand's task is finished. The run ends with that step.

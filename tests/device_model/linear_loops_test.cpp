@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -190,6 +191,72 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithATransmission) {
       EXPECT_GT(std::abs(state[0]), 0.0);
     }
   }
+}
+
+/// A rotation without special directions.
+Mat3 some_rotation() {
+  return Eigen::AngleAxisd(0.7, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
+}
+
+/// Wall along one direction and a hand whose damping along it differs from its damping across, in a turned frame.
+TEST(ContactLoop, OfAWallInAnyDirectionIsTheLoopOfOneAxis) {
+  SampledLoop loop = light_loop();
+  loop.device.viscous = 0.5;
+  loop.device.delay_samples = 1.25;
+  loop.device.velocity_filter = LowPassFilter{60.0, 2};
+  loop.wall_damping = 2.0;
+  loop.sampled_damping = 20.0;
+  const double limit = linear_stability_limit(loop);
+  const Vec3 n = some_rotation().col(2);
+  const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
+  const auto stable = [&](double K) {
+    LinearContact contact;
+    contact.rendered.stiffness = K * along + 0.3 * K * n * some_rotation().col(0).transpose();  // one-sided coupling
+    contact.rendered.damping = 2.0 * along;
+    contact.hand = {300.0 * across, 6.0 * across + 20.0 * along};
+    return is_stable_loop(contact_loop(loop, contact));
+  };
+  EXPECT_TRUE(stable(limit * (1.0 - 1e-6)));
+  EXPECT_FALSE(stable(limit * (1.0 + 1e-6)));
+}
+
+/// Axes that drive each other in both directions: the device itself, in three dimensions, decays just below the limit
+/// and grows just above.
+TEST(ContactLoop, OfCoupledAxesIsThatOfTheDevice) {
+  SampledLoop loop = light_loop();
+  loop.device.viscous = 1.0;
+  loop.device.delay_samples = 0.5;
+  const Mat3 Q = some_rotation();
+  const Mat3 shape = Q * Vec3(1.0, 0.4, 0.1).asDiagonal() * Q.transpose();
+  LinearContact contact;
+  contact.rendered.damping = Vec3(0.5, 2.0, 1.0).asDiagonal();
+  contact.hand = {Vec3(100.0, 300.0, 200.0).asDiagonal(), Vec3(3.0, 1.0, 5.0).asDiagonal()};
+  const auto loop_at = [&](double K) {
+    contact.rendered.stiffness = K * shape;
+    return contact_loop(loop, contact);
+  };
+  ASSERT_EQ(loop_at(500.0).size(), 1u) << "coupled";
+  double low = 10.0, high = 1e5;
+  while (high / low > 1.0 + 1e-9) {
+    const double middle = std::sqrt(low * high);
+    (is_stable_loop(loop_at(middle)) ? low : high) = middle;
+  }
+  const auto grows = [&](double K) {
+    ImpedanceDevice device(loop.device, loop.period);
+    device.reset({.pose = {.position = {1e-3, -2e-3, 0.5e-3}}});
+    double half = 0.0, end = 0.0;
+    constexpr int kSteps = 20000;
+    for (int k = 0; k < kSteps; ++k) {
+      const HandleState tool = device.sampled(), handle = device.handle();
+      device.drive(-K * shape * tool.position - contact.rendered.damping * tool.velocity,
+                   -contact.hand.stiffness * handle.position - contact.hand.damping * handle.velocity);
+      double& largest = k < kSteps / 2 ? half : end;
+      if (k >= kSteps / 4) largest = std::max(largest, handle.position.norm());
+    }
+    return end > half;
+  };
+  EXPECT_FALSE(grows(0.98 * low));
+  EXPECT_TRUE(grows(1.02 * low));
 }
 
 std::optional<double> limit(std::string_view name, const SampledLoop& loop) {

@@ -123,6 +123,24 @@ def smallest_mass(bench):
         runs,
         ("the low end of the range", 1e-4),
     )
+    bench.add("limit.csv:quoted_limit", row["quoted_limit"], known, how, runs, undamped)
+    told = Table(bench.folder / "mass" / "limit.csv").rows[0]
+    bench.add(
+        "limit.csv:quoted_reason",
+        told["quoted_reason"].split(";")[1],
+        " the runs agree",
+        "both limits are the root, within the resolution",
+        EXACT,
+        ("simulated limit", " no linear limit applies"),
+    )
+    bench.add(
+        "limit.csv:no_linear_reason",
+        told["no_linear_reason"],
+        "",
+        "there is a theoretical limit",
+        EXACT,
+        ("contacts", "contacts come and go in every stable run"),
+    )
 
 
 @scene

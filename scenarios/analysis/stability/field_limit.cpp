@@ -4,15 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 
 #include "results/observe/contact_forces.hpp"
+#include "scenarios/analysis/convergence/metric_errors.hpp"
 #include "scenarios/analysis/stability/limit_theory.hpp"
+#include "scenarios/analysis/stability/quoted_limit.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_loop.hpp"
+#include "scenarios/run/scripted_motion.hpp"
 #include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/field_files.hpp"
 
@@ -84,13 +91,24 @@ StableInterval find_interval(const LimitQuestion& question, RunCache& runs, Eval
                           : find_stable_interval(question.search, evaluated, is_stable, true);
 }
 
-/// Stores the interval that was found in the limit.
+/// Returns the number of distinct values of the verification samples, without the ends of the interval.
+std::size_t verification_samples(const IntervalSearchOptions& search, const StableInterval& interval) {
+  const double first = interval.first.value_or(*interval.stable);
+  std::set<double> values;
+  for (const double t : parameters_between(first, *interval.stable, kVerificationSamples))
+    values.insert(search.value_at(t));
+  values.erase(search.value_at(first));
+  values.erase(search.value_at(*interval.stable));
+  return values.size();
+}
+
+/// Writes the interval that was found into the limit.
 void add_interval(const LimitQuestion& question, const StableInterval& interval, const RunCache& runs,
                   FieldLimit& limit) {
   const IntervalSearchOptions& search = question.search;
   limit.scattered = interval.scattered;
   if (interval.stable) {
-    limit.tried_between = question.between ? kVerificationSamples : 0;
+    if (question.between) limit.tried_between = verification_samples(search, interval);
     limit.end.value = search.value_at(*interval.stable);
     limit.settled = runs.of(*limit.end.value).settled;
   }
@@ -119,19 +137,55 @@ void add_runs(const LimitQuestion& question, const std::map<double, RunStability
 /// Finds out whether hand and device are unstable without contact, and stores the result in the limit.
 void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   const JudgedValue suspect = limit.end.beyond ? *limit.end.beyond : limit.runs.front();
-  limit.unstable_alone = !question.rule.holds(suspect.verdict) &&
-                         unstable_without_contact(checked(question.at(suspect.value)), question.rule.max_vibration);
+  if (question.rule.holds(suspect.verdict)) return;
+  const CheckedScenario scenario = checked(question.at(suspect.value));
+  limit.unstable_part = unstable_without_wall(scenario.scenario());
+  limit.unstable_alone =
+      !limit.unstable_part.empty() || unstable_without_contact(scenario, question.rule.max_vibration);
+  if (limit.unstable_alone && limit.unstable_part.empty()) limit.unstable_part = "hand and device";
 }
 
-/// Computes the limits by closed forms and the linear limit in contact, and stores them in the limit.
-void add_formulas(const LimitQuestion& question, FieldLimit& limit) {
+/// Returns true if the contact of a run lasts in its last quarter and has a linear loop: the same points touch. While a
+/// script or a hand moves the tool, other points may touch, as long as the stiff directions stay.
+bool contact_lasts(const SettledState& settled, bool is_moved) {
+  return settled.last_contact && settled.share_away == 0.0 && !settled.directions_change &&
+         (is_moved || !settled.contacts_change);
+}
+
+/// Writes the linear limit of a tool on a surface, or the reason why there is none.
+void add_linear_limit(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
+  if (limit.theory || limit.theory_has_none || question.search.smallest || !limit.end.value) return;
+  const Scenario scenario = question.at(*limit.end.value).scenario;
+  if (scenario.rendering.late && scenario.rendering.late->any()) {
+    limit.no_linear = "the contacts are not found in every step";
+    return;
+  }
+  if (!has_linear_loop(scenario)) {
+    limit.no_linear = "the delay or a field of the device is not part of the linear theory";
+    return;
+  }
+  // Find the largest stable value up to the limit whose run has a contact that lasts.
+  for (auto run = std::make_reverse_iterator(runs.upper_bound(*limit.end.value)); run != runs.rend(); ++run) {
+    const auto& [value, judged] = *run;
+    const Scenario at = question.at(value).scenario;
+    const double duration = at.time.step * static_cast<double>(at.time.steps);
+    const bool is_moved = script_moves_until(at) > 0.75 * duration;
+    if (!question.rule.holds(judged.verdict) || !contact_lasts(judged.settled, is_moved)) continue;
+    limit.linear = contact_limit(question, value, *judged.settled.last_contact);
+    if (!limit.linear) limit.no_linear = "the tool touches nothing at its equilibrium";
+    return;
+  }
+  limit.no_linear = "contacts come and go in every stable run";
+}
+
+/// Writes the limits by closed forms, and the linear limit in contact.
+void add_formulas(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   limit.closed_form = inequality_limit(question).value;
   WallLimits wall = wall_limits(question);
   limit.closed_forms = std::move(wall.closed_forms);
   limit.worst_hand = wall.worst_hand;
   limit.no_theory = std::move(wall.no_theory);
-  if (!limit.theory && limit.settled.lambda_max > 0.0 && !question.search.smallest)
-    limit.linear = contact_limit(question, limit.settled.lambda_max);
+  add_linear_limit(question, runs, limit);
 }
 
 }  // namespace
@@ -141,12 +195,8 @@ std::optional<double> IntervalEnd::tolerance() const {
   return std::abs(beyond->value - *value);
 }
 
-bool FieldLimit::is_beyond_linear(double resolution) const {
-  return end.value && linear && *end.value > (1.0 + resolution) * *linear;
-}
-
-FieldLimit field_limit(const LimitQuestion& question) {
-  if (question.rule.max_vibration) check_sampling(load_scenario(*question.scene, question.overrides));
+/// Finds the limit with the bounds of the question's rule as they are.
+static FieldLimit limit_with_bounds(const LimitQuestion& question) {
   FieldLimit limit;
   // Find the linear limit, where the theory applies.
   TheoreticalLimit theory = eigenvalue_limit(question);
@@ -160,7 +210,55 @@ FieldLimit field_limit(const LimitQuestion& question) {
   add_interval(question, interval, runs, limit);
   add_runs(question, runs.by_value(), limit);
   add_cause(question, limit);
-  add_formulas(question, limit);
+  add_formulas(question, runs.by_value(), limit);
+  return limit;
+}
+
+/// Adds the errors of the bounded metrics at a value to `errors`, where they are larger. Tightens each bound of `rule`
+/// that a metric violates within its error, and returns true if a bound was tightened.
+static bool tighten_bounds(const LimitQuestion& question, double value, StabilityRule& rule,
+                           std::map<std::string, double>& errors) {
+  std::vector<std::string> chosen = question.overrides;
+  chosen.push_back(override_of(question, value));
+  const CheckedScenario scenario = checked(question.at(value));
+  const Result run = run_with_shell(scenario, make_shell(scenario.scenario(), scenario.files()));
+  std::map<std::string, double> metrics;
+  for (const auto& [name, bound] : question.rule.bounds)
+    if (const auto number = number_of(run.metrics, name)) metrics[name] = *number;
+  bool is_tighter = false;
+  for (const auto& [name, error] : metric_errors(*question.scene, chosen, metrics, question.threads)) {
+    errors[name] = std::max(errors[name], error);
+    const MetricBound& asked = question.rule.bounds.at(name);
+    MetricBound& bound = rule.bounds[name];
+    if (asked.max && metrics[name] + error > *asked.max) bound.max = *asked.max - error;
+    if (asked.min && metrics[name] - error < *asked.min) bound.min = *asked.min + error;
+    is_tighter = is_tighter || (asked.max && metrics[name] + error > *asked.max) ||
+                 (asked.min && metrics[name] - error < *asked.min);
+  }
+  return is_tighter;
+}
+
+/// Finds the limit with the bounds of the question's rule and the errors of the bounded metrics.
+static FieldLimit limit_with_errors(const LimitQuestion& question) {
+  FieldLimit limit = limit_with_bounds(question);
+  if (question.rule.bounds.empty()) return limit;
+  constexpr int kMaxTightenings = 4;  // the error changes little from one search to the next
+  LimitQuestion tighter = question;
+  std::map<std::string, double> errors;
+  for (int i = 0; i < kMaxTightenings && limit.end.value; ++i) {
+    bool again = tighten_bounds(question, *limit.end.value, tighter.rule, errors);
+    if (limit.other.value) again |= tighten_bounds(question, *limit.other.value, tighter.rule, errors);
+    if (!again) break;
+    limit = limit_with_bounds(tighter);
+  }
+  limit.metric_errors = std::move(errors);
+  return limit;
+}
+
+FieldLimit field_limit(const LimitQuestion& question) {
+  if (question.rule.max_vibration) check_sampling(load_scenario(*question.scene, question.overrides));
+  FieldLimit limit = limit_with_errors(question);
+  limit.quoted = quoted_limit(question, limit);
   return limit;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,8 +28,15 @@ struct IntervalEnd {
   std::optional<double> tolerance() const;
 };
 
+/// The one value of a limit that a user may render; see quoted_limit().
+struct QuotedLimit {
+  std::optional<double> value = {};
+  std::string reason = {};  ///< why it is this value, or why there is none
+};
+
 /// The result of a search for a stability limit.
 struct FieldLimit {
+  QuotedLimit quoted = {};
   IntervalEnd end;    ///< the limit: the end of the interval that the question asks for
   IntervalEnd other;  ///< the other end of the interval
   /// Linear limit by the eigenvalues of a step, for springs that stay in contact. If the whole range is stable, it is
@@ -38,39 +46,41 @@ struct FieldLimit {
   bool theory_has_none = false;  ///< true if the theory applies and no value of the range is stable
   /// Limit by the integrator's stability inequality, for a tool without hand and device on springs; empty otherwise.
   std::optional<double> closed_form;
-  /// Linear limit of a device on a surface that can be left, if `theory` is empty: the stability limit of the loop of
-  /// device, hand and a permanent contact with the stiffness rendered at the simulated limit. Dry friction and the
-  /// encoder are ignored. Because of them, and because the contact may be lost, the simulated limit can be higher
-  /// than this limit. Infinite if the whole range is stable.
+  /// Linear limit of a tool on a surface that can be left, if `theory` is empty: contact_limit(), searched from the run
+  /// with the largest stable value in which contact lasts. Dry friction and encoder are ignored; they and loss of
+  /// contact can raise the simulated limit above it. Infinite if the whole range is stable.
   std::optional<double> linear;
+  std::string no_linear = {};  ///< why there is neither `theory` nor `linear`; empty if there is, or with `smallest`
+  /// Errors of the bounded metrics at the limit: their largest change when step and point spacing are halved. The
+  /// bounds hold with these errors added.
+  std::map<std::string, double> metric_errors = {};
   /// WallLimits::closed_forms [N/m].
   std::vector<std::optional<double>> closed_forms;
   std::optional<double> worst_hand;  ///< WallLimits::worst_hand [N/m]
   std::string no_theory;             ///< WallLimits::no_theory
-  SettledState settled;              ///< contacts and vibration at the end of the run at the limit
+  SettledState settled;              ///< settled state of the run at the limit
+  std::string unstable_part = {};    ///< unstable_without_wall() at the suspect of `unstable_alone`
   std::optional<JudgedValue> own;    ///< the run at the scenario's value; empty if the value is outside of the range
   /// True if the loop of hand and device is unstable without contact (unstable_without_contact()) at the nearest
   /// value beyond the limit, or at the smallest evaluated value if there is no limit.
   bool unstable_alone = false;
-  bool has_effect = true;         ///< false if the handle's motion is bitwise equal in all runs
-  std::size_t tried_between = 0;  ///< number of verification samples in the interval, all stable
-  bool scattered = false;  ///< true if stable values exist, but no contiguous interval of stable values is as long as
-                           ///< kNearLimit
+  bool has_effect = true;  ///< false if the handle's motion is bitwise equal in all runs
+  /// Number of verification samples in the interval, all stable: distinct values between its ends that were run.
+  std::size_t tried_between = 0;
+  bool scattered = false;  ///< true if stable values exist, but no contiguous stable interval as long as kNearLimit
   std::vector<JudgedValue> runs;          ///< all runs, by increasing value
   std::vector<JudgedValue> inconsistent;  ///< unstable runs inside the interval and stable runs outside of it
   std::size_t undecided = 0;              ///< number of runs that were too short to judge (RunStability::undecided)
 
-  /// Returns true if the simulated limit exceeds `linear` by more than the fraction `resolution`. At the stable
-  /// values beyond `linear`, contact is intermittent, so `linear` is the limit to quote.
-  bool is_beyond_linear(double resolution) const;
   /// Returns the linear limit: `theory` if it has a value, otherwise `linear`.
   const std::optional<double>& linear_edge() const { return theory ? theory : linear; }
 };
 
-/// Finds a stability limit. First evaluates 17 equidistant parameters of the range, the scenario's value, and the
-/// middles of the intervals that are stable in theory. Then searches the interval with find_verified_interval, or
-/// with find_stable_interval (argument `beside`) if LimitQuestion::between is false. Makes 35 to 120 runs, and up to
-/// 56 more for each verification that fails. Throws InputError, with the file, if the stability rule limits vibration
+/// Finds a stability limit. Evaluates 17 equidistant parameters, the scenario's value and the middles of intervals that
+/// are stable in theory, then searches the interval: with find_stable_interval (`beside`), or with
+/// find_verified_interval if LimitQuestion::between. Makes 35 to 120 runs; each failed verification costs up to 56
+/// more. Bounds on metrics hold with the metrics' errors at the limit added, as in `tune`; if they do not, searches
+/// again with bounds that are tighter by these errors. Throws InputError, with the file, if the rule limits vibration
 /// and the sampling rate is 60 Hz or less.
 FieldLimit field_limit(const LimitQuestion& question);
 

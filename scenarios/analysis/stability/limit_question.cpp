@@ -50,9 +50,14 @@ Range default_range(const LimitQuestion& question, const Json& current) {
 
 }  // namespace
 
+std::string override_of(const LimitQuestion& question, double value) {
+  return question.search.whole ? fmt::format("{}={:.0f}", question.path, value)
+                               : fmt::format("{}={}", question.path, value);
+}
+
 LoadedScenario LimitQuestion::at(double value) const {
   std::vector<std::string> all = overrides;
-  all.push_back(search.whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value));
+  all.push_back(override_of(*this, value));
   return load_scenario(*scene, all);
 }
 

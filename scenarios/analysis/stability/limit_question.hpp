@@ -32,6 +32,9 @@ struct LimitQuestion {
   LoadedScenario at(double value) const;
 };
 
+/// Returns the override that sets the question's field to `value`.
+std::string override_of(const LimitQuestion& question, double value);
+
 /// Returns the inputs of a search for the limit of the field at `path`. Without `range`, searches from 2^-10 to 2^10
 /// times the scenario's value, narrowed to values that the field allows. The search is logarithmic if both ends of the
 /// range are above 0.

@@ -7,10 +7,16 @@
 
 #include "device_model/impedance_device.hpp"
 #include "device_model/theory/linear_loops.hpp"
+#include "scenarios/analysis/stability/linear_contact.hpp"
 #include "scenarios/run/scene_loop.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 namespace {
+
+bool is_without_hand(const Scenario& scenario) {
+  return std::holds_alternative<NoHandFields>(scenario.hand);
+}
 
 using IsTrueOf = std::function<bool(const Scenario&)>;
 
@@ -18,13 +24,13 @@ using IsTrueOf = std::function<bool(const Scenario&)>;
 // bisection continues down to rounding.
 constexpr int kTheoryIntervals = 256;
 constexpr double kTheoryResolution = 1e-12;
+constexpr double kContactResolution = 1e-9;  // the derivatives of a rendered force are known to 1e-7
 
-/// Returns true for springs in permanent contact with a tool without hand and device, or with a device whose loop is
-/// linear.
+/// Returns true for springs in permanent contact with a tool whose loop with hand and device is linear.
 bool has_eigenvalues(const Scenario& scenario) {
-  if (!has_permanent_springs(scenario)) return false;
+  if (!has_permanent_springs(scenario) || std::holds_alternative<TrackingHandFields>(scenario.hand)) return false;
   if (has_device(scenario)) return device_loop(scenario, 1.0).no_theory.empty();
-  return std::holds_alternative<NoHandFields>(scenario.hand);
+  return !std::get<IdealDeviceFields>(scenario.device).force_limit || is_without_hand(scenario);
 }
 
 /// Returns true if all eigenvalues of a step lie inside the unit circle, for each principal stiffness of the springs.
@@ -33,14 +39,16 @@ bool step_is_stable(const Scenario& scenario) {
                                      // the handle moves freely along it
   const Vec3 lambdas = stiffness_eigenvalues(scenario);
   return std::all_of(lambdas.begin(), lambdas.end(), [&](double lambda) {
-    if (!has_device(scenario)) return tool_on_spring(scenario, lambda).is_stable();
+    if (!has_device(scenario) && is_without_hand(scenario)) return tool_on_spring(scenario, lambda).is_stable();
+    if (!has_device(scenario)) return is_stable_loop({step_matrix_with_hand(scenario, lambda)});
     return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
   });
 }
 
 /// Returns true if the integrator has a stability inequality that applies to the scenario.
 bool has_inequality(const Scenario& scenario) {
-  return !has_device(scenario) && has_eigenvalues(scenario) && scenario.integrator.type->stability_margin != nullptr;
+  return !has_device(scenario) && is_without_hand(scenario) && has_eigenvalues(scenario) &&
+         scenario.integrator.type->stability_margin != nullptr;
 }
 
 /// Returns true if the stiffest direction satisfies the integrator's stability inequality.
@@ -98,15 +106,37 @@ TheoreticalLimit inequality_limit(const LimitQuestion& question) {
   return limit_by(question, has_inequality, keeps_inequality, kScanIntervals);
 }
 
-std::optional<double> contact_limit(const LimitQuestion& question, double lambda) {
-  const auto applies = [lambda](const Scenario& scenario) {
-    return has_device(scenario) && contact_step_matrix(scenario, lambda).size() != 0;
+std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near) {
+  // Returns true if the loop at a value of the field is stable; empty if there is no loop in contact.
+  const auto is_stable_at = [&](double value) -> std::optional<bool> {
+    const CheckedScenario scenario = checked(question.at(value));
+    const auto contact = linear_contact(scenario, make_shell(scenario.scenario(), scenario.files()), near);
+    if (!contact) return std::nullopt;
+    const std::vector<Eigen::MatrixXd> loop = contact_loop(scenario.scenario(), *contact);
+    if (loop.empty()) return std::nullopt;
+    return is_stable_loop(loop);
   };
-  const auto stable = [lambda](const Scenario& scenario) {
-    return std::ranges::all_of(contact_step_matrices(scenario, lambda, false),
-                               [](const auto& loop) { return is_stable_step(loop.second); });
-  };
-  return limit_by(question, applies, stable, 2 * kScanIntervals).value;
+  const std::optional<bool> first = is_stable_at(stable);
+  if (!first) return std::nullopt;
+  IntervalSearchOptions options = question.search;
+  options.current = stable;
+  options.resolution = kContactResolution;
+  const double start = *options.current_parameter();
+  const auto holds = [&](double t) { return is_stable_at(options.value_at(t)).value_or(false); };
+  // Walk from the run's value towards the limit: up while the loop is stable, otherwise down to a stable value.
+  constexpr double kStep = 1.0 / (4 * kScanIntervals);
+  const double direction = *first ? kStep : -kStep;
+  double last = start;
+  while (true) {
+    const double next = std::clamp(last + direction, 0.0, 1.0);
+    if (next == last) return *first ? std::numeric_limits<double>::infinity() : 0.0;
+    if (holds(next) != *first) {
+      EvaluatedParameters evaluated = {{std::min(last, next), true}, {std::max(last, next), false}};
+      options.current.reset();
+      return options.value_at(*find_stable_interval(options, evaluated, holds, false).stable);
+    }
+    last = next;
+  }
 }
 
 WallLimits wall_limits(const LimitQuestion& question) {

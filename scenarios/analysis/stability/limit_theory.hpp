@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenarios/analysis/stability/limit_question.hpp"
+#include "scenarios/analysis/stability/run_end_observer.hpp"
 
 /// Stability limits of a field from linear theory, without runs. One evaluation costs about a thousandth of a run.
 namespace hapbench {
@@ -29,10 +30,12 @@ TheoreticalLimit eigenvalue_limit(const LimitQuestion& question);
 /// without hand and device.
 TheoreticalLimit inequality_limit(const LimitQuestion& question);
 
-/// Returns the limit by the eigenvalues of the loop of device, hand and a permanent contact. The stiffness of this
-/// contact is K times `lambda`, which is the largest eigenvalue of the stiffness tensor S in units of K. Infinite if
-/// the whole range is stable; empty without a device.
-std::optional<double> contact_limit(const LimitQuestion& question, double lambda);
+/// Returns the limit by the eigenvalues of the loop of hand, device and a permanent contact. At each value of the
+/// field, the contact has the derivatives of the rendered force at the equilibrium of the tool (linear_contact),
+/// searched from `near`, the state of a run at the field's value `stable`. The search starts at this value. Infinite if
+/// the whole range above it is stable; zero if no value is stable. Empty if the tool touches nothing at `stable`, or
+/// without has_linear_loop().
+std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near);
 
 /// Limits of the stiffness K [N/m] on a two-sided wall that holds the handle of an impedance device.
 struct WallLimits {

@@ -13,6 +13,7 @@ RunEndObserver::RunEndObserver(const Scenario& scenario, bool alone)
       vibration_(scenario.time.step),
       bounces_(scenario.time.step) {
   if (alone) judged_.touch(0);
+  if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) coulomb_ = device->coulomb;
 }
 
 void RunEndObserver::on_step(const StepRecord& record) noexcept {
@@ -24,13 +25,35 @@ void RunEndObserver::on_step(const StepRecord& record) noexcept {
   for (const double coordinate : record.handle.position) motion_.real(coordinate);
   if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
     quarter_ = quarter;
-    steps_in_contact_ = contacts_ = 0;
+    steps_in_quarter_ = steps_in_contact_ = contacts_ = 0;
     S_sum_.setZero();
+    contact_set_.reset();
+    contacts_change_ = directions_change_ = false;
   }
+  ++steps_in_quarter_;
+  sticks_ = record.force.friction == Friction::sticks;
   if (record.rendered->size() == 0) return;
   ++steps_in_contact_;
   contacts_ += record.rendered->size();
   S_sum_ += record.force.S;
+  add_contact(record);
+}
+
+void RunEndObserver::add_contact(const StepRecord& record) noexcept {
+  constexpr double kTurned = 0.01;  // change of S relative to its norm
+  if (!contact_set_) S_first_ = record.force.S;
+  directions_change_ |= (record.force.S - S_first_).norm() > kTurned * S_first_.norm();
+  // Hash the set of contacts. A sum does not depend on their order.
+  std::uint64_t set = 0;
+  for (std::size_t i = 0; i < record.rendered->size(); ++i) {
+    Hash64 hash;
+    hash.word(record.rendered->index[i]);
+    set += hash.value();
+  }
+  contacts_change_ |= contact_set_ && *contact_set_ != set;
+  contact_set_ = set;
+  last_contact_ = ContactState{record.tool.pose, record.time};
+  if (record.handle_moves_tool) last_contact_->pose.position = record.handle.position;
 }
 
 bool RunEndObserver::has_left(const PointShell& shell, double reach) const {
@@ -43,7 +66,13 @@ SettledState RunEndObserver::state(bool rests) const {
   SettledState state;
   // If the run was stopped because the tool came to rest, the steps that were not simulated count with velocity 0.
   state.vibration = vibration_.rms(if_any(rests && judged_.begin(), judged_.end() - judged_.begin().value_or(0)));
+  state.last_contact = last_contact_;
+  state.rests = rests;
+  state.is_held = rests && (coulomb_ > 0.0 || sticks_);
   if (steps_in_contact_ == 0) return state;
+  state.share_away = 1.0 - static_cast<double>(steps_in_contact_) / static_cast<double>(steps_in_quarter_);
+  state.contacts_change = contacts_change_;
+  state.directions_change = directions_change_;
   const auto steps = static_cast<double>(steps_in_contact_);
   state.contacts = static_cast<double>(contacts_) / steps;
   state.lambda_max = lambda_max(S_sum_ / steps);

@@ -9,18 +9,32 @@
 #include "sim/core/hash.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/simulation.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 /// Observes the state at the end of a run, from which the run is judged.
 namespace hapbench {
 
-/// The state at the end of a run. `contacts` and `lambda_max` are computed over the steps of the last quarter of the
-/// run.
+/// A state of a run in contact, from which linear_contact() searches the equilibrium.
+struct ContactState {
+  ToolPose pose;      ///< of the tool; true position of the handle if the handle moves the tool
+  double time = 0.0;  ///< [s]
+};
+
+/// The settled state of a run: `contacts`, `lambda_max`, `share_away` and the two changes are over the steps of its
+/// last quarter. The last quarter of a run that comes to rest early is the quarter in which it came to rest.
 struct SettledState {
   /// Vibration of the handle above 30 Hz over the judged steps (EvaluationWindow) [m/s rms]; empty at sampling rates of
   /// 60 Hz or less.
   std::optional<double> vibration;
   double contacts = 0.0;    ///< mean number of rendered contacts, over the steps in contact
   double lambda_max = 0.0;  ///< largest eigenvalue of the mean stiffness tensor S in contact, in units of K
+  std::optional<ContactState> last_contact;  ///< at the last step in contact; empty without contact
+  double share_away = 1.0;                   ///< fraction of the steps without contact
+  bool contacts_change = false;              ///< true if other points touch in some step than in the step before
+  bool directions_change =
+      false;             ///< true if S changes by more than 1 % of its norm, so that the stiff directions turn
+  bool rests = false;    ///< true if the run was stopped because the tool came to rest
+  bool is_held = false;  ///< true if dry friction of device or surface acts on the tool that rests
 };
 
 /// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the
@@ -46,7 +60,9 @@ class RunEndObserver final : public Observer {
   SettledState state(bool rests) const;
 
  private:
-  bool touches_ = false;     ///< true if the tool was in contact in the last step
+  void add_contact(const StepRecord& record) noexcept;
+
+  bool touches_ = false;     ///< in contact in the last step
   Vec3 tip_ = Vec3::Zero();  ///< centre of the tip [m]
   Hash64 motion_;
   std::uint64_t steps_;  ///< number of steps of the run
@@ -54,8 +70,14 @@ class RunEndObserver final : public Observer {
   Vibration vibration_;
   SlowBounces bounces_;
   std::uint64_t quarter_ = 0;  ///< current quarter of the run, from 0; the members below are over this quarter
-  std::uint64_t steps_in_contact_ = 0, contacts_ = 0;
+  std::uint64_t steps_in_quarter_ = 0, steps_in_contact_ = 0, contacts_ = 0;
   Mat3 S_sum_ = Mat3::Zero();
+  Mat3 S_first_ = Mat3::Zero();               ///< S of the first step in contact
+  std::optional<std::uint64_t> contact_set_;  ///< hash of the rendered contacts of the last step in contact
+  bool contacts_change_ = false, directions_change_ = false;
+  std::optional<ContactState> last_contact_;
+  bool sticks_ = false;   ///< dry friction of the surface holds the tool in the last step
+  double coulomb_ = 0.0;  ///< Coulomb friction of an impedance device [N]
 };
 
 }  // namespace hapbench

@@ -67,7 +67,8 @@ void report_times(const Comparison& comparison, const std::vector<Result>& repor
   for (std::size_t i = 0; i < costs.size(); ++i) {
     LawTime& row = rows.emplace_back(
         LawTime{comparison.names[i / laws], comparison.algorithms[i % laws], costs[i], mean_contacts(reports[run(i)])});
-    for (std::size_t a = 0; a < laws; ++a) if (is_faster(costs[i / laws * laws + a], costs[i])) ++row.rank;
+    for (std::size_t a = 0; a < laws; ++a)
+      if (is_faster(costs[i / laws * laws + a], costs[i])) ++row.rank;
   }
   for (std::size_t s = 0; s < scenes; ++s) {
     const auto first = rows.begin() + static_cast<std::ptrdiff_t>(s * laws);

@@ -86,6 +86,12 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
       {"field", "", "path of the field", of(&Row::question, &LimitQuestion::path), kOnlyCsv},
       {"side", "", "largest or smallest: which stable value was searched", of(&Row::question, &LimitQuestion::side),
        kOnlyCsv},
+      {"quoted_limit", "unit of the field",
+       "limit to quote, which a user may render: the linear or the simulated limit, whichever is reached first; empty if "
+       "no limit was found within the range",
+       [](const Row& r) { return r.limit.quoted.value; }, under("quote", 6)},
+      {"quoted_reason", "", "reason why quoted_limit has this value or none",
+       [](const Row& r) { return r.limit.quoted.reason; }},
       {"linear\nlimit", "unit of the field",
        "of limit: theoretical limit, or, if there is none, the linear limit; \"none\" if no value of the range or "
        "every value is stable, \"-\" if neither limit applies",
@@ -130,11 +136,13 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
        of(&Row::limit, &FieldLimit::closed_form),
        when(table == nullptr || std::ranges::any_of(table->rows, has_inequality))},
       {"linear_limit", "unit of the field",
-       "linear limit of a device on a surface that can only push: largest value at which the contact loop of device, "
-       "hand and surface is stable by its eigenvalues, while contact lasts and without dry friction and encoder "
-       "steps; runs that are stable beyond it rely on bounces, dry friction or the end of the run; empty without a "
-       "device, or if a theoretical limit exists",
-       of(&Row::limit, &FieldLimit::linear)}};
+       "linear limit of a tool on a surface that can only push: largest value at which the loop of hand, device and "
+       "contact is stable by its eigenvalues, with the derivative of the rendered force at the equilibrium and without "
+       "dry friction and encoder steps; empty if contacts come and go in every stable run (no_linear_reason), or if a "
+       "theoretical limit exists",
+       of(&Row::limit, &FieldLimit::linear)},
+      {"no_linear_reason", "", "reason why there is neither a theoretical nor a linear limit; empty if there is one",
+       of(&Row::limit, &FieldLimit::no_linear)}};
 }
 
 /// Returns the columns of the search's diagnostics. `grid` adds numbers of the run at the limit, for comparing

@@ -19,10 +19,6 @@
 namespace hapbench {
 namespace {
 
-constexpr const char* kBeyondLinear =
-    "runs are stable beyond the linear limit only through intermittent contact (bounces below 30 Hz), dry friction or "
-    "the end of the run; a tool that rests on the surface may be unstable there";
-
 std::string damping_text(const RenderingConfig& rendering) {
   if (rendering.damping) return fmt::format("B = {} N s/m", significant(*rendering.damping));
   if (rendering.damping_ratio == 0.0) return "no damping is rendered (damping_ratio 0): B = 0 at every K";
@@ -83,13 +79,18 @@ std::string remarks_text(const LimitRow& row, const Layout& layout) {
   if (limit.undecided > 0)
     say(fmt::format("{} runs were too short to distinguish slow motion from rest, even when extended up to 64 times",
                     limit.undecided));
+  for (const auto& [metric, error] : limit.metric_errors)
+    say(
+        fmt::format("{} has an error of {} at the limit (half the step, half the point spacing); its bound holds with "
+                    "this error added",
+                    metric, significant(error, 2)));
   if (!limit.has_effect)
     say(fmt::format("{} has no effect here: the handle moves identically in all {} runs", question.path,
                     limit.runs.size()));
   if (limit.unstable_alone)
-    say(fmt::format(
-        "at {} hand and device are unstable even without contact: the handle vibrates without the environment",
-        significant((limit.end.beyond ? *limit.end.beyond : limit.runs.front()).value)));
+    say(fmt::format("at {} {} would be unstable even without contact: no contact and no stiffness is the cause",
+                    significant((limit.end.beyond ? *limit.end.beyond : limit.runs.front()).value),
+                    limit.unstable_part));
   return text;
 }
 
@@ -99,19 +100,14 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
   for (const LimitRow& row : table.rows)
     if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device))
       friction = std::max(friction, std::optional(device->coulomb));
-  const auto is_beyond_linear = [](const LimitRow& row) {
-    return row.limit.is_beyond_linear(row.question.search.resolution);
-  };
   const auto is_published = [](const ComparedDevice& device) { return device.published_stiffness.has_value(); };
   std::string names;
   for (const ComparedDevice& device : table.devices) names += device.name + " ";
   const auto is_marked = [&names](const char* mark) { return names.find(mark) != std::string::npos; };
   const std::pair<bool, std::string> notes[] = {
-      {table.is_grid() && std::ranges::any_of(table.rows, is_beyond_linear),
-       fmt::format(
-           "linear limit: by the eigenvalues of the loop of device, hand and surface in contact. If the simulated "
-           "limit is larger, use the linear limit: {}",
-           kBeyondLinear)},
+      {table.is_grid(),
+       "quote: the value that a user may render, the linear or the simulated limit, whichever is reached first; - if no "
+       "limit was found, because the end of the range is no limit. limit.csv has the reason in quoted_reason"},
       {table.is_grid(),
        "a table makes no verification runs inside the stable interval; run limit with one scene, device and algorithm "
        "for these. non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond "
@@ -161,17 +157,15 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
   return text;
 }
 
-std::string limit_answer(const FieldLimit& found, double resolution) {
+std::string limit_answer(const FieldLimit& found) {
   if (!found.end.value) return none_text(found);
-  std::string text =
-      found.end.beyond
-          ? fmt::format("simulated limit {}", deserved(*found.end.value, found.end.tolerance()))
-          : fmt::format("stable in all runs up to the end of the range, {}", significant(*found.end.value, 6));
+  const QuotedLimit& quoted = found.quoted;
+  std::string text = quoted.value ? fmt::format("quote {}, the {}", significant(*quoted.value, 6), quoted.reason)
+                                  : fmt::format("no limit to quote: {}", quoted.reason);
   const auto& linear = found.linear_edge();
-  if (linear && std::isfinite(*linear) && *linear > 0.0) {
-    text = fmt::format("linear limit {}; {}", significant(*linear, 6), text);
-    if (found.is_beyond_linear(resolution)) text += fmt::format(". Use the linear limit: {}", kBeyondLinear);
-  }
+  if (linear && std::isfinite(*linear) && *linear > 0.0)
+    text += fmt::format(". Linear limit {}", significant(*linear, 6));
+  if (found.end.beyond) text += fmt::format(". Simulated limit {}", deserved(*found.end.value, found.end.tolerance()));
   if (found.tried_between == 0) return text;
   return text + fmt::format(
                     ". {} verification samples inside the stable interval are also stable: at most {:.0f} % of "
@@ -186,8 +180,7 @@ std::string limits_text(const LimitTable& table, const Columns<LimitRow>& column
     if (i == 0 || row.scene() != table.rows[i - 1].scene())
       text += question_text(row.question, row.scenario, table.over() > 0, layout);
     if (table.is_grid()) continue;
-    answers += layout.wrapped(
-        fmt::format("{}: {}", row.algorithm(), limit_answer(row.limit, row.question.search.resolution)), 0);
+    answers += layout.wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row.limit)), 0);
     remarks += remarks_text(row, layout);
   }
   const LimitRow& first = table.first();

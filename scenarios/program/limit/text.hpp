@@ -9,9 +9,9 @@
 /// The printed text of `limit`.
 namespace hapbench {
 
-/// Returns the answer as a clause: linear limit, simulated limit, and the number of verification samples.
-/// `resolution` is the relative width of the bisection.
-std::string limit_answer(const FieldLimit& found, double resolution);
+/// Returns the answer as a clause: the limit to quote with its reason, linear limit, simulated limit, and the number of
+/// verification samples.
+std::string limit_answer(const FieldLimit& found);
 /// Returns the condition under which a run counts as stable.
 std::string rule_text(const StabilityRule& rule, const Scenario& scenario);
 /// Returns the questions, the answers, the table of the rows and the notes on it.

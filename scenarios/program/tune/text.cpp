@@ -59,7 +59,7 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
     line("runner-up", fmt::format("{}, {}: renders {} times the stiffness", next->algorithm, choice_text(*next->choice),
                                   significant(next->choice->rendered() / best->choice->rendered(), 2)));
   }
-  line("limits of K", limit_answer(best->edge, kBisectionResolution));
+  line("limits of K", limit_answer(best->edge));
   line("verified",
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
                    "unstable (95 % confidence); {} runs in total",

@@ -31,6 +31,7 @@ KNOWN_LOOKS = tuple(
     for colour in (PLUM, "#1F4E9E", "#2E6B34")
 )
 THEORY, FOUND = {"color": PETROL, "lw": 2.6}, {"color": BLACK, "lw": 1.1, "ls": (0, (2, 2))}
+QUOTED = {"color": BLACK, "ls": "none", "marker": "o", "ms": 4}
 
 
 class Limits:
@@ -84,6 +85,7 @@ class Limits:
             ("linear limit", numbers(rows, "theoretical_limit"), THEORY),
             *self.known(rows),
             ("simulated limit", numbers(rows, "limit"), FOUND),
+            ("limit to quote", numbers(rows, "quoted_limit"), QUOTED),
         ]
         return [
             (label, np.where(values > 0, values, np.nan), own)
@@ -169,6 +171,7 @@ def draw_strip(found, sheet):
         for key, label, colour, wide in (
             ("theoretical_limit", "linear limit", PETROL, 3),
             ("limit", "simulated limit", BLACK, 1.4),
+            ("quoted_limit", "limit to quote", PLUM, 2.4),
         )
         if np.isfinite(numbers(found.rows, key)).any()
     ]

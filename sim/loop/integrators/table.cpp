@@ -155,30 +155,37 @@ void implicit_midpoint(ToolState& tool, const Vec3& force, double mass, double d
   tool.velocity += change;
 }
 
-/// The force of a spring-damper plus a constant force.
-class LinearForce final : public ForceField {
+/// A linear force plus a force that is held over the step.
+class LinearField final : public ForceField {
  public:
-  LinearForce(const SpringDamper& s, const Vec3& held)
-      : jacobian_{s.lambda * s.K * Mat3::Identity(), s.lambda * s.B * Mat3::Identity()}, held_(held) {}
+  LinearField(const LinearForce& force, const Vec3& held) : force_(force), held_(held) {}
 
   Vec3 force_at(double, const Vec3& position, const Vec3& velocity) noexcept override {
-    return held_ - jacobian_.stiffness * position - jacobian_.damping * velocity;
+    return held_ - force_.stiffness * position - force_.damping * velocity;
   }
-  ForceJacobian jacobian() const noexcept override { return jacobian_; }
+  ForceJacobian jacobian() const noexcept override { return force_.assumed; }
 
  private:
-  ForceJacobian jacobian_;
+  LinearForce force_;
   Vec3 held_;
 };
 
-/// Returns (x, v) after one step from (x, v), under the additional constant force `held` [N].
-Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) {
-  LinearForce field(s, held * Vec3::UnitX());
+/// Returns the tool after one step from position x and velocity v, under a linear force and a held force [N].
+ToolState stepped(const IntegratorEntry& integrator, double M, double dt, const LinearForce& force, const Vec3& x,
+                  const Vec3& v, const Vec3& held) {
+  LinearField field(force, held);
   ToolState tool;
-  tool.pose.position = x * Vec3::UnitX();
-  tool.velocity = v * Vec3::UnitX();
-  const Vec3 force = field.force_at(0.0, tool.pose.position, tool.velocity);
-  s.integrator->step(tool, force, s.M, s.dt, field, kEventTolerance);
+  tool.pose.position = x;
+  tool.velocity = v;
+  integrator.step(tool, field.force_at(0.0, x, v), M, dt, field, kEventTolerance);
+  return tool;
+}
+
+/// Returns (x, v) after one step from (x, v), under a held force [N].
+Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) {
+  const Mat3 K = s.lambda * s.K * Mat3::Identity(), B = s.lambda * s.B * Mat3::Identity();
+  const Vec3 axis = Vec3::UnitX();
+  const ToolState tool = stepped(*s.integrator, s.M, s.dt, {K, B, {K, B}}, x * axis, v * axis, held * axis);
   return {tool.pose.position.x(), tool.velocity.x()};
 }
 
@@ -259,6 +266,16 @@ const IntegratorEntry kImplicitMidpoint = {
     .order = 2,
     .damped_order = 2,
 };
+
+Eigen::Matrix<double, 6, 9> step_map(const IntegratorEntry& integrator, double M, double dt, const LinearForce& force) {
+  Eigen::Matrix<double, 6, 9> map;
+  for (Eigen::Index i = 0; i < 9; ++i) {
+    const Eigen::Matrix<double, 9, 1> unit = Eigen::Matrix<double, 9, 1>::Unit(i);
+    const ToolState tool = stepped(integrator, M, dt, force, unit.head<3>(), unit.segment<3>(3), unit.tail<3>());
+    map.col(i) << tool.pose.position, tool.velocity;
+  }
+  return map;
+}
 
 Eigen::Matrix2d SpringDamper::step_matrix() const {
   if (integrator->step_matrix != nullptr) return integrator->step_matrix(*this);

@@ -68,6 +68,19 @@ inline constexpr std::array kIntegrators = {
     &kLeapfrog, &kVelocityVerlet, &kRk4, &kImplicitEuler, &kImplicitMidpoint, &kEvent,
 };
 
+/// A linear force on a mass: f = -stiffness x - damping v. `assumed` is the Jacobian that implicit integrators use; it
+/// may differ from the derivatives of the force.
+struct LinearForce {
+  Mat3 stiffness = Mat3::Zero();  ///< [N/m]
+  Mat3 damping = Mat3::Zero();    ///< [N s/m]
+  ForceJacobian assumed;
+};
+
+/// Returns the map of one step of an integrator for a mass M under a linear force and a held force: the columns belong
+/// to the components of position [m], velocity [m/s] and held force [N], the rows to position and velocity after the
+/// step.
+Eigen::Matrix<double, 6, 9> step_map(const IntegratorEntry& integrator, double M, double dt, const LinearForce& force);
+
 /// The linear system that defines the stability of an integrator (thesis A.3): one spring-damper on a mass, M
 /// x'' = -lambda (K x + B x'). Each step is a linear map of (x, v).
 struct SpringDamper {

@@ -233,5 +233,20 @@ TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {
   EXPECT_EQ(reported(with, "reduction_force_step_max_N"), 2.0);
 }
 
+/// The last quarter is of the steps that were made, not of the planned steps.
+TEST(LastQuarterVibration, OfARunThatEndsEarlyIsThatOfARunPlannedSo) {
+  for (const std::uint64_t made : {4u, 7u, 108u, 449u, 524u, 1500u, 1999u, 2000u}) {
+    LastQuarterVibration planned(2000, 0.001), early(made, 0.001);
+    for (std::uint64_t i = 0; i < made; ++i) {
+      // A vibration that decays, so that every interval has its own rms.
+      const Vec3 velocity(std::sin(0.9 * static_cast<double>(i)) / (1.0 + 0.01 * static_cast<double>(i)), 0.0, 0.1);
+      planned.add(i, velocity);
+      early.add(i, velocity);
+    }
+    ASSERT_TRUE(planned.value() && early.value()) << made;
+    EXPECT_NEAR(*planned.value(), *early.value(), 1e-15) << made;  // sums of the same squares in the same order
+  }
+}
+
 }  // namespace
 }  // namespace hapbench::metrics_test

@@ -169,6 +169,37 @@ std::string warnings_of(const Result& report) {
   return text;
 }
 
+/// Paths that return on themselves or to one side, of two to four legs. A tool that lags behind the moving point by a
+/// fraction of its width follows all of them, whatever its displacement is. Under strong dry friction none is followed.
+TEST(Drag, IsJudgedAlongItsPathAlsoWhereThePathReturns) {
+  const std::vector<Json> paths = {
+      {{-0.002, 0, 0}, {0.002, 0, 0}, {-0.002, 0, 0}},
+      {{-0.002, 0, 0}, {0.002, 0, 0}, {-0.002, 0, 0}, {0.002, 0, 0}},
+      {{-0.002, 0, 0}, {0.002, 0, 0}, {-0.001, 0, 0}, {0.003, 0, 0}, {-0.002, 0, 0}},
+      {{-0.002, 0, 0}, {0.002, 0.0005, 0}, {-0.002, 0.001, 0}},
+      {{-0.002, 0, 0}, {0.002, 0.002, 0}, {0.002, -0.002, 0}},
+      {{-0.002, 0, 0}, {0.002, 0, 0}, {0.0015, 0, 0}},
+  };
+  const Json devices = {{{"type", "ideal"}},
+                        {{"type", "impedance"}, {"handle_mass_kg", 0.1}, {"viscous_N_s_per_m", 1}}};
+  for (const Json& device : devices) {
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      Json json = scene();
+      json["device"] = device;
+      json["hand"].erase("direction");
+      json["hand"]["path_m"] = paths[i];
+      json["hand"]["speed_m_per_s"] = 0.006;
+      json["rendering"]["stiffness_N_per_m"] = 2000;
+      const Result followed = run_scenario(checked(read_scenario(json, "")), std::nullopt, false);
+      EXPECT_EQ(followed.end.outcome, Outcome::completes) << device["type"] << " " << i << warnings_of(followed);
+      json["rendering"]["friction"] = {{"mu", 20}};
+      const Result held = run_scenario(checked(read_scenario(json, "")), std::nullopt, false);
+      EXPECT_TRUE(held.end.outcome == Outcome::stuck || held.end.outcome == Outcome::not_dragged)
+          << device["type"] << " " << i << " " << outcome_name(held.end.outcome);
+    }
+  }
+}
+
 TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
   Json json = scene();
   json["hand"]["direction"] = {0, 0, 1};
@@ -241,6 +272,9 @@ std::vector<Pair> pairs() {
       {"lost", {"mesh_molar", {"initial.position_m=[0,0,0.1]", "hand.z_N=1.5"}}, {"mesh_molar"}},
       {"stuck", {"drag_molar_dry", {"rendering.friction.mu=5"}}, {"drag_molar_dry"}},
       {"step", {"mesh_molar", {"time.step_s=1", "time.steps=5"}}, {"mesh_molar", {"time.steps=5"}}},
+      {"servo",
+       {"device_at_wall", {"device.servo.delay_samples=20"}},
+       {"drag_molar", {"rendering.stiffness_N_per_m=2e6"}}},
       {"edge", {"drag_molar", {"rendering.stiffness_N_per_m=2e6"}}, molar},
       {"buzz", {"drag_molar", {kOmega}}, molar},
       {"pop", {"drag_molar", {kOmega}}, molar},

@@ -1,0 +1,83 @@
+#include "scenarios/analysis/stability/quoted_limit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapbench {
+namespace {
+
+std::string number(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+/// Names what was measured in the stable run at the simulated limit, which is beyond the linear limit.
+std::string measured_cause(const LimitQuestion& question, const FieldLimit& limit) {
+  const SettledState& settled = limit.settled;
+  const std::string run = fmt::format("the run at {}", number(*limit.end.value));
+  if (settled.share_away > 0.0)
+    return fmt::format("{} is out of contact in {:.2g} % of its last quarter", run, 100.0 * settled.share_away);
+  if (settled.is_held) return run + " rests in contact, where dry friction acts on it";
+  if (settled.rests) return run + " comes to rest in contact";
+  if (question.rule.max_vibration && settled.vibration.value_or(0.0) > 0.0)
+    return fmt::format("{} vibrates by {:.2g} m/s rms, below the allowed {:.2g}", run, *settled.vibration,
+                       *question.rule.max_vibration);
+  if (settled.contacts_change) return run + " gains and loses contact points in its last quarter";
+  return run + " shows no growth in its duration";
+}
+
+/// Returns the reason why there is no linear limit within the range.
+std::string without_linear(const FieldLimit& limit) {
+  if (!limit.no_linear.empty()) return fmt::format("there is no linear limit: {}", limit.no_linear);
+  const auto& linear = limit.linear_edge();
+  if (linear && (std::isinf(*linear) || *linear == 0.0))
+    return "the linear loop is stable beyond it, to the end of the range";
+  return "no linear limit applies";
+}
+
+}  // namespace
+
+QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit) {
+  const bool smallest = question.search.smallest;
+  const auto& [value, beyond] = limit.end;
+  if (limit.theory_has_none) return {{}, "by the eigenvalues of one step, no value of the range is stable"};
+  if (!value) return {{}, "no interval of values is stable"};
+  // Returns true if the field reaches a before b on its way to the limit.
+  const auto is_first = [smallest](double a, double b) { return smallest ? a > b : a < b; };
+  const auto& linear = limit.linear_edge();
+  if (limit.linear == 0.0) return {{}, "by the eigenvalues of the loop in contact, no value of the range is stable"};
+  const bool has_linear = linear && std::isfinite(*linear) && *linear > 0.0;
+  const std::string name = limit.theory ? "theoretical limit (eigenvalues, contact cannot be lost)"
+                                        : "linear limit (eigenvalues of the loop in contact)";
+  if (!has_linear) {
+    if (!beyond)
+      return {{},
+              fmt::format("every run up to {}, the end of the range, is stable; {}", number(*value),
+                          without_linear(limit))};
+    return {value, fmt::format("simulated limit; {}", without_linear(limit))};
+  }
+  // The linear limit is nearer than the stable runs, or agrees with their limit within the resolution.
+  const double resolution = question.search.range.logarithmic
+                                ? question.search.resolution * std::abs(*linear)
+                                : question.search.resolution * (question.search.range.to - question.search.range.from);
+  const bool agree =
+      beyond && std::abs(*value - *linear) <= 2.0 * std::max(resolution, question.search.whole ? 1.0 : 0.0);
+  if (agree) return {is_first(*value, *linear) ? *value : *linear, name + "; the runs agree"};
+  if (is_first(*value, *linear) && beyond)
+    return {value, fmt::format("simulated limit; it is reached before the {}, {}: beyond it runs are {}", name,
+                               number(*linear), run_verdict_name(beyond->verdict))};
+  if (is_first(*value, *linear))
+    return {{},
+            fmt::format("every run up to {}, the end of the range, is stable; the {} is {}", number(*value), name,
+                        number(*linear))};
+  if (limit.other.value && is_first(*linear, *limit.other.value))
+    return {{},
+            fmt::format("no value is stable both in runs (from {}) and by the {} (up to {})",
+                        number(*limit.other.value), name, number(*linear))};
+  return {*linear,
+          fmt::format("{}: beyond it a tool that rests in contact is unstable. Runs are stable up to {}{}: {}", name,
+                      number(*value), beyond ? "" : ", the end of the range", measured_cause(question, limit))};
+}
+
+}  // namespace hapbench
