@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {
 
@@ -89,8 +91,37 @@ std::vector<std::string> Cases::overrides(std::size_t i) const {
   return overrides;
 }
 
+InputError Cases::with_line_of_point(const InputError& error, std::size_t i) const {
+  const auto is_of_axis = [](const std::string& pointer, const Axis& axis) {
+    Json::json_pointer field;
+    for (const std::string_view key : parts_of(axis.path, '.')) field.push_back(std::string(key));
+    return (pointer + "/").starts_with(field.to_string() + "/");
+  };
+  std::vector<InputError> faults;
+  for (const InputError& fault : error.faults()) {
+    ErrorLocation location = fault.location();
+    const bool is_of_point =
+        std::ranges::any_of(axes_, [&](const Axis& axis) { return is_of_axis(location.pointer, axis); });
+    if (is_of_point) {
+      location.option = fmt::format("--points {}, line {}", sampling_->file.string(), sampling_->lines[i]);
+      location.about_options.emplace_back("--points");
+    }
+    faults.emplace_back(fault.kind(), location, fault.problem());
+  }
+  return InputError::all(faults);
+}
+
+LoadedScenario Cases::load_case(std::size_t i) const {
+  if (!sampling_ || sampling_->lines.empty()) return load_scenario(scene(i), overrides(i));
+  try {
+    return load_scenario(scene(i), overrides(i));
+  } catch (const InputError& error) {
+    throw with_line_of_point(error, i);
+  }
+}
+
 LoadedScenario Cases::load(std::size_t i) const {
-  LoadedScenario loaded = load_scenario(scene(i), overrides(i));
+  LoadedScenario loaded = load_case(i);
   for (std::size_t a = 0; a < axes_.size(); ++a)
     if (!axes_[a].along.empty()) loaded.scenario.time.stride *= axes_[a].along[place(i, a)].stride;
   return loaded;

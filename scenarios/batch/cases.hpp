@@ -7,6 +7,7 @@
 
 #include "scenarios/batch/axis.hpp"
 #include "scenarios/batch/sampling.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
 /// Cases of a batch: scenes with overrides, in which some fields vary.
@@ -58,6 +59,9 @@ class Cases {
 
  private:
   void sort_runs();
+  LoadedScenario load_case(std::size_t i) const;
+  /// Returns the error with the line of case i in the file of --points, where a value of this line is at fault.
+  InputError with_line_of_point(const InputError& error, std::size_t i) const;
   std::string value(std::size_t i, std::size_t axis) const {
     return sampling_ ? axes_[axis].value_at(unit_[axis][i]) : axes_[axis].value(place(i, axis));
   }

@@ -174,7 +174,7 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
   const std::string text = read_named_file(file);
   PointLines lines(text, file);
   for (const std::string& path : lines.paths()) axes.push_back({path});
-  Sampling sampling{kPointsOfFile, 0, 0, std::vector<std::vector<double>>(axes.size())};
+  Sampling sampling{kPointsOfFile, 0, 0, std::vector<std::vector<double>>(axes.size()), file};
   std::vector<std::map<std::string, std::size_t>> value_indices(axes.size());
   RowFaults faults;
   // Collect the different values of each field. A coordinate is first the index of the value.
@@ -187,6 +187,7 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
       continue;
     }
     ++sampling.count;
+    sampling.lines.push_back(lines.line());
     try {
       for (std::size_t a = 0; a < cells->size(); ++a) {
         const std::string value = point_value((*cells)[a], axes[a].path);

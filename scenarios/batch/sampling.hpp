@@ -26,6 +26,8 @@ struct Sampling {
   std::size_t count = 1;                          ///< number of points
   std::uint64_t seed = 1;                         ///< seed of the random points
   std::vector<std::vector<double>> of_file = {};  ///< coordinates of points from a file, by axis, then by point
+  std::filesystem::path file = {};                ///< the file of --points
+  std::vector<std::size_t> lines = {};            ///< its line of each point, from 1
 };
 
 /// Parses "lhs:N" or "random:N" with 1 <= N <= kMaxRuns. Throws InputError.

@@ -85,6 +85,22 @@ void check_surface(const CheckedMesh& surface, const MeshSampling& sampling, con
   }
 }
 
+/// Adds a warning about vertices that no face uses. `vertices`: the number of the file's vertices.
+void warn_of_unused_vertices(MeshFaces& faces, std::size_t vertices, bool is_open) {
+  std::vector<bool> is_used(vertices, false);
+  for (const std::uint32_t corner : faces.corners) is_used[corner] = true;
+  const auto unused = std::ranges::count(is_used, false);
+  if (unused == 0) return;
+  const auto first = static_cast<std::size_t>(std::ranges::find(is_used, false) - is_used.begin());
+  const std::string line =
+      first < faces.vertex_lines.size() ? fmt::format(" in line {}", faces.vertex_lines[first]) : "";
+  // OBJ does not declare its number of faces.
+  const bool may_be_cut = is_open && faces.first_vertex == 1;
+  faces.warnings.push_back(fmt::format("vertices that no face uses, which were ignored: {}, the first is vertex {}{}{}",
+                                       unused, first + faces.first_vertex, line,
+                                       may_be_cut ? "; the mesh is open: is the file cut short?" : ""));
+}
+
 /// Parses the contents of a mesh file and makes all checks. Adds what the reader ignored or guessed to `warnings`.
 CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const MeshSampling& sampling,
                          std::vector<std::string>& warnings) {
@@ -106,6 +122,7 @@ CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const Mes
   CheckedMesh surface = connect(soup, file);
   refuse_cut_face(faces, surface.findings, file);
   check_surface(surface, sampling, file);
+  warn_of_unused_vertices(faces, soup.vertices.size(), !surface.findings.open_edges.empty());
   warnings = std::move(faces.warnings);
   if (faces.unfinished_line > 0 && !surface.findings.open_edges.empty()) {
     warnings.push_back(
@@ -148,6 +165,19 @@ void warn_of_copies(const MeshFindings& found, const Warn& warn) {
   }
   if (found.repeated_triangles > 0)
     warn(fmt::format("faces left out, which repeat an earlier face: {}", found.repeated_triangles));
+}
+
+/// Warns about closed components that enclose no volume. Their two sides have no triangle in common, because the file
+/// divides them in different ways.
+template <class Warn>
+void warn_of_flat_components(const MeshFindings& found, const Warn& warn) {
+  const auto count = std::ranges::count(found.components, true, &MeshComponent::is_flat);
+  if (count == 0) return;
+  const auto first = std::ranges::find(found.components, true, &MeshComponent::is_flat);
+  warn(
+      fmt::format("double-sided sheets, which are closed components without volume: {}, the largest {}; both sides "
+                  "remain and push against each other: remove one side in a mesh editor",
+                  count, component_text(*first)));
 }
 
 }  // namespace
@@ -207,6 +237,7 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
         {found.flipped_triangles, "faces turned, which were wound against their neighbours"},
         {found.inverted_parts, "closed parts turned, which were inside out"}})
     if (count > 0) warn(fmt::format("{}: {}", text, count));
+  warn_of_flat_components(found, warn);
   warn_of_specks(found, warn);
   return warnings;
 }

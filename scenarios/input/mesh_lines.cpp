@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/number_table.hpp"
 
 namespace hapbench {
 
@@ -35,6 +36,8 @@ double MeshLines::number(std::size_t word) const {
   std::string_view text = words_[word];
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   const auto value = finite_number(text);
+  if (!value && has_decimal_comma(text))
+    fail("got " + quoted_token(text) + " with a decimal comma; allowed: a number with a decimal point");
   if (!value) fail("got " + quoted_token(text) + "; allowed: a finite number");
   return *value;
 }

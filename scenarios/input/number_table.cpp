@@ -122,18 +122,21 @@ std::string cause_of_cell_count(std::string_view row, char separator, std::size_
   return cells < columns ? "; is the row incomplete, or the file cut off?" : "";
 }
 
-void RowFaults::add(std::size_t line, const std::string& problem) {
-  if (count_++ > 0) return;
+void RowFaults::add(std::size_t line, const std::string& problem, const std::string& entry) {
+  const bool is_counted = count_ > 0 && line > 0 && line == last_line_;
+  last_line_ = line;
+  if (is_counted || count_++ > 0) return;
   line_ = line;
   problem_ = problem;
+  entry_ = entry;
 }
 
 void RowFaults::throw_if_any(const std::filesystem::path& file) const {
   if (count_ == 0) return;
   const std::size_t more = count_ - 1;
-  fail_in_line(file, line_,
-               more == 0 ? problem_
-                         : fmt::format("{} ({} more {} faults)", problem_, more, more == 1 ? "row has" : "rows have"));
+  fail_in({.file = file, .line = line_, .entry = entry_},
+          more == 0 ? problem_
+                    : fmt::format("{} ({} more {} faults)", problem_, more, more == 1 ? "row has" : "rows have"));
 }
 
 CsvReader::CsvReader(LineReader lines, const std::filesystem::path& file, std::span<const std::string_view> expected)

@@ -37,15 +37,16 @@ bool has_decimal_comma(std::string_view cell);
 /// The first fault of a table, and the number of rows with faults. A table with a fault in every row gives one message.
 class RowFaults {
  public:
-  /// Adds the fault of a row. Only the text of the first fault is kept.
-  void add(std::size_t line, const std::string& problem);
+  /// Adds the fault of a row. Only the text of the first fault is kept, and a row with several faults counts once.
+  /// `line` is 0 in a binary file. `entry` names the entry of the row, such as "sample 3"; it may be empty.
+  void add(std::size_t line, const std::string& problem, const std::string& entry = "");
   bool any() const { return count_ > 0; }
   /// Throws InputError with the line of the first fault and the number of further faults, if there is a fault.
   void throw_if_any(const std::filesystem::path& file) const;
 
  private:
-  std::size_t line_ = 0, count_ = 0;
-  std::string problem_;
+  std::size_t line_ = 0, last_line_ = 0, count_ = 0;
+  std::string problem_, entry_;
 };
 
 /// Reads a table row by row.

@@ -48,20 +48,22 @@ void check_and_normalise(ReadPoints& read, const fs::path& file) {
   if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");
   if (static_cast<double>(points.size()) > kMaxSurfacePoints)
     fail_in_file(file, fmt::format("has {} points; allowed: at most {:.0g}", points.size(), kMaxSurfacePoints));
+  RowFaults faults;
   for (std::size_t i = 0; i < points.size(); ++i) {
     SurfacePoint& point = points[i];
     const auto refuse = [&](const std::string& problem) {
-      fail_in({.file = file, .line = read.line_of ? read.line_of(i) : 0, .entry = fmt::format("point {}", i)}, problem);
+      faults.add(read.line_of ? read.line_of(i) : 0, problem, fmt::format("point {}", i));
     };
     const double largest = point.position.cwiseAbs().maxCoeff();
     if (!point.position.allFinite() || largest > kMaxCoordinate)
       refuse(fmt::format("got coordinate {}; allowed: finite, at most 1000 m", largest));
     const double length = point.normal.norm();
-    if (!(std::abs(length - 1.0) <= 1e-3))
+    if (largest <= kMaxCoordinate && !(std::abs(length - 1.0) <= 1e-3))
       refuse(fmt::format("got a normal of length {}; allowed: unit normals", length));
     // A normal whose length is 1 up to rounding is not changed, so that an exported shell is read back exactly.
     if (std::abs(length - 1.0) > 1e-12) point.normal /= length;
   }
+  faults.throw_if_any(file);
 }
 
 std::string csv_text(const std::vector<SurfacePoint>& points) {
@@ -96,8 +98,8 @@ std::string shell_extension(const std::filesystem::path& file) {
 
 std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::filesystem::path& file,
                                             std::vector<std::string>* notes) {
-  ReadPoints read =
-      shell_extension(file) == ".csv" ? parse_csv_points(text, file, notes) : ReadPoints{parse_ply_points(text, file)};
+  ReadPoints read = shell_extension(file) == ".csv" ? parse_csv_points(text, file, notes)
+                                                    : ReadPoints{parse_ply_points(text, file, notes)};
   check_and_normalise(read, file);
   return std::move(read.points);
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_lines.hpp"
 #include "scenarios/input/text_lines.hpp"
 
@@ -36,14 +37,29 @@ class IgnoredStatements {
   }
   void report(std::vector<std::string>& warnings) const {
     for (const auto& [keyword, lines] : kinds_) {
-      const bool is_shape = std::ranges::find(kOtherShapes, keyword) != kOtherShapes.end();
       warnings.push_back(fmt::format("{} {}, which were ignored: {}, the first is line {}",
-                                     is_shape ? "statements other than polygons," : "unknown statements",
+                                     is_other_shape(keyword) ? "statements other than polygons," : "unknown statements",
                                      quoted_token(keyword), lines.count, lines.first));
     }
   }
+  /// Throws InputError at the first unknown statement, if there is one. Called for a file without faces, which may have
+  /// another format.
+  void refuse_first_unknown(const fs::path& file) const {
+    const auto* first = static_cast<const std::pair<const std::string_view, Lines>*>(nullptr);
+    for (const auto& kind : kinds_)
+      if (!is_other_shape(kind.first) && (first == nullptr || kind.second.first < first->second.first)) first = &kind;
+    if (first == nullptr) return;
+    fail_in_line(file, first->second.first,
+                 fmt::format("got {}, and the file has no faces; allowed: statements of OBJ, such as \"v 0 0 0\" and "
+                             "\"f 1 2 3\"",
+                             quoted_token(first->first)));
+  }
 
  private:
+  static bool is_other_shape(std::string_view keyword) {
+    return std::ranges::find(kOtherShapes, keyword) != kOtherShapes.end();
+  }
+
   static constexpr std::size_t kMaxKinds = 5;
   struct Lines {
     std::size_t first, count;
@@ -94,6 +110,7 @@ MeshFaces read_obj(std::string_view text, const fs::path& file) {
       ignored.add(words[0], lines.line());
     }
   }
+  if (faces.ends.empty()) ignored.refuse_first_unknown(file);
   ignored.report(faces.warnings);
   if (weighted > 0)
     faces.warnings.push_back(fmt::format("weights of vertices, which were ignored: the first in line {}", weighted));

@@ -345,8 +345,11 @@ MeshFaces read_ply(std::string_view text, const fs::path& file) {
   return contents_of(text, Wanted::faces, file).faces;
 }
 
-std::vector<SurfacePoint> parse_ply_points(std::string_view text, const fs::path& file) {
-  return contents_of(text, Wanted::points, file).points;
+std::vector<SurfacePoint> parse_ply_points(std::string_view text, const fs::path& file,
+                                           std::vector<std::string>* notes) {
+  Contents contents = contents_of(text, Wanted::points, file);
+  if (notes != nullptr) *notes = std::move(contents.faces.warnings);
+  return std::move(contents.points);
 }
 
 }  // namespace hapbench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,7 +18,9 @@ namespace hapbench {
 MeshFaces read_ply(std::string_view text, const std::filesystem::path& file);
 
 /// Parses the vertices of a PLY file as points with normals, from the properties x, y, z [m], nx, ny and nz of
-/// any numeric type. Throws InputError that names the file and, for a text, the line.
-std::vector<SurfacePoint> parse_ply_points(std::string_view text, const std::filesystem::path& file);
+/// any numeric type. Ignores all other elements and properties. `notes`: gets warnings about data after the last
+/// declared vertex. Throws InputError that names the file and, for a text, the line.
+std::vector<SurfacePoint> parse_ply_points(std::string_view text, const std::filesystem::path& file,
+                                           std::vector<std::string>* notes = nullptr);
 
 }  // namespace hapbench

@@ -103,6 +103,24 @@ bool is_text(std::string_view text) {
   return false;
 }
 
+/// Throws InputError for a file that is neither a text nor a complete binary file. `triangles`: the number that a
+/// binary header declares, of which the file holds `complete`.
+[[noreturn]] void refuse(std::string_view text, std::size_t triangles, std::size_t complete, const fs::path& file) {
+  constexpr const char* kAllowed = "; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle";
+  // A text of another kind, such as a page that a server sent instead of the file, has no binary header.
+  constexpr std::size_t kShown = 40;
+  const std::string_view first = LineReader(text).next().value_or("");
+  const auto is_printable = [](unsigned char c) { return c >= 0x20 && c < 0x7f; };
+  if (!first.empty() && std::ranges::all_of(first, is_printable) && first.size() < text.size())
+    fail_in_line(
+        file, 1,
+        fmt::format("is not an STL file: it begins with {}{}", quoted_token(first.substr(0, kShown)), kAllowed));
+  if (text.size() < kHeader) fail_in_file(file, fmt::format("is not an STL file, or cut short{}", kAllowed));
+  fail_in_file(file, fmt::format("is not an STL file, or cut short: it holds {} of the {} triangles that its header "
+                                 "declares{}",
+                                 complete, triangles, kAllowed));
+}
+
 }  // namespace
 
 MeshFaces read_stl(std::string_view text, const fs::path& file) {
@@ -117,15 +135,11 @@ MeshFaces read_stl(std::string_view text, const fs::path& file) {
   // The size of a binary file is exact, even if its header looks like a text.
   const bool is_exact = text.size() == kHeader + kTriangle * triangles;
   if (is_text(text) && !is_exact) return read_stl_text(text, file);
-  if (text.size() < kHeader) {
-    fail_in_file(file,
-                 "is not an STL file, or cut short; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle");
-  }
-  if (complete < triangles) {
-    fail_in_file(file, fmt::format("is not an STL file, or cut short: it holds {} of the {} triangles that its header "
-                                   "declares; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle",
-                                   complete, triangles));
-  }
+  if (text.size() < kHeader || complete < triangles) refuse(text, triangles, complete, file);
+  if (triangles == 0 && reader.left() > 0)
+    fail_in_file(file, fmt::format("its header declares 0 triangles, and {} bytes follow; allowed: the number of "
+                                   "triangles in the bytes 80 to 83",
+                                   reader.left()));
   return read_stl_binary(reader, triangles, file);
 }
 

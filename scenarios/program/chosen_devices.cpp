@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <set>
+#include <system_error>
 
 #include "scenarios/analysis/stability/compared_devices.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -15,9 +17,15 @@ namespace {
 constexpr const char *kPresets = "impedance", *kFile = ".json";  ///< kPresets: the type of all presets; kFile:
                                                                  ///< extension of a file
 
+/// Returns true for a file, and not the name of a preset. A pipe, such as /dev/fd/63, has no extension.
+bool is_file(const std::string& name) {
+  std::error_code error;
+  return name.ends_with(kFile) || name.find('/') != std::string::npos || std::filesystem::is_fifo(name, error);
+}
+
 /// Returns the devices that a name, a type or a file selects; empty for an unknown name.
 std::vector<ComparedDevice> devices_named(const std::string& name) {
-  if (name.ends_with(kFile)) return {device_of_file(name)};
+  if (is_file(name)) return {device_of_file(name)};
   std::vector<ComparedDevice> found;
   for (const ComparedDevice& device : compared_devices()) {
     if (name == "all" || name == device.name || (name == kPresets && device.published_stiffness))
@@ -34,7 +42,7 @@ std::vector<ComparedDevice> devices_named(const std::string& name) {
 std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given) {
   // Reject unknown names. Files and names with [soft] or [stiff] are checked below.
   std::vector<std::string> plain = given, all = names_of(compared_devices(), &ComparedDevice::name);
-  std::erase_if(plain, [](const std::string& name) { return name.ends_with(kFile) || name.ends_with(']'); });
+  std::erase_if(plain, [](const std::string& name) { return is_file(name) || name.ends_with(']'); });
   all.insert(all.begin(), {"FILE.json", kPresets});
   chosen_names("--device", plain, all, "hapbench describe presets");
   // Collect the devices of each name.

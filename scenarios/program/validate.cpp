@@ -59,6 +59,7 @@ std::string closedness_text(const MeshComponent& component, const MeshFindings& 
                                     : "open, normals by the winding of the file";
   }
   const std::string turned = component.is_reversed ? " (turned: it was inside out)" : "";
+  if (component.is_flat) return "closed, without volume (a double-sided sheet)";
   return (component.is_cavity ? "closed, a cavity, normals inwards" : "closed, normals outwards") + turned;
 }
 
@@ -133,6 +134,7 @@ Json components_json(const MeshFindings& found) {
                     {"box_m", box_json(component.box)},
                     {"closed", component.is_closed},
                     {"cavity", component.is_cavity},
+                    {"flat", component.is_flat},
                     {"turned", component.is_reversed}});
   }
   return {{"count", found.component_count}, {"largest", list}};

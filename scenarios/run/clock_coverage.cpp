@@ -135,6 +135,18 @@ const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, s
   return nullptr;
 }
 
+/// Returns the unit in which the trace has the interval of the steps that look for contacts, `query` [s]; null for
+/// seconds, or if there is none. For a clock that does not begin at 0.
+const ClockUnit* unit_of_interval(double interval, double query) {
+  constexpr double kFactor = 10.0;  // a trace may be slower or faster than the run
+  const auto fits = [&](double per_second) {
+    const double ratio = interval / per_second / query;
+    return ratio > 1.0 / kFactor && ratio < kFactor;
+  };
+  const auto* unit = std::ranges::find_if(kClockUnits, fits, &ClockUnit::per_second);
+  return interval <= 0.0 || fits(1.0) || unit == std::end(kClockUnits) ? nullptr : unit;
+}
+
 /// Returns what is wrong with the trace's clock; empty if nothing is.
 std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                           const TraceCoverage& coverage) {
@@ -142,8 +154,11 @@ std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::i
   const double interval = median_interval(trace), query = run.step * static_cast<double>(every);
   if (coverage.covered < coverage.queries) {
     if (const ClockUnit* unit = unit_of_trace(trace, run, every, coverage)) return unit->advice;
-    if (coverage.covered == 0 && first > run.end)
-      return "let the times of the trace begin at 0: subtract the first time";
+    if (coverage.covered == 0 && first > run.end) {
+      const ClockUnit* unit = unit_of_interval(interval, query);
+      return fmt::format("let the times of the trace begin at 0: subtract the first time{}{}",
+                         unit != nullptr ? "; " : "", unit != nullptr ? unit->advice : "");
+    }
     if (coverage.covered == 0)
       return "the times are not those of the run: is time_s in seconds from the start of the run?";
     if (interval > 1.5 * query)
@@ -182,23 +197,32 @@ std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFiel
   const std::string both =
       facts(fmt::format("stroke has {} samples", samples.size()), start, stop, samples.size(), run);
   // Another unit.
+  constexpr double kMissing = 0.05;  // share of the run without samples that a warning reports
   const double interval = interval_of(samples);
-  const bool is_unlikely = is_unlikely_interval(interval, run), is_short = stop + 2.0 * interval < 0.95 * run.end;
+  const bool is_unlikely = is_unlikely_interval(interval, run);
+  const bool is_short = stop + 2.0 * interval < (1.0 - kMissing) * run.end;
+  const bool is_late = start - 2.0 * interval > kMissing * run.end;
   const ClockUnit* unit =
       is_unlikely || is_short || sees_few_samples(samples, run) ? unit_of_stroke(samples, run) : nullptr;
   if (unit != nullptr && !(is_short && unit->per_second > 1.0))
     return warning(fmt::format("{}: {}", both, unit->advice));
   if (is_unlikely)
     return warning(fmt::format("{}: are the stroke's times in seconds, and is time.step_s right?", both));
-  // The end is missing.
-  if (!is_short) return std::nullopt;
+  // The start or the end is missing.
+  if (!is_short && !is_late) return std::nullopt;
   constexpr double kRounding = 1e-6;  // of a step
   const double last_step = std::floor(stop / run.step + kRounding);
-  const double covered = last_step + 1.0 - std::max(0.0, std::ceil(start / run.step));
-  return warning(
-      fmt::format("{}: the stroke covers {:.3g} % of the steps, and the tool stays at the last sample after it; "
-                  "time.steps={:.0f} ends the run with the stroke",
-                  both, 100.0 * covered / run.steps, last_step + 1.0));
+  const double covered = std::min(last_step + 1.0, run.steps) - std::max(0.0, std::ceil(start / run.step));
+  std::string text = fmt::format("{}: the stroke covers {:.3g} % of the steps", both, 100.0 * covered / run.steps);
+  if (is_late)
+    text += fmt::format(
+        "; the tool stays at the first sample for {:.4g} s: to begin with the stroke, subtract its first "
+        "time",
+        start);
+  if (is_short)
+    text += fmt::format("{} the tool stays at the last sample after it; time.steps={:.0f} ends the run with the stroke",
+                        is_late ? ";" : ", and", last_step + 1.0);
+  return warning(std::move(text));
 }
 
 std::optional<Warning> trace_clock_warning(const ContactTrace& trace, const TimeFields& time, std::int64_t every) {

@@ -10,8 +10,8 @@
 /// Compares the times of a recording with the times of the run that plays it.
 namespace hapbench {
 
-/// Returns a warning if the times of the stroke and of the run do not overlap, if the stroke ends before the run, or
-/// if the clock of the stroke probably has another unit. The warning names the unit's factor if another factor fits.
+/// Returns a warning if the times of the stroke and of the run do not overlap, if the stroke starts late or ends early,
+/// or if the clock of the stroke probably has another unit. The warning names the unit's factor if another factor fits.
 /// Cost: O(log n) for n samples.
 std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFields& time);
 

@@ -27,32 +27,40 @@ const std::vector<TableQuantity> kStrokeColumns = {
 constexpr std::size_t kPoseQuantity = 2, kForceQuantity = 3;  ///< indices in kStrokeColumns
 constexpr std::size_t kForceColumns = 3;                      ///< columns of a measured force
 
-/// Location of a row of a table, for messages. Rows count from 0, samples and contacts in a message from 1.
-struct RowLocation {
-  const std::filesystem::path& file;
-  const NumberTable& table;
-  const char* what;  ///< what a row holds, such as "sample"
+/// The faults of a table's rows beyond the notation of numbers. Rows count from 0, samples and contacts in a message
+/// from 1.
+class EntryFaults {
+ public:
+  /// `what` names what a row holds, such as "sample". The arguments must outlive the object.
+  EntryFaults(const std::filesystem::path& file, const NumberTable& table, const char* what)
+      : file_(file), table_(table), what_(what) {}
 
-  /// Throws InputError about a row.
-  [[noreturn]] void fail(std::size_t row, const std::string& problem) const {
-    fail_in({.file = file, .line = table.line_of(row), .entry = fmt::format("{} {}", what, row + 1)}, problem);
+  void add(std::size_t row, const std::string& problem) {
+    faults_.add(table_.line_of(row), problem, fmt::format("{} {}", what_, row + 1));
   }
+  bool any() const { return faults_.any(); }
+  /// Throws InputError about the first fault, with the number of further rows with faults, if there is a fault.
+  void throw_if_any() const { faults_.throw_if_any(file_); }
+
+ private:
+  const std::filesystem::path& file_;
+  const NumberTable& table_;
+  const char* what_;
+  RowFaults faults_;
 };
 
-/// Returns the normalised axis. Throws InputError if it is too short or too long.
-Vec3 axis_of(std::span<const double> cells, const RowLocation& rows, std::size_t row) {
-  const Vec3 axis(cells[0], cells[1], cells[2]);
+/// Returns what is wrong with an axis: it is too short or too long to be normalised. Empty if nothing is.
+std::string axis_problem(const Vec3& axis) {
   const double length = axis.norm();
-  if (length > 1e-12 && length < 1e12) return axis / length;
-  rows.fail(row, fmt::format("got an axis of length {}; allowed: 1e-12 ... 1e12", length));
+  if (length > 1e-12 && length < 1e12) return "";
+  return fmt::format("got an axis of length {}; allowed: 1e-12 ... 1e12", length);
 }
 
-/// Returns the normalised quaternion. Throws InputError if its norm is not 1.
-Eigen::Quaterniond orientation_of(std::span<const double> cells, const RowLocation& rows, std::size_t row) {
-  const Eigen::Quaterniond q(cells[0], cells[1], cells[2], cells[3]);
+/// Returns what is wrong with a quaternion: its norm is not 1. Empty if nothing is.
+std::string quaternion_problem(const Eigen::Quaterniond& q) {
   const double norm = q.norm();
-  if (std::abs(norm - 1.0) <= kMaxNormError) return q.normalized();
-  rows.fail(row, fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError));
+  if (std::abs(norm - 1.0) <= kMaxNormError) return "";
+  return fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError);
 }
 
 constexpr std::size_t kMaxContacts = 20'000'000;      ///< maximum number of contacts of a recording
@@ -72,7 +80,7 @@ Stroke parse_stroke(std::string_view text, const std::filesystem::path& file, st
   // Parse the table. The header says whether the pose has an axis or a quaternion, and whether there is a force.
   const NumberTable table = parse_number_table(text, file, kStrokeColumns, kMaxSamples);
   if (notes != nullptr) *notes = table.notes;
-  const RowLocation rows{file, table, "sample"};
+  EntryFaults faults(file, table, "sample");
   if (table.rows() == 0) fail_in_file(file, "has a header and no samples; allowed: at least one row");
   const bool has_axis = table.chosen[kPoseQuantity] == 0, has_force = table.chosen[kForceQuantity].has_value();
   const std::size_t pose = table.columns - (has_force ? kForceColumns : 0);
@@ -84,16 +92,26 @@ Stroke parse_stroke(std::string_view text, const std::filesystem::path& file, st
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
     RecordedMotion::Sample sample{row[0], {row[1], row[2], row[3]}};
-    if (has_axis)
-      sample.axis = axis_of(row.subspan(4), rows, i);
-    else
-      sample.orientation = orientation_of(row.subspan(4), rows, i);
-    if (i > 0 && !(samples.back().time < row[0]))
-      rows.fail(i,
-                fmt::format("got time {} after {}; allowed: strictly increasing times", row[0], samples.back().time));
+    std::string problem;
+    if (has_axis) {
+      const Vec3 axis(row[4], row[5], row[6]);
+      problem = axis_problem(axis);
+      sample.axis = axis.normalized();
+    } else {
+      const Eigen::Quaterniond turn(row[4], row[5], row[6], row[7]);
+      problem = quaternion_problem(turn);
+      sample.orientation = turn.normalized();
+    }
+    if (problem.empty() && !samples.empty() && !(samples.back().time < row[0]))
+      problem = fmt::format("got time {} after {}; allowed: strictly increasing times", row[0], samples.back().time);
+    if (!problem.empty()) {
+      faults.add(i, problem);
+      continue;
+    }
     samples.push_back(sample);
     if (has_force) forces.push_back({row[0], {row[pose], row[pose + 1], row[pose + 2]}});
   }
+  faults.throw_if_any();
   Stroke stroke{RecordedMotion(std::move(samples)), {}};
   if (has_force) stroke.force.emplace(std::move(forces));
   return stroke;
@@ -103,18 +121,18 @@ ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::p
                                  std::vector<std::string>* notes) {
   const NumberTable table = parse_number_table(text, file, kTraceColumns, kMaxContacts);
   if (notes != nullptr) *notes = table.notes;
-  const RowLocation rows{file, table, "contact"};
+  EntryFaults faults(file, table, "contact");
   ContactTrace trace;
   trace.contacts.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
-    const auto refuse = [&](const std::string& problem) { rows.fail(i, problem); };
+    const auto refuse = [&](const std::string& problem) { faults.add(i, problem); };
     // Start a new time, or add the contact to the current time.
     if (trace.times.empty() || trace.times.back().time < row[0])
       trace.times.push_back({row[0], i});
     else if (row[0] < trace.times.back().time)
       refuse(fmt::format("got time {} after {}; allowed: ascending times", row[0], trace.times.back().time));
-    if (i - trace.times.back().first >= kMaxContactsPerTime)
+    else if (i - trace.times.back().first >= kMaxContactsPerTime)
       refuse(fmt::format("got more contacts at time {}; allowed: at most {}", row[0], kMaxContactsPerTime));
     // Check the contact and normalise its gradient.
     ContactTrace::Contact contact{{row[1], row[2], row[3]}, {row[4], row[5], row[6]}, row[7]};
@@ -126,6 +144,7 @@ ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::p
       refuse(fmt::format("got depth {}; allowed: >= 0, how deep the point is in the tool", contact.depth));
     trace.contacts.push_back(contact);
   }
+  faults.throw_if_any();
   return trace;
 }
 

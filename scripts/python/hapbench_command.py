@@ -355,8 +355,10 @@ def require_name(got, name, valid):
 
 
 def finite_number(word):
-    """The whole word (bytes) as a finite number, or NaN. Stricter than float(), which accepts "1_0", "+1" and " 1"."""
-    value = float(word) if re.fullmatch(rb"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", word) else math.nan
+    """The whole word (bytes) as a finite number, or NaN. Stricter than float(), which accepts "1_0" and " 1"."""
+    value = (
+        float(word) if re.fullmatch(rb"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", word) else math.nan
+    )
     return value if math.isfinite(value) else math.nan
 
 

@@ -17,6 +17,7 @@ from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
 
 matplotlib.use("agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
+from matplotlib.text import Text  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 from matplotlib.transforms import Bbox  # noqa: E402
 
@@ -183,9 +184,24 @@ def fix_layout(figure):
         figure.set_layout_engine(None)
 
 
+def show_dollars(figure):
+    """Makes names that hold "$" texts, not formulas. Only the ticks of logarithmic axes have formulas."""
+    formulas = {
+        label
+        for axes in figure.axes
+        for axis in (axes.xaxis, axes.yaxis)
+        if axis.get_scale() != "linear"
+        for label in axis.get_ticklabels(which="both")
+    }
+    for text in figure.findobj(Text):
+        if text not in formulas:
+            text.set_parse_math(False)
+
+
 def picture(figure, kind, salt="hapbench"):
     """The bytes of the figure as "svg", "pdf" or "png". Same figure, same bytes: no dates, and
     identifiers in an SVG that follow from `salt`."""
+    show_dollars(figure)
     fix_layout(figure)
     drawn = io.BytesIO()
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[

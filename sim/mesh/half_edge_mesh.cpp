@@ -71,6 +71,7 @@ std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triang
 struct Shape {
   Box box = Box::nothing();
   double volume = 0.0;  ///< enclosed volume [m^3]; negative if normals point inwards
+  double area = 0.0;    ///< of all triangles [m^2]
   std::size_t triangles = 0;
   bool is_reversed = false;  ///< the winding of the part was reversed, after the volume was computed
 
@@ -81,6 +82,9 @@ struct Shape {
   /// The threshold is larger than the rounding error, so that two sheets back to back, which enclose no volume, are
   /// not inside out.
   bool is_inside_out() const { return volume < -1e-12 * size() * size() * size(); }
+  /// The threshold is a thickness of a millionth of the size. Coordinates with six or seven digits let the two sides of
+  /// a plane quadrilateral, divided along different diagonals, enclose so much.
+  bool encloses_nothing() const { return std::abs(volume) <= 1e-6 * size() * area; }
 };
 
 /// Connected parts of a surface, and the triangles to reverse so that each part is wound consistently.
@@ -160,6 +164,7 @@ class MeshParts {
       const auto& [i, j, k] = triangles[t];
       const Vec3 a = vertices[i] - shape.box.min, b = vertices[j] - shape.box.min, c = vertices[k] - shape.box.min;
       shape.volume += (reversed_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
+      shape.area += 0.5 * (b - a).cross(c - a).norm();
     }
 
     // Orient the parts from the largest to the smallest. A part inside an outermost part is reversed together with
@@ -192,7 +197,8 @@ class MeshParts {
       const std::uint32_t p = order[i];
       const Shape& shape = shapes_[p];
       const bool is_cavity = closed_[p] && shape.is_inside_out() != shape.is_reversed;
-      found.components.push_back({shape.triangles, shape.box, closed_[p], is_cavity, shape.is_reversed});
+      const bool is_flat = closed_[p] && shape.encloses_nothing();
+      found.components.push_back({shape.triangles, shape.box, closed_[p], is_cavity, shape.is_reversed, is_flat});
     }
   }
 
@@ -368,10 +374,12 @@ std::vector<OpenMesh::VertexHandle> add_vertices(HalfEdgeMesh& mesh, const std::
   return handles;
 }
 
-/// Returns the half-edge mesh of the triangles, with reversed winding where `reversed` is set.
-HalfEdgeMesh connected(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, Fans& fans,
-                       const std::vector<bool>& reversed) {
+/// Returns the half-edge mesh of the triangles, with reversed winding where `reversed` is set. `edges`: the number of
+/// its edges.
+HalfEdgeMesh connected(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, std::size_t edges,
+                       Fans& fans, const std::vector<bool>& reversed) {
   HalfEdgeMesh mesh;
+  mesh.reserve(0, edges, triangles.size());
   const auto handles = add_vertices(mesh, vertices, triangles, fans);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto &a = handles[3 * t], &b = handles[3 * t + 1], &c = handles[3 * t + 2];
@@ -528,7 +536,8 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
   // Build the half-edge mesh with one vertex for each triangle fan.
   Fans fans(triangles.size());
   for (const Hinge& hinge : hinges) fans.join(hinge);
-  result.mesh = connected(soup.vertices, triangles, fans, parts.reversed());
+  const std::size_t edges = 3 * triangles.size() - hinges.size();
+  result.mesh = connected(soup.vertices, triangles, edges, fans, parts.reversed());
   return result;
 }
 

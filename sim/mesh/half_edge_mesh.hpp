@@ -48,6 +48,7 @@ struct MeshComponent {
   bool is_closed = true;
   bool is_cavity = false;    ///< closed, with normals towards its inside
   bool is_reversed = false;  ///< closed, and was inside out
+  bool is_flat = false;      ///< closed, and encloses no volume: both sides of a sheet, divided in different ways
 
   double diameter() const { return box.size().norm(); }
 };

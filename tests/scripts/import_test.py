@@ -235,7 +235,7 @@ class Recordings(Given):
             ("0.1,nan,0,0\n", line + f'column 2 x: got "nan"{number}'),
             ("0.1,,0,0\n", line + f'column 2 x: got ""{number}'),
             ("0.1,1_0,0,0\n", line + f'column 2 x: got "1_0"{number}'),
-            ("0.1,0,+1,0\n", line + f'column 3 y: got "+1"{number}'),
+            ("0.1,0,+-1,0\n", line + f'column 3 y: got "+-1"{number}'),
             ("0.1,0,0,1e999\n", line + f'column 4 z: got "1e999"{number}'),
             ("0.1,0,0\n", line + "got 3 values; allowed: 4"),
             ("0,0,0,0\n", line + "got time 0 s after 0 s; allowed: increasing times"),
@@ -757,6 +757,13 @@ class Layouts(Given):
             table("t,x,y,z", time, moved(held)), "time=t,position=x", set="held_rows=keep"
         )
         self.assertEqual(len(kept.time), 1200)
+        # A clock with jitter: runs of 3, 4 and 5 rows.
+        lengths = np.random.default_rng(7).choice([3, 4, 5], 300, p=[0.2, 0.6, 0.2])
+        held = time[np.repeat(np.cumsum(lengths) - lengths, lengths)[:1200].clip(max=1199)]
+        _, found = self.report(
+            table("t,x,y,z", time[: len(held)], moved(held)), "time=t,position=x"
+        )
+        self.assertAlmostEqual(found["rows_per_held_sample"], 4.0, delta=0.1)
         # Coarse numbers, and an even speed in steps, are no held samples.
         for places in (np.round(moved(time), 4), np.round(np.outer(time, [0.0025, 0, 0]), 5)):
             _, found = self.report(table("t,x,y,z", time, places), "time=t,position=x")
@@ -865,6 +872,33 @@ class Command(Given):
             "import", "stroke", file, "--columns", "time=1,position=2", "--out", self.root / "b.csv"
         )
         self.assertEqual((self.root / "a.csv").read_bytes(), (self.root / "b.csv").read_bytes())
+
+    def test_presets_and_devices_may_come_from_a_pipe(self):
+        for name, text in (
+            ("preset", '\ufeff{"columns": {"time": 1, "position": 2}}'),
+            ("device", '{"type": "impedance", "handle_mass_kg": 0.1}'),
+        ):
+            (self.root / name).write_text(text, encoding="utf-8")
+        file = self.write(STRAIGHT)
+        for words in (
+            f"import stroke {file} --preset <(cat {self.root}/preset) --out {self.root}/s.csv",
+            f"limit tap_wall --device <(cat {self.root}/device) --vary rendering.stiffness_N_per_m "
+            f"--between 1000:2000 --out {self.root}/limit",
+        ):
+            done = ran("bash", "-c", f"{PROGRAM} {words}")
+            self.assertEqual(done.returncode, 0, done.stderr)
+        missing = run(
+            "limit", "tap_wall", "--device", "./none", "--vary", "rendering.stiffness_N_per_m"
+        )
+        self.assertIn("none: ", missing.stderr)
+
+    def test_numbers_may_have_a_plus_sign(self):
+        signed = STRAIGHT.replace("0.0", "+0.0").replace("0,0\n", "+0,+0\n")
+        np.testing.assert_array_equal(self.stroke(signed).position, self.stroke(STRAIGHT).position)
+        semicolons = signed.replace(",", ";").replace(".", ",")
+        np.testing.assert_array_equal(
+            self.stroke(semicolons).position, self.stroke(STRAIGHT).position
+        )
 
     def test_ctrl_c_stops_it_at_any_time(self):
         file = self.write(

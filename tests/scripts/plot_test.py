@@ -24,6 +24,7 @@ from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.panels import looks
 from hapbench_pictures.plot import legend_columns, legend_of
 from hapbench_pictures.sweep_plot import Sweep, sensitivity
+from hapbench_style import picture, plt
 
 setUpModule = make_runs
 SECTIONS = ["summary", "replay", "curves", "metrics", "scenario", "rerun", "provenance"]
@@ -53,6 +54,19 @@ class Plot(Given):
                 f"picture in {self.root / name}\n",
             )
             self.assertTrue((self.root / name).read_bytes().startswith(start))
+
+    def test_names_with_dollars_are_no_formulas(self):
+        figure, ax = plt.subplots()
+        ax.plot([0, 1], [1e-3, 1e3], label="$a$ and $b$")
+        ax.set_yscale("log")
+        ax.set_title(r"$\bad{$")
+        ax.set_xticks([0, 1], ["$x$", "y"])
+        ax.legend()
+        drawn_as = picture(figure, "svg").decode()
+        plt.close(figure)
+        for name in ("$a$ and $b$", r"$\bad{$", "$x$"):
+            self.assertIn(f">{name}</text>", drawn_as)
+        self.assertNotIn("mathdefault", drawn_as)  # ticks of the logarithmic axis are formulas
 
     def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
         run = self.copy("mesh")

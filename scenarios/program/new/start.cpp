@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "scenarios/input/fields.hpp"
@@ -13,9 +14,11 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/rounding.hpp"
 #include "scenarios/input/shell_words.hpp"
+#include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/new/drag_start.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/clock_coverage.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
@@ -121,7 +124,7 @@ class Start {
   /// Returns the points over which the tool starts, in the side's frame: of the largest component of a mesh, unless a
   /// point of the start is given.
   std::vector<SurfacePoint> points() const {
-    return in_frame_of_side(is_over_largest_ ? mesh().largest_component().points() : shell()->points());
+    return in_frame_of_side(is_over_largest_ ? largest_component().points() : shell()->points());
   }
   std::vector<SurfacePoint> all_points() const { return in_frame_of_side(shell()->points()); }
 
@@ -178,6 +181,16 @@ class Start {
 
   MeshFile mesh() const { return scenario().files.at(kEnvironmentFile).mesh(); }
 
+  /// Returns the largest component of the mesh, which is found once for each scene. Precondition: the scale is set.
+  const MeshFile& largest_component() const {
+    const Json& environment = scene_.at("environment");
+    if (!largest_ || environment != largest_environment_) {
+      largest_ = mesh().largest_component();
+      largest_environment_ = environment;
+    }
+    return *largest_;
+  }
+
   /// Returns the bounding box of the environment's mesh without specks, in the side's frame.
   Box box_of_mesh() {
     const MeshFile file = mesh();
@@ -226,7 +239,7 @@ class Start {
     const Box box = bounds_of(shell);
     choose_tool(box.size().maxCoeff());
     const Vec3 top = top_center(shell, box.max.z(), 0.1 * diameter_);
-    const bool is_open = !has_type("environment", "mesh") || !mesh().largest_component().open_edges().empty();
+    const bool is_open = !has_type("environment", "mesh") || !largest_component().open_edges().empty();
     // Sum the normals around the top along the side's axis; a negative sum means that they point away.
     double facing = 0.0;
     for (const SurfacePoint& point : shell) {
@@ -371,6 +384,17 @@ class Start {
                                  along[2].dump(), length_text(length), length_text(drag.free_length)));
   }
 
+  /// Throws InputError for a stroke that no run can record. Its clock is probably in another unit.
+  [[noreturn]] void refuse_long_stroke(const Stroke& stroke) const {
+    TimeFields longest;
+    longest.step = kStartStep;
+    longest.steps = static_cast<std::int64_t>(kMaxRows);
+    const auto warning = stroke_clock_warning(stroke, longest);
+    fail_in_file(options_.from,
+                 fmt::format("lasts until {:.4g} s; allowed: at most {:.4g} s{}{}", stroke.motion.samples().back().time,
+                             kMaxRows * kStartStep, warning ? "; " : "", warning ? warning->text : ""));
+  }
+
   /// Sets the number of steps to the duration of the stroke.
   void choose_stroke_steps() {
     const LoadedScenario loaded = scenario();
@@ -378,7 +402,9 @@ class Start {
     const auto samples = stroke->motion.samples();
     const auto height = [](const auto& sample) { return sample.position.z(); };
     const double lowest = height(*std::ranges::min_element(samples, {}, height)), last = samples.back().time;
-    scene_["time"]["steps"] = static_cast<std::int64_t>(std::max(1.0, std::ceil(last / kStartStep) + 1.0));
+    const double steps = std::max(1.0, std::ceil(last / kStartStep) + 1.0);
+    if (steps > kMaxRows) refuse_long_stroke(*stroke);
+    scene_["time"]["steps"] = static_cast<std::int64_t>(steps);
     notes_.push_back(fmt::format("the stroke lasts from {:.4g} to {:.4g} s; its lowest tip position is z = {:.4g} mm{}",
                                  samples.front().time, last, 1e3 * lowest,
                                  options_.on.empty() ? ", with the plane at z = 0" : ""));
@@ -388,13 +414,15 @@ class Start {
   std::vector<std::string> notes_, warnings_;
   const NewOptions& options_;
   std::filesystem::path directory_;
-  bool is_over_largest_ = false;        ///< the tool starts over the largest of several components of a mesh
-  std::optional<double> unit_;          ///< stated unit of the mesh file [m]
-  std::optional<double> extent_;        ///< stated longest edge of the mesh's box [m]
-  std::vector<Vec3> requested_points_;  ///< points of --path, or the point of --at [m]
-  Mat3 to_world_ = Mat3::Identity();    ///< rotates vectors of the side's frame into the world frame
-  double diameter_ = 0.001;             ///< [m]
-  double press_target_ = 0.0;           ///< final target of a pressing hand along the side's axis [m]
+  bool is_over_largest_ = false;             ///< the tool starts over the largest of several components of a mesh
+  std::optional<double> unit_;               ///< stated unit of the mesh file [m]
+  std::optional<double> extent_;             ///< stated longest edge of the mesh's box [m]
+  std::vector<Vec3> requested_points_;       ///< points of --path, or the point of --at [m]
+  Mat3 to_world_ = Mat3::Identity();         ///< rotates vectors of the side's frame into the world frame
+  double diameter_ = 0.001;                  ///< [m]
+  mutable std::optional<MeshFile> largest_;  ///< the largest component of the mesh of largest_environment_
+  mutable Json largest_environment_;
+  double press_target_ = 0.0;  ///< final target of a pressing hand along the side's axis [m]
 };
 
 }  // namespace

@@ -33,14 +33,15 @@ def hold_of(values):
 
 def _rhythm(runs):
     """Rows between changes: a whole number of which nearly all runs are multiples, or the mean of runs that
-    differ by one row at most, as where the rates are not multiples."""
+    differ by one row at most, as where the rates are not multiples, or by two, as where a clock has jitter.
+    """
     largest = min(MOST_ROWS, int(np.median(runs)))
     for n in range(largest, 1, -1):
         if np.mean(runs % n == 0) >= ALL:
             return float(n)
     usual = int(np.median(runs))
-    for low in (usual - 1, usual):
-        near = (runs == low) | (runs == low + 1)
+    for low, high in ((usual - 1, usual), (usual, usual + 1), (usual - 1, usual + 1)):
+        near = (low <= runs) & (runs <= high)
         if low >= 2 and np.mean(near) >= NEARLY_ALL:
             return float(runs[near].mean())
     return None

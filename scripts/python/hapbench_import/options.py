@@ -137,7 +137,7 @@ def _presets():
 def _read_preset(file):
     """A preset is a JSON file with options as fields; users copy and correct it."""
     try:
-        with open(file, encoding="utf-8") as stream:
+        with open(file, encoding="utf-8-sig") as stream:
             preset = json.load(stream)
     except OSError as error:
         fail(f"cannot be read: {error.strerror}", file)
@@ -151,7 +151,8 @@ def _read_preset(file):
 
 
 def _apply_preset(options, file):
-    if not file.endswith(".json"):
+    # A pipe, such as /dev/fd/63, has no extension.
+    if not file.endswith(".json") and "/" not in file and not Path(file).is_fifo():
         presets = _presets()
         require_name("preset: got", file, list(presets))
         file = presets[file]

@@ -100,7 +100,7 @@ class Recording:
         if self.is_binary or not np.nanmax(np.abs(values), initial=0.0) > EXACT:
             return 0, values
         cells = self._cells(column)
-        whole = [re.fullmatch(rb"-?\d{1,30}", cell) is not None for cell in cells]
+        whole = [re.fullmatch(rb"[+-]?\d{1,30}", cell) is not None for cell in cells]
         if not any(whole) or any(np.isfinite(values) & ~np.array(whole)):
             return 0, values
         origin = int(cells[whole.index(True)])

@@ -14,9 +14,9 @@ MOST_COLUMNS = 1000
 SAMPLED = 20  # lines from which the separator is found
 SEPARATORS = (b",", b";", b"\t", None)  # None: blanks
 _BLANK = b" \t\r"
-_COMMA_NUMBER = re.compile(rb"-?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
-_THOUSANDS = re.compile(rb"-?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
-_WHOLE = re.compile(rb"-?\d+([eE][+-]?\d+)?")
+_COMMA_NUMBER = re.compile(rb"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
+_THOUSANDS = re.compile(rb"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
+_WHOLE = re.compile(rb"[+-]?\d+([eE][+-]?\d+)?")
 _NOT_A_NUMBER = re.compile(rb"[+-]?(nan|inf|infinity)", re.IGNORECASE)
 
 

@@ -71,7 +71,7 @@ def over_axes(ax, x, y, series=(), runs=()):
     for along, of, set_scale in ((ax.xaxis, x, ax.set_xscale), (ax.yaxis, y, ax.set_yscale)):
         along.set_label_text(of.label)
         if of.names:
-            along.set_ticks(range(len(of.names)), [name.replace("$", r"\$") for name in of.names])
+            along.set_ticks(range(len(of.names)), of.names)
         elif of.log:
             set_scale("log")
             number_ticks(along)

@@ -144,6 +144,31 @@ TEST(SweepPlan, RefusesBadMeshesOfToolsBeforeTheFirstRun) {
   EXPECT_NE(std::string(error->what()).find("open.obj"), std::string::npos) << error->what();
 }
 
+/// A value of --points that a field does not allow is named with its line; a fault of the scenario is not.
+TEST(SweepPlan, NamesTheLineOfAPointThatAFieldRefuses) {
+  const test::TemporaryDirectory directory;
+  const auto refusal_of = [&](const std::string& points, const Json& scene) {
+    test::write_plainly(directory / "points.csv", points);
+    std::vector<Axis> axes;
+    Sampling sampling = read_points(directory / "points.csv", axes);
+    const ScenarioText text{directory / "scene.json", scene};
+    const auto error = test::input_error_of([&] {
+      plan_sweep({{text}, {}, std::move(axes), std::move(sampling)}, {1, ""});
+    });
+    return error ? std::string(error->what()) : "";
+  };
+  Json scene = minimal_scenario("plane");
+  const std::string negative = refusal_of("# points\nrendering.stiffness_N_per_m\n1000\n-1\n", scene);
+  EXPECT_NE(negative.find("points.csv, line 4: "), std::string::npos) << negative;
+  EXPECT_NE(negative.find("scene.json: /rendering/stiffness_N_per_m: got -1"), std::string::npos) << negative;
+  const std::string unit = refusal_of("rendering.stiffness_N_per_m [N/m]\n1000\n", scene);
+  EXPECT_NE(unit.find("points.csv, line 2: "), std::string::npos) << unit;
+  scene["time"]["step_s"] = -1;
+  const std::string other = refusal_of("rendering.stiffness_N_per_m\n1000\n", scene);
+  EXPECT_NE(other.find("scene.json: /time/step_s"), std::string::npos) << other;
+  EXPECT_EQ(other.find("points.csv"), std::string::npos) << other;
+}
+
 TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   const test::TemporaryDirectory directory;
   // So many values are not all checked before the first run; 4567 is one that is not.

@@ -366,14 +366,72 @@ TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
       "two.obj: every face is double: each triangle is listed with both windings, and the first of them was kept: 12");
   sheet.triangles = {{0, 1, 2}, {2, 1, 0}, {1, 3, 2}, {2, 3, 1}};
   const auto warnings = read("sheet.off", test::off_text(sheet)).warnings;
-  ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_EQ(warnings[0].find("sheet.off: a double-sided sheet: each triangle is listed with both windings"), 0u);
+  ASSERT_EQ(warnings.size(), 3u);
+  EXPECT_EQ(warnings[1].find("sheet.off: a double-sided sheet: each triangle is listed with both windings"), 0u);
   twice = cube;
   twice.triangles.push_back(cube.triangles[3]);
   EXPECT_EQ(warning_of("same.ply", test::ply_text(twice)), ": faces left out, which repeat an earlier face: 1");
   std::swap(twice.triangles.back()[0], twice.triangles.back()[1]);
   EXPECT_EQ(warning_of("opposite.ply", test::ply_text(twice)),
             ": faces left out, which repeat an earlier face with opposite winding: 1");
+}
+
+/// Both sides of a plane quadrilateral, which the readers divide along different diagonals. Its corners are rounded to
+/// six digits, so that the sides enclose a little volume.
+TEST_F(MeshFile, NamesASheetWhoseSidesAreDividedInDifferentWays) {
+  const std::string corners = "0.123456 0 0\n1.123456 0.3 0.7\n0.423456 1.3 0.912346\n-0.576544 1 0.212346\n";
+  std::string vertices = "v " + corners;
+  for (std::size_t at = 2; (at = vertices.find('\n', at)) + 1 < vertices.size(); at += 3) vertices.insert(at + 1, "v ");
+  const std::string says =
+      ": double-sided sheets, which are closed components without volume: 1, the largest 4 triangles";
+  for (const auto& [name, text] :
+       {std::pair(std::string("sheet.obj"), vertices + "f 1 2 3 4\nf 4 3 2 1\n"),
+        {"sheet.off", "OFF 4 2 0\n" + corners + "4 0 1 2 3\n4 3 2 1 0\n"},
+        {"sheet.ply",
+         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 2\nproperty list uchar int vertex_indices\nend_header\n" +
+             corners + "4 0 1 2 3\n4 3 2 1 0\n"}}) {
+    EXPECT_EQ(warning_of(name, text).find(says), 0u) << warning_of(name, text);
+    EXPECT_TRUE(hapbench::MeshFile(text, name, {}).findings().components[0].is_flat);
+  }
+  // A thin plate and a thin wire have a volume.
+  for (const Vec3& size : {Vec3(1, 1, 1e-4), Vec3(1, 1e-3, 1e-3)}) {
+    TriangleSoup thin = test::cube();
+    for (Vec3& vertex : thin.vertices) vertex = vertex.cwiseProduct(size);
+    EXPECT_EQ(warning_of("thin.obj", test::obj_text(thin)), "");
+  }
+}
+
+TEST_F(MeshFile, NamesVerticesThatNoFaceUses) {
+  EXPECT_EQ(warning_of("spare.obj", test::obj_text(test::cube()) + "v 8 8 8\n"),
+            ": vertices that no face uses, which were ignored: 1, the first is vertex 9 in line 23");
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n";
+  const auto warnings = read("cut.obj", triangle).warnings;
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0],
+            "cut.obj: vertices that no face uses, which were ignored: 1, the first is vertex 4 in line 4; the mesh is "
+            "open: is the file cut short?");
+}
+
+/// A file of another format, or with the notation of another country, is named as what it is.
+TEST_F(MeshFile, IsRefusedByWhatItIs) {
+  for (const auto& [name, text, says] :
+       {std::tuple("off.obj", std::string("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+                   "off.obj, line 1: got \"OFF\", and the file has no faces; allowed: statements of OBJ"),
+        {"upper.obj", "V 0 0 0\nV 1 0 0\nV 0 1 0\nF 1 2 3\n",
+         "upper.obj, line 1: got \"V\", and the file has no faces"},
+        {"page.stl", "<!DOCTYPE html>\n<html><body>" + std::string(200, 'x') + "</body></html>\n",
+         "page.stl, line 1: is not an STL file: it begins with \"<!DOCTYPE html>\"; allowed"},
+        {"pointer.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n",
+         "it begins with \"version https://git-lfs.github.com/spec/\""},
+        {"none.stl", std::string(84, '\0') + std::string(600, '\1'),
+         "its header declares 0 triangles, and 600 bytes follow"},
+        {"comma.obj", "v 0 0 0\nv 1,5 0 0\n",
+         "comma.obj, line 2: got \"1,5\" with a decimal comma; allowed: a number with"},
+        {"comma.off", "OFF 3 1 0\n0 0 0\n1 0 0,25\n", "comma.off, line 3: got \"0,25\" with a decimal comma"},
+        {"comma.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0,1 0 0\n",
+         "comma.stl, line 4: got \"0,1\" with a decimal comma"}})
+    EXPECT_NE(refusal_of(name, text).find(says), std::string::npos) << refusal_of(name, text);
 }
 
 TEST_F(MeshFile, NamesSpecks) {

@@ -101,6 +101,31 @@ TEST(PlyPoints, MayHaveEveryScalarType) {
   }
 }
 
+TEST(PlyPoints, AreReportedWithWhatTheReaderIgnores) {
+  const auto notes_of = [](const std::string& text) {
+    std::vector<std::string> notes;
+    EXPECT_EQ(parse_point_shell(text, "points.ply", &notes).size(), 1u);
+    return notes;
+  };
+  EXPECT_EQ(notes_of(header("ascii", "1") + "0 0 0 0 0 1\n1 1 1 0 0 1\n"),
+            std::vector<std::string>{"lines after the last entry that the header declares, which were ignored: 1, the "
+                                     "first is line 12"});
+  EXPECT_EQ(
+      notes_of(header("ascii", "1") + "0 0 0 0 0 1 7\n"),
+      std::vector<std::string>{"lines with more values than the header declares, which were ignored: 1, the first "
+                               "is line 11"});
+  EXPECT_TRUE(notes_of(header("ascii", "1") + "0 0 0 0 0 1\n").empty());
+}
+
+TEST(ShellFile, IsRefusedOnceWithTheNumberOfPoints) {
+  const auto error = test::input_error_of([] {
+    parse_point_shell("x_m,y_m,z_m,nx,ny,nz\n0,0,0,0,0,1\n0,0,0,0,0,2\n2000,0,0,0,0,2\n0,0,0,0,0,3\n", "s.csv");
+  });
+  ASSERT_TRUE(error);
+  EXPECT_STREQ(error->what(),
+               "s.csv, line 3, point 1: got a normal of length 2; allowed: unit normals (2 more rows have faults)");
+}
+
 /// More of them are in tests/data/golden/refused_files.txt.
 TEST(PlyPoints, AreRefusedWhereHeaderOrNumberIsWrong) {
   const std::string row = "0 0 0 0 0 1\n";

@@ -126,6 +126,18 @@ TEST_F(NewCommand, JudgesTheSizeOfAShellAndStartsOverTheLargestComponent) {
   EXPECT_NE(started.out.find("the mesh has 2 components; the tool starts over the largest"), std::string::npos);
 }
 
+TEST_F(NewCommand, NamesTheClockOfAStrokeThatNoRunCanRecord) {
+  for (const auto& [interval, says] :
+       {std::pair(1e3, "microseconds: divide the times by 10^6"), {1e6, "nanoseconds: divide the times by 10^9"}}) {
+    std::string stroke = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n";
+    for (int i = 0; i < 101; ++i) stroke += fmt::format("{},0,0,{},0,0,-1\n", interval * i, 1e-3 - 2e-5 * i);
+    test::write_plainly(directory_ / "stroke.csv", stroke);
+    const ProgramRun refused = hapbench({"new", "stroke", "--from", path("stroke.csv"), "--out", path("clock.json")});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find(says), std::string::npos) << refused.err;
+  }
+}
+
 /// An open sheet of 8 x 8 mm with a hump, its normals up or down.
 class NewOnASheet : public NewCommand {
  protected:

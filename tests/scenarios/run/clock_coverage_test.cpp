@@ -67,6 +67,15 @@ TEST(StrokeClock, IsNamedIfItEndsEarly) {
   EXPECT_TRUE(contains(text, "time.steps=101 ends the run with the stroke")) << text;
 }
 
+TEST(StrokeClock, IsNamedIfItStartsLate) {
+  const std::string text = stroke_warning(times(0.05, 0.002, 26));
+  EXPECT_TRUE(contains(text, "covers 50 % of the steps; the tool stays at the first sample for 0.05 s")) << text;
+  EXPECT_TRUE(contains(text, "subtract its first time")) << text;
+  const std::string both = stroke_warning(times(0.025, 0.002, 26));
+  EXPECT_TRUE(contains(both, "covers 50.5 % of the steps; the tool stays at the first sample for 0.025 s")) << both;
+  EXPECT_TRUE(contains(both, "time.steps=151 ends the run with the stroke")) << both;
+}
+
 TEST(TraceClock, IsAcceptedIfStepsFindTheirTimes) {
   EXPECT_EQ(trace_warning(times(0, 0.0005, 200)), "");
   EXPECT_EQ(trace_warning(times(0.05, 0.0005, 100)), "") << "the tool comes from above";
@@ -88,6 +97,9 @@ TEST(TraceClock, IsNamedIfTheTraceEndsEarlyOrHasAnotherRate) {
   EXPECT_TRUE(contains(trace_warning(times(0, 0.004, 25)), "rendering.contacts.every=8"));
   EXPECT_TRUE(contains(trace_warning(times(0, 0.000125, 800)), "the trace is faster than the run"));
   EXPECT_TRUE(contains(trace_warning(times(1.7e9, 0.0005, 200)), "subtract the first time"));
+  EXPECT_FALSE(contains(trace_warning(times(1.7e9, 0.0005, 200)), "seconds")) << "its unit is right";
+  EXPECT_TRUE(
+      contains(trace_warning(times(1.7e18, 0.5e6, 200)), "subtract the first time; its clock seems to be in nano"));
   EXPECT_TRUE(contains(trace_warning({}), "the trace has no rows"));
 }
 

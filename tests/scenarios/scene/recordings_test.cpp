@@ -5,6 +5,7 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/scene/recordings.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::recordings_test {
 namespace {
@@ -96,7 +97,27 @@ TEST(TraceFile, NormalisesRoundedGradientsAlone) {
   EXPECT_NEAR(gradient("0.5774,0.5774,0.5774").norm(), 1.0, 1e-15);
 }
 
+TEST(StrokeFile, IsRefusedOnceWithTheNumberOfRows) {
+  const auto refusal_of = [](const std::string& text) {
+    const auto error = test::input_error_of([&] { parse_stroke(text, kFile); });
+    return error ? std::string(error->what()) : "";
+  };
+  const std::string axis = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n", turn = "time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n";
+  EXPECT_NE(
+      refusal_of(axis + "0,0,0,0,0,0,-1\n0,0,0,0,0,0,-1\n0,0,0,0,0,0,-1\n1,0,0,0,0,0,0\n")
+          .find(", line 3, sample 2: got time 0 after 0; allowed: strictly increasing times (2 more rows have faults)"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal_of(turn + "0,0,0,0,2,0,0,0\n1,0,0,0,2,0,0,0\n2,0,0,0,1,0,0,0\n")
+          .find(", line 2, sample 1: got a quaternion qw,qx,qy,qz of norm 2; allowed: 1 within 0.001 (1 more row has"),
+      std::string::npos);
+}
+
 TEST(TraceFile, IsRefusedWithItsRow) {
+  EXPECT_EQ(
+      refusal("0,0,0,0,0,0,1,-1\n0,0,0,0,0,0,2,1\n0,0,0,0,0,0,1,1\n1,0,0,0,0,0,1,-1\n"),
+      "t.csv, line 2, contact 1: got depth -1; allowed: >= 0, how deep the point is in the tool (2 more rows have "
+      "faults)");
   EXPECT_EQ(refusal("0,0,0,0,0,0,1,1\n0.1,0,0,0,0,0,1,1\n0.05,0,0,0,0,0,1,1\n"),
             "t.csv, line 4, contact 3: got time 0.05 after 0.1; allowed: ascending times");
   EXPECT_EQ(refusal("0,0,0,0,0,0,1.01,1\n"),
