@@ -192,7 +192,7 @@ TEST(Drag, IsJudgedAlongItsPathAlsoWhereThePathReturns) {
       json["rendering"]["stiffness_N_per_m"] = 2000;
       const Result followed = run_scenario(checked(read_scenario(json, "")), std::nullopt, false);
       EXPECT_EQ(followed.end.outcome, Outcome::completes) << device["type"] << " " << i << warnings_of(followed);
-      json["rendering"]["friction"] = {{"mu", 20}};
+      json["rendering"]["friction"] = {{"type", "dry"}, {"mu", 20}};
       const Result held = run_scenario(checked(read_scenario(json, "")), std::nullopt, false);
       EXPECT_TRUE(held.end.outcome == Outcome::stuck || held.end.outcome == Outcome::not_dragged)
           << device["type"] << " " << i << " " << outcome_name(held.end.outcome);
@@ -434,7 +434,7 @@ std::vector<Trap> traps() {
   const Scene passive = {"peg_in_hole_2d_shaped_stiffness"};  // nothing presses this tool
   return {
       // A law that fails is not the matter of the step, nor a hand that runs away of K.
-      {"diverged", kMolar, {}, "correct the law", "time.step_s", Outcome::diverges, "gives a force that is not finite"},
+      {"fault", kMolar, {}, "correct the law", "time.step_s", Outcome::diverges, "gives a force that is not finite"},
       {"diverged", kMolar, {}, "without contact", "smaller K", Outcome::diverges},
       {"edge", kMolar, {{"ratio_max", 1e9}}, "", "smaller K", Outcome::diverges, "gives a force that is not finite"},
       // No K helps a tool that starts inside, and no hand a script.
