@@ -11,6 +11,7 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
+from skimage.color import deltaE_ciede2000, rgb2lab
 
 from fixture import PROGRAM, SOURCE, hapbench, in_process, must, scratch_folder
 
@@ -45,9 +46,14 @@ def drawn(command, *words, expected=0):
 plotted = partial(drawn, "plot")
 
 
+def make_root():
+    """A folder for a module, as its setUpModule."""
+    Given.root = scratch_folder(unittest)
+
+
 def make_runs():
     """Short runs, a comparison and a sweep, once for a module, as its setUpModule."""
-    Given.root = scratch_folder(unittest)
+    make_root()
     made(
         "mesh",
         "run",
@@ -324,3 +330,63 @@ class Looks(unittest.TestCase):
                     self.assertGreaterEqual(
                         contrast(colour, ground), 4.5, (look.label, colour, ground)
                     )  # WCAG 2.1, level AA, of text
+
+    def test_colours_are_told_apart_with_every_kind_of_colour_vision(self):
+        """Simulated as Machado, Oliveira and Fernandes do (IEEE TVCG 15, 2009, severity 1). A CIEDE2000 difference of 1 is
+        just noticed side by side; 6 is seen at once between lines of a figure."""
+        algorithms, series = hapbench_looks.ALGORITHMS.values(), hapbench_looks.SERIES
+        for among, smallest in ((algorithms, 6.0), (series, 12.0)):
+            for ground in ("colour", "dark"):
+                colours = [getattr(look, ground) for look in among]
+                for vision, matrix in VISIONS.items():
+                    lab = rgb2lab(simulated(colours, matrix))
+                    apart = deltaE_ciede2000(lab[:, None], lab[None]) + 99 * np.eye(len(lab))
+                    self.assertGreaterEqual(apart.min(), smallest, (ground, vision))
+        # The second code: no two algorithms have the same marker, nor two series the same marker or dash.
+        for part, among in (("marker", algorithms), ("marker", series), ("dash", series)):
+            found = [getattr(look, part) for look in among]
+            self.assertEqual(len(set(found)), len(found), part)
+
+    def test_the_simulation_sees_what_is_known(self):
+        """A colour-blind eye sees grey as it is, and red and green of one luminance alike but for deuteranopia's own."""
+        for matrix in VISIONS.values():
+            # The published matrices have six digits.
+            np.testing.assert_allclose(simulated(["#808080"], matrix), 128 / 255, atol=1e-5)
+        (pair,) = (rgb2lab(simulated(["#B43C3C", "#6E6E00"], VISIONS["deuteranopia"])),)
+        plain = rgb2lab(simulated(["#B43C3C", "#6E6E00"], np.eye(3)))
+        self.assertLess(deltaE_ciede2000(*pair), 0.5 * deltaE_ciede2000(*plain))
+
+
+# Linear RGB as the eye sees it.
+VISIONS = {
+    "usual": np.eye(3),
+    "protanopia": np.array(
+        [
+            [0.152286, 1.052583, -0.204868],
+            [0.114503, 0.786281, 0.099216],
+            [-0.003882, -0.048116, 1.051998],
+        ]
+    ),
+    "deuteranopia": np.array(
+        [
+            [0.367322, 0.860646, -0.227968],
+            [0.280085, 0.672501, 0.047413],
+            [-0.011820, 0.042940, 0.968881],
+        ]
+    ),
+    "tritanopia": np.array(
+        [
+            [1.255528, -0.076749, -0.178779],
+            [-0.078411, 0.930809, 0.147602],
+            [0.004733, 0.691367, 0.303900],
+        ]
+    ),
+}
+
+
+def simulated(colours, matrix):
+    """sRGB, a row for each colour."""
+    rgb = np.array([[int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)] for colour in colours])
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    seen = np.clip(linear @ matrix.T, 0, 1)
+    return np.where(seen <= 0.0031308, 12.92 * seen, 1.055 * seen ** (1 / 2.4) - 0.055)

@@ -26,13 +26,15 @@ PLOT_NOTES = [
 PLOT_EXAMPLES = [
     "hapbench plot results/out/drag_molar",
     "hapbench plot results/out/compare_drag_molar --y force,depth --out drag.png",
-    "hapbench plot results/out/compare_tap_wall --metric inside_max_m --width single --out depth.pdf",
+    "hapbench plot results/out/compare_tap_wall --metric force_max_N --width single --out laws.pdf",
     "hapbench plot results/out/sweep_tap_wall --metric force_max_N",
 ]
 REPORT_NOTES = [
     "Page: one HTML file that needs no other file, no server and no network. It shows curves, "
     "metrics, scenarios and commands, and replays up to four runs side by side. Runs with --set "
     "record.contacts=true also show depths. For two runs, their differences come first.",
+    "Many runs (several seeds, or many laws in several scenes): the page begins with laws by metrics "
+    "and the ranking; curves are means over the seeds.",
     "A sweep: use sweep --keep-runs, then report FOLDER/runs.",
     "--tolerance compares outcome, metrics, warnings, trajectory.csv and sweep.csv, and with 0 also"
     " the state hash. A result that only one folder has counts as a difference. Provenance, run "

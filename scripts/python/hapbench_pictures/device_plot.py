@@ -75,15 +75,17 @@ def legend_of_marks(rows, along):
 
 
 def panels_of(rows):
-    """Title -> its rows: each scene, and each law where there are several."""
-    laws = len({row["algorithm"] for row in rows}) > 1
-    scenes = len({row["scenario"] for row in rows}) > 1
+    """Title -> its rows, for each scene and law."""
     found = {}
     for row in rows:
-        law = look(row["algorithm"]).label if laws else ""
-        title = ", ".join(part for part in (row["scenario"] if scenes else "", law) if part)
-        found.setdefault(title.replace("_", " "), []).append(row)
+        title = f"{row['scenario'].replace('_', ' ')}, {look(row['algorithm']).label}"
+        found.setdefault(title, []).append(row)
     return found
+
+
+def title_of(found):
+    """The title of the limits, such as "largest stable stiffness K [N/m]"."""
+    return f"{found.rows[0]['side']} stable {axis(found.field)}"
 
 
 def draw_devices_over(found, sheet):
@@ -99,7 +101,12 @@ def draw_devices_over(found, sheet):
             mine = [row for row in of_panel if row["device"] == name]
             series += curves_of(found, mine, own[device_of(mine[0])].colour, "[" in name)
         y = [values for _, _, values, _ in series]
-        over_axes(ax, found.axis(), Axis.of(axis(found.field), np.concatenate(y)), series)
+        over_axes(
+            ax,
+            found.axis(),
+            Axis.of(title_of(found).replace("stable ", "stable\n"), np.concatenate(y)),
+            series,
+        )
         for name, value in published(of_panel).items():
             ax.axhline(value, color=own[name].colour, lw=1.2, ls=PUBLISHED_LINE["ls"])
         ax.set_title(title)
@@ -144,7 +151,7 @@ def draw_devices(found, sheet):
                 (None, values[mine & ~ends], places[mine & ~ends], {**shown, **SIMULATED}),
                 (None, values[mine & ends], places[mine & ends], {**shown, **beyond}),
             ]
-        limits = Axis(axis(found.field), np.array([]), log=True)
+        limits = Axis(title_of(found), np.array([]), log=True)
         over_axes(ax, limits, Axis.of("", devices), series)
         for place, row in zip(places, of_panel):
             span = sorted(v for v in (linear([row])[0], simulated([row])[0][0]) if np.isfinite(v))

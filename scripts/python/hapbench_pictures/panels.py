@@ -104,13 +104,14 @@ def draw_over_time(ax, quantity, samples, looks):
 
 
 def share_an_axis(ax, heights):
-    """A linear axis; where a run is thrown about, linear up to the calmest run's peak and logarithmic beyond.
-    Whether it is the latter."""
+    """Makes the axis linear up to about the calmest run's peak and logarithmic beyond, where a run is thrown about.
+    Returns true if it does."""
     peaks = [
         peak for peak in (float(np.nanmax(np.abs(h), initial=0.0)) for h in heights) if peak > 0
     ]
     if peaks and max(peaks) > LARGEST_RATIO * min(peaks):
-        ax.set_yscale("symlog", linthresh=min(peaks))
+        # From a power of ten on, where a tick is: its label has room beside that of 0.
+        ax.set_yscale("symlog", linthresh=10.0 ** np.ceil(np.log10(min(peaks))))
         return True
     return False
 

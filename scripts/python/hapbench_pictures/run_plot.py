@@ -57,7 +57,7 @@ def figure_of(runs, shown, quantities, samples, groups, surfaces, sheet=SHEET):
     write_title(top, head, runs, entries, columns, sheet)
     axes = axes_of(bottom, rows)
     scenes, over_time = axes[: len(groups)], axes[len(groups) :]
-    draw_scenes(scenes, groups, runs, shown, samples, surfaces)
+    draw_scenes(scenes, groups, runs, shown, samples, surfaces, width_of(rows, sheet))
     explain_scenes(bottom, scenes, texts_of(groups, runs, surfaces), sheet, rows)
     for ax, quantity in zip(over_time, quantities):
         draw_over_time(ax, quantity, samples, shown)
@@ -122,13 +122,19 @@ def name_times(axes, beside, sheet):
         axes[-1].set_xlabel(f"time [s]{marks}")
 
 
-def draw_scenes(axes, groups, runs, shown, samples, surfaces):
-    """One section for each group of runs."""
+def width_of(rows, sheet):
+    """Of a panel in the row with most of them, without the room for its numbers [inch]."""
+    return sheet.width / max(columns for _, columns, _ in rows) - 0.6
+
+
+def draw_scenes(axes, groups, runs, shown, samples, surfaces, width):
+    """One section for each group of runs; `width` of a panel [inch]."""
     for ax, group, surface in zip(axes, groups, surfaces):
         of_samples, of_looks = ([entries[i] for i in group] for entries in (samples, shown))
         draw_section(ax, of_samples, of_looks, profile_of(runs[group[0]]), surface)
         if len(groups) > 1:
-            ax.set_title(runs[group[0]].name.replace("_", " "))
+            name = runs[group[0]].name.replace("_", " ")
+            ax.set_title(shortened(name, int(width / TITLE_LETTER)))
 
 
 def texts_of(groups, runs, surfaces):
@@ -148,8 +154,7 @@ def explain_scenes(figure, axes, texts, sheet, rows):
         every = dict.fromkeys("; ".join(texts).split("; "))
         figure.supxlabel(fill("; ".join(every), int(sheet.width / LETTER)), fontsize=7)
         return
-    columns = max(columns for _, columns, _ in rows)
-    letters = int((sheet.width / columns - 0.6) / LETTER)
+    letters = int(width_of(rows, sheet) / LETTER)
     for i, (ax, text) in enumerate(zip(axes, texts)):
         if i == 0 or text != texts[0]:
             ax.set_xlabel(f"{ax.get_xlabel()}\n{fill(text, letters)}", fontsize=7)

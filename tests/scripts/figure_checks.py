@@ -1,0 +1,88 @@
+"""What a figure shows, from the contents of its axes, and whether it fits its sheet."""
+import itertools
+
+import numpy as np
+
+from hapbench_style import fix_layout
+
+SMALLEST, LARGEST = 7, 9  # font sizes [points]
+SLACK = 2.0  # by which a text may leave the figure or overlap another one [pixels]; 100 pixels are an inch
+
+
+def texts_of(figure):
+    """The visible texts that are not empty: those of the figure and its parts, titles, labels, and ticks in view."""
+    found = []
+    for part in (figure, *figure.subfigs):
+        found += [*part.texts, *(text for legend in part.legends for text in legend.get_texts())]
+    for ax in filter(lambda ax: ax.get_visible(), figure.axes):
+        found += [
+            *ax.texts,
+            ax.xaxis.label,
+            ax.yaxis.label,
+            ax.title,
+            ax._left_title,
+            ax._right_title,
+        ]
+        found += ax.get_legend().get_texts() if ax.get_legend() else ()
+        for along, limits in ((ax.xaxis, ax.get_xlim()), (ax.yaxis, ax.get_ylim())):
+            for minor in (False, True):
+                for tick in along.get_minor_ticks() if minor else along.get_major_ticks():
+                    if tick.label1.get_visible() and min(limits) <= tick.get_loc() <= max(limits):
+                        found.append(tick.label1)
+    return [text for text in found if text.get_visible() and text.get_text().strip()]
+
+
+def legend_labels(figure):
+    """The entries of the legends of the figure, its parts and its axes."""
+    parts = [figure, *figure.subfigs, *figure.axes]
+    legends = [one for part in parts for one in getattr(part, "legends", [])]
+    legends += [ax.get_legend() for ax in figure.axes if ax.get_legend()]
+    return [text.get_text() for legend in legends for text in legend.get_texts()]
+
+
+def curves_of(ax, marker):
+    """Points of the curves with a marker."""
+    return [line.get_xydata() for line in ax.lines if line.get_marker() == marker]
+
+
+def assert_fits(test, figure, sheet):
+    """The figure has the size of the sheet, fonts of 7 to 9 pt, no text outside or over another one, no legend over
+    axes, and a unit on every axis of numbers."""
+    fix_layout(figure)
+    test.assertAlmostEqual(figure.get_figwidth(), sheet.width)
+    if sheet.height:
+        test.assertAlmostEqual(figure.get_figheight(), sheet.height)
+    renderer = figure.canvas.get_renderer()
+    figure.draw(renderer)
+    boxes = []
+    for text in texts_of(figure):
+        test.assertTrue(
+            SMALLEST <= text.get_fontsize() <= LARGEST, (text.get_text(), text.get_fontsize())
+        )
+        box = text.get_window_extent(renderer)
+        low, high = box.min, box.max
+        test.assertTrue(
+            (low >= -SLACK).all() and (high <= figure.bbox.max + SLACK).all(),
+            (text.get_text(), low, high, figure.bbox.max),
+        )
+        boxes.append((text, low, high))
+    for (a, low, high), (b, bottom, top) in itertools.combinations(boxes, 2):
+        overlap = np.minimum(high, top) - np.maximum(low, bottom)
+        test.assertFalse((overlap > SLACK).all(), (a.get_text(), b.get_text(), overlap))
+    shown = [ax for ax in figure.axes if ax.get_visible()]
+    for part in (figure, *figure.subfigs):
+        for legend in part.legends:
+            box = legend.get_window_extent(renderer)
+            test.assertFalse(any(box.overlaps(ax.get_window_extent(renderer)) for ax in shown))
+    for ax in shown:
+        for along in (ax.xaxis, ax.yaxis):
+            title = along.get_label_text()
+            test.assertTrue(not title or "[" in title or not has_numbers(along), title)
+
+
+def has_numbers(along):
+    """True unless the labels of the ticks are texts."""
+    labels = [tick.get_text().strip() for tick in along.get_ticklabels()]
+    return not any(
+        any(letter.isalpha() for letter in label.replace("mathdefault", "")) for label in labels
+    )

@@ -1,0 +1,316 @@
+"""`hapbench plot` of limits, of a tuning and of a convergence."""
+import csv
+
+import numpy as np
+from matplotlib.colors import to_hex
+
+from figure_checks import assert_fits, curves_of, legend_labels
+from pictures_test import Given, made, make_root, plotted
+
+from hapbench.columns import read_records
+from hapbench_pictures.device_plot import BEYOND_LABEL, PUBLISHED_LABEL
+from hapbench_pictures.study_plot import draw_study
+from hapbench_style import SHEETS, plt
+
+setUpModule = make_root
+OVER = "rendering.damping_N_s_per_m"
+
+
+def rewrite(file, change):
+    """Changes each row of a table."""
+    rows = read_records(file)
+    for row in rows:
+        change(row)
+    with file.open("w", newline="", encoding="utf-8") as out:
+        table = csv.DictWriter(out, list(rows[0]))
+        table.writeheader()
+        table.writerows(rows)
+    return rows
+
+
+class Limits(Given):
+    def test_maps_and_limits(self):
+        over = made(
+            "over", "limit", "stability_z_width", "--resolution", 0.5, "--algorithms", "mean,proxy"
+        )
+        self.assert_plot_shows(
+            over,
+            "linear limit",
+            "simulated limit",
+            "damping [N s/m]",
+            "stiffness K [N/m]",
+            "diverged",
+            "stable (Gil, Hulin)",
+        )
+        limit = made(
+            "limit",
+            "limit",
+            "springs_limited_mean",
+            "--vary",
+            "rendering.stiffness_N_per_m",
+            "--set",
+            "time.steps=300",
+            "--set",
+            "expect={}",
+            "--resolution",
+            0.1,
+        )
+        self.assert_plot_shows(limit, "simulated limit", "stiffness K [N/m]", "mean")
+        # Without a linear edge no closed form of it is drawn.
+        rubbed = made(
+            "rubbed",
+            "limit",
+            "stability_z_width",
+            "--resolution",
+            0.5,
+            "--algorithms",
+            "mean",
+            "--set",
+            "device.coulomb_N=0.1",
+        )
+        plotted(rubbed)
+        for text in ("linear limit", "stable (Gil, Hulin)", "exact, undamped handle"):
+            self.assertNotIn(text, (rubbed / "plot.svg").read_text())
+        for words, said in (
+            ((over, limit), "one such folder alone"),
+            ((limit, "--y", "force"), "allowed for it: --width, --out"),
+        ):
+            self.assertIn(said, plotted(*words, expected=2))
+        (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
+        self.assertIn("is not a table that hapbench wrote", plotted(limit, expected=2))
+
+    def test_convergence(self):
+        folder = made(
+            "converge",
+            "converge",
+            "springs_oscillation",
+            "--metric",
+            "force_max_N,inside_max_m,final_position_m.x",
+            "--levels",
+            4,
+        )
+        self.assert_plot_shows(
+            folder,
+            "force max, order 1.0",
+            "inside max, no order",
+            "final position m.x, order 1.",
+            "formal order 1",
+            "time step [s]",
+            "relative error",
+            "processor time per run [s]",
+        )
+        made("converge", "converge", "springs_oscillation", "--metric", "inside_max_m")
+        self.assertIn("nothing to draw: no level has an error above 0", plotted(folder, expected=2))
+
+    def test_tuning(self):
+        folder = made(
+            "tune",
+            "tune",
+            "impedance_at_wall",
+            "--algorithms",
+            "mean,shaped_stiffness",
+            "--damping-ratio",
+            "0.2:0.3",
+        )
+        self.assert_plot_shows(
+            folder,
+            "stiffness [N/m]",
+            "largest depth inside [mm]",
+            "force above 30 Hz [N rms]",
+            "choice of each law",
+            "not feasible",
+            "mean",
+        )
+        table = folder / "tune_trials.csv"
+        table.write_text(
+            table.read_text().splitlines()[0] + "\nmean,1,1,,,false,settled,vibrating,,,\n"
+        )
+        self.assertIn("nothing to draw: no trial is settled", plotted(folder, expected=2))
+
+    def test_devices(self):
+        own = self.root / "my$own$.json"
+        own.write_text('{"type": "impedance", "handle_mass_kg": 0.1}')
+        folder = made(
+            "devices",
+            "limit",
+            "tap_wall",
+            "--device",
+            f"touch,{own}",
+            "--algorithms",
+            "summation",
+            "--set",
+            "time.steps=200",
+            "--resolution",
+            0.5,
+        )
+        self.assert_plot_shows(
+            folder,
+            "tap wall",
+            "touch",
+            "my$own$",
+            "summation",
+            "published, for a wall",
+            "largest stable stiffness K [N/m]",
+        )
+
+    def over_field(self):
+        """Limits of an own device and of a preset over the damping."""
+        own = self.root / "mine.json"
+        own.write_text('{"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.5}')
+        return made(
+            "z_width",
+            "limit",
+            "wall_on_handle",
+            "--device",
+            f"{own},touch",
+            "--over",
+            f"{OVER}=1:100:3:log",
+            "--between",
+            "1e2:1e6",
+            "--stable",
+            "bounded",
+            "--resolution",
+            0.5,
+        )
+
+    def test_devices_over_a_field_have_it_as_their_axis(self):
+        folder = self.over_field()
+        rows = read_records(folder / "limit.csv")
+        figure = draw_study(folder, SHEETS["single"])
+        (ax,) = figure.axes
+        self.assertEqual((ax.get_xlabel(), ax.get_xscale()), ("damping [N s/m]", "log"))
+        self.assertEqual(ax.get_ylabel(), "largest stable\nstiffness K [N/m]")
+        linear, simulated = curves_of(ax, "s"), curves_of(ax, "o")
+        for device in {row["device"] for row in rows}:
+            mine = [row for row in rows if row["device"] == device]
+            expected = [
+                (float(row[OVER]), float(row["linear_limit"] or row["theoretical_limit"] or "nan"))
+                for row in mine
+            ]
+            self.assertTrue(
+                any(np.array_equal(found, expected, equal_nan=True) for found in linear), device
+            )
+            expected = {
+                (float(row[OVER]), float(row["limit"])) for row in mine if row["first_unstable"]
+            }
+            self.assertTrue(
+                any(
+                    expected == {tuple(at) for at in found if np.isfinite(at[1])}
+                    for found in simulated
+                ),
+                device,
+            )
+        colours = {to_hex(line.get_color()) for line in ax.lines if line.get_marker() == "s"}
+        self.assertEqual(len(colours), 2)  # one for each device, variants included
+        (published,) = [
+            line
+            for line in ax.lines
+            if len(set(line.get_ydata())) == 1
+            and len(line.get_xdata()) == 2
+            and line.get_marker() == "None"
+        ]
+        self.assertEqual(published.get_ydata()[0], float(rows[-1]["published_N_per_m"]))
+        labels = legend_labels(figure)
+        self.assertLessEqual({"mine", "touch", "linear limit", PUBLISHED_LABEL}, set(labels))
+        plt.close(figure)
+
+    def test_a_limit_at_the_end_of_the_range_is_marked(self):
+        folder = self.over_field()
+
+        def no_end(row):
+            row["first_unstable"] = ""
+
+        rows = rewrite(folder / "limit.csv", no_end)
+        figure = draw_study(folder, SHEETS["double"])
+        self.assertIn(BEYOND_LABEL, legend_labels(figure))
+        self.assertNotIn("simulated limit", legend_labels(figure))
+        found = {tuple(at) for curve in curves_of(figure.axes[0], "^") for at in curve}
+        self.assertEqual(found, {(float(row[OVER]), float(row["limit"])) for row in rows})
+        plt.close(figure)
+
+    def test_a_field_of_texts_is_an_axis(self):
+        """Of a device and without one; the values stand in the order of the table."""
+        folder = self.over_field()
+        names = {}
+
+        def named(row):
+            row[OVER] = names.setdefault(row[OVER], f"filter {len(names)}")
+
+        rewrite(folder / "limit.csv", named)
+        for drop in (False, True):
+            if drop:
+                for name in ("limit.csv", "limit_runs.csv"):
+                    rows = [row for row in read_records(folder / name) if row["device"] == "mine"]
+                    with (folder / name).open("w", newline="", encoding="utf-8") as out:
+                        table = csv.DictWriter(out, [key for key in rows[0] if key != "device"])
+                        table.writeheader()
+                        for row in rows:
+                            row.pop("device")
+                            row[OVER] = names.get(row[OVER], row[OVER])
+                            table.writerow(row)
+            figure = draw_study(folder)
+            ticks = [tick.get_text() for tick in figure.axes[0].get_xticklabels()]
+            self.assertEqual(ticks, list(names.values()))
+            plt.close(figure)
+
+    def test_the_choice_of_tune_is_ringed_and_the_legend_has_what_is_drawn(self):
+        folder = made(
+            "tuned",
+            "tune",
+            "impedance_at_wall",
+            "--algorithms",
+            "mean",
+            "--damping-ratio",
+            "0.2:0.3",
+        )
+        (law,) = read_records(folder / "tune.csv")
+        figure = draw_study(folder, SHEETS["double"])
+        for ax, x in zip(figure.axes, (0, 0, 1)):
+            rings = [line for line in ax.lines if line.get_markersize() == 10]
+            (at,) = [point for ring in rings for point in ring.get_xydata()]
+            (low, high), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+            self.assertTrue(low <= at[0] <= high and bottom <= at[1] <= top)
+            if x == 0:
+                self.assertEqual(at[0], float(law["stiffness_N_per_m"]))
+        self.assertIn("choice of each law", legend_labels(figure))
+        plt.close(figure)
+
+        def refuse(row):
+            row["feasible"] = "false"
+
+        rewrite(folder / "tune_trials.csv", refuse)
+        self.assertEqual(legend_labels(draw_study(folder)), ["mean", "not feasible"])
+        plt.close()
+
+    def test_they_fit_every_sheet(self):
+        folders = [
+            self.over_field(),
+            made(
+                "touch",
+                "limit",
+                "tap_wall",
+                "--device",
+                "touch",
+                "--set",
+                "time.steps=200",
+                "--resolution",
+                0.5,
+            ),
+            made(
+                "z", "limit", "stability_z_width", "--resolution", 0.5, "--algorithms", "mean,proxy"
+            ),
+            made(
+                "t",
+                "tune",
+                "impedance_at_wall",
+                "--algorithms",
+                "mean",
+                "--damping-ratio",
+                "0.2:0.3",
+            ),
+        ]
+        for folder in folders:
+            for name, sheet in SHEETS.items():
+                with self.subTest(folder.name, sheet=name):
+                    assert_fits(self, draw_study(folder, sheet), sheet)
+                    plt.close()
