@@ -123,11 +123,14 @@ std::optional<double> contact_limit(const LimitQuestion& question, double stable
   // Returns true if the loop at a value of the field is stable; empty if there is no loop in contact.
   const auto is_stable_at = [&](double value) -> std::optional<bool> {
     const CheckedScenario scenario = checked(question.at(value));
-    auto contact = linear_contact(scenario, make_shell(scenario.scenario(), scenario.files()), near);
-    // A surface too soft to hold the tool has no equilibrium. Its linear limit is that of the last contact, with K and
-    // B.
+    const auto at_rest = linear_contact(scenario, make_shell(scenario.scenario(), scenario.files()), near);
     const RenderingConfig& rendering = scenario.scenario().rendering;
-    if (!contact && known && question.path == kStiffnessPath) contact = scaled(*known, known_rendering, rendering);
+    std::optional<LinearContact> contact;
+    if (at_rest) contact = at_rest->contact;
+    // A surface too soft to hold the tool has no equilibrium, nor has a force that jumps. The contact is then the last
+    // contact that was found, with this K and B.
+    if (!(at_rest && at_rest->is_equilibrium) && known && question.path == kStiffnessPath)
+      contact = scaled(*known, known_rendering, rendering);
     if (!contact) return std::nullopt;
     known = contact;
     known_rendering = rendering;

@@ -149,10 +149,10 @@ TEST(SweepPlan, NamesTheLineOfAPointThatAFieldRefuses) {
   const test::TemporaryDirectory directory;
   const auto refusal_of = [&](const std::string& points, const Json& scene) {
     test::write_plainly(directory / "points.csv", points);
-    std::vector<Axis> axes;
-    Sampling sampling = read_points(directory / "points.csv", axes);
     const ScenarioText text{directory / "scene.json", scene};
     const auto error = test::input_error_of([&] {
+      std::vector<Axis> axes;
+      Sampling sampling = read_points(directory / "points.csv", axes);
       plan_sweep({{text}, {}, std::move(axes), std::move(sampling)}, {1, ""});
     });
     return error ? std::string(error->what()) : "";
