@@ -270,8 +270,8 @@ class Formats(unittest.TestCase):
             scratch / "out",
         )
         done = ran(PROGRAM, "audit", file, *words)
-        self.assertIn("--force-by-tool", done.stderr)
-        found = json.loads(hapbench("audit", file, "--force-by-tool", *words))
+        self.assertIn("--set force_by_tool=true", done.stderr)
+        found = json.loads(hapbench("audit", file, "--set", "force_by_tool=true", *words))
         self.assertAlmostEqual(found["stiffness"]["stiffness_N_per_m"] / 1000.0, 1.0, delta=EXACT)
         self.assertEqual(found["clock"]["rows_missing"], 0)
         self.assertEqual(found["columns"]["orientation"][0]["name"], "qw")
