@@ -21,8 +21,8 @@ NOTES = [
     "column names are found (t, px, py, pz, fx, fy, fz); --columns names others: time, position, force, orientation, "
     "velocity, contacts (their number) and measured (force by a sensor). Logs of one axis have one column of position "
     'and one of force. Units in names, such as "x [mm]", are applied.',
-    "Fields of --set: force_by_tool=true (forces act on the object; their sign is changed), touch_N (force from which a "
-    'row is in contact; default: any force), sample_rate_Hz (for a log without times), and those of "hapbench import '
+    "Fields of --set: force_by_tool=true (forces act on the object; their sign is changed), touch_N (force from which "
+    'a row is in contact; default: any force), sample_rate_Hz (for a log without times), and those of "hapbench import '
     'stroke --help".',
     "Energy: the sum of f . dp, with the force of a row held until the next row. Positive work is energy that the "
     'engine gives to the hand; the largest sum is the net created energy. "Along the path" the force changes '

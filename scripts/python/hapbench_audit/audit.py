@@ -163,8 +163,8 @@ def doubts(log, audit):
     if known and 2 * len(negative) > len(known):
         found.append(
             f"the force grows along its own direction ({negative[0]['stiffness_N_per_m']:.4g} N/m), unlike that of a "
-            "surface on a tool: is it the force of the tool on the object? (--set force_by_tool=true); otherwise energy and "
-            "stiffness have the wrong sign"
+            "surface on a tool: is it the force of the tool on the object? (--set force_by_tool=true); otherwise "
+            "energy and stiffness have the wrong sign"
         )
     return found
 
