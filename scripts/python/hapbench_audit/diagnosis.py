@@ -216,7 +216,7 @@ def against_energy(audit):
             f"{stiffness['stiffness_N_per_m'] * (stiffness['delay_s'] + 0.5 * interval):.3g} N s/m would pay for it"
         )
     is_of_hold = energy["net_created_path_J"] < 0.1 * energy["net_created_J"]
-    if is_of_hold and not energy["is_integrated"]:
+    if is_of_hold:
         return (
             "a higher rate, or damping"
             + (

@@ -200,7 +200,7 @@ def device_rows(audit):
         (
             "linear limit",
             f"{limit:.4g} N/m for {device['device']} without a hand, at {audit['clock']['rate_Hz']:.4g} Hz, "
-            f"{device['delay_samples']:.3g} samples of delay, B = {device['damping_N_s_per_m']:.3g} N s/m",
+            f"{device['delay_samples']:.3g} samples of delay, {wall_damping_text(audit)}",
         ),
         ("K", f"{ratio:.3g} times the limit"),
     ]
@@ -214,6 +214,12 @@ def device_rows(audit):
     if device["expected_frequency_Hz"] is not None:
         rows.append(("buzz", expected_text(audit)))
     return rows
+
+
+def wall_damping_text(audit):
+    if audit["stiffness"]["damping_N_s_per_m"] is None:
+        return "B = 0 (not identifiable)"
+    return f"B = {audit['device']['damping_N_s_per_m']:.3g} N s/m"
 
 
 def expected_text(audit):
