@@ -108,7 +108,8 @@ class KnownAnswers(unittest.TestCase):
             "limit", "wall_on_handle", "--device", device, "--json", "--out", scratch / "limit",
             "--set", f"time.step_s={T}", "--set", f"rendering.damping_N_s_per_m={damping}",
         )  # fmt: skip
-        same = json.loads(answer)["limits"][0]["linear_limit"]
+        row = json.loads(answer)["limits"][0]
+        same = row["theoretical_limit"] or row["linear_limit"]  # this loop is linear
         self.assertAlmostEqual(found["linear_limit_N_per_m"] / same, 1.0, delta=2 * EXACT)
 
     def test_passive_spring_and_damper(self):
@@ -270,8 +271,8 @@ class Formats(unittest.TestCase):
             scratch / "out",
         )
         done = ran(PROGRAM, "audit", file, *words)
-        self.assertIn("--force-by-tool", done.stderr)
-        found = json.loads(hapbench("audit", file, "--force-by-tool", *words))
+        self.assertIn("--set force_by_tool=true", done.stderr)
+        found = json.loads(hapbench("audit", file, "--set", "force_by_tool=true", *words))
         self.assertAlmostEqual(found["stiffness"]["stiffness_N_per_m"] / 1000.0, 1.0, delta=EXACT)
         self.assertEqual(found["clock"]["rows_missing"], 0)
         self.assertEqual(found["columns"]["orientation"][0]["name"], "qw")
@@ -343,6 +344,8 @@ class OwnRuns(unittest.TestCase):
             self.assertGreater(len(shared), 14)
             for name in sorted(shared):
                 self.agree(scene, name, found["metrics"][name], summary, name)
+            if scene == "device_at_wall":
+                continue  # for a free virtual tool, run uses the mean velocity of a step
             # No turn, so that the port of the translation is the whole port.
             created = summary["passivity"]["net_created_J"]
             self.assertAlmostEqual(

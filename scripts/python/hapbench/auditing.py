@@ -27,14 +27,15 @@ def audit(
 
     `table`: columns of numbers by name, such as a Table, a dict of arrays or a pandas.DataFrame, with time, position
     of the tool and force on it. `device`: a preset or FILE.json, with whose linear limit the stiffness is compared.
-    `columns`, `scale`, `force_by_tool`, `touch`: as the options of the command. Raises InputError.
+    `columns`, `scale`: as the options of the command. `force_by_tool`: forces act on the object, and their sign is
+    changed. `touch`: force from which a row is in contact [N]; None: any force. Raises InputError.
     """
     _find_packages()
     from hapbench_audit.audit import audit_log
     from hapbench_audit.log import log_of_table
 
-    log = log_of_table(table, columns or {}, scale or {}, force_by_tool)
-    found = audit_log(log, None if device is None else os.fspath(device), touch)[0]
+    log = log_of_table(table, columns or {}, scale or {}, force_by_tool, touch)
+    found = audit_log(log, None if device is None else os.fspath(device))[0]
     return found | {
         "columns": log.columns,
         "columns_not_read": log.columns_not_read,

@@ -21,6 +21,9 @@ NOTES = [
     "column names are found (t, px, py, pz, fx, fy, fz); --columns names others: time, position, force, orientation, "
     "velocity, contacts (their number) and measured (force by a sensor). Logs of one axis have one column of position "
     'and one of force. Units in names, such as "x [mm]", are applied.',
+    "Fields of --set: force_by_tool=true (forces act on the object; their sign is changed), touch_N (force from which "
+    'a row is in contact; default: any force), sample_rate_Hz (for a log without times), and those of "hapbench import '
+    'stroke --help".',
     "Energy: the sum of f . dp, with the force of a row held until the next row. Positive work is energy that the "
     'engine gives to the hand; the largest sum is the net created energy. "Along the path" the force changes '
     "linearly between rows, without the effect of holding it. The error follows from the resolution of the log.",
@@ -36,7 +39,7 @@ EXAMPLES = [
     "hapbench audit log.csv",
     "hapbench audit log.csv --device touch --expect energy_mJ=1,force_rms_above_30Hz_N=0.1",
     "hapbench audit rec.csv --columns time=stamp_ns,position=tip_x,force=f_x \\\n"
-    "    --scale time=1e-9 --force-by-tool",
+    "    --scale time=1e-9 --set force_by_tool=true",
 ]
 
 
@@ -64,10 +67,6 @@ def command_line():
         "<name=factor,...>",
         "units of the log: seconds per unit of time, and so on for position [m], force [N] and angle [rad]",
     )
-    line.flag("--force-by-tool", "the forces act on the object; their sign is changed")
-    line.text(
-        "--touch", "<N>", "force from which a row is in contact (default: any force)", type=float
-    )
     line.one_of(
         list(ORIENTATIONS),
         "--orientation",
@@ -84,7 +83,7 @@ def command_line():
     line.text(
         "--set",
         "<field=value>",
-        'any field of a preset (see "hapbench import stroke --help"); repeatable',
+        "force_by_tool=true, touch_N, sample_rate_Hz or any field of a preset, see below; repeatable",
         action="append",
         default=[],
     )
@@ -115,7 +114,7 @@ def run(options):
     from .text import below_table, table_rows
 
     log = read_log(options)
-    audit, contacts, spectrum = audit_log(log, options.device, options.touch)
+    audit, contacts, spectrum = audit_log(log, options.device)
     audit["expectations"] = expectations(options.expect, audit)
     audit["columns"], audit["columns_not_read"] = log.columns, log.columns_not_read
     audit["scales"] = log.scales

@@ -17,9 +17,9 @@ WELL_KNOWN = (
 )
 
 
-def audit_log(log, device=None, touch=None):
-    """(numbers for the JSON, Contacts, spectrum). `device`: a preset or FILE.json; `touch`: as in contacts_of()."""
-    contacts = contacts_of(log, touch)
+def audit_log(log, device=None):
+    """(numbers for the JSON, Contacts, spectrum). `device`: a preset or FILE.json."""
+    contacts = contacts_of(log)
     clock, port = clock_of(log), Port(log, contacts)
     force, spectrum = force_of(log, contacts), spectrum_of(log, contacts)
     every = each_contact(log, contacts)
@@ -163,8 +163,8 @@ def doubts(log, audit):
     if known and 2 * len(negative) > len(known):
         found.append(
             f"the force grows along its own direction ({negative[0]['stiffness_N_per_m']:.4g} N/m), unlike that of a "
-            "surface on a tool: is it the force of the tool on the object? (--force-by-tool); otherwise energy and "
-            "stiffness have the wrong sign"
+            "surface on a tool: is it the force of the tool on the object? (--set force_by_tool=true); otherwise "
+            "energy and stiffness have the wrong sign"
         )
     return found
 

@@ -28,10 +28,10 @@ class Contacts:
         return sum(after - first - 1 for first, after in self.stretches)
 
 
-def contacts_of(log, touch=None):
-    """`touch`: force from which a row is in contact [N]; None: as the log shows."""
+def contacts_of(log):
+    """Contacts by Log.touch, or as the log shows."""
     size = np.linalg.norm(log.force, axis=1)
-    in_contact, threshold, rule = rows_in_contact(log, size, touch)
+    in_contact, threshold, rule = rows_in_contact(log, size)
     interval = log.interval
     gap = np.diff(log.time) > LONG_INTERVALS * interval
     runs = runs_of(in_contact, gap)
@@ -64,10 +64,10 @@ def contacts_of(log, touch=None):
     )
 
 
-def rows_in_contact(log, size, touch):
+def rows_in_contact(log, size):
     """(in contact by row, threshold [N], the rule in words)."""
-    if touch is not None:
-        return size > touch, touch, f"force above {touch:g} N (--touch)"
+    if log.touch is not None:
+        return size > log.touch, log.touch, f"force above {log.touch:g} N (touch_N)"
     if log.contacts is not None:
         return log.contacts > 0, 0.0, "the column of contacts is above 0"
     if np.mean(size == 0.0) >= SOME_ZEROS or not size.any():
@@ -77,7 +77,7 @@ def rows_in_contact(log, size, touch):
         size > threshold,
         threshold,
         f"force above {threshold:.3g} N, 5 % of its 99th percentile, because the log has no rows without force "
-        "(--touch sets it)",
+        "(--set touch_N=... sets it)",
     )
 
 

@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 from hapbench_command import asked_of_program
 
-from .text import expected_text
+from .text import HAMMERS, expected_text
 
 AT_LIMIT = 0.999  # of the largest force
 CONSTANT = 0.9  # share of the rows at the largest force from which the force is constant
@@ -54,10 +54,10 @@ def findings_of(log, contacts, audit):
     found, force = Findings(), audit["metrics"]
     mean, device = force["force_mean_in_contact_N"], audit["device"]
     vibration = share(force["force_rms_above_30Hz_N"], mean)
-    vibrates = (vibration or 0.0) > HAS_BUZZ or (force["contacts_lost_per_s"] or 0.0) > 1.0
+    vibrates = (vibration or 0.0) > HAS_BUZZ or (force["contacts_lost_per_s"] or 0.0) > HAMMERS
     ratio = device["ratio"] if device and vibrates else None
     if ratio is not None:
-        found.add("edge", ratio, against_edge(device), edge_text(device, audit["buzz"]))
+        found.add("edge", ratio, against_edge(device), edge_text(audit))
     found.add("buzz", vibration, against_buzz(audit, ratio), buzz_text(audit["buzz"]))
     found.add(
         "pop",
@@ -94,16 +94,13 @@ def buzz_text(buzz):
     )
 
 
-def edge_text(device, buzz):
+def edge_text(audit):
+    device = audit["device"]
     text = (
         f" of {device['device']} ({device['linear_limit_N_per_m']:.4g} N/m at {device['delay_samples']:.3g} samples of "
         "delay)"
     )
-    return (
-        text
-        if device["expected_frequency_Hz"] is None
-        else f"{text}: {expected_text(device, buzz)}"
-    )
+    return text if device["expected_frequency_Hz"] is None else f"{text}: {expected_text(audit)}"
 
 
 def against_edge(device):
@@ -135,7 +132,7 @@ def against_buzz(audit, ratio):
     if (encoder or 0.0) > rules()["encoder"]["threshold"]:
         return 'what the rule "encoder" says'
     lost = audit["metrics"]["contacts_lost_per_s"] or 0.0
-    if lost > 1.0:
+    if lost > HAMMERS:
         text = f"a smaller stiffness or more damping: the tool hammers and loses contact {lost:.3g} times per second"
         return text + ("; --device FILE.json shows the limit" if audit["device"] is None else "")
     if audit["device"] is None:
@@ -162,7 +159,7 @@ def against_pop(log, contacts, force):
                 if part > 0.5
                 else ": look at normals and depths of the contacts there"
             )
-    if (force["contacts_lost_per_s"] or 0.0) > 1.0:
+    if (force["contacts_lost_per_s"] or 0.0) > HAMMERS:
         return (
             f"contact is lost {force['contacts_lost_per_s']:.3g} times per second: a smaller stiffness or more "
             "damping, and a force that starts at zero at touch"
@@ -219,7 +216,7 @@ def against_energy(audit):
             f"{stiffness['stiffness_N_per_m'] * (stiffness['delay_s'] + 0.5 * interval):.3g} N s/m would pay for it"
         )
     is_of_hold = energy["net_created_path_J"] < 0.1 * energy["net_created_J"]
-    if is_of_hold and not energy["is_integrated"]:
+    if is_of_hold:
         return (
             "a higher rate, or damping"
             + (

@@ -2,8 +2,6 @@
 energy that the rendering gives to the hand."""
 import numpy as np
 
-SAME = 1e-9  # of the largest displacement: positions that the velocities of the log explain
-
 
 class Port:
     """Work at the port of a log. `held`: the force of a row acts until the next row, as a device holds it. `path`: the
@@ -13,14 +11,7 @@ class Port:
     def __init__(self, log, contacts):
         moved, f = np.diff(log.position, axis=0), log.force
         moved[contacts.gap] = 0.0
-        self.is_integrated = is_integrated(log, moved)
-        if self.is_integrated:
-            # A simulated mass whose positions follow from its new velocity: f changes its kinetic energy over the mean
-            # of both velocities, as the passivity observer of hapbench has it.
-            way = 0.5 * (log.velocity[1:] + log.velocity[:-1]) * np.diff(log.time)[:, None]
-        else:
-            way = moved
-        self.held = work(f[:-1], way)
+        self.held = work(f[:-1], moved)
         self.path = work(0.5 * (f[:-1] + f[1:]), moved)
         # Positions are off by at most half their resolution, and so are forces.
         changes = np.abs(np.diff(f, axis=0, prepend=np.zeros((1, 3))))
@@ -41,14 +32,6 @@ class Port:
 
 def work(force, way):
     return np.einsum("ij,ij->i", force, way)
-
-
-def is_integrated(log, moved):
-    """True if each position is the one before plus the new velocity times the interval."""
-    if log.velocity is None:
-        return False
-    off = moved - log.velocity[1:] * np.diff(log.time)[:, None]
-    return bool(np.abs(off).max() <= SAME * max(float(np.abs(moved).max()), 1e-9))
 
 
 def stored_at(log, contacts, row, spring):
@@ -81,7 +64,6 @@ def energy_of(log, port, stored):
         "net_created_path_J": created(path, stored),
         "stored_at_start_J": stored,
         "work_path_J": float(path[-1]),
-        "is_integrated": port.is_integrated,
     }
 
 

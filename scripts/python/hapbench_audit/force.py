@@ -62,14 +62,12 @@ def force_of(log, contacts):
     settled_s = float(settled.sum() * interval)
     enough = settled_s >= LEAST_SETTLED
     mean = float(size[settled].mean()) if enough else None
-    speed = None if log.velocity is None else np.linalg.norm(log.velocity, axis=1)
     found = {
         "force_max_N": float(size.max()),
         "force_step_max_N": float(step.max()),
         "force_reversals": int(reverses.sum()),
         "steps_in_contact": int(contacts.in_contact.sum()),
         "contact_share": float(contacts.in_contact.mean()),
-        "speed_max_m_per_s": None if speed is None else float(speed.max()),
         "landings": len(contacts.landings),
         "landing_force_max_N": float(size[landing].max()) if landing.any() else None,
         "landing_force_step_max_N": float(step[landing].max()) if landing.any() else None,

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import numpy as np
-from hapbench_command import fail, quoted, require_name
+from hapbench_command import fail, finite_number, quoted, require_name
 from hapbench_import.columns import Names
 from hapbench_import.holds import hold_of
 from hapbench_import.options import QUANTITIES, options_of
@@ -30,6 +30,7 @@ USUAL = {
 # Of a log of one axis.
 ALONE = {"position": "position pos x y z", "force": "force f", "velocity": "velocity vel v"}
 ALONE["measured"] = "measured measuredforce forcemeasured"
+TOUCH = "touch_N="  # field of --set
 EXTRA = ("velocity", "measured", "contacts")  # quantities that an import does not read
 ALL = [name for name in QUANTITIES] + list(EXTRA)
 
@@ -54,6 +55,7 @@ class Log:
     )
     quantum_N: np.ndarray | None = None  # of each force component [N]
     held: object = None  # Hold of the positions, or None
+    touch: float | None = None  # force from which a row is in contact [N]; None: as the log shows
 
     @property
     def interval(self):
@@ -66,15 +68,19 @@ class Log:
 
 def read_log(options):
     """The log that the command line names (__main__)."""
-    layout, wanted = layout_of(options)
-    return log_of(open_recording(options.log, layout), layout, wanted)
+    layout, wanted, touch = layout_of(options)
+    log = log_of(open_recording(options.log, layout), layout, wanted)
+    log.touch = touch
+    return log
 
 
 def layout_of(options):
-    """(options of an import, names of columns by quantity of EXTRA)."""
+    """(options of an import, names of columns by quantity of EXTRA, force from which a row is in contact or None)."""
+    touches = [word for word in options.set if word.startswith(TOUCH)]
     own = [word for word in options.columns if word.partition("=")[0] in EXTRA]
     asked = SimpleNamespace(
-        **{name: getattr(options, name) for name in ("preset", "set", "scale", "decimal")},
+        **{name: getattr(options, name) for name in ("preset", "scale", "decimal")},
+        set=[word for word in options.set if word not in touches],
         columns=[word for word in options.columns if word not in own],
         orientation=options.orientation,
         skip_bad_rows=options.skip_bad_rows,
@@ -83,28 +89,36 @@ def layout_of(options):
     for word in options.columns:
         require_name("columns: got", word.partition("=")[0], ALL)
     layout = options_of(asked)
-    if options.force_by_tool:
-        layout.force_by_tool = True
     if not any(word.startswith("max_speed") for word in options.set):
         layout.max_speed = float("inf")
     layout.held_rows = "keep"
-    return layout, dict(word.split("=", 1) for word in own if "=" in word)
+    touch = touch_of(touches[-1]) if touches else None
+    return layout, dict(word.split("=", 1) for word in own if "=" in word), touch
 
 
-def log_of_table(table, columns, scale, force_by_tool):
+def touch_of(word):
+    """The force of the field touch_N."""
+    force = finite_number(word.removeprefix(TOUCH).encode("utf-8", "surrogateescape"))
+    if not force >= 0.0:
+        fail(f"--set: got {quoted(word)}; allowed: touch_N=FORCE, a number >= 0")
+    return force
+
+
+def log_of_table(table, columns, scale, force_by_tool, touch):
     """The log in a mapping of names to arrays, such as a Table or a pandas.DataFrame. `columns` and `scale`: by
     quantity, as the options of the command line."""
     asked = SimpleNamespace(
         log=None,
         columns=[f"{quantity}={column}" for quantity, column in columns.items()],
         scale=[f"{quantity}={factor!r}" for quantity, factor in scale.items()],
-        force_by_tool=force_by_tool,
-        set=[],
+        set=["force_by_tool=true"] if force_by_tool else [],
         skip_bad_rows=False,
         **dict.fromkeys(("preset", "decimal", "orientation")),
     )
-    layout, wanted = layout_of(asked)
-    return log_of(recording_of(table), layout, wanted)
+    layout, wanted, _ = layout_of(asked)
+    log = log_of(recording_of(table), layout, wanted)
+    log.touch = touch
+    return log
 
 
 def recording_of(table):

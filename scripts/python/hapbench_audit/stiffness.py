@@ -116,6 +116,9 @@ def shortest(fits):
     floor = NEGLIGIBLE * scale
     least = min(map(mean_square, fits))
     good = [fit for fit in fits if mean_square(fit) <= NEARLY_BEST * least + floor]
+    # A force of the wrong sign is no delay, although half a period of a periodic motion explains it as well.
+    if -good[0].values[0] < -2.0 * good[0].errors[0]:
+        return good[0]
     calm = [
         fit
         for fit in good
