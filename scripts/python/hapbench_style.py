@@ -145,6 +145,11 @@ def legend_columns(labels, width, most=4):
     )
 
 
+def legend_height(labels, width):
+    """Of a legend above panels, as wide as the figure [inch]."""
+    return 0.08 + LINE * -(-len(labels) // legend_columns(labels, width, 6))
+
+
 def legend_above(figure, handles, labels, columns=4):
     """A legend over all panels, with room for it; none without labels. `columns`: None for as many as fit."""
     if not labels:

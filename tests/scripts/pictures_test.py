@@ -332,8 +332,9 @@ class Looks(unittest.TestCase):
                     )  # WCAG 2.1, level AA, of text
 
     def test_colours_are_told_apart_with_every_kind_of_colour_vision(self):
-        """Simulated as Machado, Oliveira and Fernandes do (IEEE TVCG 15, 2009, severity 1). A CIEDE2000 difference of 1 is
-        just noticed side by side; 6 is seen at once between lines of a figure."""
+        """Simulated as by Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009, severity 1). A CIEDE2000
+        difference of 1 is just noticed side by side; 6 is seen at once between lines of a figure.
+        """
         algorithms, series = hapbench_looks.ALGORITHMS.values(), hapbench_looks.SERIES
         for among, smallest in ((algorithms, 6.0), (series, 12.0)):
             for ground in ("colour", "dark"):
@@ -348,7 +349,7 @@ class Looks(unittest.TestCase):
             self.assertEqual(len(set(found)), len(found), part)
 
     def test_the_simulation_sees_what_is_known(self):
-        """A colour-blind eye sees grey as it is, and red and green of one luminance alike but for deuteranopia's own."""
+        """A colour-blind eye sees grey as it is, and a red and an olive of one lightness much alike."""
         for matrix in VISIONS.values():
             # The published matrices have six digits.
             np.testing.assert_allclose(simulated(["#808080"], matrix), 128 / 255, atol=1e-5)

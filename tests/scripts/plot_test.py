@@ -111,7 +111,7 @@ class Plot(Given):
         self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
         runs = self.variants(*jittered)
         self.assertEqual(len(legend_of(looks(runs, *named(runs)))), 3)
-        self.assertEqual([legend_columns(["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
+        self.assertEqual([legend_columns(4 * ["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
 
     def test_new_draws_a_preview(self):
         bur = self.root / "bur.json"

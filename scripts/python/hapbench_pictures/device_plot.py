@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 
 from hapbench.columns import numbers
 from hapbench_looks import SERIES, look
-from hapbench_style import BLACK, GREY, PUBLISHED_LINE, legend_above
+from hapbench_style import BLACK, GREY, PUBLISHED_LINE, legend_above, legend_height
 
 from .given import axis
 from .over_axes import Axis, over_axes
@@ -94,7 +94,8 @@ def draw_devices_over(found, sheet):
     marks = legend_of_marks(found.rows, "y")
     entries = [(Line2D([], [], color=one.colour, lw=2), name) for name, one in own.items()] + marks
     rows, columns = sheet.grid(len(panels))
-    figure, axes = sheet.panels(rows, columns, 0.7 + 2.6 * rows, sharex=True, sharey=True)
+    height = 0.3 + 2.6 * rows + legend_height([label for _, label in entries], sheet.width)
+    figure, axes = sheet.panels(rows, columns, height, sharex=True, sharey=True)
     for ax, (title, of_panel) in zip(axes.flat, panels.items()):
         series = []
         for name in dict.fromkeys(row["device"] for row in of_panel):

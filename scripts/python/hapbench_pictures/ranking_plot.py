@@ -10,7 +10,16 @@ from hapbench.errors import InputError
 from hapbench_command import nearest
 from hapbench_looks import look, look_of_class
 from hapbench_report.markup import column
-from hapbench_style import BLACK, RED, SETTINGS, SHEET, legend_above, number_ticks, plt
+from hapbench_style import (
+    BLACK,
+    RED,
+    SETTINGS,
+    SHEET,
+    legend_above,
+    legend_height,
+    number_ticks,
+    plt,
+)
 
 from .over_axes import spread_logarithmically
 from .standings import RANKING, USUAL, has_repetitions, scenes_of
@@ -75,7 +84,11 @@ def ranking_figure(scenes, metrics, sheet):
     rows = -(-len(panels) // columns)
     laws = max(len(scene.laws) for scene in scenes)
     row = FAILED_ROW if any(law.failures for scene in scenes for law in scene.laws) else ROW
-    figure, axes = sheet.panels(rows, columns, 0.45 + rows * (0.75 + row * laws))
+    entries = legend_of(scenes, metrics)
+    height = rows * (0.75 + row * laws) + legend_height(
+        [label for _, label in entries], sheet.width
+    )
+    figure, axes = sheet.panels(rows, columns, height)
     for ax, (scene, metric) in zip(axes.flat, panels):
         draw_panel(ax, scene, metric, is_compact=bool(sheet.height))
         # In a row of one scene, the first panel names it for all.
@@ -83,7 +96,7 @@ def ranking_figure(scenes, metrics, sheet):
             ax.set_title(scene.name.replace("_", " "))
     for ax in axes.flat[len(panels) :]:
         ax.set_visible(False)
-    legend_above(figure, *zip(*legend_of(scenes, metrics)), columns=None)
+    legend_above(figure, *zip(*entries), columns=None)
     return figure
 
 
