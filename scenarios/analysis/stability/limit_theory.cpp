@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 
+#include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/impedance_device.hpp"
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/analysis/stability/linear_contact.hpp"
@@ -104,12 +105,33 @@ TheoreticalLimit inequality_limit(const LimitQuestion& question) {
   return limit_by(question, has_inequality, keeps_inequality, kScanIntervals);
 }
 
+/// Returns a contact with its stiffness in proportion to K and its damping in proportion to B.
+static LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to) {
+  const double K = to.stiffness / from.stiffness,
+               B = normal_damping(from) > 0.0 ? normal_damping(to) / normal_damping(from) : 1.0;
+  LinearForce& rendered = contact.rendered;
+  rendered = {
+      K * rendered.stiffness, B * rendered.damping, {K * rendered.assumed.stiffness, B * rendered.assumed.damping}};
+  return contact;
+}
+
 std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near) {
+  std::optional<LinearContact> known;  // the last contact that was found, at `known_rendering`
+  RenderingConfig known_rendering;
   // Returns true if the loop at a value of the field is stable; empty if there is no loop in contact.
   const auto is_stable_at = [&](double value) -> std::optional<bool> {
     const CheckedScenario scenario = checked(question.at(value));
-    const auto contact = linear_contact(scenario, make_shell(scenario.scenario(), scenario.files()), near);
+    const auto at_rest = linear_contact(scenario, make_shell(scenario.scenario(), scenario.files()), near);
+    const RenderingConfig& rendering = scenario.scenario().rendering;
+    std::optional<LinearContact> contact;
+    if (at_rest) contact = at_rest->contact;
+    // A surface too soft to hold the tool has no equilibrium, nor has a force that jumps. The contact is then the last
+    // contact that was found, with this K and B.
+    if (!(at_rest && at_rest->is_equilibrium) && known && question.path == kStiffnessPath)
+      contact = scaled(*known, known_rendering, rendering);
     if (!contact) return std::nullopt;
+    known = contact;
+    known_rendering = rendering;
     const std::vector<Eigen::MatrixXd> loop = contact_loop(scenario.scenario(), *contact);
     if (loop.empty()) return std::nullopt;
     return is_stable_loop(loop);

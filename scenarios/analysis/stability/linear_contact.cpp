@@ -60,12 +60,13 @@ class RestingTool {
   bool touches() const { return !force_.S.isZero(0.0) || !force_.spring.isZero(0.0); }
   const Vec3& position() const { return position_; }
 
-  /// Moves the tool to the equilibrium; if the search does not converge, to its last pose in contact.
-  void find_equilibrium() {
+  /// Moves the tool to the equilibrium and returns true. If the search does not converge, moves it to its last pose in
+  /// contact.
+  bool find_equilibrium() {
     constexpr int kIterations = 40;
-    constexpr double kLargestStep = 0.1;         // of the tool's half width
-    constexpr double kConverged = 1e-12;         // [m]
-    if (parts_.hand->task() != nullptr) return;  // a subject corrects its force; the pose of the run counts
+    constexpr double kLargestStep = 0.1;              // of the tool's half width
+    constexpr double kConverged = 1e-10;              // [m]; the error of the derivatives times the first steps
+    if (parts_.hand->task() != nullptr) return true;  // a subject corrects its force; the pose of the run counts
     for (int i = 0; i < kIterations; ++i) {
       const Vec3 before = position_;
       const LinearContact here = linearised();
@@ -78,9 +79,13 @@ class RestingTool {
       const double longest = kLargestStep * parts_.tool->half_width();
       if (const double length = step.norm(); length > longest) step *= longest / length;
       place(before + step);
-      if (!touches() || !force_.rendered.allFinite()) return place(before);
-      if (step.norm() < kConverged) return;
+      if (!touches() || !force_.rendered.allFinite()) {
+        place(before);
+        return false;
+      }
+      if (step.norm() < kConverged) return true;
     }
+    return false;
   }
 
   /// Returns the linearisation at the current pose.
@@ -195,18 +200,18 @@ class RestingTool {
 
 }  // namespace
 
-std::optional<LinearContact> linear_contact(const CheckedScenario& scenario,
+std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
   const Scenario linear = without_nonlinear_parts(scenario.scenario());
   RestingTool tool(linear, scenario.files(), shell, near);
   if (!tool.touches()) return std::nullopt;
-  tool.find_equilibrium();
+  const bool is_equilibrium = tool.find_equilibrium();
   LinearContact contact = tool.linearised();
   if (!contact.rendered.stiffness.allFinite() || !contact.rendered.damping.allFinite()) return std::nullopt;
   // A hand that is attached to the handle moves with it between the samples: it is part of the device.
   if (std::holds_alternative<MassSpringDamperHandFields>(linear.hand) && handle_moves_tool(linear.device))
     contact.hand = {};
-  return contact;
+  return ContactAtRest{contact, is_equilibrium};
 }
 
 }  // namespace hapbench

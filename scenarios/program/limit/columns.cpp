@@ -98,8 +98,9 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
        linear_limit_text, only_printed()},
       {"limit", "unit of the field",
        "simulated limit: last stable value before the first unstable one, by bisection on simulated runs; empty if no "
-       "interval of values is stable",
-       of(limit_end, &IntervalEnd::value), under("simulated\nlimit", 6), tolerance},
+       "interval of values is stable, or if the values are stable to the end of the range, which is no limit",
+       [](const LimitRow& row) { return row.limit.end.beyond ? row.limit.end.value : std::nullopt; },
+       under("simulated\nlimit", 6), tolerance},
       {"first_unstable", "unit of the field",
        "first unstable value beyond the limit; empty if the values are stable to the end of the range",
        of(limit_end, value_beyond)},

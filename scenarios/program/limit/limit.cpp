@@ -28,7 +28,7 @@ void add_ratios(LimitTable& table) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     LimitRow& row = table.rows[i];
     const FieldLimit& reference = table.rows[i - i % table.columns()].limit;
-    if (!row.limit.end.value || !reference.end.value) continue;
+    if (!row.limit.end.tolerance() || !reference.end.tolerance()) continue;  // the end of the range is no limit
     row.stiffness_ratio = *row.limit.end.value / *reference.end.value;
     if (const double lambda = reference.settled.lambda_max; lambda > 0.0)
       row.rendered_ratio = *row.stiffness_ratio * row.limit.settled.lambda_max / lambda;
