@@ -2,7 +2,7 @@
 here with numpy from the description of the devices in the manual, against `limit` and against runs.
 Shares no code with hapbench.
 
-    python3 tests/verification/loops.py PROGRAM [COUNT]    # COUNT random loops of each kind of device, default 6
+    python3 tests/verification/loops.py PROGRAM [COUNT]    # COUNT random loops of each pair, default 2
 """
 import json
 import subprocess
@@ -15,7 +15,7 @@ from scipy import signal
 from scipy.linalg import expm
 
 PROGRAM = Path(sys.argv[1]).resolve()
-COUNT = int(sys.argv[2]) if len(sys.argv) > 2 else 6
+COUNT = int(sys.argv[2]) if len(sys.argv) > 2 else 2
 RANDOM = np.random.default_rng(85)
 # `limit` bisects eigenvalues to 1e-11. A double eigenvalue is known to the square root of rounding, 1e-8.
 SPRINGS_AGREE = 1e-7
