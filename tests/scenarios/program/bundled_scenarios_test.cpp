@@ -13,6 +13,7 @@
 #include <set>
 #include <sstream>
 
+#include "scenarios/batch/csv_cells.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/core/hash.hpp"
@@ -25,7 +26,6 @@ namespace hapbench::bundled_scenarios_test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::cells_of;
 using test::lines_of;
 using test::ProgramRun;
 using test::read_file;
@@ -132,9 +132,9 @@ using NumbersByColumn = std::map<std::string, ColumnNumbers>;
 
 void add_table(NumbersByColumn& numbers, const std::string& text) {
   const std::vector<std::string> lines = lines_of(text);
-  const std::vector<std::string> columns = lines.empty() ? std::vector<std::string>() : cells_of(lines[0]);
+  const std::vector<std::string> columns = lines.empty() ? std::vector<std::string>() : csv_cells(lines[0]);
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::vector<std::string> cells = cells_of(lines[i]);
+    const std::vector<std::string> cells = csv_cells(lines[i]);
     for (std::size_t j = 0; j < cells.size(); ++j) {
       double number = 0.0;
       const auto [end, error] = std::from_chars(cells[j].data(), cells[j].data() + cells[j].size(), number);
