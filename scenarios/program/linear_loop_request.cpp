@@ -18,6 +18,7 @@
 #include "scenarios/program/output.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -58,7 +59,7 @@ Json oscillation(const SampledLoop& loop) {
     if (value.imag() != 0.0 && (slowest == nullptr || std::norm(value) > std::norm(*slowest))) slowest = &value;
   if (slowest == nullptr) return {};
   return {{"frequency_Hz", std::abs(std::arg(*slowest)) / (2.0 * std::numbers::pi * loop.period)},
-          {"growth_per_s", 0.5 * std::log(std::norm(*slowest)) / loop.period}};
+          {"growth_per_s", 0.5 * math::log(std::norm(*slowest)) / loop.period}};
 }
 
 }  // namespace

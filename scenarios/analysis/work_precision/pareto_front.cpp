@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 
 std::vector<std::size_t> pareto_front(std::span<const CostAndError> points) {
@@ -27,14 +29,14 @@ std::optional<std::size_t> knee(std::span<const CostAndError> points, std::span<
   constexpr std::size_t kMinPoints = 4;
   if (front.size() < kMinPoints) return std::nullopt;
   const CostAndError &cheap = points[front.front()], &exact = points[front.back()];
-  const double costs = std::log(exact.cost / cheap.cost), errors = std::log(cheap.error / exact.error);
+  const double costs = math::log(exact.cost / cheap.cost), errors = math::log(cheap.error / exact.error);
   if (!std::isfinite(costs) || !std::isfinite(errors) || costs <= 0.0 || errors <= 0.0) return std::nullopt;
   std::optional<std::size_t> best;
   double farthest = kMinKnee;
   for (const std::size_t i : front.subspan(1, front.size() - 2)) {
     // In the scaled logarithms the chord runs from (0, 1) to (1, 0).
-    const double x = std::log(points[i].cost / cheap.cost) / costs;
-    const double y = std::log(points[i].error / exact.error) / errors;
+    const double x = math::log(points[i].cost / cheap.cost) / costs;
+    const double y = math::log(points[i].error / exact.error) / errors;
     const double below = (1.0 - x - y) / std::numbers::sqrt2;
     if (below > farthest) {
       farthest = below;

@@ -15,6 +15,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/field_files.hpp"
+#include "sim/core/math.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
@@ -41,7 +42,7 @@ struct StudyRun {
 
 /// Returns the number of levels between the smallest time step of the settings and that of the reference solution.
 std::size_t reference_levels(double ratio) {
-  return static_cast<std::size_t>(std::ceil(std::log(kReferenceRefinement) / std::log(ratio) - 1e-9));
+  return static_cast<std::size_t>(std::ceil(math::log(kReferenceRefinement) / math::log(ratio) - 1e-9));
 }
 
 /// The problems, curves and levels of a study.
