@@ -147,6 +147,14 @@ def tuned_order(bench, law, printed, runs, table):
     limits = printed["limits"]
     bench.add("tune --json: margin", limits["margin"], 2.0, "as asked", EXACT, ("of one", 1.0))
     bench.add(
+        "tune --json: low_vibration",
+        limits["low_vibration"],
+        "--allow-vibration" not in ask,
+        "as asked",
+        EXACT,
+        ("the opposite", "--allow-vibration" in ask),
+    )
+    bench.add(
         "tune --json: max",
         limits["force_rms_above_30Hz_N"]["max"],
         1e3,

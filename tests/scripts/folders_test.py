@@ -18,7 +18,7 @@ COMMANDS = {
         "comparison.csv",
     ),
     "sweep": (
-        ["sweep", "poke_plane", "--vary", "rendering.stiffness_N_per_m=100,200", "--out", "OUT"],
+        ["sweep", "poke_plane", "--vary", "rendering.stiffness_N_per_m=20000,30000", "--out", "OUT"],
         "sweep.csv",
         "sweep.csv",
     ),
@@ -105,7 +105,7 @@ class Folders(unittest.TestCase):
 
     def test_shards_go_on_side_by_side(self):
         folder = self.root / "shards"
-        words = ["sweep", "poke_plane", "--vary", "rendering.stiffness_N_per_m=100:800:8"]
+        words = ["sweep", "poke_plane", "--vary", "rendering.stiffness_N_per_m=20000:27000:8"]
         shards = [
             subprocess.Popen(
                 [str(PROGRAM), *words, "--shard", f"{i}/8", "--out", str(folder)],

@@ -74,6 +74,9 @@ struct FieldLimit {
 
   /// Returns the linear limit: `theory` if it has a value, otherwise `linear`.
   const std::optional<double>& linear_edge() const { return theory ? theory : linear; }
+  /// Returns the width of the interval that encloses the quoted limit, if it is the simulated limit; empty if it is the
+  /// linear limit, which is known to many digits.
+  std::optional<double> quoted_tolerance() const { return quoted.value == end.value ? end.tolerance() : std::nullopt; }
 };
 
 /// Finds a stability limit. Evaluates 17 equidistant parameters, the scenario's value and the middles of intervals that

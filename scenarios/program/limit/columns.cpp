@@ -89,7 +89,8 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
       {"quoted_limit", "unit of the field",
        "limit to quote, which a user may render: the linear or the simulated limit, whichever is reached first; empty if "
        "no limit was found within the range",
-       [](const Row& r) { return r.limit.quoted.value; }, under("quote", 6)},
+       [](const Row& r) { return r.limit.quoted.value; }, under("quote", 6),
+       [](const Row& r) { return r.limit.quoted_tolerance(); }},
       {"quoted_reason", "", "reason why quoted_limit has this value or none",
        [](const Row& r) { return r.limit.quoted.reason; }},
       {"linear\nlimit", "unit of the field",

@@ -160,7 +160,8 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
 std::string limit_answer(const FieldLimit& found) {
   if (!found.end.value) return none_text(found);
   const QuotedLimit& quoted = found.quoted;
-  std::string text = quoted.value ? fmt::format("quote {}, the {}", significant(*quoted.value, 6), quoted.reason)
+  std::string text = quoted.value ? fmt::format("quote {}, the {}",
+                                                deserved(*quoted.value, found.quoted_tolerance(), 6), quoted.reason)
                                   : fmt::format("no limit to quote: {}", quoted.reason);
   const auto& linear = found.linear_edge();
   if (linear && std::isfinite(*linear) && *linear > 0.0)

@@ -42,9 +42,9 @@ def linear(rows):
 
 
 def simulated(rows):
-    """The simulated limits, and which of them are the end of the searched range."""
-    values = numbers(rows, "limit")
+    """The simulated limits, and which of them are the end of the searched range, where no limit was found."""
     ends = np.array([row["side"] == "largest" and not row["first_unstable"] for row in rows], bool)
+    values = np.where(ends, numbers(rows, "stable_high"), numbers(rows, "limit"))
     return values, ends & np.isfinite(values)
 
 

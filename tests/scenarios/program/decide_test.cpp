@@ -141,11 +141,11 @@ TEST_F(TuneCommand, SaysTheEdgesThatLimitSays) {
 
 /// A limit is kept by as much as half the step, half the spacing and a look at every row move the metric.
 TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
-  const Json law = tune({"--bound", "inside_max_m=5e-4", "--json"}).json()["algorithms"][0];
+  const Json law = tune({"--bound", "inside_max_m=6e-4", "--json"}).json()["algorithms"][0];
   ASSERT_TRUE(law["feasible"].get<bool>()) << law.dump(1);
   const double error = law["error"]["inside_max_m"].get<double>();
   EXPECT_GT(error, 0.0);
-  EXPECT_LE(law["metrics"]["inside_max_m"].get<double>() + error, 0.5e-3);
+  EXPECT_LE(law["metrics"]["inside_max_m"].get<double>() + error, 0.6e-3);
 }
 
 /// A bound of the user leaves the requirement of low vibration in place; --allow-vibration drops it.
@@ -195,11 +195,11 @@ TEST_F(ConvergeCommand, WritesTheSameBytesHoweverManyJobs) {
     EXPECT_EQ(read_file(directory_ / "one" / name), read_file(directory_ / "three" / name)) << name;
 }
 
-/// The error falls as the step, by a factor of two from level to level.
+/// The error of an extreme includes the difference between choices of the first counted step.
 TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
   for (const auto& [to, said] :
-       {std::pair{"0.01", "\nerror below 1 %: time.step_s = 0.00025 ("},
-        {"0.1%", "\nerror below 0.1 %: not reached by any level; extrapolated: time.step_s = 2.8e-05"}}) {
+       {std::pair{"0.03", "\nerror below 3 %: time.step_s = 0.00025 ("},
+        {"1%", "\nerror below 1 %: not reached by any level; extrapolated: time.step_s = 3.8e-05"}}) {
     const std::string out = converge({"--metric", "force_max_N", "--to", to}).out;
     EXPECT_NE(out.find(said), std::string::npos) << out;
   }

@@ -29,9 +29,10 @@ using test::RunningProgram;
 class KilledRun : public testing::Test {
  protected:
   void kill_a_run() const {
+    const std::uintmax_t before = bytes_written();
     test::RunningProgram run(test::hapbench_program(),
                              {"run", "single_spring", "--out", out_.string(), "--set", "time.steps=20000000"});
-    EXPECT_TRUE(run.runs_until([&] { return bytes_written() >= 100'000; }));
+    EXPECT_TRUE(run.runs_until([&] { return bytes_written() >= before + 100'000; }));
     EXPECT_TRUE(run.kill()) << "it had ended before it was killed";
   }
   std::uintmax_t bytes_written() const {
@@ -212,6 +213,8 @@ TEST_F(KilledSweep, GoesOnToTheSameBytes) {
   }
   EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
   const std::size_t done = rows();
+  // The next command removes the lock of the killed one.
+  fs::remove(directory_ / "out/.sweep.csv.lock");
   const auto left = test::files_below(directory_ / "out");
   const ProgramRun refused = hapbench(words("out"));
   EXPECT_EQ(refused.status, 2);
