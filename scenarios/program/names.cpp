@@ -37,7 +37,7 @@ std::vector<std::string> chosen_names(const std::string& option, const std::vect
                                       const std::vector<std::string>& all, std::string_view shown_by) {
   if (given == std::vector<std::string>{"all"}) return all;
   if (std::find(given.begin(), given.end(), "all") != given.end())
-    fail_in_option(option, "got \"all\" together with other names; allowed: \"all\" alone");
+    fail_in_option(option, R"(got "all" together with other names; allowed: "all" alone)");
   std::vector<std::string> valid = all;
   valid.insert(valid.begin(), "all");
   require_names(option, given, valid, shown_by);

@@ -118,19 +118,21 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
   };
   std::vector<Merged> all;
   for (const Result& report : reports) {
-    for (const auto& [kind, pointer, text] : report.warnings) {
-      if (!pointer.empty()) continue;  // was printed before the run
+    for (const Warning& warning : report.warnings) {
+      if (!warning.pointer.empty()) continue;  // was printed before the run
       // Merge equal texts of several algorithms, and texts of one algorithm that differ in their numbers.
       const auto is_of_algorithm = [&](const Merged& known) {
-        return known.kind == kind && std::ranges::count(known.algorithms, report.algorithm) > 0;
+        return known.kind == warning.kind && std::ranges::count(known.algorithms, report.algorithm) > 0;
       };
-      const auto has_text = [&](const Merged& known) { return known.kind == kind && known.text == text; };
+      const auto has_text = [&](const Merged& known) {
+        return known.kind == warning.kind && known.text == warning.text;
+      };
       if (const auto same = std::ranges::find_if(all, has_text); same != all.end()) {
         if (!is_of_algorithm(*same)) same->algorithms.push_back(report.algorithm);
       } else if (const auto own = std::ranges::find_if(all, is_of_algorithm); own != all.end()) {
         ++own->others;
       } else {
-        all.push_back({kind, text, {report.algorithm}});
+        all.push_back({warning.kind, warning.text, {report.algorithm}});
       }
     }
   }

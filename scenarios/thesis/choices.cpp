@@ -56,7 +56,7 @@ std::vector<Location> children_of(const Location& location, std::string_view key
   const bool every = key == "*" && node->is_array();
   std::vector<Location> below;
   for (auto& [name, value] : node->items())
-    if (every || name == key) below.emplace_back(at.empty() ? name : at + "." + name, &value);
+    if (every || name == key) below.emplace_back(at.empty() ? name : fmt::format("{}.{}", at, name), &value);
   if (below.empty() && !every)
     throw InputError(fmt::format("{} has no {} \"{}\"", at.empty() ? "the scenario" : '"' + at + '"',
                                  node->is_array() ? "entry" : "field", key));

@@ -8,6 +8,7 @@ import shutil
 import sys
 import unittest
 from functools import cache, partial
+from pathlib import Path
 
 import numpy as np
 
@@ -72,6 +73,7 @@ def prepare(folder):
     # The example in C, by the manual's line.
     compiler = re.search(r"^    (gcc .*) -o \S+$", text_of("algorithms/README.md"), re.M)[1].split()
     must(*compiler, "-o", folder / "depth_weighted.so", cwd=SOURCE)
+    shutil.copy(Path(PROGRAM).parents[1] / "tests/scenarios/module/sphere.so", folder)
     made = partial(must, PROGRAM, statuses=(0, 3), cwd=folder)
     made("new", "mesh", "--from", "my.stl", "--extent", "6mm", "--out", "my.json")
     for name in "abc":

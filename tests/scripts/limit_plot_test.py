@@ -183,7 +183,9 @@ class Limits(Given):
         linear, simulated = curves_of(ax, "s"), curves_of(ax, "o")
         for device in {row["device"] for row in rows}:
             mine = [row for row in rows if row["device"] == device]
-            limits = [float(row["linear_limit"] or row["theoretical_limit"] or "nan") for row in mine]
+            limits = [
+                float(row["linear_limit"] or row["theoretical_limit"] or "nan") for row in mine
+            ]
             expected = [
                 (float(row[OVER]), limit if np.isfinite(limit) and limit > 0 else np.nan)
                 for row, limit in zip(mine, limits)

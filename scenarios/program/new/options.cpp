@@ -47,7 +47,7 @@ void check_options(const NewOptions& options, const StartKind& kind) {
   if (!kind.source.empty() && !kind.is_source_optional && from.empty())
     fail_in_option("--from", fmt::format("missing; \"{}\" starts from a file", name));
   if (kind.source.empty() && !from.empty())
-    fail_in_option("--from", fmt::format("got \"{}\"; \"{}\" starts from no file", from, name));
+    fail_in_option("--from", fmt::format(R"(got "{}"; "{}" starts from no file)", from, name));
   require_file("--from", from);
   require(options.on.empty() || name == "stroke", "--on", "for stroke");
   require(options.path.empty() || (drags && options.path.size() > 1 && options.at.empty()), "--path",
