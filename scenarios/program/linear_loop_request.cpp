@@ -58,7 +58,8 @@ Json oscillation(const SampledLoop& loop) {
   for (const std::complex<double>& value : values)
     if (value.imag() != 0.0 && (slowest == nullptr || std::norm(value) > std::norm(*slowest))) slowest = &value;
   if (slowest == nullptr) return {};
-  return {{"frequency_Hz", std::abs(math::atan2(slowest->imag(), slowest->real())) / (2.0 * std::numbers::pi * loop.period)},
+  return {{"frequency_Hz",
+           std::abs(math::atan2(slowest->imag(), slowest->real())) / (2.0 * std::numbers::pi * loop.period)},
           {"growth_per_s", 0.5 * math::log(std::norm(*slowest)) / loop.period}};
 }
 

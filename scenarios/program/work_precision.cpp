@@ -136,8 +136,8 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
 }
 
 std::vector<DescribedTable> work_precision_tables() {
-  return {error_columns(0.0).described(
-              kErrors, "written by converge --over: one line per problem, integrator and time step"),
+  return {error_columns(0.0).described(kErrors,
+                                       "written by converge --over: one line per problem, integrator and time step"),
           timing_columns().described(
               kTimes,
               "written by converge --over: cost of each setting (in a file of its own because it differs from "

@@ -18,7 +18,14 @@ COMMANDS = {
         "comparison.csv",
     ),
     "sweep": (
-        ["sweep", "poke_plane", "--vary", "rendering.stiffness_N_per_m=20000,30000", "--out", "OUT"],
+        [
+            "sweep",
+            "poke_plane",
+            "--vary",
+            "rendering.stiffness_N_per_m=20000,30000",
+            "--out",
+            "OUT",
+        ],
         "sweep.csv",
         "sweep.csv",
     ),

@@ -8,7 +8,12 @@ from .limit_plot import LIMIT_RUNS, draw_limits
 from .tuning_plot import TRIALS, draw_tune
 from .work_precision_plot import ERRORS, draw_work_precision
 
-PICTURES = {TRIALS: draw_tune, ERRORS: draw_work_precision, LEVELS: draw_converge, LIMIT_RUNS: draw_limits}
+PICTURES = {
+    TRIALS: draw_tune,
+    ERRORS: draw_work_precision,
+    LEVELS: draw_converge,
+    LIMIT_RUNS: draw_limits,
+}
 
 
 def draw_study(path, sheet=SHEET):

@@ -19,10 +19,12 @@ def draw_work_precision(files, sheet=SHEET):
     """Filled marks: resolved errors; hollow marks: errors below ten times the error of the reference solution;
     a ring: the knee of the front. Grey lines: the error that was asked for, and real time."""
     errors, times = files.records(ERRORS), files.records(TIMES)
-    cost, error = 1e3 * numbers(times, "seconds_per_simulated_second"), 1e6 * numbers(errors, "position_error_m")
+    cost, error = 1e3 * numbers(times, "seconds_per_simulated_second"), 1e6 * numbers(
+        errors, "position_error_m"
+    )
     if not (np.isfinite(error) & (error > 0)).any():
         raise InputError(
-            "nothing to draw: no setting has an error; \"hapbench converge\" printed the reason for each problem"
+            'nothing to draw: no setting has an error; "hapbench converge" printed the reason for each problem'
         )
     problems = list(dict.fromkeys(row["problem"] for row in errors))
     integrators = list(dict.fromkeys(row["integrator"] for row in errors))
@@ -36,7 +38,12 @@ def draw_work_precision(files, sheet=SHEET):
             curve
             for name in integrators
             for curve in curves(
-                name, looks[name], [row["integrator"] == name for row in errors] & of_problem, errors, cost, error
+                name,
+                looks[name],
+                [row["integrator"] == name for row in errors] & of_problem,
+                errors,
+                cost,
+                error,
             )
         ]
         across = Axis("processor time per simulated second [ms]", cost, log=True)

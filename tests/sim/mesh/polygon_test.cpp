@@ -164,7 +164,8 @@ TEST(Polygon, IsRefusedIfItCrossesItself) {
   for (int i = 0; i < 5; ++i)
     pentagram.emplace_back(std::cos(0.8 * std::numbers::pi * i), std::sin(0.8 * std::numbers::pi * i), 0);
   EXPECT_NE(refusal_of(pentagram).find("crosses itself"), std::string::npos);
-  for (int i = 0; i < 8; ++i) twice.push_back(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}[static_cast<std::size_t>(i % 4)]);
+  for (int i = 0; i < 8; ++i)
+    twice.push_back(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}[static_cast<std::size_t>(i % 4)]);
   EXPECT_NE(refusal_of(twice).find("crosses itself"), std::string::npos);
   // A figure of eight through one corner.
   EXPECT_NE(refusal_of({{0, 0, 0}, {1, 1, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}, {0, 2, 0}}).find("crosses itself"),
