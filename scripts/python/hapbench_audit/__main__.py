@@ -37,7 +37,7 @@ NOTES = [
 ]
 EXAMPLES = [
     "hapbench audit log.csv",
-    "hapbench audit log.csv --device touch --expect energy_mJ=1,force_rms_above_30Hz_N=0.1",
+    "hapbench audit log.csv --device touch --expect energy_mJ=1",
     "hapbench audit rec.csv --columns time=stamp_ns,position=tip_x,force=f_x \\\n"
     "    --scale time=1e-9 --set force_by_tool=true",
 ]

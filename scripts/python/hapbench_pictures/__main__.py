@@ -26,7 +26,7 @@ PLOT_NOTES = [
 PLOT_EXAMPLES = [
     "hapbench plot results/out/drag_molar",
     "hapbench plot results/out/compare_drag_molar --y force,depth --out drag.png",
-    "hapbench plot results/out/compare_tap_wall --metric force_max_N --width single --out laws.pdf",
+    "hapbench plot results/out/compare_tap_wall --metric force_max_N --width single",
     "hapbench plot results/out/sweep_tap_wall --metric force_max_N",
 ]
 REPORT_NOTES = [

