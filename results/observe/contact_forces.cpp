@@ -212,7 +212,8 @@ void ContactForces::report(Section& s) const {
   s.metric(
       "landing_force_max_N", "N",
       "largest norm of the rendered force, max ||f||, during landings (metrics.settling_s from a first touch on, or "
-      "all steps before metrics.from_s if it is given), with f = (fx_N, fy_N, fz_N) of trajectory.csv; no value without a landing",
+      "all steps before metrics.from_s if it is given), with f = (fx_N, fy_N, fz_N) of trajectory.csv; no value "
+      "without a landing",
       if_any(landed, std::sqrt(landing_max_squared_)), Better::less);
   s.metric("landing_force_step_max_N", "N",
            "largest force step ||f_k - f_(k-1)|| from one time step to the next during landings (as "

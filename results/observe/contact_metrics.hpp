@@ -37,7 +37,8 @@ class ContactAgeObserver final : public MetricObserver {
   void report(Section& s) const override {
     s.metric(
         "age_p50_s", "s",
-        "median age of the contacts in use (in no file), from the contact query to the step that uses its result; no value if no "
+        "median age of the contacts in use (in no file), from the contact query to the step that uses its result; no "
+        "value if no "
         "step used contacts",
         age_of_rank(0.5));
     s.metric(

@@ -127,16 +127,17 @@ void EnergyLedger::add_event(const StepRecord& now, double created) noexcept {
 
 void EnergyLedger::report(Section& s) const {
   const EnergyBalance& b = balance_;
-  s.metric(
-      "created_sum_J", "J",
-      "created energy, summed over only the steps in which it is positive (positive changes of created_J of energy.csv; "
-      "energy that later steps take back is not subtracted)",
-      created_sum_, Better::less);
+  s.metric("created_sum_J", "J",
+           "created energy, summed over only the steps in which it is positive (positive changes of created_J of "
+           "energy.csv; "
+           "energy that later steps take back is not subtracted)",
+           created_sum_, Better::less);
   s.metric("created_max_J", "J", "largest created energy of a single step (change of created_J of energy.csv)",
            created_max_, Better::less);
   s.metric(
        "created_J", "J",
-       "created energy over the whole run (last created_J of energy.csv): energy stored in the springs at the end, minus the work that translation "
+       "created energy over the whole run (last created_J of energy.csv): energy stored in the springs at the end, "
+       "minus the work that translation "
        "and rotation of the tool did on the springs; it arises when contacts appear, vanish or change their weights",
        b.created)
       .has_either_sign();
@@ -145,7 +146,8 @@ void EnergyLedger::report(Section& s) const {
       .has_either_sign();
   s.metric(
        "spring_J", "J",
-       "work of the spring force f_spring on the tool (last spring_J of energy.csv); for a prescribed motion by the trapezoidal rule, with an error "
+       "work of the spring force f_spring on the tool (last spring_J of energy.csv); for a prescribed motion by the "
+       "trapezoidal rule, with an error "
        "of up to K d^2 / 8 where a contact begins or ends between steps whose depths differ by d",
        b.spring)
       .varies_smoothly()
@@ -179,11 +181,11 @@ void EnergyLedger::report(Section& s) const {
   s.metric("actuator_J", "J", "work of the device's actuators (last actuator_J of energy.csv)", b.actuator)
       .varies_smoothly()
       .has_either_sign();
-  s.metric(
-      "residual_max_J", "J",
-      "largest |kinetic energy that no other term of the balance explains| over the steps (|residual_J| of energy.csv); a correct balance leaves "
-      "rounding errors only",
-      residual_max_, Better::less);
+  s.metric("residual_max_J", "J",
+           "largest |kinetic energy that no other term of the balance explains| over the steps (|residual_J| of "
+           "energy.csv); a correct balance leaves "
+           "rounding errors only",
+           residual_max_, Better::less);
 }
 
 void EnergyLedger::add_members(nlohmann::ordered_json& section) const {
@@ -233,7 +235,8 @@ void PassivityObserver::report(Section& s) const {
        "energy_min_J", "J",
        "smallest energy that the rendering held: minimum over the steps of the work that the tool's translation and "
        "rotation did on the rendering; negative if the rendering returned more energy than it had received. E starts "
-       "with the energy of the springs (stored_J of energy.csv); step k subtracts f_(k-1) . (v_(k-1) + v_k) dt / 2, with "
+       "with the energy of the springs (stored_J of energy.csv); step k subtracts f_(k-1) . (v_(k-1) + v_k) dt / 2, "
+       "with "
        "f and v of trajectory.csv, or f_(k-1) . (p_k - p_(k-1)) if the handle moves the tool, or (f_(k-1) + f_k) / 2 . "
        "(p_k - p_(k-1)) along a prescribed path, and adds the change of rotation_J of energy.csv",
        if_any(e.rows, e.energy_min))

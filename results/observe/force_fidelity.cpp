@@ -177,11 +177,11 @@ void ForceFidelityObserver::report(Section& s) const {
   s.metric("force_error_relative", "1", "relative force error: force_error_rms_N / reference_force_rms_N",
            rms(error_) / rms(reference_), Better::less)
       .varies_smoothly();
-  s.metric(
-      "force_error_normal_rms_N", "N",
-      "root mean square of the force error along the contact normal, n n^T (f - f_m), with n = f_spring / "
-      "||f_spring|| (fspring_x_N, fspring_y_N, fspring_z_N of trajectory.csv); where f_spring is zero, n = f_m / ||f_m||",
-      rms(normal_), Better::less);
+  s.metric("force_error_normal_rms_N", "N",
+           "root mean square of the force error along the contact normal, n n^T (f - f_m), with n = f_spring / "
+           "||f_spring|| (fspring_x_N, fspring_y_N, fspring_z_N of trajectory.csv); where f_spring is zero, n = f_m / "
+           "||f_m||",
+           rms(normal_), Better::less);
   s.metric("force_error_tangential_rms_N", "N",
            "root mean square of the force error across the contact normal, (I - n n^T) (f - f_m), with n as in "
            "force_error_normal_rms_N",
@@ -189,12 +189,14 @@ void ForceFidelityObserver::report(Section& s) const {
   s.metric(
       "reference_mu", "1",
       "coefficient of dry friction of the reference force: least-squares fit (through 0) of the size of its component "
-      "across n to its component along n (0 where that is negative), with n as in force_error_normal_rms_N; to find the coefficient that minimises the rendered "
+      "across n to its component along n (0 where that is negative), with n as in force_error_normal_rms_N; to find "
+      "the coefficient that minimises the rendered "
       "tangential error, sweep rendering.dry_friction.mu",
       drag_ / loads_);
   s.metric(
       "force_artefact_share", "1",
-      "root mean square of the component of f (fx_N, fy_N, fz_N of trajectory.csv) across f_m (all of f where f_m is zero), divided by the root mean "
+      "root mean square of the component of f (fx_N, fy_N, fz_N of trajectory.csv) across f_m (all of f where f_m is "
+      "zero), divided by the root mean "
       "square of ||f||: fraction of the rendered force that points in a wrong direction",
       rms(across_) / rms(rendered_), Better::less);
   s.metric("direction_rows", "1", "number of steps in which ||f|| and ||f_m|| are both above 0.1 N", direction_rows_);
@@ -205,7 +207,8 @@ void ForceFidelityObserver::report(Section& s) const {
   const auto lag = lag_between(kept_reference_, kept_rendered_, interval, kMaxLag);
   s.metric(
        "force_lag_s", "s",
-       "delay of f (fx_N, fy_N, fz_N of trajectory.csv) behind f_m: time shift with the largest correlation (Pearson, all components) within +-0.1 s; of "
+       "delay of f (fx_N, fy_N, fz_N of trajectory.csv) behind f_m: time shift with the largest correlation (Pearson, "
+       "all components) within +-0.1 s; of "
        "equally large maxima, as of a periodic force, the shift nearest to 0; resolution: half the spacing of the "
        "compared samples; no value if the maximum is at an end of the range or if a force is constant",
        lag ? std::optional(lag->time) : std::nullopt)

@@ -190,7 +190,8 @@ void IdealTrajectoryObserver::Errors::report(Section s) const {
       rows);
   s.metric(
        "height_error_mean_m", "m",
-       "mean height error (height_m - ideal_height_m of ideal_trajectory.csv) over the compared steps; negative: the tool sank in",
+       "mean height error (height_m - ideal_height_m of ideal_trajectory.csv) over the compared steps; negative: the "
+       "tool sank in",
        per(height.sum, rows))
       .has_either_sign();
   s.metric("height_error_rms_m", "m",
@@ -213,13 +214,14 @@ void IdealTrajectoryObserver::Errors::report(Section s) const {
   s.metric("lateral_error_max_m", "m",
            "largest absolute lateral error |lateral_m - ideal_lateral_m of ideal_trajectory.csv|",
            std::max(lateral.max, -lateral.min), Better::less);
-  s.metric(
-      "interpenetration_mean_m", "m",
-      "mean interpenetration (interpenetration_m of ideal_trajectory.csv): depth of the tool in the exact block, computed from the shapes and not from the shell",
-      per(interpenetration.sum, rows), Better::less);
+  s.metric("interpenetration_mean_m", "m",
+           "mean interpenetration (interpenetration_m of ideal_trajectory.csv): depth of the tool in the exact block, "
+           "computed from the shapes and not from the shell",
+           per(interpenetration.sum, rows), Better::less);
   s.metric(
       "interpenetration_max_m", "m",
-      "largest interpenetration (interpenetration_m of ideal_trajectory.csv): depth of the tool in the exact block, computed from the shapes and not from the shell",
+      "largest interpenetration (interpenetration_m of ideal_trajectory.csv): depth of the tool in the exact block, "
+      "computed from the shapes and not from the shell",
       interpenetration.max, Better::less);
 }
 

@@ -72,7 +72,8 @@ void InsideDepths::report(Section& s, bool has_settled) const {
   s.metric(
        "inside_max_m", "m",
        "largest distance of the tool's deepest point below the environment's surface over all steps (with "
-       "record.inside: over the recorded steps, largest inside_m of trajectory.csv); the true maximum exceeds it by at most 2 % of itself and of the "
+       "record.inside: over the recorded steps, largest inside_m of trajectory.csv); the true maximum exceeds it by "
+       "at most 2 % of itself and of the "
        "tool's half width, or by its tolerance if one is given; no value for springs and beyond the border of an open "
        "surface",
        max, Better::less)

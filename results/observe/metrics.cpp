@@ -193,33 +193,34 @@ void MetricsObserver::report_motion_and_force(Section& s) const {
       .varies_smoothly();
   s.metric(
       "depth_max_m", "m",
-      "largest penetration depth of a colliding point (depth_max_m of trajectory.csv), by the depth model; at most the tool's half width, even if the "
+      "largest penetration depth of a colliding point (depth_max_m of trajectory.csv), by the depth model; at most "
+      "the tool's half width, even if the "
       "tool is deeper in the environment (inside_max_m)",
       depth_max_, Better::less);
 }
 
 void MetricsObserver::report_contacts(Section& s) const {
   const TrialContact all = before_ + now_;
-  s.metric(
-      "ratio_min", "1",
-      "smallest stiffness ratio rho = u^T S u over all rendered contacts (ratio_min of trajectory.csv): combined stiffness along the contact's "
-      "gradient u, in units of K; no value without contact",
-      ratio_.min);
-  s.metric(
-      "ratio_max", "1",
-      "largest stiffness ratio rho = u^T S u over all rendered contacts (ratio_max of trajectory.csv): combined stiffness along the contact's "
-      "gradient u, in units of K; no value without contact",
-      ratio_.max);
+  s.metric("ratio_min", "1",
+           "smallest stiffness ratio rho = u^T S u over all rendered contacts (ratio_min of trajectory.csv): combined "
+           "stiffness along the contact's "
+           "gradient u, in units of K; no value without contact",
+           ratio_.min);
+  s.metric("ratio_max", "1",
+           "largest stiffness ratio rho = u^T S u over all rendered contacts (ratio_max of trajectory.csv): combined "
+           "stiffness along the contact's "
+           "gradient u, in units of K; no value without contact",
+           ratio_.max);
   s.metric("colliding_mean", "1",
            "mean number of colliding points per step (colliding of trajectory.csv), including steps without contact",
            per(colliding_sum_, rows()));
   s.metric("colliding_max", "1", "largest number of colliding points in one step (colliding of trajectory.csv)",
            colliding_max_);
-  s.metric(
-      "rendered_mean", "1",
-      "mean number of rendered points (rendered of trajectory.csv: colliding points after local average and reduction, which the force law "
-      "receives) per step, including steps without contact",
-      per(rendered_sum_, rows()));
+  s.metric("rendered_mean", "1",
+           "mean number of rendered points (rendered of trajectory.csv: colliding points after local average and "
+           "reduction, which the force law "
+           "receives) per step, including steps without contact",
+           per(rendered_sum_, rows()));
   s.metric("rendered_max", "1", "largest number of rendered points (rendered of trajectory.csv) in one step",
            rendered_max_);
   s.metric("steps_in_contact", "1",
@@ -230,12 +231,12 @@ void MetricsObserver::report_contacts(Section& s) const {
 }
 
 void MetricsObserver::report_end(Section& s) const {
-  s.metric(
-       "vibration_last_quarter_m_per_s", "m/s",
-       "vibration of the handle: root mean square of its velocity (hvx_m_per_s, hvy_m_per_s, hvz_m_per_s of "
-       "trajectory.csv) after the 30 Hz high-pass, in steady state at the first step, over the last quarter of the "
-       "run; `limit --stable still` compares this value with its threshold; no value at sampling rates of 60 Hz or less",
-       last_quarter_.value(), Better::less)
+  s.metric("vibration_last_quarter_m_per_s", "m/s",
+           "vibration of the handle: root mean square of its velocity (hvx_m_per_s, hvy_m_per_s, hvz_m_per_s of "
+           "trajectory.csv) after the 30 Hz high-pass, in steady state at the first step, over the last quarter of the "
+           "run; `limit --stable still` compares this value with its threshold; no value at sampling rates of 60 Hz or "
+           "less",
+           last_quarter_.value(), Better::less)
       .varies_smoothly();
   const bool any = rows() > 0;
   s.metric("final_position_m.x", "m", "x of the tip's centre at the last step (px_m of trajectory.csv)",

@@ -106,24 +106,25 @@ void TargetMetricsObserver::report(Section& s) const {
   }
   for (const PlaceMetrics& place : places) {
     const Section at = s.part(std::to_string(place.place));
-    report_mean(
-        at.part("success_rate"), place.success_rate, "1",
-        "fraction of the targets at this position that the subject removed before the time limit (removed of targets.csv, "
-        "at its place), mean over the subjects",
-        Better::more);
+    report_mean(at.part("success_rate"), place.success_rate, "1",
+                "fraction of the targets at this position that the subject removed before the time limit (removed of "
+                "targets.csv, "
+                "at its place), mean over the subjects",
+                Better::more);
     report_mean(
         at.part("completion_time_s"), place.completion_time, "s",
-        "time until a target at this position was removed, or the time limit if it was not (time_s of targets.csv, at its "
+        "time until a target at this position was removed, or the time limit if it was not (time_s of targets.csv, at "
+        "its "
         "place); mean over the subjects",
         Better::less);
     report_mean(
         at.part("model_force_N"), place.model_force, "N",
         "mean ||f|| over the steps with the tip on a target at this position (model_force_N of targets.csv), mean over "
         "the subjects' means");
-    report_mean(
-        at.part("speed_m_per_s"), place.speed, "m/s",
-        "mean speed of the handle over the steps with the tip on a target at this position (speed_m_per_s of targets.csv), "
-        "mean over the subjects' means");
+    report_mean(at.part("speed_m_per_s"), place.speed, "m/s",
+                "mean speed of the handle over the steps with the tip on a target at this position (speed_m_per_s of "
+                "targets.csv), "
+                "mean over the subjects' means");
   }
 }
 

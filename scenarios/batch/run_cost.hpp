@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "results/observe/step_times.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 
@@ -19,6 +20,8 @@ struct RunCost {
 
   /// Processor time per simulated second [1].
   double per_simulated_second() const { return step_s / time_step_s; }
+  /// Processor time of one step as a fraction of the deadline of 0.5 ms.
+  double deadline_share() const { return step_s / kStepDeadlines[0]; }
 };
 
 /// Returns true if `a` is faster than `b` by more than the sum of both spreads.
@@ -30,8 +33,8 @@ inline constexpr unsigned kTimingRepetitions = 5;
 /// Measures the cost of `count` scenarios, one run at a time. `scene` returns scenario i.
 ///
 /// Every round runs each scenario once, so that a slow change of the processor's speed affects all scenarios alike. A
-/// measurement repeats a run until it takes at least 20 ms. Runs with the same number of points share nothing: each
-/// scenario keeps its own simulation until the end. `jobs` only supplies label and listener of the progress bar.
+/// measurement repeats a run until it takes at least 20 ms. Each scenario keeps its simulation until the end; scenarios
+/// with equal environments share a point shell. `jobs` only supplies label and listener of the progress bar.
 /// Throws InputError and Stopped.
 std::vector<RunCost> measure_cost(std::size_t count, const std::function<CheckedScenario(std::size_t)>& scene,
                                   const JobOptions& jobs, unsigned repetitions = kTimingRepetitions);

@@ -129,13 +129,13 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 }  // namespace
 
 std::vector<std::size_t> runs_to_check(const Cases& cases) {
-  // Of a small batch, check all runs. Of a sample, check the first runs.
+  // Check all runs of a small batch, and the first runs of a sample.
   if (cases.size() <= kMaxChecked || cases.sampling()) {
     std::vector<std::size_t> runs(std::min(cases.size(), kMaxChecked));
     std::iota(runs.begin(), runs.end(), std::size_t{0});
     return runs;
   }
-  // Of a large grid, check only the runs on the lines through the first and the last run.
+  // Check a large grid only on the lines through the first and the last run.
   std::set<std::size_t> runs;
   std::size_t stride = 1;
   for (std::size_t a = cases.axes().size(); a-- > 0;) {

@@ -142,7 +142,8 @@ Columns<ConvergeStudy> order_columns() {
       {"field", "", "path of the refined field", &Row::field},
       {"formal_order", "1",
        "formal order, expected from theory: order of the integrator for time.step_s (1 with a device, which holds the "
-       "force between samples; 2 for leapfrog without damping, whose amplitudes are of order 2 and whose positions at a "
+       "force between samples; 2 for leapfrog without damping, whose amplitudes are of order 2 and whose positions at "
+       "a "
        "fixed time are of order 1), 2 for other fields",
        &Row::formal_order},
       {"observed_order", "1",

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "results/observe/step_times.hpp"
 #include "scenarios/program/digits.hpp"
 
 namespace hapbench {
@@ -19,10 +18,6 @@ std::optional<double> position_error(const Setting& s) {
 }
 std::optional<double> force_error(const Setting& s) {
   return s.error ? std::optional(s.error->force) : std::nullopt;
-}
-/// Returns the time of a step as a fraction of the deadline of 0.5 ms.
-double deadline_share(const Setting& s) {
-  return s.cost.step_s / kStepDeadlines[0];
 }
 /// Returns an error in a thousandth of the unit; "<" marks an error that the reference solution does not resolve.
 std::string error_text(const Setting& s, double error, double of_reference, double unit) {
@@ -43,7 +38,7 @@ Columns<Setting> error_columns(double max_error) {
     return error_text(s, s.error ? s.error->force : 0.0, s.reference_error.force, 1e-3);
   };
   const auto cost = [](const Setting& s) { return significant(1e3 * s.cost.per_simulated_second(), 3); };
-  const auto share = [](const Setting& s) { return significant(100.0 * deadline_share(s), 2); };
+  const auto share = [](const Setting& s) { return significant(100.0 * s.cost.deadline_share(), 2); };
   const auto mark = [](const Setting& s) { return s.is_knee ? "knee" : s.on_front ? "front" : ""; };
   return {
       {"problem", "", "values of the fields of --over that define the problem, such as the law", &Setting::problem},
@@ -74,6 +69,7 @@ Columns<Setting> error_columns(double max_error) {
 
 /// Returns the columns of convergence_timing.csv, which differ from run to run.
 Columns<Setting> timing_columns() {
+  const auto deadline = [](const Setting& s) { return s.cost.deadline_share(); };
   const auto simulated = [](const Setting& s) { return s.cost.per_simulated_second(); };
   const auto step = [](const Setting& s) { return s.cost.step_s; };
   const auto spread = [](const Setting& s) { return s.cost.spread_s; };
@@ -84,7 +80,7 @@ Columns<Setting> timing_columns() {
            step},
           {"spread_s", "s", "median of the repetitions minus the smallest repetition", spread},
           {"seconds_per_simulated_second", "s/s", "processor time per simulated second", simulated},
-          {"deadline_share", "1", "processor time of a step divided by 0.5 ms", deadline_share},
+          {"deadline_share", "1", "processor time of a step divided by 0.5 ms", deadline},
           {"on_front", "", "true if no other resolved setting of the problem is both cheaper and more accurate",
            &Setting::on_front},
           {"knee", "", "true for the knee of the front: the point farthest below the chord, in logarithms",
@@ -105,7 +101,7 @@ std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
   return fmt::format(
       "the cheapest setting below {:g} m is {} at {} s: {} ms per simulated second, {} % of the deadline", max_error,
       best->integrator, significant(best->step_s, 6), significant(1e3 * best->cost.per_simulated_second(), 2),
-      significant(100.0 * deadline_share(*best), 2));
+      significant(100.0 * best->cost.deadline_share(), 2));
 }
 
 }  // namespace

@@ -60,7 +60,8 @@ constexpr Rule kRules[] = {
      "that vibrates, diverges or loses contact",
      "1", kMaxEdge, "K is {} times the linear stability limit", stability_limit_ratio, against_unstable_stiffness},
     {"loop",
-     "1 if the loop of device, tool and stiffest contact is unstable at any K, in a run that vibrates, diverges or loses "
+     "1 if the loop of device, tool and stiffest contact is unstable at any K, in a run that vibrates, diverges or "
+     "loses "
      "contact",
      "1", 0.5, "the loop is unstable at any K: its damping or the device's servo is the cause", unstable_loop,
      against_unstable_loop},
@@ -107,7 +108,8 @@ constexpr Rule kRules[] = {
      [](const DiagnosedRun& r) { return r.metric("explicit_friction_rows_beyond"); }, against_friction, no_more, false,
      true},
     {"encoder",
-     "force that one encoder step causes through the damping B, divided by the mean force, if the force vibrates, jumps "
+     "force that one encoder step causes through the damping B, divided by the mean force, if the force vibrates, "
+     "jumps "
      "or reverses",
      "1", kMaxEncoderForce, "each encoder step causes a force of {} of the mean force, through the damping",
      encoder_force, against_encoder},
@@ -120,7 +122,8 @@ constexpr Rule kRules[] = {
        return std::string("a smaller hand force, or a larger device.force_limit_N (f_th in section 2.7 of the thesis)");
      }},
     {"bounces",
-     "number of landings per second, without the first and without one for each period or waypoint of the hand's script",
+     "number of landings per second, without the first and without one for each period or waypoint of the hand's "
+     "script",
      "1/s", 8.0, "the tool bounces: {} landings per second", bounces, against_bounces, no_more, true},
     {"chatter",
      "number of force reversals (by more than 90 degrees from one step to the next) per second in settled contact of a "

@@ -96,7 +96,8 @@ std::string against_fault(const DiagnosedRun& run) {
 
 std::string against_divergence(const DiagnosedRun& run) {
   if (run.observations.in_contact == 0)
-    return "check the hand, the device (servo gains, delay) and time.step_s: the tool diverged without contact, so that K "
+    return "check the hand, the device (servo gains, delay) and time.step_s: the tool diverged without contact, so "
+           "that K "
            "has no effect";
   std::vector<std::string> remedies;
   if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
@@ -250,7 +251,8 @@ std::string against_energy(const DiagnosedRun& run) {
 }
 
 std::string against_reversed_force(const DiagnosedRun&) {
-  return "\"hapbench import stroke --set force_by_tool=true\", which reverses the measured force; if its sign is right, the "
+  return "\"hapbench import stroke --set force_by_tool=true\", which reverses the measured force; if its sign is "
+         "right, the "
          "orientation of the tool or the normals of the surface may be reversed";
 }
 

@@ -11,8 +11,8 @@
 
 namespace hapbench {
 
-std::map<std::string, double> metric_errors(const ScenarioText& scene, const std::vector<std::string>& overrides,
-                                            const std::map<std::string, double>& metrics, unsigned threads) {
+MetricErrors metric_errors(const ScenarioText& scene, const std::vector<std::string>& overrides,
+                           const MetricValues& metrics, unsigned threads) {
   const LoadedScenario scenario = load_scenario(scene, overrides);
   const Cases once({scene}, overrides, std::vector<Axis>{});
   std::vector<Cases> finer = {finer_cases(level_sweep(scenario, kStepPath, 2, 2.0), once)};
@@ -21,16 +21,16 @@ std::map<std::string, double> metric_errors(const ScenarioText& scene, const std
     finer.emplace_back(std::vector{scene}, overrides, std::vector<Axis>{{.path = "record.inside", .values = {"true"}}});
   }
   const std::vector<Result> runs = run_all(finer, {threads, ""});
-  std::map<std::string, double> errors;
+  MetricErrors found{{}, runs.size()};
   for (const auto& [name, value] : metrics) {
     double largest = 0.0;
     for (const Result& run : runs) {
       const double moved = number_of(run.metrics, name).value_or(std::numeric_limits<double>::infinity());
       largest = std::max(largest, std::abs(moved - value));
     }
-    if (std::isfinite(largest)) errors[name] = largest;
+    if (std::isfinite(largest)) found.errors[name] = largest;
   }
-  return errors;
+  return found;
 }
 
 }  // namespace hapbench

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -8,10 +10,19 @@
 
 namespace hapbench {
 
-/// Returns the error estimates of metrics of one scene, by name: the largest change of each value in `metrics` if the
-/// time step is halved, if the point spacing is halved, and if the depth is evaluated at every step. Omits a metric
-/// that a refined run lacks. Makes one to three runs with up to `threads` threads.
-std::map<std::string, double> metric_errors(const ScenarioText& scene, const std::vector<std::string>& overrides,
-                                            const std::map<std::string, double>& metrics, unsigned threads);
+/// Values of metrics by name, each in the unit of its metric.
+using MetricValues = std::map<std::string, double, std::less<>>;
+
+/// Error estimates of the metrics of one run.
+struct MetricErrors {
+  MetricValues errors = {};  ///< without the metrics that a refined run lacks
+  std::size_t runs = 0;      ///< number of refined runs, one to three
+};
+
+/// Returns the error estimates of metrics of one scene: the largest change of each value in `metrics` if the time step
+/// is halved, if the point spacing is halved, and if the depth is evaluated at every step. Uses up to `threads`
+/// threads.
+MetricErrors metric_errors(const ScenarioText& scene, const std::vector<std::string>& overrides,
+                           const MetricValues& metrics, unsigned threads);
 
 }  // namespace hapbench

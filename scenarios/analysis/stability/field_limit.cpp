@@ -216,24 +216,25 @@ static FieldLimit limit_with_bounds(const LimitQuestion& question) {
 
 /// Adds the errors of the bounded metrics at a value to `errors`, where they are larger. Tightens each bound of `rule`
 /// that a metric violates within its error, and returns true if a bound was tightened.
-static bool tighten_bounds(const LimitQuestion& question, double value, StabilityRule& rule,
-                           std::map<std::string, double>& errors) {
+static bool tighten_bounds(const LimitQuestion& question, double value, StabilityRule& rule, MetricValues& errors) {
   std::vector<std::string> chosen = question.overrides;
   chosen.push_back(override_of(question, value));
   const CheckedScenario scenario = checked(question.at(value));
   const Result run = run_with_shell(scenario, make_shell(scenario.scenario(), scenario.files()));
-  std::map<std::string, double> metrics;
+  MetricValues metrics;
   for (const auto& [name, bound] : question.rule.bounds)
     if (const auto number = number_of(run.metrics, name)) metrics[name] = *number;
+  const MetricErrors refined = metric_errors(*question.scene, chosen, metrics, question.threads);
   bool is_tighter = false;
-  for (const auto& [name, error] : metric_errors(*question.scene, chosen, metrics, question.threads)) {
+  for (const auto& [name, error] : refined.errors) {
     errors[name] = std::max(errors[name], error);
     const MetricBound& asked = question.rule.bounds.at(name);
     MetricBound& bound = rule.bounds[name];
-    if (asked.max && metrics[name] + error > *asked.max) bound.max = *asked.max - error;
-    if (asked.min && metrics[name] - error < *asked.min) bound.min = *asked.min + error;
-    is_tighter = is_tighter || (asked.max && metrics[name] + error > *asked.max) ||
-                 (asked.min && metrics[name] - error < *asked.min);
+    const bool is_above = asked.max && metrics[name] + error > *asked.max;
+    const bool is_below = asked.min && metrics[name] - error < *asked.min;
+    if (is_above) bound.max = *asked.max - error;
+    if (is_below) bound.min = *asked.min + error;
+    is_tighter = is_tighter || is_above || is_below;
   }
   return is_tighter;
 }
@@ -244,7 +245,7 @@ static FieldLimit limit_with_errors(const LimitQuestion& question) {
   if (question.rule.bounds.empty()) return limit;
   constexpr int kMaxTightenings = 4;  // the error changes little from one search to the next
   LimitQuestion tighter = question;
-  std::map<std::string, double> errors;
+  MetricValues errors;
   for (int i = 0; i < kMaxTightenings && limit.end.value; ++i) {
     bool again = tighten_bounds(question, *limit.end.value, tighter.rule, errors);
     if (limit.other.value) again |= tighten_bounds(question, *limit.other.value, tighter.rule, errors);

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "scenarios/analysis/convergence/metric_errors.hpp"
 #include "scenarios/analysis/stability/limit_question.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
 
@@ -53,7 +53,7 @@ struct FieldLimit {
   std::string no_linear = {};  ///< why there is neither `theory` nor `linear`; empty if there is, or with `smallest`
   /// Errors of the bounded metrics at the limit: their largest change when step and point spacing are halved. The
   /// bounds hold with these errors added.
-  std::map<std::string, double> metric_errors = {};
+  MetricValues metric_errors = {};
   /// WallLimits::closed_forms [N/m].
   std::vector<std::optional<double>> closed_forms;
   std::optional<double> worst_hand;  ///< WallLimits::worst_hand [N/m]

@@ -101,7 +101,7 @@ Draw normals(Random& random, const ContactSet& set) {
 
 /// Draws the tool's size, pose and velocity.
 void draw_tool(Random& random, ContactSet& set) {
-  // Of the scenes, a fifth has the smallest size, a fifth has the largest size, and the others lie in between.
+  // A fifth of the scenes has the smallest size, a fifth has the largest size, and the others lie in between.
   const double which = random.uniform();
   const double scale = which < 0.2 ? 1e-12 : which < 0.4 ? 1e3 : log_uniform(random, 1e-12, 1e3);
   set.tool = {scale * random.uniform(0.05, 1.0), scale * random.uniform(0.1, 3.0),

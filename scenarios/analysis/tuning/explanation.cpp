@@ -58,7 +58,7 @@ bool relax(const Trials& trials, const TuneTrial& trial, const std::string& name
 
 /// Returns the confirmed relaxation of all limits that a trial violates; empty if there is none.
 std::optional<std::string> confirmed(Trials& trials, const TuneLimits& limits, const TuneTrial& trial,
-                                     const TuneMetrics& violated, const IsFeasible& is_feasible) {
+                                     const MetricValues& violated, const IsFeasible& is_feasible) {
   for (const double factor : {1.0, 1.1, 1.5}) {
     Relaxation relaxation{limits, ""};
     for (const auto& [name, ratio] : violated)
@@ -69,7 +69,7 @@ std::optional<std::string> confirmed(Trials& trials, const TuneLimits& limits, c
   return std::nullopt;
 }
 
-/// What a trial would need to become feasible: a single limit, or all low-vibration rules.
+/// A trial that violates a single limit, or only low-vibration rules, and by how much.
 struct Candidate {
   double excess;
   const TuneTrial* trial;
@@ -105,7 +105,7 @@ std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasib
   constexpr std::size_t kMaxCompleted = 8;  // trials of each limit that are evaluated further
   const TuneLimits limits = trials.limits();
   // Complete the nearest trials of each limit before the searches with other limits begin.
-  std::vector<std::pair<const TuneTrial*, TuneMetrics>> chosen;
+  std::vector<std::pair<const TuneTrial*, MetricValues>> chosen;
   for (const auto& [name, found] : candidates(trials)) {
     for (std::size_t i = 0; i < std::min(kMaxCompleted, found.size()); ++i) {
       const TuneTrial& trial = trials.completed(*found[i].trial);
@@ -115,7 +115,7 @@ std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasib
     }
   }
   const TuneTrial& all = trials.completed(nearest);
-  const TuneMetrics of_nearest = all.limits_alone ? trials.violated_limits(all) : TuneMetrics();
+  const MetricValues of_nearest = all.limits_alone ? trials.violated_limits(all) : MetricValues();
   std::vector<std::string> texts;
   for (const auto& [trial, violated] : chosen)
     if (const auto text = confirmed(trials, limits, *trial, violated, is_feasible)) texts.push_back(*text);

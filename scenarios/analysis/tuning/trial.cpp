@@ -6,7 +6,7 @@
 
 namespace hapbench {
 
-std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor) {
+std::optional<double> value_in(const MetricValues& metrics, std::string_view name, double factor) {
   const auto found = metrics.find(name);
   return found == metrics.end() ? std::nullopt : std::optional(factor * found->second);
 }

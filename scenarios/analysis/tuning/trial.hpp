@@ -3,11 +3,12 @@
 #include <array>
 #include <compare>
 #include <cstddef>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "scenarios/analysis/convergence/metric_errors.hpp"
 
 /// A trial of `tune`: a setting with a stiffness K, and whether it is feasible.
 namespace hapbench {
@@ -16,11 +17,8 @@ namespace hapbench {
 /// most often limit the first three.
 inline constexpr std::array kTuneMetrics = {"inside_max_m",     "force_rms_above_30Hz_N",  "settled_force_step_max_N",
                                             "inside_settled_m", "force_mean_in_contact_N", "landing_force_max_N"};
-/// Values by metric name.
-using TuneMetrics = std::map<std::string, double, std::less<>>;
-
 /// Returns the value of the metric `name` times a factor; empty if there is no such metric.
-std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor = 1.0);
+std::optional<double> value_in(const MetricValues& metrics, std::string_view name, double factor = 1.0);
 
 /// The tuned fields besides K. An empty field keeps the scene's value.
 struct TuneSetting {
@@ -61,12 +59,12 @@ struct TuneTrial {
   bool too_soft = false;      ///< true if a larger K may keep the constraint
   bool settled = false;       ///< true if the run of the scene itself is settled at K
   bool limits_alone = false;  ///< true if only limits on metrics are violated, as far as the trial was evaluated
-  TuneMetrics metrics = {};   ///< of the run of the scene itself; empty if not measured
+  MetricValues metrics = {};  ///< of the run of the scene itself; empty if not measured
   /// Worst value of each limited metric over the evaluated variants, and the low-vibration numbers of the scene itself.
-  TuneMetrics worst = {};
+  MetricValues worst = {};
   std::map<std::string, std::string> worst_text = {};  ///< `worst`, for the user
-  /// Error estimates of `metrics` (known_errors); empty unless all limits are kept, or nearly, without errors.
-  TuneMetrics error = {};
+  /// Error estimates of `metrics` (metric_errors); empty unless all limits are kept, or nearly, without errors.
+  MetricValues error = {};
 
   // How far the trial was evaluated. A trial is evaluated further only while it keeps the limits.
   std::size_t judged = 0;    ///< number of variants whose motion was judged, the scene itself first

@@ -9,7 +9,6 @@
 
 #include "scenarios/analysis/stability/limit_question.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
-#include "scenarios/analysis/tuning/metric_errors.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/diagnosis.hpp"
@@ -33,7 +32,7 @@ std::string verdict_with(const RunStability& run, const SceneVariant& variant) {
 /// Stores the worst value of a limited metric over the variants in the trial. Stores no value if the metric has no
 /// value in one of the runs.
 void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bound,
-                std::span<const TuneMetrics> metrics, std::span<const SceneVariant> variants) {
+                std::span<const MetricValues> metrics, std::span<const SceneVariant> variants) {
   for (std::size_t i = 0; i < metrics.size(); ++i) {
     const auto value = value_in(metrics[i], name);
     if (!value) {
@@ -214,8 +213,8 @@ void Trials::in_parallel(TuneTrial* trial, std::size_t count, const std::functio
   if (question_.on_runs) question_.on_runs(runs_);
 }
 
-TuneMetrics Trials::metrics_of(const Result& run) const {
-  TuneMetrics metrics;
+MetricValues Trials::metrics_of(const Result& run) const {
+  MetricValues metrics;
   const auto add = [&](const std::string& name) {
     if (const auto value = number_of(run.metrics, name)) metrics[name] = *value;
   };
@@ -356,7 +355,7 @@ void Trials::measure_variants(TuneTrial& trial) {
   if (trial.is_complete) return;
   trial.is_complete = true;
   if (question_.limits.empty()) return;
-  std::vector<TuneMetrics> metrics(variants_.size());
+  std::vector<MetricValues> metrics(variants_.size());
   metrics[0] = trial.metrics;
   in_parallel(&trial, metrics.size() - 1, [&](std::size_t i) {
     metrics[i + 1] =
@@ -372,16 +371,17 @@ void Trials::measure_variants(TuneTrial& trial) {
 void Trials::estimate_error(TuneTrial& trial) {
   if (trial.has_error || question_.limits.empty()) return;
   trial.has_error = true;
-  std::size_t count = 0;
-  trial.error = known_errors(question_, overrides(trial.setting, trial.stiffness), trial.metrics, count);
-  runs_ += count;
-  search_runs_ += count;
-  trial.runs += count;
+  MetricErrors found =
+      metric_errors(question_.scenario, overrides(trial.setting, trial.stiffness), trial.metrics, question_.threads);
+  trial.error = std::move(found.errors);
+  runs_ += found.runs;
+  search_runs_ += found.runs;
+  trial.runs += found.runs;
 }
 
 /// Fails the trial at the first violated limit. Precondition: the metrics of the scene were measured.
 void Trials::judge_limits(TuneTrial& trial) const {
-  const TuneMetrics violated = violated_limits(trial);
+  const MetricValues violated = violated_limits(trial);
   trial.limits_alone = !violated.empty();
   if (violated.empty()) return;
   // Limits of the user come first.
@@ -399,8 +399,8 @@ void Trials::judge_limits(TuneTrial& trial) const {
 
 // ---- Limits on metrics
 
-TuneMetrics Trials::violated_limits(const TuneTrial& trial) const {
-  TuneMetrics violated;
+MetricValues Trials::violated_limits(const TuneTrial& trial) const {
+  MetricValues violated;
   for (const auto& [name, bound] : limits_.metrics) {
     const auto value = value_in(trial.worst, name);
     const double error = value_in(trial.error, name).value_or(0.0);

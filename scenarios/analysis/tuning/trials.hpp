@@ -104,7 +104,7 @@ class Trials {
 
   /// Returns the violated limits of a trial, each with the factor > 1 by which the worst value and its error are beyond
   /// the limit. A limited metric without a value has an infinite factor; a low-vibration rule without a value is kept.
-  TuneMetrics violated_limits(const TuneTrial& trial) const;
+  MetricValues violated_limits(const TuneTrial& trial) const;
   /// Returns true for the name of a low-vibration rule.
   bool is_rule(const std::string& name) const { return rules_.contains(name); }
   /// Returns the largest factor of violated_limits(); 1 if no limit is violated.
@@ -139,7 +139,7 @@ class Trials {
   LoadedScenario load(const TuneSetting& setting, double stiffness, const SceneVariant& variant,
                       const std::string& more = {}) const;
   void in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job);
-  TuneMetrics metrics_of(const Result& run) const;
+  MetricValues metrics_of(const Result& run) const;
   std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double K, double most,
                                            bool over_hands) const;
   std::optional<TuneFailure> loop_failure(const TuneTrial& trial, std::size_t variant, double lambda) const;

@@ -6,7 +6,6 @@
 
 #include "scenarios/analysis/stability/interval_search.hpp"
 #include "scenarios/analysis/tuning/explanation.hpp"
-#include "scenarios/analysis/tuning/metric_errors.hpp"
 #include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/analysis/tuning/tune_search.hpp"
 #include "scenarios/analysis/tuning/verification.hpp"
@@ -77,11 +76,13 @@ TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
   law.choice = verified_choice(trials, /*any=*/false, law);
   if (!law.choice) explain_or_find(trials, law);
   if (law.choice) {
-    std::size_t error_runs = 0;
     law.overrides = trials.overrides(law.choice->setting, law.choice->stiffness);
-    law.error = law.choice->has_error ? law.choice->error
-                                      : known_errors(question, law.overrides, law.choice->metrics, error_runs);
-    trials.count_runs(error_runs);
+    law.error = law.choice->error;
+    if (!law.choice->has_error) {
+      MetricErrors found = metric_errors(question.scenario, law.overrides, law.choice->metrics, question.threads);
+      law.error = std::move(found.errors);
+      trials.count_runs(found.runs);
+    }
     law.margins = margins_of(trials, *law.choice);
     evaluate_along_stiffness(trials, *law.choice);
   }

@@ -27,7 +27,7 @@ struct TunedLaw {
   FieldLimit edge;  ///< stability limits of K in the scene with the choice and the scene's hand
   /// Error estimates: largest change of each metric of the scene's run if the step is halved, the point spacing is
   /// halved, or depth is evaluated at every step. A metric that one of these runs lacks has no entry.
-  TuneMetrics error;
+  MetricValues error;
   std::vector<TuneTrial> trials;       ///< all trials, by setting and K
   std::size_t runs = 0;                ///< total number of simulations
   std::size_t verified = 0;            ///< number of verification runs between K and G K, all of them settled

@@ -19,7 +19,7 @@
 /// solution of the same problem, at times that all settings share.
 namespace hapbench {
 
-/// What to compute.
+/// The question of a work-precision study.
 struct WorkPrecisionQuestion {
   ScenarioText scenario;
   std::vector<std::string> overrides = {};  ///< as in --set, for all runs

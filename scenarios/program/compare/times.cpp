@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "results/observe/step_times.hpp"
 #include "scenarios/batch/run_cost.hpp"
 #include "scenarios/program/digits.hpp"
 
@@ -26,12 +25,12 @@ Columns<LawTime> time_columns(bool several_scenes) {
   const auto step = [](const Row& r) { return r.cost.step_s; };
   const auto spread = [](const Row& r) { return r.cost.spread_s; };
   const auto simulated = [](const Row& r) { return r.cost.per_simulated_second(); };
-  const auto share = [](const Row& r) { return r.cost.step_s / kStepDeadlines[0]; };
+  const auto share = [](const Row& r) { return r.cost.deadline_share(); };
   const auto steps = [](const Row& r) { return r.cost.steps; };
   const auto microseconds = [](const Row& r) { return significant(1e6 * r.cost.step_s, 3); };
   const auto spread_us = [](const Row& r) { return significant(1e6 * r.cost.spread_s, 1); };
   const auto milliseconds = [](const Row& r) { return significant(1e3 * r.cost.per_simulated_second(), 3); };
-  const auto percent = [](const Row& r) { return significant(100.0 * r.cost.step_s / kStepDeadlines[0], 2); };
+  const auto percent = [](const Row& r) { return significant(100.0 * r.cost.deadline_share(), 2); };
   return {{"scenario", "", "name of the scenario", &Row::scenario, several_scenes ? under("scenario") : Shown{}},
           {"algorithm", "", "force law", &Row::algorithm, under("algorithm")},
           {"seconds_per_step", "s", "processor time of a step in a run without observers: smallest of five repetitions",

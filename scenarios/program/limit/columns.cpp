@@ -87,7 +87,8 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
       {"side", "", "largest or smallest: which stable value was searched", of(&Row::question, &LimitQuestion::side),
        kOnlyCsv},
       {"quoted_limit", "unit of the field",
-       "limit to quote, which a user may render: the linear or the simulated limit, whichever is reached first; empty if "
+       "limit to quote, which a user may render: the linear or the simulated limit, whichever is reached first; empty "
+       "if "
        "no limit was found within the range",
        [](const Row& r) { return r.limit.quoted.value; }, under("quote", 6),
        [](const Row& r) { return r.limit.quoted_tolerance(); }},

@@ -106,7 +106,8 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
   const auto is_marked = [&names](const char* mark) { return names.find(mark) != std::string::npos; };
   const std::pair<bool, std::string> notes[] = {
       {table.is_grid(),
-       "quote: the value that a user may render, the linear or the simulated limit, whichever is reached first; - if no "
+       "quote: the value that a user may render, the linear or the simulated limit, whichever is reached first; - if "
+       "no "
        "limit was found, because the end of the range is no limit. limit.csv has the reason in quoted_reason"},
       {table.is_grid(),
        "a table makes no verification runs inside the stable interval; run limit with one scene, device and algorithm "

@@ -46,12 +46,14 @@ Columns<TunedLaw> choice_columns() {
        "stiffness is K lambda_max",
        of_choice(&TuneTrial::lambda_max)},
       {"binding", "",
-       "binding constraint, the first constraint that a larger K violates: settled, margin, no_force, a bounded metric, a "
+       "binding constraint, the first constraint that a larger K violates: settled, margin, no_force, a bounded "
+       "metric, a "
        "rule of low vibration, or range (the end of the search range)",
        &Row::binding},
       {"why", "", "explanation of the binding constraint", &Row::why},
       {"relax", "",
-       "if no stiffness keeps all constraints: the bound to relax, and its new value, which a second search confirms; or "
+       "if no stiffness keeps all constraints: the bound to relax, and its new value, which a second search confirms; "
+       "or "
        "the option to change",
        &Row::relax}};
 }
@@ -112,7 +114,8 @@ Columns<TuneTrial> trial_columns() {
        of_setting(&TuneSetting::filter)},
       {"feasible", "", "true if the trial keeps all constraints", &Row::feasible},
       {"binding", "",
-       "first violated constraint: settled (at K), margin (at stiffnesses up to G K), no_force (no force is rendered), a "
+       "first violated constraint: settled (at K), margin (at stiffnesses up to G K), no_force (no force is "
+       "rendered), a "
        "bounded metric, a rule of low vibration, or runs (the largest number of runs was reached)",
        &Row::binding},
       {"why", "", "explanation of the violated constraint", &Row::why}};

@@ -15,7 +15,7 @@ namespace {
 Json law_json(const TunedLaw& law) {
   Json json = tuned_columns().json(law);
   for (const Margin& margin : kMargins) json["margins"][margin.key] = cell_json(cell_of(law.margins.*margin.of));
-  json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
+  json["metrics"] = law.choice ? law.choice->metrics : MetricValues();
   json["error"] = law.error;
   json["linear_limit_N_per_m"] = law.choice ? cell_json(cell_of(law.edge.linear_edge())) : Json();
   json["simulated_limit_N_per_m"] = law.choice ? cell_json(cell_of(law.edge.end.value)) : Json();

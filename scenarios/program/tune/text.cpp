@@ -21,7 +21,8 @@ std::string limits_text(const Tuning& tuning) {
                   tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m) at each stiffness" : "");
   if (!tuning.question.allow_vibration)
     text +=
-        ", and the run at K has low vibration (rules buzz, pop, shake, bounces, chatter and energy of \"hapbench describe "
+        ", and the run at K has low vibration (rules buzz, pop, shake, bounces, chatter and energy of \"hapbench "
+        "describe "
         "diagnosis\")";
   for (const auto& [name, bound] : tuning.question.limits) {
     if (bound.min) text += fmt::format(", and {} >= {:g}", name, *bound.min);

@@ -119,7 +119,8 @@ void add_tune(CommandLine& line) {
   command.footer(fmt::format(
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
       "limit "
-      "is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is given, the "
+      "is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is given, "
+      "the "
       "scenario's run has low vibration: none of the rules buzz, pop, shake, bounces, chatter and energy applies "
       "(\"hapbench describe diagnosis\").\n\n"
       "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with "

@@ -39,7 +39,8 @@ NOTES = [
     'Units in column names, such as "position [mm]", are applied; --scale overrides them. '
     "--scale force=-1 changes the sign of the forces.",
     "Result: mass, viscous and dry friction, delay, encoder step and noise, each with an interval. It "
-    "is a 95 % interval unless a warning says that the residual is not noise. A parameter that the log cannot determine is not written; a warning gives the "
+    "is a 95 % interval unless a warning says that the residual is not noise. "
+    "A parameter that the log cannot determine is not written; a warning gives the "
     "reason. A constant offset force is printed, but is not part of the device.",
     "Design: force (largest, default 1 N), travel (of the handle, default 0.05 m), mass (smallest "
     "possible, default 0.05 kg), rate (default 1000 Hz), duration (default 5 s).",
