@@ -1,0 +1,311 @@
+"""Layouts of recordings of other programs: columns, texts, units, clocks and held rows."""
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from recordings import Given, moved, table
+
+
+class Layouts(Given):
+    """Recordings of other programs: what is read is what they mean, and what is not clear is refused or said."""
+
+    TIME = 0.002 * np.arange(100)
+    PLACES = moved(TIME)
+    TURNS = Rotation.from_rotvec(
+        np.column_stack([0.3 + 0.2 * np.sin(6 * TIME), 0.5 + 0 * TIME, 0.8 + 0.1 * TIME])
+    )
+    PLAIN = table("t,x,y,z", TIME, PLACES)
+
+    def columns(self, found, quantity):
+        return [part["column"] for part in found["columns"][quantity]]
+
+    def assert_places(self, data, columns="time=t,position=x", places=PLACES, **options):
+        stroke, found = self.report(data, columns, **options)
+        np.testing.assert_allclose(stroke.position, places, atol=1e-9)
+        return "\n".join(found["warnings"]), found
+
+    def assert_tip(self, data, columns, warned="", **options):
+        """The tool points where the true turns say."""
+        stroke, found = self.report(data, f"time=t,position=x,{columns}", **options)
+        down = [0, 0, -1]
+        np.testing.assert_allclose(stroke.turn.apply(down), self.TURNS.apply(down), atol=1e-6)
+        self.assertIn(warned, "\n".join(found["warnings"]))
+        self.assertEqual(bool(warned), bool(found["warnings"]), found["warnings"])
+
+    def test_components_are_found_by_their_names(self):
+        t, (x, y, z) = self.TIME, self.PLACES.T
+        for names, columns, given, expected in (
+            ("t,x,vx,y,vy,z,vz", (x, t, y, t, z, t), "position=x", [2, 4, 6]),
+            ("t,px,vx,py,vy,pz,vz", (x, t, y, t, z, t), "position=px", [2, 4, 6]),
+            ("t,x,z,y", (x, z, y), "position=x", [2, 4, 3]),
+            ("t,x_m,y_m,z_m", (x, y, z), "position=x_m", [2, 3, 4]),
+            ("t,pose.z,pose.y,pose.x", (z, y, x), "position=pose.x", [4, 3, 2]),
+            ("t,pose.z,pose.y,pose.x", (z, y, x), "position=pose", [4, 3, 2]),
+            ("t,tipX,tipY,tipZ", (x, y, z), "position=tipX", [2, 3, 4]),
+            ("t,p[0],p[1],p[2]", (x, y, z), "position=p[0]", [2, 3, 4]),
+            ("t,a,b,c", (x, y, z), "position=2", [2, 3, 4]),
+            ("", (x, y, z), "position=2", [2, 3, 4]),
+        ):
+            time = "time=1" if names == "" else "time=t"
+            warned, found = self.assert_places(table(names, t, *columns), f"{time},{given}")
+            self.assertEqual(self.columns(found, "position"), expected, names)
+            self.assertEqual(warned, "")
+        self.assertEqual(
+            self.report(table("t,x,vx,y,vy,z,vz", t, x, t, y, t, z, t), "time=t,position=x")[1][
+                "columns_not_read"
+            ],
+            ["3 vx", "5 vy", "7 vz"],
+        )
+
+    def test_columns_that_the_names_do_not_decide_are_refused(self):
+        turned = table("t,x,y,z,q0,q1,q2,q3", self.TIME, self.PLACES, self.TURNS.as_quat())
+        for data, columns, problem in (
+            (
+                table("t,a,b,c", self.TIME, self.PLACES),
+                "position=a",
+                'do not say which columns go with "a"; allowed: px=...,py=...,pz=..., or position=2 for',
+            ),
+            (self.PLAIN, "position=y", "not its first by name; allowed: position=x"),
+            (self.PLAIN, "position=x,px=x", "is named as a whole and by px"),
+            (self.PLAIN, "position=x,force=x", "column 2 x is also named for position"),
+            (turned, "position=x,orientation=q0", "--orientation is missing; allowed: axis, quat_"),
+            (turned, "position=x,orientation=5", "--orientation is missing"),
+            (turned, "position=x,qw=q3,qx=q0", "qy: is missing beside others"),
+        ):
+            self.assertIn(problem, self.refusal(data, f"time=t,{columns}"))
+        self.assertIn(
+            "allowed: one of them",
+            self.refusal(self.PLAIN, "time=t,position=x", set="sample_rate_Hz=500"),
+        )
+
+    def test_a_number_takes_what_follows_and_says_what_the_names_say(self):
+        data = table("t,x,vx,y,z", self.TIME, self.PLACES[:, [0, 0, 1, 2]])
+        _, found = self.report(data, "time=1,position=2")
+        self.assertEqual(self.columns(found, "position"), [2, 3, 4])
+        self.assertIn("by their names it would be 2 x, 4 y, 5 z", found["warnings"][0])
+
+    def test_a_quaternion_is_read_by_the_names_of_its_columns(self):
+        xyzw = self.TURNS.as_quat()
+        last = table("t,x,y,z,qx,qy,qz,qw", self.TIME, self.PLACES, xyzw)
+        first = table("t,x,y,z,qw,qx,qy,qz", self.TIME, self.PLACES, np.roll(xyzw, 1, axis=1))
+        self.assert_tip(last, "orientation=qx")
+        self.assert_tip(first, "orientation=qw")
+        self.assert_tip(first, "orientation=qx")
+        self.assert_tip(last, "qw=qw,qx=qx,qy=qy,qz=qz")
+        self.assert_tip(last, "orientation=5", orientation="quat_xyzw")
+        # An order that contradicts the names.
+        contradicted = "was read by the names of its columns (qx, qy, qz, qw)"
+        self.assert_tip(last, "orientation=qx", contradicted, orientation="quat_wxyz")
+        self.assertIn(
+            "by their names it would be 8 qw, 5 qx, 6 qy, 7 qz",
+            self.report(last, "time=t,position=x,orientation=5", orientation="quat_wxyz")[1][
+                "warnings"
+            ][0],
+        )
+        self.assertIn(
+            "their names say otherwise",
+            self.report(last, "time=t,position=x,qw=qx,qx=qy,qy=qz,qz=qw")[1]["warnings"][0],
+        )
+        # Columns that no orientation takes.
+        for columns in ("orientation=qx", "qw=qw,qx=qx,qy=qy,qz=qz"):
+            self.assertIn(
+                "is not used: --orientation none takes no columns",
+                self.refusal(last, f"time=t,position=x,{columns}", orientation="none"),
+            )
+
+    def test_other_orientations_are_read_by_their_names(self):
+        vector = self.TURNS.as_rotvec()
+        angle = np.linalg.norm(vector, axis=1)
+        turn = (self.TIME, self.PLACES, vector / angle[:, None])
+        self.assert_tip(table("t,x,y,z,ax,ay,az,angle", *turn, angle), "orientation=ax")
+        degrees = np.degrees(angle)
+        self.assert_tip(table("t,x,y,z,ax,ay,az,angle [deg]", *turn, degrees), "orientation=ax")
+        for values, scale, said in (
+            (degrees, "1", "look like degrees"),
+            (angle, "0.0174533", "look like radians"),
+        ):
+            _, found = self.report(
+                table("t,x,y,z,ax,ay,az,angle", *turn, values),
+                "time=t,position=x,orientation=ax",
+                scale=f"angle={scale}",
+            )
+            self.assertIn(said, found["warnings"][0])
+        cells = self.TURNS.as_matrix()
+        by_columns = cells.transpose(0, 2, 1).reshape(-1, 9)
+        names = "t,x,y,z,r11,r21,r31,r12,r22,r32,r13,r23,r33"
+        self.assert_tip(table(names, self.TIME, self.PLACES, by_columns), "orientation=r11")
+
+    def test_texts_of_every_program_are_the_same_numbers(self):
+        comma = self.PLAIN.replace(",", ";").replace(".", ",")
+        quoted = table('"t","x","y","z"', self.TIME, self.PLACES, number='"%.9g"')
+        for data, warned in (
+            ("\ufeff" + self.PLAIN, ""),
+            (self.PLAIN.encode("utf-16"), "the text is UTF-16"),
+            (self.PLAIN.replace("\n", "\r\n"), ""),
+            (self.PLAIN.replace("\n", "\r"), ""),
+            (self.PLAIN.replace(",", "\t"), ""),
+            (self.PLAIN.replace(",", " "), ""),
+            (quoted, ""),
+            (quoted.replace('"', "'"), ""),
+            ("Rate: 500\n" + self.PLAIN, "1 line above the header skipped, the first: line 1"),
+            (comma, 'line 3: got "0,002": numbers have a decimal comma'),
+            (comma.replace(";", "\t"), "numbers have a decimal comma"),
+            (comma.replace(";", " "), "numbers have a decimal comma"),
+            (quoted.replace(".", ","), "numbers have a decimal comma"),
+            ("% " + self.PLAIN, ""),
+            ("# made by hand\n#" + self.PLAIN, "1 comment line skipped, the first: line 1"),
+            (self.PLAIN.replace("\n", ",\n"), "a separator at the end of every line ignored"),
+            (self.PLAIN.replace("\n", ",\n").replace("z,", "z"), "at the end of 100 lines ignored"),
+            (self.PLAIN.replace("z", "z,"), "a separator at the end of the header ignored"),
+        ):
+            said, _ = self.assert_places(data)
+            self.assertIn(warned, said)
+            self.assertEqual(bool(warned), bool(said), said)
+        bare = comma.partition("\n")[2]
+        self.assert_places(bare, "time=1,position=2")
+        self.assertEqual(self.assert_places(comma, decimal="comma")[0], "")
+
+    def test_commas_that_are_not_clear_are_refused(self):
+        between = (
+            "got 5 values; allowed: 4. Numbers with a decimal comma cannot be separated by commas"
+        )
+        self.assertIn(between, self.refusal(self.PLAIN.replace(".", ","), "time=t,position=x"))
+        grouped = "t;x;y;z\n" + "".join(f"{i};{i};1,{200 + i};3\n" for i in range(9))
+        self.assertIn(
+            'line 2: column 3 y: got "1,200": is the comma a decimal comma? --decimal comma',
+            self.refusal(grouped, "time=t,position=x"),
+        )
+        self.assertIn(
+            'line 3: column 1 t: got "0,002"; allowed: a finite number (99 rows, the last: line 101)',
+            self.refusal(
+                self.PLAIN.replace(",", ";").replace(".", ","), "time=t,position=x", decimal="point"
+            ),
+        )
+
+    def test_a_fault_is_told_once_with_its_repetitions(self):
+        lines = self.PLAIN.split("\n")
+        lines[10:40] = [line.rpartition(",")[0] + ",nan" for line in lines[10:40]]
+        self.assertEqual(
+            self.refusal("\n".join(lines), "time=t,position=x"),
+            'rec.csv, line 11: column 4 z: got "nan"; allowed: a finite number (30 rows, the last: line 40); '
+            "--skip-bad-rows leaves bad rows out",
+        )
+
+    def test_a_log_of_rostopic_is_read_by_its_names(self):
+        # Nanoseconds since 1970 are more than a double holds.
+        pose = np.column_stack([self.PLACES, self.TURNS.as_quat()])
+        ends = [f".{c}" for c in "xyz"], [f".{c}" for c in "xyzw"]
+        names = ["field.pose.position" + end for end in ends[0]] + [
+            "field.pose.orientation" + end for end in ends[1]
+        ]
+        log = f"%time,field.header.seq,{','.join(names)}\n" + "".join(
+            f"{1600000000123456789 + 2000000 * i},{i},{','.join(map(repr, row))}\n"
+            for i, row in enumerate(pose.tolist())
+        )
+        columns = "time=%time,position=field.pose.position.x,orientation=field.pose.orientation.x"
+        self.assertIn("are times in other units? (--scale time=1e-09)", self.refusal(log, columns))
+        _, found = self.assert_places(log, columns, scale="time=1e-9")
+        self.assertFalse(found["resampled"])
+        self.assertAlmostEqual(found["rate_Hz"], 500, delta=1e-9)
+        self.assertAlmostEqual(found["first_time_s"], 1600000000.123, delta=1e-3)
+        self.assertTrue(found["has_roll"])
+
+    def test_units_in_names_are_applied(self):
+        millimetres = table("t [ms],x [mm],y [mm],z [mm]", 1e3 * self.TIME, 1e3 * self.PLACES)
+        _, found = self.assert_places(millimetres)
+        self.assertEqual(found["scales"], {"time": 1e-3, "position": 1e-3})
+        self.assert_places(
+            millimetres.replace("[", "(")
+            .replace("]", ")")
+            .replace("x", "X")
+            .replace("y", "Y")
+            .replace("z", "Z"),
+            "time=t,position=X",
+        )
+        self.assert_places(
+            table("t_ms,x_mm,y_mm,z_mm", 1e3 * self.TIME, 1e3 * self.PLACES),
+            "time=t_ms,position=x_mm",
+        )
+        rows = millimetres.partition("\n")[2]
+        for header in ("t/ms,x/mm,y/mm,z/mm\n", '"t, ms","x, mm","y, mm","z, mm"\n'):
+            self.assert_places(header + rows)
+        said, _ = self.assert_places("t,x,y,z\nms,mm,mm,mm\n" + rows)
+        self.assertEqual(said, "line 2 has the units of the columns")
+        self.assert_places(self.PLAIN.replace("z\n", "z [-]\n", 1).replace("x", "x [-]"))
+        counts = millimetres.replace("mm", "counts")
+        self.assertIn(
+            'column 2 x [counts]: the unit "counts" is unknown: --scale position=...',
+            self.refusal(counts, "time=t,position=x"),
+        )
+        self.assert_places(counts, scale="position=0.001")
+        _, found = self.report(millimetres, "time=t,position=x", scale="position=0.0005")
+        self.assertIn(
+            "says mm, a scale of 0.001; --scale position=0.0005 was used", found["warnings"][0]
+        )
+        self.assertIn(
+            "different units (m, mm)",
+            self.refusal(millimetres.replace("y [mm]", "y [m]"), "time=t,position=x"),
+        )
+
+    def test_a_clock_in_other_units_is_named_with_the_scale(self):
+        for factor, scale in ((1e3, "0.001"), (1e6, "1e-06"), (1e9, "1e-09")):
+            for rate in (100, 500, 4000):
+                time = self.TIME * 500 / rate
+                data = table("t,x,y,z", 1e9 * factor + factor * time, moved(time), number="%.19g")
+                self.assertIn(f"(--scale time={scale})", self.refusal(data, "time=t,position=x"))
+        _, found = self.report(
+            table("t,x,y,z", 50 * self.TIME, moved(0.05 * self.TIME)), "time=t,position=x"
+        )
+        self.assertIn("with --scale time=0.001 the rate is 1e+04 Hz", found["warnings"][0])
+        _, found = self.report(self.PLAIN, "time=t,position=x", scale="time=1e-3")
+        self.assertIn("with --scale time=1 the rate is 500 Hz", found["warnings"][0])
+
+    def test_poses_held_for_several_rows_are_thinned_to_the_true_samples(self):
+        time = 1e-3 * np.arange(1200)
+        for rows in (2, 3, 5, 10):
+            held = time[np.arange(1200) // rows * rows]
+            stroke, found = self.report(table("t,x,y,z", time, moved(held)), "time=t,position=x")
+            self.assertEqual((found["rows_per_held_sample"], found["resampled"]), (rows, False))
+            self.assertAlmostEqual(found["rate_Hz"], 1000 / rows, delta=1e-6)
+            np.testing.assert_allclose(stroke.position, moved(time[::rows]), atol=1e-9)
+            self.assertIn(f"each pose is repeated in {rows} rows", found["warnings"][0])
+        # Rates that are no multiples, a speed that looks too fast in one row, and a rest.
+        held = np.floor(60 * time) / 60
+        _, found = self.report(table("t,x,y,z", time, 40 * moved(held)), "time=t,position=x")
+        self.assertAlmostEqual(found["rows_per_held_sample"], 1000 / 60, delta=0.1)
+        self.assertLess(found["speed_max_m_per_s"], 1.2)
+        at_rest = np.maximum(time[np.arange(1200) // 4 * 4] - 0.4, 0)
+        _, found = self.report(table("t,x,y,z", time, moved(at_rest)), "time=t,position=x")
+        self.assertEqual((found["samples"], found["gaps"]), (300, 0))
+        kept = self.stroke(
+            table("t,x,y,z", time, moved(held)), "time=t,position=x", set="held_rows=keep"
+        )
+        self.assertEqual(len(kept.time), 1200)
+        # A clock with jitter: runs of 3, 4 and 5 rows.
+        lengths = np.random.default_rng(7).choice([3, 4, 5], 300, p=[0.2, 0.6, 0.2])
+        held = time[np.repeat(np.cumsum(lengths) - lengths, lengths)[:1200].clip(max=1199)]
+        _, found = self.report(
+            table("t,x,y,z", time[: len(held)], moved(held)), "time=t,position=x"
+        )
+        self.assertAlmostEqual(found["rows_per_held_sample"], 4.0, delta=0.1)
+        # Coarse numbers, and an even speed in steps, are no held samples.
+        for places in (np.round(moved(time), 4), np.round(np.outer(time, [0.0025, 0, 0]), 5)):
+            _, found = self.report(table("t,x,y,z", time, places), "time=t,position=x")
+            self.assertEqual((found["rows_per_held_sample"], found["samples"]), (1, 1200))
+
+    def test_a_force_into_the_surface_is_told(self):
+        force = np.column_stack(
+            [0.1 + 0 * self.TIME, 0 * self.TIME, 0.5 + 0.3 * np.sin(8 * self.TIME)]
+        )
+        for sign, by_tool, said in (
+            (1, False, ""),
+            (-1, False, "--set force_by_tool=true"),
+            (-1, True, ""),
+            (1, True, "leave out force_by_tool=true"),
+        ):
+            _, found = self.report(
+                table("t,x,y,z,fx,fy,fz", self.TIME, self.PLACES, sign * force),
+                "time=t,position=x,force=fx",
+                force_by_tool=by_tool,
+            )
+            self.assertIn(said, "".join(found["warnings"]))
+            self.assertEqual(bool(said), bool(found["warnings"]))
