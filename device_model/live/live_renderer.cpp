@@ -313,7 +313,7 @@ void LiveRenderer::restart() noexcept {
 /// Lets the force of the last call fall to 0.
 void LiveRenderer::release(Release why) noexcept {
   release_ = why;
-  release_gain_ = 1.0;
+  release_gain_ = gain_ > 0.0 ? 1.0 : 0.0;
   held_force_ = last_force_;
   held_gain_ = gain_;
   gain_ = 0.0;
