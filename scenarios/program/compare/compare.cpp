@@ -26,6 +26,7 @@
 #include "scenarios/program/compare/errors.hpp"
 #include "scenarios/program/compare/ranking_text.hpp"
 #include "scenarios/program/names.hpp"
+#include "scenarios/program/replay.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/expectations.hpp"
@@ -39,6 +40,7 @@ struct CompareOptions : CommonOptions {
   std::vector<std::string> scenarios, metrics;
   ComparisonQuestion question;  ///< without algorithms: all algorithms are compared
   bool errors = false;
+  std::string replay;  ///< log of a haptic loop; empty: the scenarios' own motions
 };
 
 /// Checks the options and plans the comparison. Throws InputError.
@@ -118,10 +120,24 @@ std::string runs_text(const std::vector<Result>& reports, const Ranking& league,
   return text;
 }
 
+/// Throws InputError for options that have no meaning with --replay.
+int compare_replay(const CompareOptions& options, ProgramContext& context) {
+  if (options.errors || options.question.seeds != 1 || options.question.jitter != 0.0 || !options.metrics.empty())
+    fail_in_option("--replay",
+                   "got it together with --errors, --seeds, --jitter or --by; allowed: --algorithms, --set, "
+                   "--out, --json, --quiet");
+  if (options.scenarios.size() != 1)
+    fail_in_option("--replay", fmt::format("got {} scenarios; allowed: one", options.scenarios.size()));
+  const std::vector<std::string> algorithms =
+      options.question.algorithms.empty() ? algorithm_names() : chosen_algorithms(options.question.algorithms);
+  return compare_replays(options.scenarios[0], options.replay, algorithms, options, context);
+}
+
 int compare(const CompareOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   if (options.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
+  if (!options.replay.empty()) return compare_replay(options, context);
   // Check all input before anything runs or is written.
   const Comparison comparison = planned(options);
   const bool several = comparison.scenes.size() > 1;
@@ -192,6 +208,8 @@ void add_compare(CommandLine& line) {
                   "; if every scenario has a reference force, fidelity metrics instead)",
               {.comma_separated = true});
   add_common(command, options, "compare_NAME; of several scenarios: results/out/compare");
+  command.add("--replay <log.csv>", options.replay,
+              "render the log of a haptic loop with each law instead of the scenario's motion (scenarios/LOOP.md)");
   command.flag(
       "--errors", options.errors,
       "repeat all runs at half and a quarter of the time step and of the point spacing, to print errors and check "

@@ -75,6 +75,8 @@ int tune(const TuneOptions& options, ProgramContext& context) {
     tuned = tuned_file;
     report.files().write(tuned, json_text(tuned_scenario(tuning, *tuning.ranking[0], out)));
     report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
+    report.say(
+        fmt::format("in your own loop (scenarios/LOOP.md): setup.scenario = {};\n", Json(tuned.string()).dump()));
   }
   report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", out.string(), shell_file(out)));
   report.json() = tuning_json(tuning, tuned);
