@@ -13,6 +13,7 @@ __all__ = [
     "Folder",
     "InputError",
     "Parameter",
+    "Renderer",
     "ResultError",
     "Run",
     "ScenarioError",
