@@ -70,8 +70,8 @@ std::string components_text(const MeshFindings& found) {
     const std::string head = i == 0 ? fmt::format("{} component{}", found.component_count,
                                                   found.component_count > 1 ? "s, the largest first: " : ": ")
                                     : "";
-    text += fmt::format("  {:<11}  {}{}, {}, {}\n", i == 0 ? "mesh" : "", head, size_text(component.box),
-                        count_of(component.triangles, "triangle"), closedness_text(component, found));
+    text += fmt::format("  {:<11}  {}{}, {} triangle{}, {}\n", i == 0 ? "mesh" : "", head, size_text(component.box),
+                        component.triangles, component.triangles == 1 ? "" : "s", closedness_text(component, found));
   }
   if (found.component_count > found.components.size())
     text += fmt::format("               and {} smaller components\n", found.component_count - found.components.size());
