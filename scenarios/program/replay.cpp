@@ -52,16 +52,16 @@ ReplayRow replay_row(std::string algorithm, const std::vector<HapbenchOutput>& o
 }
 
 Columns<ReplayRow> replay_columns() {
-  return {{"algorithm", "", "algorithm that rendered the calls of the log", &ReplayRow::algorithm, under("algorithm")},
+  return {{"algorithm", "", "force algorithm", &ReplayRow::algorithm, under("algorithm")},
           {"calls", "1", "calls of the renderer in the log", [](const ReplayRow& r) { return r.compared.calls; }},
           {"equal_calls", "1", "calls whose outputs are equal to the recorded ones to the last bit",
            [](const ReplayRow& r) { return r.compared.equal; }, under("equal\ncalls")},
-          {"force_difference_max_N", "N", "largest norm of the difference to the recorded force",
+          {"loop_force_difference_max_N", "N", "largest norm of the difference to the recorded force",
            [](const ReplayRow& r) { return r.compared.largest; }, under("difference\n[N]")},
-          {"force_max_N", "N", "largest norm of the force", &ReplayRow::largest_force, under("force max\n[N]")},
-          {"force_rms_N", "N", "root of the mean squared norm of the force, over all calls", &ReplayRow::rms_force,
+          {"loop_force_max_N", "N", "largest norm of the force", &ReplayRow::largest_force, under("force max\n[N]")},
+          {"loop_force_rms_N", "N", "root of the mean squared norm of the force, over all calls", &ReplayRow::rms_force,
            under("force rms\n[N]")},
-          {"force_change_max_N", "N", "largest norm of the change of the force between two calls",
+          {"loop_force_change_max_N", "N", "largest norm of the change of the force between two calls",
            &ReplayRow::largest_change, under("change max\n[N]")},
           {"fault_calls", "1", "calls with the status FAULT", &ReplayRow::faults, under("FAULT")},
           {"stale_calls", "1", "calls with the status STALE", &ReplayRow::stale, under("STALE")},

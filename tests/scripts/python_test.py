@@ -305,7 +305,7 @@ class Loop(Scratch):
         words = [str(file), "--replay", str(self.root / "loop.csv"), *words_of(stiffer)]
         replay = json.loads(program("run", *words, "--json", "--out", str(self.root / "out")))
         self.assertEqual((replay["calls"], replay["equal_calls"]), (300, 300))
-        self.assertGreater(replay["force_max_N"], 0.01)
+        self.assertGreater(replay["loop_force_max_N"], 0.01)
         # A scenario in memory, a fault, and what is refused.
         renderer = hapbench.Renderer(wall, max_force_N=5)
         self.assertEqual(renderer.step(1, (float("nan"), 0, 0))["status"], "FAULT")

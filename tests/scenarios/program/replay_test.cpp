@@ -67,7 +67,7 @@ TEST_F(Replay, HasTheRecordedBitsInBothBuilds) {
   EXPECT_EQ(json["calls"], 3000);
   EXPECT_EQ(json["equal_calls"], 3000);
   EXPECT_EQ(json["is_recorded_scenario"], true);
-  EXPECT_GT(json["force_max_N"], 0.1);
+  EXPECT_GT(json["loop_force_max_N"], 0.1);
   EXPECT_GT(json["stale_calls"], 0);
   EXPECT_EQ(json["fault_calls"], 100);
   EXPECT_EQ(read_file(folder / "out/replay.csv"), read_file(log));
@@ -91,7 +91,7 @@ TEST_F(Replay, ComparesAnotherScenarioAndOtherLaws) {
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0]["equal_calls"], 3000);
   EXPECT_LT(rows[1]["equal_calls"], 3000);
-  EXPECT_GT(rows[1]["force_difference_max_N"], 0.01);
+  EXPECT_GT(rows[1]["loop_force_difference_max_N"], 0.01);
   EXPECT_EQ(lines_of(read_file(folder / "out/replay_comparison.csv")).size(), 3u);
 }
 

@@ -461,6 +461,76 @@ TEST(Renderer, MountsTheDevice) {
   EXPECT_NEAR(norm(output.torque), 0.0, 1e-6);  // the force points along the arm
 }
 
+/// An admittance loop whose handle follows the set-points exactly; the tip is 0.1 m below the handle.
+struct AdmittanceLoop : Loop {
+  static HapbenchSetup setup() {
+    static const char* const kOverrides[] = {R"(device={"type": "ideal"})", "rendering.mass_kg=0.1", nullptr};
+    HapbenchSetup setup = setup_of(kPlane);
+    setup.mode = HAPBENCH_ADMITTANCE;
+    setup.overrides = kOverrides;
+    setup.mount.handle_from_tip.position[2] = -0.1;
+    return setup;
+  }
+  AdmittanceLoop() : Loop(setup()) {
+    input.handle.position[2] = 0.102;
+    input.has = HAPBENCH_HAND_FORCE;
+  }
+  HapbenchOutput pushed(double x, double z) {
+    input.hand_force[0] = x;
+    input.hand_force[2] = z;
+    const HapbenchOutput output = call();
+    if (output.status != HAPBENCH_FAULT) std::copy_n(output.set_position, 3, input.handle.position);
+    return output;
+  }
+};
+
+TEST(Renderer, HoldsTheSetPointDuringAFault) {
+  AdmittanceLoop loop;
+  HapbenchOutput output{};
+  for (int i = 0; i < 150; ++i) output = loop.pushed(0.01, 0.0);
+  EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_ON));
+  // A mass of 0.1 kg under 0.01 N: 0.1 m/s^2, after 150 periods of 1 ms 0.015 m/s.
+  EXPECT_NEAR(output.set_velocity[0], 0.015, 1e-12);
+  EXPECT_NEAR(output.set_position[2], 0.102, 1e-12);
+  const HapbenchOutput last = output;
+  loop.input.hand_force[1] = kNaN;
+  output = loop.pushed(0.01, 0.0);
+  EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_FAULT));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(output.set_position[i], last.set_position[i]);
+  EXPECT_EQ(norm(output.set_velocity), 0.0);
+  // Rearmed, the mass starts at rest where the handle is.
+  loop.input.hand_force[1] = 0.0;
+  for (int i = 0; i < 110; ++i) loop.pushed(0.01, 0.0);
+  loop.input.has |= HAPBENCH_REARM;
+  loop.input.handle.position[0] = 0.05;
+  output = loop.pushed(0.0, 0.0);
+  EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
+  EXPECT_NEAR(output.set_position[0], 0.05, 1e-12);
+  EXPECT_EQ(norm(output.set_velocity), 0.0);
+}
+
+TEST(Renderer, MovesTheHandleOfAClutchedMassWithoutContact) {
+  AdmittanceLoop loop;
+  HapbenchOutput output{};
+  // Onto the plane.
+  for (int i = 0; i < 150; ++i) output = loop.pushed(0.0, 0.0);
+  for (int i = 0; i < 3000 && output.contacts == 0; ++i) output = loop.pushed(0.0, -0.05);
+  ASSERT_GT(output.contacts, 0u);
+  const double touching = output.set_position[2];
+  // Clutched, the same push moves the handle on down, through where the plane would be.
+  loop.input.has |= HAPBENCH_CLUTCH;
+  for (int i = 0; i < 400; ++i) output = loop.pushed(0.0, -0.05);
+  EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
+  EXPECT_EQ(output.contacts, 0u);
+  EXPECT_LT(output.set_position[2], touching - 0.005);
+  // Released, the set-point does not jump, and the tool is at the plane again.
+  const HapbenchOutput clutched = output;
+  loop.input.has = HAPBENCH_HAND_FORCE;
+  output = loop.pushed(0.0, 0.0);
+  EXPECT_NEAR(output.set_position[2], clutched.set_position[2] + kPeriod * clutched.set_velocity[2], 1e-9);
+  EXPECT_GT(output.contacts, 0u);
+}
+
 TEST(Renderer, RefusesTheResultOfAFailingLaw) {
   HapbenchSetup setup = setup_of(kPlane);
   static const char* const kModules[] = {HAPBENCH_TEST_MODULES "/hostile.so", nullptr};
