@@ -101,7 +101,12 @@ class Consumer(unittest.TestCase):
             json.dumps(
                 {
                     "time": {"step_s": 0.001, "steps": 10},
-                    "environment": {"type": "mesh", "file": "pyramid.stl", "spacing_m": 0.0002},
+                    "environment": {
+                        "type": "mesh",
+                        "file": "pyramid.stl",
+                        "scale": 1,
+                        "spacing_m": 0.0002,
+                    },
                     "initial": {"position_m": [0, 0, 0.003]},
                     "tool": {"diameter_m": 0.001, "length_m": 0.01, "tip": "round"},
                     "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 2000},
