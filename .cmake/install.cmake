@@ -46,14 +46,29 @@ if(HAPBENCH_BUILD_PROGRAM)
   ]])
 endif()
 
+# The renderer: a package of its own, for find_package(hapbench_renderer) in projects without C++, and for pkg-config.
+if(TARGET hapbench_renderer)
+  install(TARGETS hapbench_renderer EXPORT hapbench_renderer-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  set(renderer_config ${CMAKE_INSTALL_LIBDIR}/cmake/hapbench_renderer)
+  install(EXPORT hapbench_renderer-targets NAMESPACE hapbench:: FILE hapbench_renderer-config.cmake DESTINATION ${renderer_config})
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/hapbench_renderer-config-version.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${PROJECT_BINARY_DIR}/hapbench_renderer-config-version.cmake DESTINATION ${renderer_config})
+  file(RELATIVE_PATH include_from_pc /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix/include)
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/hapbench_renderer.pc.in ${PROJECT_BINARY_DIR}/hapbench_renderer.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/hapbench_renderer.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  install(FILES ${PROJECT_SOURCE_DIR}/device_model/live/hapbench_renderer.h
+    ${PROJECT_SOURCE_DIR}/device_model/live/hapbench_renderer.hpp DESTINATION include)
+endif()
+
 # The interface of force laws and sources of contacts in C.
 install(FILES ${PROJECT_SOURCE_DIR}/algorithms/module/hapbench_module.h DESTINATION include)
 
 # The manuals, and the examples that they link, in the folders in which they do.
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   algorithms/module/examples/* algorithms/module/hapbench_module.h algorithms/module/law_module.hpp algorithms/laws/equal_weights.cpp
+  device_model/live/examples/* device_model/live/hapbench_renderer.h device_model/live/hapbench_renderer.hpp
   scenarios/library/validation/*.csv
-  scripts/sweep.sbatch scenarios/library/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
+  scripts/sweep.sbatch scenarios/library/tutorials/*.c tests/consumer/*.c* tests/consumer/CMakeLists.txt tests/consumer/*/*
   sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md scripts/*.md tests/*.md)
 foreach(manual README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff ${manuals})
   cmake_path(GET manual PARENT_PATH folder)

@@ -1,12 +1,12 @@
 #include "algorithms/module/module.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <limits>
-#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -25,16 +25,18 @@ constexpr auto kUnwritten = std::uint64_t{0x7ff4deadc0ffee00};
 
 constexpr double kLengthTolerance = 1e-3;  ///< tolerance of a gradient's length
 
-std::mutex faults_mutex;
-ModuleFaults& faults() {
-  static ModuleFaults all;
-  return all;
-}
+/// The faults since the last take_module_faults(). A fault may happen in a haptic loop, so it neither locks nor
+/// allocates: the first one claims the text.
+std::atomic<std::uint64_t> fault_count = 0;
+std::atomic<bool> text_is_claimed = false, text_is_written = false;
+std::array<char, kFaultTextSize> first_fault{};
 
-/// Counts a fault. May allocate, because the fault ends the run.
-void count_fault(const char* text) {
-  const std::lock_guard lock(faults_mutex);
-  if (faults().count++ == 0) faults().first = text;
+void count_fault(const std::array<char, kFaultTextSize>& text) noexcept {
+  if (!text_is_claimed.exchange(true)) {
+    first_fault = text;
+    text_is_written.store(true, std::memory_order_release);
+  }
+  ++fault_count;
 }
 
 /// Returns the buffer's arrays in the form that a module reads and writes.
@@ -101,7 +103,7 @@ void ModuleState::fail(const char* problem) noexcept {
   std::snprintf(fault_.data(), fault_.size(), "%s (%s) %s", module_.table->name, module_.file.c_str(), problem);
   // Replace control characters, because the text is printed in one line and written as JSON.
   for (char& c : fault_) c = c == '\0' || (c >= ' ' && c <= '~') ? c : '?';
-  count_fault(fault_.data());
+  count_fault(fault_);
 }
 
 bool ModuleState::create(const double* values, const char* config, HapbenchRun run) noexcept {
@@ -266,8 +268,13 @@ AlgorithmEntry law_entry(Module module, std::string hash) {
 }
 
 ModuleFaults take_module_faults() {
-  const std::lock_guard lock(faults_mutex);
-  return std::exchange(faults(), {});
+  ModuleFaults faults = {fault_count.exchange(0), ""};
+  if (text_is_written.load(std::memory_order_acquire)) {
+    faults.first = first_fault.data();
+    text_is_written = false;
+    text_is_claimed = false;
+  }
+  return faults;
 }
 
 }  // namespace hapbench

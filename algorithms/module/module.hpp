@@ -20,6 +20,9 @@ struct Module {
   std::string file;
 };
 
+/// Room for the text of a fault with the names of module and file; a longer text is cut.
+inline constexpr std::size_t kFaultTextSize = 320;
+
 /// The state of a module in one run. An exception counts as a fault, like a fault that the module reports.
 /// After a fault, the module is not called again until the next reset. If its state could not be created, it is
 /// never called.
@@ -51,7 +54,7 @@ class ModuleState {
   Module module_;
   void* state_ = nullptr;
   bool created_ = false;
-  std::array<char, 320> fault_{};
+  std::array<char, kFaultTextSize> fault_{};
 };
 
 /// A force law from a module. It passes the contacts of the step without copying and allocates nothing in a
@@ -112,7 +115,7 @@ struct ModuleFaults {
   std::uint64_t count = 0;
   std::string first;  ///< text of the first fault
 };
-/// Returns the faults since the last call.
+/// Returns the faults since the last call. Precondition: no other thread calls a module at the same time.
 ModuleFaults take_module_faults();
 
 }  // namespace hapbench

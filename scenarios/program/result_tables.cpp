@@ -7,6 +7,7 @@
 #include "scenarios/program/compare/columns.hpp"
 #include "scenarios/program/converge.hpp"
 #include "scenarios/program/limit/columns.hpp"
+#include "scenarios/program/replay.hpp"
 #include "scenarios/program/reproduce.hpp"
 #include "scenarios/program/run.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -36,7 +37,7 @@ std::vector<DescribedTable> result_tables() {
   for (const ResultTable& table : record_tables()) add(table);
   add(kTargetTable);
   for (auto* tables_of : {run_tables, single_run_tables, ranking_tables, limit_tables, converge_tables, tune_tables,
-                          claim_tables, sweep_tables, stress_tables})
+                          claim_tables, sweep_tables, stress_tables, replay_tables})
     std::ranges::move(tables_of(), std::back_inserter(tables));
   add({"shell.csv", "written by validate --points: one line per point of the environment", kShellColumns});
   return tables;

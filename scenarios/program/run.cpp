@@ -13,6 +13,7 @@
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/digits.hpp"
 #include "scenarios/program/output.hpp"
+#include "scenarios/program/replay.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/checked_scenario.hpp"
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 
 struct RunOptions : CommonOptions {
   std::vector<std::string> scenarios;
+  std::string replay;  ///< log of a haptic loop; empty: the scenario's own motion
   bool latency = false, no_skip = false;
 };
 
@@ -116,7 +118,17 @@ const char* expectation_source(const Scenario& scenario) {
   return is_default ? "by default, without the field expect" : "field expect";
 }
 
+/// Throws InputError for options that have no meaning with --replay.
+int run_replay(const RunOptions& options, ProgramContext& context) {
+  if (options.latency || options.no_skip)
+    fail_in_option("--replay", "got it together with --latency or --no-skip; allowed: --set, --out, --json, --quiet");
+  if (options.scenarios.size() != 1)
+    fail_in_option("--replay", fmt::format("got {} scenarios; allowed: one", options.scenarios.size()));
+  return replay_loop(options.scenarios[0], options.replay, options, context);
+}
+
 int run(const RunOptions& options, ProgramContext& context) {
+  if (!options.replay.empty()) return run_replay(options, context);
   const Layout layout = context.layout();
   // Check all input before anything runs or is written.
   std::vector<std::string> overrides = options.overrides;
@@ -183,6 +195,9 @@ void add_run(CommandLine& line) {
   command.add("--out <dir>", options.out,
               "folder of the results (default: results/out/NAME); several scenarios get a subfolder each");
   add_overrides(command, options.overrides);
+  command.add("--replay <log.csv>", options.replay,
+              "render the log of a haptic loop instead of the scenario's motion, and compare every force "
+              "(scenarios/LOOP.md)");
   command.flag("--latency", options.latency, "measure the time of every step; print percentiles and missed deadlines");
   command.flag("--no-skip", options.no_skip,
                "disable all shortcuts of the computation; results are the same, only slower: for checks");

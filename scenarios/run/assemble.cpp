@@ -88,8 +88,8 @@ SimulationConfig simulation_config(const Scenario& scenario) {
   return config;
 }
 
-SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
-                         Trial trial) {
+SimulationParts assemble_rendering(const Scenario& scenario, const NamedFiles& files,
+                                   std::shared_ptr<const PointShell> shell, Trial trial) {
   SimulationParts parts;
   parts.tool = make_tool(scenario, files);
   parts.shell = std::move(shell);
@@ -115,8 +115,13 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
                                                        parts.springs && parts.springs->bilateral,
                                                        derived_seed(scenario, trial, RandomUse::lost_queries));
   }
-  // Add the force law, hand, motion and device.
   parts.algorithm = make_algorithm(rendering);
+  return parts;
+}
+
+SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
+                         Trial trial) {
+  SimulationParts parts = assemble_rendering(scenario, files, std::move(shell), trial);
   add_hand_and_motion(scenario, files, trial, parts);
   parts.device = make_device(scenario, trial);
   return parts;

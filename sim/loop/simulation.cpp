@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/core/hash.hpp"
+#include "sim/contact/index_hash.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
@@ -25,16 +25,7 @@ class Simulation::ForceWithinStep final : public ForceField {
     s_.parts_.algorithm->compute(tool, s_.contacts_, s_.within_step_);
     return s_.record_.hand.input + s_.within_step_.rendered;
   }
-  /// Sum of the hashes of the rendered contacts' indices. A sum does not depend on their order.
-  std::uint64_t contact_set() const noexcept override {
-    std::uint64_t set = 0;
-    for (std::size_t i = 0; i < s_.contacts_.size(); ++i) {
-      Hash64 hash;
-      hash.word(s_.contacts_.index[i]);
-      set += hash.value();
-    }
-    return set;
-  }
+  std::uint64_t contact_set() const noexcept override { return index_hash(s_.contacts_); }
   ForceJacobian jacobian() const noexcept override { return s_.parts_.algorithm->jacobian(); }
 
  private:

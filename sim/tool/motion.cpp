@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/tool/orientation.hpp"
 #include "sim/tool/refuse.hpp"
 
 namespace hapbench {
@@ -68,12 +69,15 @@ TiltedFrame tilted_frame(const Orientation& orientation, double tilt, double azi
   return {cosine * orientation.up + sine * lean, cosine * lean - sine * orientation.up};
 }
 
-/// Returns the tool axis of an orientation: its -z axis.
+}  // namespace
+
 Vec3 axis_of(const Eigen::Quaterniond& orientation) noexcept {
   return (orientation * -Vec3::UnitZ()).normalized();
 }
 
-}  // namespace
+double roll_of(const Eigen::Quaterniond& orientation) noexcept {
+  return roll_towards(axis_of(orientation), orientation * Vec3::UnitX());
+}
 
 Mat3 ToolPose::rotation() const noexcept {
   return turn_about(axis, roll).toRotationMatrix() * shortest_turn(axis);
@@ -204,9 +208,7 @@ Vec3 RecordedMotion::axis_at(double t) const noexcept {
 
 double RecordedMotion::roll_at(double t) const noexcept {
   const Segment segment = segment_at(t);
-  if (!segment.from->orientation) return 0.0;
-  const Eigen::Quaterniond q = orientation_in(segment);
-  return roll_towards(axis_of(q), q * Vec3::UnitX());
+  return segment.from->orientation ? roll_of(orientation_in(segment)) : 0.0;
 }
 
 Vec3 RecordedMotion::position_at(double t) const noexcept {

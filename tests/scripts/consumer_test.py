@@ -2,6 +2,7 @@
 elementary functions are its own. Arguments: the program, cmake, nm, the build tree."""
 import json
 import re
+import shutil
 import sys
 import unittest
 from functools import partial
@@ -32,6 +33,23 @@ OPENMESH = {
 }
 
 
+def ascii_pyramid():
+    """A closed pyramid on a square of 4 mm, 3 mm high, as STL."""
+    a, b, c, d, top = (
+        (-2e-3, -2e-3, 0),
+        (2e-3, -2e-3, 0),
+        (2e-3, 2e-3, 0),
+        (-2e-3, 2e-3, 0),
+        (0, 0, 3e-3),
+    )
+    faces = ((a, b, top), (b, c, top), (c, d, top), (d, a, top), (b, a, c), (a, d, c))
+    text = "solid pyramid\n"
+    for face in faces:
+        corners = "".join("vertex {} {} {}\n".format(*corner) for corner in face)
+        text += f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n"
+    return text + "endsolid pyramid\n"
+
+
 class Consumer(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -60,6 +78,85 @@ class Consumer(unittest.TestCase):
         out = self.folder / "out"
         must(PROGRAM, "run", SCENARIO, "--out", out)
         self.assertEqual(state_hash, json.loads((out / "summary.json").read_text())["state_hash"])
+
+    def test_an_installed_renderer_renders_in_a_loop_of_another_project(self):
+        """In C, found by CMake and by pkg-config; the log is replayed bit for bit."""
+        project = CONSUMER / "loop"
+        build = self.folder / "loop"
+        must(CMAKE, "-G", "Ninja", "-S", project, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        must(CMAKE, "--build", build)
+        program = build / "own_renderer"
+        exported = {
+            line.split()[-1].split("@")[0]
+            for line in must(NM, "-D", "--defined-only", self.library()).splitlines()
+            if " T " in line
+        }
+        self.assertTrue(all(name.startswith("hapbench_renderer_") for name in exported), exported)
+        self.assertEqual(len(exported), 8, exported)
+        # The molar of drag_molar, and a pyramid of our own.
+        pyramid = self.folder / "pyramid.stl"
+        pyramid.write_text(ascii_pyramid())
+        own = self.folder / "own.json"
+        own.write_text(
+            json.dumps(
+                {
+                    "time": {"step_s": 0.001, "steps": 10},
+                    "environment": {
+                        "type": "mesh",
+                        "file": "pyramid.stl",
+                        "scale": 1,
+                        "spacing_m": 0.0002,
+                    },
+                    "initial": {"position_m": [0, 0, 0.003]},
+                    "tool": {"diameter_m": 0.001, "length_m": 0.01, "tip": "round"},
+                    "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 2000},
+                }
+            )
+        )
+        for scenario, top, deep in (("drag_molar", 0.006, 0.004), (str(own), 0.0035, 0.002)):
+            motion, log, out = (
+                self.folder / name for name in ("motion.csv", "log.csv", "replayed")
+            )
+            steps = [i / 1500 for i in range(1500)]
+            motion.write_text(
+                "".join(f"{1e-4 * t!r},{2e-4 * t!r},{top + (deep - top) * t!r}\n" for t in steps)
+            )
+            largest = float(must(program, scenario, motion, log, cwd=self.folder))
+            self.assertGreater(largest, 0.1, scenario)
+            replay = json.loads(
+                must(PROGRAM, "run", scenario, "--replay", log, "--out", out, "--json")
+            )
+            self.assertEqual((replay["calls"], replay["equal_calls"]), (1500, 1500), scenario)
+            self.assertTrue(replay["is_recorded_scenario"])
+            self.assertEqual((out / "replay.csv").read_bytes(), log.read_bytes())
+        run = ran(program, "no_such_scenario", "-", "-", cwd=self.folder, env=BARE)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("no_such_scenario: no such file and no bundled scenario", run.stderr)
+
+    @unittest.skipUnless(shutil.which("pkg-config"), "no pkg-config")
+    def test_the_example_of_a_loop_is_built_by_pkg_config(self):
+        example = next(self.prefix.rglob("own_loop.c"))
+        libraries = self.library().parent
+        flags = must(
+            "pkg-config",
+            "--cflags",
+            "--libs",
+            "hapbench_renderer",
+            env={**BARE, "PKG_CONFIG_PATH": str(libraries / "pkgconfig")},
+        ).split()
+        program = self.folder / "own_loop"
+        must("cc", "-std=c11", example, "-o", program, *flags, "-lm", "-lpthread")
+        text = must(
+            program,
+            "drag_molar",
+            "0.2",
+            cwd=self.folder,
+            env={**BARE, "LD_LIBRARY_PATH": str(libraries)},
+        )
+        self.assertIn("missed deadlines", text)
+
+    def library(self):
+        return next(self.prefix.rglob("libhapbench_renderer.so"))
 
     def test_headers_without_the_flags_that_lay_out_their_types_do_not_compile(self):
         source = self.folder / "bare.cpp"

@@ -53,6 +53,7 @@ def prepare(folder):
         ("log.txt", "scenarios/library/examples/data/wipe.hapi.txt"),
         ("epfl_paddle.json", "scenarios/library/validation/epfl_paddle.json"),
         ("mine.json", "scenarios/library/studies/stability_delay.json"),
+        ("loop.csv", "tests/data/loop.csv"),
     ):
         shutil.copy(SOURCE / source, folder / name)
     # A straight stroke of 20 samples in microseconds and millimetres, with a force and quaternions.

@@ -275,6 +275,47 @@ class Studies(Scratch):
         self.assertEqual(row["force_max_N"][0], alone.metrics["force_max_N"])
 
 
+class Loop(Scratch):
+    def test_a_renderer_writes_a_log_that_is_replayed_bit_for_bit(self):
+        wall = {
+            "name": "wall",
+            "time": {"step_s": 0.001, "steps": 10},
+            "environment": {"type": "plane", "size_m": 0.006, "spacing_m": 0.0005},
+            "initial": {"position_m": [0, 0, 0.002]},
+            "tool": {"diameter_m": 0.001, "length_m": 0.01, "tip": "round"},
+            "rendering": {"algorithm": "mean", "stiffness_N_per_m": 2000},
+        }
+        file = self.root / "wall.json"
+        file.write_text(json.dumps(wall))
+        stiffer = {"rendering.stiffness_N_per_m": 3000}
+        renderer = hapbench.Renderer(file, stiffer, max_force_N=5, ramp_s=0.02)
+        self.assertEqual(renderer.period_s, 0.001)
+        self.assertIn("mode: impedance", renderer.inspection)
+        log = renderer.log_header()
+        for i in range(300):
+            out = renderer.step(
+                (i + 1) * 1_000_000,
+                (0, 0, 0.002 - 6e-6 * i),
+                velocity_m_per_s=(0, 0, -6e-3),
+                clutch=200 <= i < 230,
+            )
+            log += renderer.log_row()
+        self.assertEqual((out["call"], out["status"]), (299, "ON"), renderer.fault)
+        (self.root / "loop.csv").write_text(log)
+        words = [str(file), "--replay", str(self.root / "loop.csv"), *words_of(stiffer)]
+        replay = json.loads(program("run", *words, "--json", "--out", str(self.root / "out")))
+        self.assertEqual((replay["calls"], replay["equal_calls"]), (300, 300))
+        self.assertGreater(replay["loop_force_max_N"], 0.01)
+        # A scenario in memory, a fault, and what is refused.
+        renderer = hapbench.Renderer(wall, max_force_N=5)
+        self.assertEqual(renderer.step(1, (float("nan"), 0, 0))["status"], "FAULT")
+        self.assertIn("not finite", renderer.fault)
+        with self.assertRaisesRegex(hapbench.ScenarioError, "max_force"):
+            hapbench.Renderer(wall, max_force_N=0)
+        with self.assertRaisesRegex(ValueError, "admittance"):
+            hapbench.Renderer(wall, max_force_N=5, mode="other")
+
+
 class Steps(Scratch):
     def test_are_those_of_a_run(self):
         run = hapbench.run(PEG, SHORT, record=["contacts"])

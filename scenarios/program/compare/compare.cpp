@@ -27,6 +27,7 @@
 #include "scenarios/program/compare/ranking_text.hpp"
 #include "scenarios/program/compare/times.hpp"
 #include "scenarios/program/names.hpp"
+#include "scenarios/program/replay.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/expectations.hpp"
@@ -41,6 +42,7 @@ struct CompareOptions : CommonOptions {
   ComparisonQuestion question;  ///< if it has no algorithms, all algorithms are compared
   bool errors = false;
   bool time = false;
+  std::string replay;  ///< log of a haptic loop; empty: the scenarios' own motions
 };
 
 /// The name of the run time in --by.
@@ -123,6 +125,20 @@ std::string runs_text(const std::vector<Result>& reports, const Ranking& league,
   return text;
 }
 
+/// Throws InputError for options that have no meaning with --replay.
+int compare_replay(const CompareOptions& options, ProgramContext& context) {
+  if (options.errors || options.time || options.question.seeds != 1 || options.question.jitter != 0.0 ||
+      !options.metrics.empty())
+    fail_in_option("--replay",
+                   "got it together with --errors, --time, --seeds, --jitter or --by; allowed: --algorithms, --set, "
+                   "--out, --json, --quiet");
+  if (options.scenarios.size() != 1)
+    fail_in_option("--replay", fmt::format("got {} scenarios; allowed: one", options.scenarios.size()));
+  const std::vector<std::string> algorithms =
+      options.question.algorithms.empty() ? algorithm_names() : chosen_algorithms(options.question.algorithms);
+  return compare_replays(options.scenarios[0], options.replay, algorithms, options, context);
+}
+
 int compare(const CompareOptions& given, ProgramContext& context) {
   const Layout layout = context.layout();
   // The run time is no metric of a run: it has a table and a ranking of its own.
@@ -130,6 +146,7 @@ int compare(const CompareOptions& given, ProgramContext& context) {
   options.time |= std::erase(options.metrics, kTimeMetric) > 0;
   if (options.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
+  if (!options.replay.empty()) return compare_replay(options, context);
   // Check all input before anything runs or is written.
   const Comparison comparison = planned(options);
   const bool several = comparison.scenes.size() > 1;
@@ -201,6 +218,8 @@ void add_compare(CommandLine& line) {
                   "; if every scenario has a reference force, fidelity metrics instead)",
               {.comma_separated = true});
   add_common(command, options, "compare_NAME; of several scenarios: results/out/compare");
+  command.add("--replay <log.csv>", options.replay,
+              "render the log of a haptic loop with each law instead of the scenario's motion (scenarios/LOOP.md)");
   command.flag(
       "--errors", options.errors,
       "repeat all runs at half and a quarter of the time step and of the point spacing, to print errors and check "

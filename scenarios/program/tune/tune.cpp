@@ -83,7 +83,11 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   }
   report.say(tuning_text(tuning, layout));
   if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
-  if (!tuned.empty()) report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
+  if (!tuned.empty()) {
+    report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
+    report.say(
+        fmt::format("in your own loop (scenarios/LOOP.md): setup.scenario = {};\n", Json(tuned.string()).dump()));
+  }
   report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", out.string(), shell_file(out)));
   report.json() = tuning_json(tuning, tuned);
   return report.finish();

@@ -74,6 +74,9 @@ bool runs_in_python(const Call& call) noexcept {
 /// Returns true while a call from Python is computing. Precondition: the interpreter lock is held.
 bool is_call_active();
 
+/// Adds the class Renderer; hapbench.Renderer documents its members.
+void bind_renderer(pybind11::module_& module);
+
 /// Adds the Python function add_force_law(), which makes an algorithm from a Python callable.
 void bind_force_laws(pybind11::module_& module);
 

@@ -400,4 +400,5 @@ PYBIND11_MODULE(_hapbench, module) {
   module.def("allow_modules", allow_all_modules, "Allow all libraries that scenarios name, as --allow-modules does.");
   bind_force_laws(module);
   bind_simulation(module);
+  bind_renderer(module);
 }

@@ -14,6 +14,7 @@ __all__ = [
     "Folder",
     "InputError",
     "Parameter",
+    "Renderer",
     "ResultError",
     "Run",
     "ScenarioError",

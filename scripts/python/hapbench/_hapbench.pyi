@@ -1,5 +1,5 @@
 """The compiled part of hapbench: use the package around it."""
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -41,3 +41,37 @@ class Simulation:
     def time_step_s(self) -> float: ...
     @property
     def outcome(self) -> str: ...
+
+_Vector = Sequence[float]
+_Mounted = tuple[_Vector, _Vector]
+
+class Renderer:
+    def __init__(
+        self,
+        scenario: str,
+        overrides: list[str],
+        mode: int,
+        flags: int,
+        world_from_device: _Mounted,
+        scale: float,
+        handle_from_tip: _Mounted,
+        limits: _Vector,
+        /,
+    ) -> None: ...
+    def step(
+        self,
+        time_ns: int,
+        position: _Vector,
+        orientation: _Vector,
+        given: list[_Vector | None],
+        bits: int,
+        /,
+    ) -> dict[str, Any]: ...
+    def log_header(self) -> str: ...
+    def log_row(self) -> str: ...
+    @property
+    def period_s(self) -> float: ...
+    @property
+    def inspection(self) -> str: ...
+    @property
+    def fault(self) -> str: ...

@@ -250,6 +250,76 @@ class Simulation(_hapbench.Simulation):
             scratch.call(super().__init__, scratch.file_of(scenario), _words(overrides or {}))
 
 
+class Renderer(_hapbench.Renderer):
+    """The force of a scenario in a haptic loop of your own: hapbench_renderer.h, which documents it, for Python.
+
+        renderer = hapbench.Renderer("drag_molar", {"time.step_s": 0.001}, max_force_N=3)
+        out = renderer.step(time.monotonic_ns(), position, velocity_m_per_s=velocity)
+        out["force_N"], out["status"]
+
+    `mode`: "impedance" or "admittance". `world_from_device`, `handle_from_tip`: (position [m],
+    quaternion w, x, y, z). `torque` computes out["torque_N_m"]. `allow_modules` allows libraries
+    that the scenario names. Raises ScenarioError.
+
+    `step` returns a dict: force_N, torque_N_m, set_position_m, set_velocity_m_per_s, gain, dt_s, call, status ("WAITING",
+    "RAMPING", "ON", "CLAMPED", "STALE", "FAULT"), contacts, limited. `period_s` is the time with which to call,
+    `inspection` what was opened, `fault` why the last FAULT happened. `log_header()`, and `log_row()` after each step, are
+    the lines of a log for `hapbench run SCENARIO --replay`. Python has no real time: for a device, use C or C++.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        overrides: Overrides = None,
+        *,
+        max_force_N: float,
+        mode: str = "impedance",
+        scale: float = 1.0,
+        world_from_device: tuple = ((0, 0, 0), (1, 0, 0, 0)),
+        handle_from_tip: tuple = ((0, 0, 0), (1, 0, 0, 0)),
+        max_force_rate_N_per_s: float = float("inf"),
+        ramp_s: float = 0.5,
+        stale_s: float = 0.01,
+        engage_force_N: float = 0.2,
+        torque: bool = False,
+        allow_modules: bool = False,
+    ):
+        modes = {"impedance": 1, "admittance": 2}
+        if mode not in modes:
+            raise ValueError(f"mode: got {mode!r}; allowed: {', '.join(modes)}")
+        limits = (max_force_N, max_force_rate_N_per_s, ramp_s, stale_s, engage_force_N)
+        with _Scratch() as scratch:
+            scratch.call(
+                super().__init__,
+                scratch.file_of(scenario),
+                _words(overrides or {}),
+                modes[mode],
+                (1 if allow_modules else 0) | (2 if torque else 0),
+                world_from_device,
+                scale,
+                handle_from_tip,
+                limits,
+            )
+
+    def step(
+        self,
+        time_ns: int,
+        position_m: Sequence[float],
+        orientation_wxyz: Sequence[float] = (1, 0, 0, 0),
+        *,
+        velocity_m_per_s: Sequence[float] | None = None,
+        angular_velocity_rad_per_s: Sequence[float] | None = None,
+        hand_force_N: Sequence[float] | None = None,
+        applied_force_N: Sequence[float] | None = None,
+        clutch: bool = False,
+        rearm: bool = False,
+    ) -> dict[str, Any]:
+        """Render one measurement of the handle, in the device's frame."""
+        given = [velocity_m_per_s, angular_velocity_rad_per_s, hand_force_N, applied_force_N]
+        bits = (16 if clutch else 0) | (32 if rearm else 0)
+        return super().step(time_ns, position_m, orientation_wxyz, given, bits)
+
+
 class _Scratch:
     """A folder that goes with this object, for scenarios that are dicts and for results."""
 

@@ -1,0 +1,1 @@
+// CMake wants a source of its own; the library's functions are in scenarios/renderer.

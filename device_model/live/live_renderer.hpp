@@ -1,0 +1,112 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "device_model/impedance_device.hpp"
+#include "device_model/live/hapbench_renderer.h"
+#include "sim/loop/live_loop.hpp"
+
+/// The renderer behind hapbench_renderer.h, which documents its behaviour: a LiveLoop between the poses and forces of a
+/// device, with the protection of the hand.
+namespace hapbench {
+
+/// A rotation that is skipped if it is the identity, so that an identity changes no bit.
+class MountRotation {
+ public:
+  /// `wxyz`: quaternion whose norm is close to 1.
+  explicit MountRotation(const double (&wxyz)[4]);
+
+  Vec3 turned(const Vec3& v) const noexcept { return is_identity_ ? v : Vec3(matrix_ * v); }
+  Vec3 turned_back(const Vec3& v) const noexcept { return is_identity_ ? v : Vec3(matrix_.transpose() * v); }
+  bool is_identity() const { return is_identity_; }
+  const Eigen::Quaterniond& quaternion() const { return quaternion_; }
+
+ private:
+  Eigen::Quaterniond quaternion_;
+  Mat3 matrix_;
+  bool is_identity_;
+};
+
+/// What a LiveRenderer takes from the scenario and from the caller's setup.
+struct LiveRendererConfig {
+  bool is_admittance = false;
+  bool wants_torque = false;
+  HapbenchMount mount = HAPBENCH_MOUNT_INIT;  ///< checked; with the smaller limits of mount and scenario
+  std::optional<VelocityFilterConfig> velocity_filter = {};
+  std::optional<LowPassFilter> position_filter = {};
+  std::optional<double> input_force_limit = {};  ///< [N]
+};
+
+/// Renders measured poses, call by call. Allocates in the constructor only.
+class LiveRenderer {
+ public:
+  /// Throws the exceptions of LiveLoop.
+  LiveRenderer(const LiveRendererConfig& config, SimulationConfig simulation, SimulationParts parts);
+
+  void step(const HapbenchInput& input, HapbenchOutput& output) noexcept;
+  /// Returns why the last fault happened; empty if there was none.
+  const char* fault() const noexcept { return fault_text_.data(); }
+  double period() const { return loop_.dt(); }
+
+ private:
+  /// Why the force of an earlier call falls to 0.
+  enum class Release { none, clutch, stale, fault, rearm };
+  /// A measurement in the device's frame, and the orientation of the tool in the world.
+  struct Measurement {
+    Vec3 tip = Vec3::Zero();  ///< tip centre [m]
+    Vec3 arm = Vec3::Zero();  ///< from the handle's origin to the tip centre [m]
+    /// From the tool frame to the world frame.
+    Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+    double roll = 0.0;  ///< of the tool [rad]; 0 if nothing needs it
+  };
+
+  std::uint32_t problem_of(const HapbenchInput& input) const noexcept;
+  Measurement measured(const HapbenchPose3& handle) const noexcept;
+  Vec3 to_world(const Vec3& tip) const noexcept { return scale_ * world_.turned(tip) + origin_; }
+  void set_orientation(const Measurement& now, const HapbenchInput& input) noexcept;
+  Vec3 angular_velocity_of(const Measurement& now, const HapbenchInput& input) const noexcept;
+  void follow_handle(const Measurement& now, const HapbenchInput& input) noexcept;
+  void handle_clutch(const Measurement& now, bool pressed) noexcept;
+  bool takes_rest(double elapsed, HapbenchOutput& output) noexcept;
+  void render(const Measurement& now, const HapbenchInput& input, double elapsed, HapbenchOutput& output) noexcept;
+  void limit(Vec3& force, double elapsed, HapbenchOutput& output) const noexcept;
+  void report_set_point(const Measurement& now, const HapbenchInput& input, HapbenchOutput& output) noexcept;
+  void restart() noexcept;
+  void release(Release why) noexcept;
+  void fail(std::uint32_t reason) noexcept;
+
+  LiveRendererConfig config_;
+  LiveLoop loop_;
+  VelocityFilter velocity_filter_;
+  std::optional<SampledLowPass> position_filter_;
+  MountRotation world_, tip_rotation_;
+  double scale_;
+  Vec3 origin_;  ///< position of world_from_device, which a released clutch moves [m]
+  Vec3 tip_;     ///< position of handle_from_tip [m]
+
+  std::uint64_t calls_ = 0;
+  std::uint64_t last_time_ = 0;  ///< HapbenchInput::time_ns of the last call
+  bool has_time_ = false;
+  std::uint32_t last_bits_ = 0;  ///< HapbenchInput::has of the last call
+
+  ToolState tool_;
+  Measurement last_measurement_;
+  bool has_tool_ = false;      ///< tool_ is of the call before; false after a restart
+  bool has_position_ = false;  ///< tool_ has a position that a clutch can keep
+
+  Release release_ = Release::none;
+  double release_gain_ = 0.0;         ///< factor on held_force_, from 1 to 0
+  double held_gain_ = 0.0;            ///< gain of the last call before the release
+  Vec3 held_force_ = Vec3::Zero();    ///< force of the last call before the release, device frame [N]
+  Vec3 last_force_ = Vec3::Zero();    ///< force of the last call, device frame [N]
+  Vec3 set_position_ = Vec3::Zero();  ///< of the last call, device frame [m]
+  double gain_ = 0.0;
+  int calls_below_ = 0;  ///< calls in a row with a rendered force below engage_force
+  bool is_clutched_ = false;
+  std::optional<Vec3> kept_position_;  ///< of the tool while clutched, world [m]
+  std::uint32_t reason_ = HAPBENCH_NO_FAULT;
+  std::array<char, 400> fault_text_{};
+};
+
+}  // namespace hapbench

@@ -1,0 +1,162 @@
+#include "scenarios/program/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "results/io/atomic_file.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/program/names.hpp"
+#include "scenarios/program/report.hpp"
+#include "scenarios/renderer/loop_log.hpp"
+#include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/scene/field_files.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One rendering of a log.
+struct ReplayRow {
+  std::string algorithm;
+  ReplayComparison compared;    ///< with the recorded outputs
+  double largest_force = 0.0;   ///< [N]
+  double rms_force = 0.0;       ///< [N]
+  double largest_change = 0.0;  ///< of the force between two calls [N]
+  std::size_t faults = 0, stale = 0, clamped = 0;
+};
+
+ReplayRow replay_row(std::string algorithm, const std::vector<HapbenchOutput>& outputs, const LoopLog& log) {
+  ReplayRow row;
+  row.algorithm = std::move(algorithm);
+  row.compared = compare_outputs(outputs, log.outputs);
+  double squares = 0.0;
+  Vec3 last = Vec3::Zero();  // the force before the first call
+  for (const HapbenchOutput& output : outputs) {
+    const Vec3 force = Eigen::Map<const Vec3>(output.force);
+    row.largest_force = std::max(row.largest_force, force.norm());
+    row.largest_change = std::max(row.largest_change, (force - last).norm());
+    squares += force.squaredNorm();
+    last = force;
+    row.faults += output.status == HAPBENCH_FAULT;
+    row.stale += output.status == HAPBENCH_STALE;
+    row.clamped += output.status == HAPBENCH_CLAMPED;
+  }
+  row.rms_force = std::sqrt(squares / static_cast<double>(outputs.size()));
+  return row;
+}
+
+Columns<ReplayRow> replay_columns() {
+  return {{"algorithm", "", "force algorithm", &ReplayRow::algorithm, under("algorithm")},
+          {"calls", "1", "calls of the renderer in the log", [](const ReplayRow& r) { return r.compared.calls; }},
+          {"equal_calls", "1", "calls whose outputs are equal to the recorded ones to the last bit",
+           [](const ReplayRow& r) { return r.compared.equal; }, under("equal\ncalls")},
+          {"loop_force_difference_max_N", "N", "largest norm of the difference to the recorded force",
+           [](const ReplayRow& r) { return r.compared.largest; }, under("difference\n[N]")},
+          {"loop_force_max_N", "N", "largest norm of the force", &ReplayRow::largest_force, under("force max\n[N]")},
+          {"loop_force_rms_N", "N", "root of the mean squared norm of the force, over all calls", &ReplayRow::rms_force,
+           under("force rms\n[N]")},
+          {"loop_force_change_max_N", "N", "largest norm of the change of the force between two calls",
+           &ReplayRow::largest_change, under("change max\n[N]")},
+          {"fault_calls", "1", "calls with the status FAULT", &ReplayRow::faults, under("FAULT")},
+          {"stale_calls", "1", "calls with the status STALE", &ReplayRow::stale, under("STALE")},
+          {"clamped_calls", "1", "calls with the status CLAMPED", &ReplayRow::clamped, under("CLAMPED")}};
+}
+
+/// Returns the outputs of a checked scenario along the log, and the header of its log.
+std::pair<std::vector<HapbenchOutput>, std::string> rendered(const CheckedScenario& scenario, const LoopLog& log) {
+  const std::unique_ptr<HapbenchRenderer> renderer(
+      with_file(scenario.loaded(), [&] { return new_renderer(scenario, log.setup); }));
+  return {replayed(*renderer, log), renderer->log_header};
+}
+
+/// Returns the scenario that was recorded, or else a sentence about the difference.
+std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& log) {
+  const std::string hash = scenario_hash(effective_scenario(scenario.scenario(), fs::current_path()), scenario.files());
+  if (hash == log.scenario.hash) return "";
+  return fmt::format("the log was recorded with another scenario ({}, hash {}; here {}, hash {}): forces may differ",
+                     log.scenario.name, log.scenario.hash, scenario.scenario().name, hash);
+}
+
+std::string summary_text(const ReplayRow& row, const LoopLog& log, const std::string& file) {
+  const double seconds = 1e-9 * static_cast<double>(log.inputs.back().time_ns - log.inputs.front().time_ns);
+  std::string text =
+      fmt::format("{}: {} calls in {:.6g} s, {} mode, mean period {:.6g} ms (scenario: {:.6g} ms)\n", file,
+                  log.inputs.size(), seconds, mode_name(log.setup.mode),
+                  log.inputs.size() > 1 ? 1e3 * seconds / static_cast<double>(log.inputs.size() - 1) : 0.0,
+                  1e3 * log.scenario.period);
+  text += row.compared.equal == row.compared.calls
+              ? "all outputs are equal to the recorded ones to the last bit\n"
+              : fmt::format("{} of {} calls have other outputs than recorded, the first is call {}\n",
+                            row.compared.calls - row.compared.equal, row.compared.calls, row.compared.first_other);
+  return text;
+}
+
+}  // namespace
+
+int replay_loop(const std::string& given, const std::string& log_file, const CommonOptions& options,
+                ProgramContext& context) {
+  const fs::path file = find_scenario(given);
+  const LoopLog log = read_loop_log(log_file);
+  const CheckedScenario scenario = checked(load_scenario(file, options.overrides));
+  print_warnings(context, scenario);
+  Report report(options, "replay", file.stem().string() + "_replay", context);
+  const auto [outputs, header] = rendered(scenario, log);
+  // Write the log with the new outputs.
+  AtomicFile written(report.folder() / "replay.csv");
+  written.append(header);
+  for (std::size_t i = 0; i < outputs.size(); ++i) written.append(log_row(log.inputs[i], outputs[i]));
+  report.files().take(std::move(written));
+  // Compare with the record.
+  const ReplayRow row = replay_row(scenario.scenario().rendering.algorithm, outputs, log);
+  const std::string other = other_scenario_note(scenario, log);
+  const Layout layout = context.layout();
+  report.say(summary_text(row, log, log_file) + "\n" + replay_columns().text(std::vector{row}, layout));
+  if (!other.empty()) report.say("\n" + layout.wrapped(other, 0));
+  report.say(fmt::format("\nresults in {}\n", report.folder().string()));
+  report.json() = replay_columns().json(row);
+  report.json()["is_recorded_scenario"] = other.empty();
+  if (other.empty() && row.compared.equal != row.compared.calls)
+    report.fault(fmt::format("{}: call {} has other outputs than recorded, although the scenario is the same; the log "
+                             "was edited, or another version recorded it",
+                             log_file, row.compared.first_other),
+                 kUnexpectedOutcome);
+  return report.finish();
+}
+
+int compare_replays(const std::string& given, const std::string& log_file, const std::vector<std::string>& algorithms,
+                    const CommonOptions& options, ProgramContext& context) {
+  const fs::path file = find_scenario(given);
+  const LoopLog log = read_loop_log(log_file);
+  // Check every scenario before anything is rendered.
+  std::vector<CheckedScenario> scenarios;
+  for (const std::string& algorithm : algorithms) {
+    LoadedScenario loaded = load_scenario(file, options.overrides);
+    loaded.scenario = with_algorithm(std::move(loaded.scenario), algorithm);
+    scenarios.push_back(checked(std::move(loaded)));
+  }
+  Report report(options, "compare_replay", "compare_" + file.stem().string() + "_replay", context);
+  std::vector<ReplayRow> rows;
+  for (const CheckedScenario& scenario : scenarios)
+    rows.push_back(replay_row(scenario.scenario().rendering.algorithm, rendered(scenario, log).first, log));
+  report.write("replay_comparison.csv", replay_columns(), rows);
+  const Layout layout = context.layout();
+  report.say(
+      layout.wrapped(
+          fmt::format("forces of each law along the motion in {}, recorded with {}", log_file, log.scenario.name), 0) +
+      "\n" + replay_columns().text(rows, layout));
+  report.say(fmt::format("\nresults in {}\n", report.folder().string()));
+  report.json() = replay_columns().json_list(rows);
+  return report.finish();
+}
+
+std::vector<DescribedTable> replay_tables() {
+  return {replay_columns().described("replay_comparison.csv", "written by compare --replay: one line per algorithm")};
+}
+
+}  // namespace hapbench

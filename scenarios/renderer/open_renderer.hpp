@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "device_model/live/live_renderer.hpp"
+#include "scenarios/run/checked_scenario.hpp"
+
+/// What a HapbenchRenderer is behind the C interface.
+struct HapbenchRenderer {
+  hapbench::LiveRenderer live;
+  std::string inspection;  ///< text of hapbench_renderer_inspect
+  std::string log_header;  ///< text of hapbench_renderer_log_header
+};
+
+namespace hapbench {
+
+/// What the caller decides about a renderer, besides the scenario.
+struct RendererSetup {
+  std::uint32_t mode = HAPBENCH_IMPEDANCE;
+  std::uint32_t flags = 0;
+  HapbenchMount mount = HAPBENCH_MOUNT_INIT;
+};
+
+/// Opens a renderer. Throws InputError if the mount has a value that is not allowed, or if the scenario cannot be
+/// rendered in this mode.
+HapbenchRenderer* new_renderer(const CheckedScenario& checked, const RendererSetup& setup);
+
+/// Returns the name of a mode as in logs: "impedance" or "admittance".
+const char* mode_name(std::uint32_t mode);
+
+}  // namespace hapbench

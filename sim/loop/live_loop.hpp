@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+
+#include "sim/loop/simulation.hpp"
+
+namespace hapbench {
+
+/// The step of a Simulation without its script: the caller gives the pose of the tool, step by step, as it is
+/// measured. For the same poses and velocities, the forces are those of a Simulation to the last bit. Allocates in
+/// the constructor only.
+class LiveLoop {
+ public:
+  /// `parts`: hand, motion and device are not used. `has_virtual_mass`: forces move the tool (`move`); false: the
+  /// tool follows the measured handle. Throws the exceptions of ForceAlgorithm::prepare.
+  LiveLoop(SimulationConfig config, SimulationParts parts, bool has_virtual_mass);
+  // Not copyable, because the algorithm has pointers to members.
+  LiveLoop(const LiveLoop&) = delete;
+  LiveLoop& operator=(const LiveLoop&) = delete;
+
+  /// Returns to step 0.
+  void reset() noexcept;
+  /// Takes a step: computes the force on `tool`. `input`: force that drives the virtual mass together with the
+  /// rendered force; 0 without a virtual mass [N]. Returns false if a value is not finite or exceeds its bound, or if a
+  /// module failed (fault()).
+  bool render(const ToolState& tool, const Vec3& input) noexcept;
+  /// Moves the tool of the last `render` over one step by the scenario's integrator, under `input` and `gain` times
+  /// the rendered force. The orientation is held.
+  void move(ToolState& tool, double gain) noexcept;
+
+  const RenderedForce& force() const { return force_; }
+  std::size_t contacts() const { return contacts_.size(); }
+  /// Returns the moment of the last rendered contact forces about the tip centre [N m].
+  Vec3 moment(const ToolState& tool) const noexcept;
+  /// Returns the failure that a module reported, or null.
+  const char* fault() const noexcept { return fault_; }
+  /// Returns the quantity that exceeded its bound in the last `render`, or null.
+  const char* out_of_bounds() const noexcept { return out_of_bounds_; }
+  /// Returns the tool's angular velocity [rad/s] after a turn from `before` to `pose` in one step, as a Simulation
+  /// computes it; zero if nothing reads it. The poses must have their roll, also for a round tool.
+  Vec3 angular_velocity(const Vec3& last, const ToolPose& before, const ToolPose& pose) const noexcept;
+  /// Returns true if the pose of the tool includes its roll.
+  bool tool_rolls() const { return tool_rolls_; }
+  bool needs_angular_velocity() const { return angular_velocity_cutoff_.has_value(); }
+  double dt() const { return config_.dt; }
+
+ private:
+  class ForceWithinStep;
+
+  SimulationConfig config_;
+  SimulationParts parts_;
+  ContactBuffer contacts_;
+  RenderedForce force_, within_step_;
+  std::uint64_t row_ = 0;       ///< of the current step, for source and algorithm
+  std::uint64_t next_row_ = 0;  ///< of the next step
+  Vec3 input_ = Vec3::Zero();   ///< of the current step [N]
+  bool tool_rolls_;
+  std::optional<double> angular_velocity_cutoff_;
+  const char* fault_ = nullptr;
+  const char* out_of_bounds_ = nullptr;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,143 @@
+// run --replay and compare --replay: the log of a haptic loop goes through the function that rendered it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "device_model/live/hapbench_renderer.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+namespace hapbench::replay_test {
+namespace {
+
+using test::hapbench;
+using test::lines_of;
+using test::read_file;
+using test::write_plainly;
+
+const char* const kScene = R"({
+  "time": {"step_s": 0.001, "steps": 100},
+  "environment": {"type": "block_with_hole", "size_m": [0.004, 0.004, 0.004], "hole_diameter_m": 0.0015,
+                  "hole_depth_m": 0.003, "grid_m": 0.0002},
+  "initial": {"position_m": [0, 0, 0.002]},
+  "tool": {"diameter_m": 0.001, "length_m": 0.01, "tip": "round"},
+  "device": {"type": "impedance", "handle_mass_kg": 0.05, "velocity_filter": {"type": "low_pass", "cutoff_Hz": 100}},
+  "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 2000, "damping_ratio": 0.2}
+})";
+
+/// Into the hole, round its wall, with a gap of 50 ms and a fault, out and in again.
+std::string recorded(const std::string& scenario) {
+  HapbenchMount mount = HAPBENCH_MOUNT_INIT;
+  mount.max_force = 5.0;
+  mount.ramp_s = 0.05;
+  Renderer renderer(scenario, mount);
+  std::string log = renderer.log_header();
+  for (int i = 0; i < 3000; ++i) {
+    const double t = 0.001 * i;
+    HapbenchInput input{};
+    input.time_ns = 5'000'000u + static_cast<std::uint64_t>(i) * 1'000'003u + (i > 1000 ? 50'000'000u : 0u);
+    input.handle = {{0.0004 * std::cos(5 * t), 0.0004 * std::sin(5 * t), 0.002 * std::cos(3 * t) - 0.0005},
+                    {std::cos(0.05 * t), std::sin(0.05 * t), 0, 0}};
+    if (i == 2000) input.handle.position[0] = std::nan("");
+    if (i == 2100) input.has = HAPBENCH_REARM;
+    log += Renderer::log_row(input, renderer.step(input));
+  }
+  return log;
+}
+
+class Replay : public ::testing::Test {
+ protected:
+  Replay() {
+    write_plainly(folder / "scene.json", kScene);
+    write_plainly(folder / "loop.csv", recorded(scene));
+  }
+
+  test::TemporaryDirectory folder;
+  const std::string scene = folder / "scene.json", log = folder / "loop.csv", out = folder / "out";
+};
+
+TEST_F(Replay, HasTheRecordedBitsInBothBuilds) {
+  const auto run = hapbench({"run", scene, "--replay", log, "--out", out, "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json json = run.json();
+  EXPECT_EQ(json["calls"], 3000);
+  EXPECT_EQ(json["equal_calls"], 3000);
+  EXPECT_EQ(json["is_recorded_scenario"], true);
+  EXPECT_GT(json["loop_force_max_N"], 0.1);
+  EXPECT_GT(json["stale_calls"], 0);
+  EXPECT_EQ(json["fault_calls"], 100);
+  EXPECT_EQ(read_file(folder / "out/replay.csv"), read_file(log));
+  // The reference build without SIMD.
+  const std::string scalar = folder / "scalar";
+  const auto other =
+      test::run_program(test::hapbench_scalar_program(), {"run", scene, "--replay", log, "--out", scalar, "--quiet"});
+  ASSERT_EQ(other.status, 0) << other.err;
+  EXPECT_EQ(read_file(folder / "scalar/replay.csv"), read_file(log));
+}
+
+TEST_F(Replay, ComparesAnotherScenarioAndOtherLaws) {
+  const auto run = hapbench({"run", scene, "--replay", log, "--out", out, "--set", "rendering.stiffness_N_per_m=1000"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("recorded with another scenario"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("calls have other outputs than recorded"), std::string::npos) << run.out;
+  const auto laws =
+      hapbench({"compare", scene, "--replay", log, "--out", out, "--json", "--algorithms", "shaped_stiffness,mean"});
+  ASSERT_EQ(laws.status, 0) << laws.err;
+  const Json rows = laws.json();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0]["equal_calls"], 3000);
+  EXPECT_LT(rows[1]["equal_calls"], 3000);
+  EXPECT_GT(rows[1]["loop_force_difference_max_N"], 0.01);
+  EXPECT_EQ(lines_of(read_file(folder / "out/replay_comparison.csv")).size(), 3u);
+}
+
+TEST_F(Replay, ReportsALogThatWasEdited) {
+  std::vector<std::string> lines = lines_of(read_file(log));
+  auto cells = test::cells_of(lines[902]);  // call 900
+  ASSERT_EQ(cells[0], "900");
+  cells[5] = "0.001";  // the height of the handle
+  std::string row;
+  for (const std::string& cell : cells) row += (row.empty() ? "" : ",") + cell;
+  lines[902] = row;
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  write_plainly(folder / "loop.csv", text);
+  const auto run = hapbench({"run", scene, "--replay", log, "--out", out});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("call 900 has other outputs than recorded"), std::string::npos) << run.err;
+}
+
+TEST_F(Replay, RefusesWhatHasNoMeaning) {
+  const auto refused = [](const std::vector<std::string>& arguments, const char* words) {
+    const auto run = hapbench(arguments);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+  };
+  refused({"run", scene, scene, "--replay", log, "--out", out}, "--replay: got 2 scenarios");
+  refused({"run", scene, "--replay", log, "--latency", "--out", out}, "--replay: got it together with");
+  refused({"run", scene, "--replay", folder / "none.csv", "--out", out}, "none.csv");
+  refused({"run", scene, "--replay", scene, "--out", out}, "is not a log of a haptic loop");
+  refused({"compare", scene, "--replay", log, "--errors", "--out", out}, "--replay: got it together with");
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(Replay, RepeatsTheExampleLoop) {
+  const std::filesystem::path example = std::filesystem::path(HAPBENCH_BUILD_DIR) / "bin" / "own_loop";
+  if (!std::filesystem::exists(example)) GTEST_SKIP() << "the shared library is not in this build";
+  const auto run = test::run_program(example, {"drag_molar", "0.8", log});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("missed deadlines"), std::string::npos) << run.out;
+  EXPECT_EQ(lines_of(read_file(log)).size(), 802u);
+  const auto replay =
+      hapbench({"run", "drag_molar", "--replay", log, "--set", "time.step_s=0.001", "--out", out, "--json"});
+  ASSERT_EQ(replay.status, 0) << replay.err;
+  EXPECT_EQ(replay.json()["equal_calls"], 800);
+  EXPECT_EQ(replay.json()["is_recorded_scenario"], true);
+}
+
+}  // namespace
+}  // namespace hapbench::replay_test
