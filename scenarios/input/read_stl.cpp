@@ -111,7 +111,8 @@ bool is_text(std::string_view text) {
   constexpr std::size_t kShown = 40;
   const std::string_view first = LineReader(text).next().value_or("");
   const auto is_printable = [](unsigned char c) { return c >= 0x20 && c < 0x7f; };
-  if (!first.empty() && std::ranges::all_of(first, is_printable) && first.size() < text.size())
+  if (!first.empty() && std::ranges::all_of(first, is_printable) &&
+      (first.size() < text.size() || text.size() >= kHeader))
     fail_in_line(
         file, 1,
         fmt::format("is not an STL file: it begins with {}{}", quoted_token(first.substr(0, kShown)), kAllowed));
