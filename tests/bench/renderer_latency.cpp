@@ -28,7 +28,7 @@ struct Scene {
 
 const std::vector<Scene> kScenes = {
     {"tooth", "drag_molar", {}},
-    {"hole", "press_into_hole", {"rendering.reduction=null"}},
+    {"hole", "press_into_hole", {"rendering.reduction=null", "environment.grid_m=4.3e-5"}},
     {"slot", "matching_slot", {}},
     {"free air", "drag_molar", {}, 0.01},
 };
