@@ -81,7 +81,7 @@ std::string first_ranks_text(const Ranking& league) {
 
 /// Summarizes which algorithms are first, and whether the seeds give a spread.
 std::string verdict(const Ranking& league, const Layout& layout) {
-  const std::string text = layout.wrapped(first_ranks_text(league), 0);
+  std::string text = layout.wrapped(first_ranks_text(league), 0);
   if (!is_ranked(league)) return text;
   if (league.seeds < 2) return text + "one seed: the spread is unknown; --seeds K estimates it\n";
   std::vector<std::string> alike;

@@ -38,7 +38,7 @@ std::string short_summary(const std::string& text, const Layout& layout) {
     const bool is_last = dot + 1 == text.size();
     if (is_last || (text[dot + 1] == ' ' && !text.substr(0, dot).ends_with("Fig"))) end = dot;
   }
-  const std::string sentence = text.substr(0, end);
+  std::string sentence = text.substr(0, end);
   const std::size_t room = std::max<std::size_t>(layout.width(), kColumn + 10) - kColumn;
   if (sentence.size() <= room) return sentence;
   return sentence.substr(0, sentence.rfind(' ', room - 4)) + " ...";
