@@ -351,6 +351,9 @@ TEST_F(MeshFile, WarnsAboutWhatItsReaderIgnores) {
             ": bytes after the last entry that the header declares, which were ignored: 4");
   EXPECT_EQ(warning_of("long.stl", test::binary_stl_text(cube) + "more"),
             ": bytes after the 12 triangles that the header declares, which were ignored: 4");
+  EXPECT_EQ(warning_of("more.stl", test::binary_stl_text(cube) + std::string(100, '\0')),
+            ": bytes after the 12 triangles that the header declares, which were ignored: 100, the size of 2 more "
+            "triangles; is the header wrong?");
 }
 
 TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
