@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "results/observe/contact_forces.hpp"
+#include "scenarios/run/linear_contact.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "sim/core/types.hpp"
@@ -25,6 +26,7 @@ struct RunObservations {
   double longest_step = 0.0;         ///< longest displacement of the tip in a step, as defined at
                                      ///< OutcomeObserver::longest_step() [m]
   Vec3 last_force = Vec3::Zero();    ///< rendered force in the last step [N]
+  std::optional<ContactState> last_contact;  ///< at the last step in contact of any trial
   struct Quarter {
     std::uint64_t rows = 0;
     bool always_in_contact = true;                     ///< true if every step of the quarter is in contact

@@ -156,7 +156,7 @@ bool contact_lasts(const SettledState& settled, bool is_moved) {
 void add_linear_limit(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   if (limit.theory || limit.theory_has_none || question.search.smallest || !limit.end.value) return;
   const Scenario scenario = question.at(*limit.end.value).scenario;
-  if (scenario.rendering.late && scenario.rendering.late->any()) {
+  if (has_multi_rate_contacts(scenario)) {
     limit.no_linear = "the contacts are not found in every step";
     return;
   }

@@ -5,6 +5,7 @@
 
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/analysis/stability/slow_bounces.hpp"
+#include "scenarios/run/linear_contact.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/geometry/point_shell.hpp"
@@ -13,12 +14,6 @@
 
 /// Observes the state at the end of a run, from which the run is judged.
 namespace hapbench {
-
-/// A state of a run in contact, from which linear_contact() searches the equilibrium.
-struct ContactState {
-  ToolPose pose;      ///< of the tool; true position of the handle if the handle moves the tool
-  double time = 0.0;  ///< [s]
-};
 
 /// The settled state of a run: `contacts`, `lambda_max`, `share_away` and the two changes are over the steps of its
 /// last quarter. The last quarter of a run that comes to rest early is the quarter in which it came to rest.

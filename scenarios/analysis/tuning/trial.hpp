@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "algorithms/rendering_config.hpp"
+#include "device_model/theory/linear_loops.hpp"
 #include "scenarios/analysis/convergence/metric_errors.hpp"
 
 /// A trial of `tune`: a setting with a stiffness K, and whether it is feasible.
@@ -46,6 +48,13 @@ struct TuneFailure {
   std::size_t variant_index = 0;  ///< 0: the scene itself
 };
 
+/// The contact of a run, linearised at the equilibrium of the tool. Empty if the tool ended without contact, or without
+/// a linear loop.
+struct ContactOfTrial {
+  std::optional<LinearContact> linear = {};
+  RenderingConfig rendering = {};  ///< stiffness and damping of `linear`
+};
+
 /// A setting with a stiffness, evaluated for one law. G: the required gain margin.
 struct TuneTrial {
   TuneSetting setting = {};
@@ -76,6 +85,7 @@ struct TuneTrial {
   std::optional<TuneFailure> failure = {};
   /// Largest eigenvalue of the mean stiffness tensor S at the end of the scene's run, in units of K.
   double lambda_max = 0.0;
+  ContactOfTrial contact = {};  ///< at the end of the scene's run at K
 
   bool feasible() const { return binding.empty(); }
   /// Returns the largest rendered stiffness [N/m].

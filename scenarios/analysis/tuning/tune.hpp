@@ -43,7 +43,7 @@ struct TunedLaw {
 ///   diagnosis.hpp).
 /// - the run of the scene itself renders a force.
 /// - every variant is settled at G K.
-/// - the loop in contact has stable eigenvalues from K to G K (contact_step_matrices; with every hand of
+/// - the loop in contact has stable eigenvalues from K to G K (contact_loops(); with every hand of
 ///   typical_hands() if a hand holds an impedance device).
 ///
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified

@@ -1,10 +1,13 @@
-#include "scenarios/analysis/stability/linear_contact.hpp"
+#include "scenarios/run/linear_contact.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "algorithms/stages/damping_and_limits.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/scene_loop.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -198,12 +201,11 @@ class RestingTool {
   MeasuredForce measured_;
 };
 
-}  // namespace
-
-std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
-                                            const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
-  const Scenario linear = without_nonlinear_parts(scenario.scenario());
-  RestingTool tool(linear, scenario.files(), shell, near);
+/// linear_contact() of a scenario whose files are known to be usable.
+std::optional<ContactAtRest> contact_at_rest(const Scenario& scenario, const NamedFiles& files,
+                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
+  const Scenario linear = without_nonlinear_parts(scenario);
+  RestingTool tool(linear, files, shell, near);
   if (!tool.touches()) return std::nullopt;
   const bool is_equilibrium = tool.find_equilibrium();
   LinearContact contact = tool.linearised();
@@ -212,6 +214,61 @@ std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
   if (std::holds_alternative<MassSpringDamperHandFields>(linear.hand) && handle_moves_tool(linear.device))
     contact.hand = {};
   return ContactAtRest{contact, is_equilibrium};
+}
+
+}  // namespace
+
+std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
+                                            const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
+  return contact_at_rest(scenario.scenario(), scenario.files(), shell, near);
+}
+
+LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to) {
+  const double K = to.stiffness / from.stiffness,
+               B = normal_damping(from) > 0.0 ? normal_damping(to) / normal_damping(from) : 1.0;
+  LinearForce& rendered = contact.rendered;
+  rendered = {
+      K * rendered.stiffness, B * rendered.damping, {K * rendered.assumed.stiffness, B * rendered.assumed.damping}};
+  return contact;
+}
+
+std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
+                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
+  constexpr double kStep = 1.1, kMax = 2.0, kMin = 1e-9;  // of the search, in units of the scenario's K
+  const double K = scenario.scenario().rendering.stiffness;
+  if (!(K > 0.0) || !has_linear_loop(scenario.scenario())) return std::nullopt;
+  const auto at_K = contact_at_rest(scenario.scenario(), scenario.files(), shell, near);
+  if (!at_K) return std::nullopt;
+  LinearContact known =
+      at_K->contact;  // the last contact that was found, with the stiffness and damping of `rendering`
+  RenderingConfig rendering = scenario.scenario().rendering;
+  bool has_equilibrium = at_K->is_equilibrium;
+  Scenario at = scenario.scenario();
+  const auto is_stable = [&](double stiffness) {
+    at.rendering.stiffness = stiffness;
+    const auto found = has_equilibrium ? contact_at_rest(at, scenario.files(), shell, near) : std::nullopt;
+    has_equilibrium = found && found->is_equilibrium;
+    known = has_equilibrium ? found->contact : scaled(known, rendering, at.rendering);
+    rendering = at.rendering;
+    const std::vector<Eigen::MatrixXd> loop = contact_loop(at, known);
+    return !loop.empty() && is_stable_loop(loop);
+  };
+  // Walk from K towards the limit: up while the loop is stable, otherwise down to a stable stiffness.
+  const bool is_stable_at_K = is_stable(K);
+  double last = K, next = K;
+  do {
+    last = next;
+    next = is_stable_at_K ? std::min(last * kStep, kMax * K) : last / kStep;
+    if (next == last) return std::numeric_limits<double>::infinity();
+    if (next < kMin * K) return 0.0;
+  } while (is_stable(next) == is_stable_at_K);
+  // Bisect between the two.
+  double stable = std::min(last, next), unstable = std::max(last, next);
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (stable + unstable);
+    (is_stable(middle) ? stable : unstable) = middle;
+  }
+  return stable;
 }
 
 }  // namespace hapbench
