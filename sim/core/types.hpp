@@ -73,7 +73,8 @@ struct ProfilePoint {
 enum class Skips { on, off };
 
 /// Allowed values of a number that the user sets. Both bounds are allowed unless `above_min` is set. The unit is
-/// printed in messages: an SI unit, "1" for a dimensionless number, or empty if the unit is that of another number.
+/// printed in messages: an SI unit, "1" for a dimensionless number, or empty if the number has the same unit as another
+/// number.
 struct NumberRange {
   double min;
   double max;

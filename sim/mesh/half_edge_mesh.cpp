@@ -217,7 +217,7 @@ class MeshParts {
   std::vector<std::uint32_t> part_;  ///< part number of each triangle
   std::vector<bool> reversed_;
   std::vector<bool> closed_;   ///< for each part: true if every edge has two triangles
-  std::vector<Shape> shapes_;  ///< of the parts
+  std::vector<Shape> shapes_;  ///< properties of the parts
 };
 
 /// Maximum number of triangles at a vertex, larger than in any sensible mesh. The time to find an edge at a vertex is
