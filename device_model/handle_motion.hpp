@@ -80,9 +80,9 @@ class HandleMotionBase {
 ///   m x'' = f - b x' - c sign(x') + f_hand
 ///
 /// with m = handle_mass, b = viscous, c = coulomb of the device, and the force f of the motors. Coulomb friction is
-/// exact: a closed form gives the instant at which the handle stops. The handle then sticks as long as the sum of
-/// the other forces is at most c, and otherwise starts to move in their direction. A step of T seconds has at most
-/// 2 + w T / pi stops, where w is the angular frequency of the handle on the hand's spring.
+/// exact: a closed form gives the instant at which the handle stops. The handle then sticks as long as the sum of the
+/// other forces is at most c, and otherwise starts to move in the direction of this sum. A step of T seconds has at
+/// most 2 + w T / pi stops, where w is the angular frequency of the handle on the hand's spring.
 class HandleMotion : public HandleMotionBase {
  public:
   HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
@@ -163,7 +163,7 @@ class ElasticMotion : public HandleMotionBase {
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
-  enum : Eigen::Index { kMotor, kMotorSpeed, kHandle, kHandleSpeed, kMotorForce, kHandForce };  ///< of State
+  enum : Eigen::Index { kMotor, kMotorSpeed, kHandle, kHandleSpeed, kMotorForce, kHandForce };  ///< indices of State
 
   /// State of one axis.
   struct Axis {
