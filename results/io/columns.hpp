@@ -100,11 +100,12 @@ struct Metric {
   Cell value;           ///< a count or a number; empty if it does not exist (such as a ratio without contact)
   Better better = Better::none;
   double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance; see `within`
-  bool bounded = false;                   ///< `within` has set a tolerance
-  /// True for the state at a fixed time, and for sums and means over a fixed time. False for extremes, percentiles and
-  /// counts, and for metrics that depend on when contacts begin or end: these do not vary smoothly with the time step.
+  bool bounded = false;                   ///< true if `within` has set a tolerance
+  /// True if the metric is the state at a fixed time, or a sum or mean over a fixed time. False if it is an extreme, a
+  /// percentile or a count, or if it depends on when contacts begin or end. Such metrics do not vary smoothly with the
+  /// time step.
   bool smooth = false;
-  bool either_sign = false;  ///< the value can be negative
+  bool either_sign = false;  ///< true if the value can be negative
   /// If only every n-th step counts (TimeFields::stride): estimated range of the value over all n choices of the first
   /// counted step [unit of the value]. 0 if every step counts, and without a value.
   double sampling_spread = 0.0;

@@ -23,7 +23,7 @@ enum class Outcome {
   diverges          ///< a value was not finite or exceeded its bound
 };
 
-/// Returns the outcome that follows from the reason why stepping ended, without a look at the recorded rows.
+/// Returns the outcome that follows from the reason why stepping ended, without reading the recorded rows.
 Outcome outcome_of(Ending ending) noexcept;
 
 /// Name and description of an outcome.
