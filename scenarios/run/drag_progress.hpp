@@ -34,12 +34,12 @@ class DragProgress {
   /// Progress of target point and tool along the path at one time.
   struct Sample {
     double time = 0.0, target = 0.0, tool = 0.0;
-    Vec3 position = Vec3::Zero();  ///< of the tool [m]
+    Vec3 position = Vec3::Zero();  ///< position of the tool [m]
   };
   static constexpr std::size_t kSamples = 4;
   const DragHand& hand_;
   double width_, half_path_;  ///< width of the tool; half the length of the target's path [m]
-  /// lag of the tool behind the target point: now; at half of the path [m]
+  /// Lag of the tool behind the target point [m]: in the last step, and at half of the path.
   double lag_ = 0.0, lag_at_half_path_ = 0.0;
   Sample now_;
   /// Ring buffer of samples, taken whenever the target point has advanced by a quarter of the tool's width.

@@ -77,7 +77,7 @@ const std::vector<TableQuantity> kTraceColumns = {{.alternatives = {{"time_s"}}}
 }  // namespace
 
 Stroke parse_stroke(std::string_view text, const std::filesystem::path& file, std::vector<std::string>* notes) {
-  // Parse the table. The header says whether the pose has an axis or a quaternion, and whether there is a force.
+  // Parse the table. The header shows whether the pose has an axis or a quaternion, and whether there is a force.
   const NumberTable table = parse_number_table(text, file, kStrokeColumns, kMaxSamples);
   if (notes != nullptr) *notes = table.notes;
   EntryFaults faults(file, table, "sample");

@@ -146,7 +146,7 @@ void add_cause(const LimitQuestion& question, FieldLimit& limit) {
 }
 
 /// Returns true if the contact of a run lasts in its last quarter and has a linear loop: the same points touch. While a
-/// script or a hand moves the tool, other points may touch, as long as the stiff directions stay.
+/// script or a hand moves the tool, other points may touch, as long as the stiff directions do not change.
 bool contact_lasts(const SettledState& settled, bool is_moved) {
   return settled.last_contact && settled.share_away == 0.0 && !settled.directions_change &&
          (is_moved || !settled.contacts_change);

@@ -31,7 +31,7 @@ struct IntervalEnd {
 /// The one value of a limit that a user may render; see quoted_limit().
 struct QuotedLimit {
   std::optional<double> value = {};
-  std::string reason = {};  ///< why it is this value, or why there is none
+  std::string reason = {};  ///< why the limit has this value, or why no value can be quoted
 };
 
 /// The result of a search for a stability limit.
@@ -50,7 +50,8 @@ struct FieldLimit {
   /// with the largest stable value in which contact lasts. Dry friction and encoder are ignored; they and loss of
   /// contact can raise the simulated limit above it. Infinite if the whole range is stable.
   std::optional<double> linear;
-  std::string no_linear = {};  ///< why there is neither `theory` nor `linear`; empty if there is, or with `smallest`
+  std::string no_linear = {};  ///< why neither `theory` nor `linear` has a value; empty if one of them has a value, or
+                               ///< with `smallest`
   /// Errors of the bounded metrics at the limit: their largest change when step and point spacing are halved. The
   /// bounds hold with these errors added.
   MetricValues metric_errors = {};
@@ -59,7 +60,8 @@ struct FieldLimit {
   std::optional<double> worst_hand;  ///< WallLimits::worst_hand [N/m]
   std::string no_theory;             ///< WallLimits::no_theory
   SettledState settled;              ///< settled state of the run at the limit
-  std::string unstable_part = {};    ///< unstable_without_wall() at the suspect of `unstable_alone`
+  std::string unstable_part = {};    ///< name of the part that is unstable without contact, such as "hand and device";
+                                     ///< empty unless `unstable_alone`
   std::optional<JudgedValue> own;    ///< the run at the scenario's value; empty if the value is outside of the range
   /// True if the loop of hand and device is unstable without contact (unstable_without_contact()) at the nearest
   /// value beyond the limit, or at the smallest evaluated value if there is no limit.

@@ -217,7 +217,7 @@ StableInterval find_verified_interval(const IntervalSearchOptions& options, Eval
     if (!failing) return interval;
     if (*failing > first) continue;
     // The unstable sample lies below the interval: the interval is shorter than kNearLimit. Search above the interval,
-    // except if the interval has the current value.
+    // except if the interval contains the current value.
     scattered = true;
     const std::optional<double> current = options.current_parameter();
     if (current && first <= *current && *current <= *interval.stable) return {.scattered = true};

@@ -65,7 +65,7 @@ std::optional<TuneTrial> TuneSearch::first_feasible() {
 
 /// Finds the best trial of the initial settings; if there is none, a feasible trial by finer searches.
 void TuneSearch::search_settings() {
-  constexpr std::size_t kStarts = 3;  // descents, from different settings
+  constexpr std::size_t kStarts = 3;  // number of descents, which start from different settings
   // A trial that this search knows already may be the only feasible trial.
   best_.reset();
   if (const TuneTrial* known = trials_.stiffest_feasible()) improve(TuneTrial(*known).setting);
@@ -123,7 +123,8 @@ bool TuneSearch::improve(const TuneSetting& setting) {
   const StableInterval interval = find_stable_interval(options, scan, holds, false);
   if (!interval.stable) return false;
   best_ = trials_.trial_at(setting, options.value_at(*interval.stable));
-  // The stiffness of a known trial may be rounded differently here.
+  // If rounding makes this stiffness differ from the stiffness of a known feasible trial, use the largest feasible
+  // stiffness.
   if (!best_->feasible()) best_ = trials_.trial_at(setting, trials_.feasible_stiffnesses(setting).back());
   if (interval.beyond) {
     beyond_ = trials_.trial_at(setting, options.value_at(*interval.beyond));
