@@ -85,7 +85,7 @@ std::vector<std::string> algorithm_names();
 /// Returns the documentation of the optional stages of the penalty pipeline.
 std::span<const ModelInfo* const> stages();
 
-/// Returns the entry of the algorithm with this name; null if there is none.
+/// Returns the entry of the algorithm with this name; null if no algorithm has this name.
 const AlgorithmEntry* find_algorithm(std::string_view name);
 
 /// Returns a copy of the entry that owns copies of all its texts except `info->parameters`. Throws

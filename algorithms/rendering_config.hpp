@@ -92,7 +92,7 @@ struct RenderingConfig {
 
   bool has_friction() const { return mu_s != 0.0 || mu_f != 0.0 || dry_friction; }
 
-  /// Whether to skip work that changes nothing: stages without contacts, the reduction of a single contact,
+  /// Selects whether work that changes nothing is skipped: stages without contacts, the reduction of a single contact,
   /// friction with coefficients of zero. The contact search and the observers of a run use the same value.
   Skips skips = Skips::on;
 };

@@ -48,7 +48,7 @@ struct FreeMotion {
 /// whether the motion oscillates or creeps. Takes about 0.1 us.
 FreeMotion free_motion(const MotionLaw& law, double time) noexcept;
 
-/// Returns the first time after the start at which the velocity is zero [s]; infinity if there is none. `v`:
+/// Returns the first time after the start at which the velocity is zero [s]; infinity if there is no such time. `v`:
 /// initial velocity [m/s]; `g`: constant acceleration [m/s^2], force / mass. In closed form.
 double time_to_stop(const MotionLaw& law, double v, double g) noexcept;
 

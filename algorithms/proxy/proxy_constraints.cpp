@@ -269,10 +269,10 @@ double distance_to_second(const PointShell& shell, std::size_t from) {
   return std::sqrt(second2);
 }
 
-/// Returns the typical distance from a shell point to its neighbours [m]; 0 for fewer than three points. It is
-/// the median, over a sample of points, of the distance to the second nearest position, which is the spacing of
-/// a square lattice and of a line. Points at the same position count as one. O(size), about a hundred distances
-/// for each point.
+/// Returns the typical distance from a shell point to its neighbours [m]; 0 for fewer than three points. It is the
+/// median, over a sample of points, of the distance to the second nearest position, which is the spacing of a square
+/// lattice and of a line. Points at the same position count as one point. O(size), about a hundred distances for each
+/// point.
 double typical_spacing(const PointShell& shell) {
   if (shell.size() < 3) return 0.0;
   const std::size_t samples = std::min(kSpacingSamples, shell.size());

@@ -73,7 +73,7 @@ struct SampledLoop {
 
   double moving_mass() const { return device.handle_mass + hand.mass; }   ///< mass of handle and hand [kg]
   double total_damping() const { return device.viscous + hand.damping; }  ///< damping of handle and hand [N s/m]
-  /// Returns a text that names the properties of the device that are not linear; null if there are none.
+  /// Returns a text that names the properties of the device that are not linear; null if the device is linear.
   const char* nonlinearity() const;
 
   /// Returns the matrix that maps the state at sample k to the state at sample k + 1. The state is

@@ -154,9 +154,9 @@ std::optional<Value> if_any(bool exists, Value value) {
 /// The metrics of a run or of one section, in the order of summary.json.
 using MetricList = std::vector<Metric>;
 
-/// Returns the metric with this name; null if there is none.
+/// Returns the metric with this name; null if no metric has this name.
 const Metric* find_metric(const MetricList& list, std::string_view name);
-/// Returns the value of the metric with this name; an empty cell if there is none.
+/// Returns the value of the metric with this name; an empty cell if no metric has this name.
 Cell value_of(const MetricList& list, std::string_view name);
 /// Returns a count or a number as a double; empty for all other cells.
 std::optional<double> number_of(const Cell& value);

@@ -178,8 +178,8 @@ class PoseSamples {
 /// each `every`-th step. Does not allocate during the run.
 class InsideObserver final : public Observer {
  public:
-  /// `metrics`: if not null, must observe before this observer; it knows which steps are in settled contact. `every`:
-  /// see the class; 0: no search during the run. `steps`: number of steps of the run.
+  /// `metrics`: if not null, must observe before this observer; it determines which steps are in settled contact.
+  /// `every`: see the class; 0: no search during the run. `steps`: number of steps of the run.
   InsideObserver(std::shared_ptr<const ToolShape> tool, std::shared_ptr<const Solid> solid,
                  const MetricsObserver* metrics = nullptr, std::uint64_t every = 0, std::uint64_t steps = 0);
 

@@ -40,7 +40,8 @@ class ReductionJumps {
 
   /// Number of steps whose set of kept points differs from the set of the previous step.
   std::uint64_t changes() const noexcept { return changes_; }
-  /// Largest force step [N] among the steps in settled contact that changes() counts; nothing if there are none.
+  /// Largest force step [N] among the steps in settled contact that changes() counts; nothing if changes() counts no
+  /// such step.
   std::optional<double> step_max() const noexcept {
     return step_max_squared_ ? std::optional(std::sqrt(*step_max_squared_)) : std::nullopt;
   }
@@ -136,7 +137,8 @@ class MetricsObserver final : public MetricObserver {
   std::optional<double> friction_limit_;  ///< [N]; empty if friction cannot become unstable
   std::uint64_t rows_beyond_friction_ = 0;
   std::optional<std::uint64_t> first_beyond_friction_;  ///< number, within its trial, of the first step in which
-                                                        ///< |f_spring| exceeds friction_limit_; empty if there is none
+                                                        ///< |f_spring| exceeds friction_limit_; empty if |f_spring|
+                                                        ///< never exceeds it
   ContactForces contact_forces_;
   std::optional<ReductionJumps> reduction_;  ///< empty without a reduction
 };

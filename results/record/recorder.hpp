@@ -43,7 +43,7 @@ std::span<const TrajectoryGroup> trajectory_groups();
 /// Makes the lines of a table from the steps of a run.
 struct RowSource {
   std::vector<Column> columns;
-  /// Writes the lines of one step, if it has any. Allocates nothing.
+  /// Writes the lines of one step; writes nothing if the step has no lines. Allocates nothing.
   std::function<void(const StepRecord& record, TableWriter& table)> write;
   /// See the functions of Observer with the same names.
   bool wants_ratio = false, wants_roll = false, wants_springs = false, wants_found = false;

@@ -36,7 +36,7 @@ struct OutcomeInfo {
 /// Returns all outcomes, in the order of the enumeration.
 std::span<const OutcomeInfo> outcome_infos() noexcept;
 std::string_view outcome_name(Outcome outcome) noexcept;
-/// Returns the outcome with this name; nothing if there is none.
+/// Returns the outcome with this name; nothing if no outcome has this name.
 std::optional<Outcome> outcome_named(std::string_view name) noexcept;
 
 }  // namespace hapbench

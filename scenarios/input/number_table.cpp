@@ -251,7 +251,8 @@ std::vector<std::string_view> missing_names(const std::vector<std::string_view>&
   return missing;
 }
 
-/// Chooses the alternative of a quantity that the file has. Appends the missing names to `missing` if there is none.
+/// Chooses the alternative of a quantity that the file has. Appends the missing names to `missing` if the file has no
+/// alternative.
 std::optional<std::size_t> chosen_alternative(const TableQuantity& quantity, const CsvReader& csv,
                                               const std::filesystem::path& file, std::vector<std::string>& missing) {
   std::optional<std::size_t> chosen;

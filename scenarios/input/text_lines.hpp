@@ -97,7 +97,7 @@ class LineReader {
  private:
   std::string_view rest_;
   std::size_t line_ = 0;
-  const char* newline_;  ///< next LF; the end of the text if there is none
+  const char* newline_;  ///< next LF; the end of the text if there is no further LF
   bool ends_with_cr_;    ///< the first line ends with CR alone
   bool has_line_end_ = false;
 };

@@ -57,8 +57,8 @@ inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m
 /// if a step is too slow. Precondition: there is at least one run.
 std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
-/// Returns a table that compares the rendered force with the reference force, for the runs with a reference.
-/// Returns an empty text if there are none.
+/// Returns a table that compares the rendered force with the reference force, for the runs with a reference. Returns an
+/// empty text if no run has a reference.
 std::string fidelity_text(std::span<const Result> reports, const Layout& layout);
 
 /// Returns the warnings about the runs of one scenario, without the warnings that were printed before the runs. Equal

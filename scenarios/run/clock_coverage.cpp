@@ -59,7 +59,7 @@ bool is_unlikely_interval(double interval, const RunTimes& run) {
   return interval > kUnlikelyRatio * run.step || interval * kUnlikelyRatio < run.step;
 }
 
-/// Returns the unit that gives the stroke the duration of the run, or a likely rate; null if there is none.
+/// Returns the unit that gives the stroke the duration of the run, or a likely rate; null if no unit does.
 const ClockUnit* unit_of_stroke(Samples samples, const RunTimes& run) {
   const double interval = interval_of(samples), span = samples.back().time - samples.front().time;
   const auto fits = [&](const ClockUnit& unit, double factor) {
@@ -124,7 +124,7 @@ double median_interval(const ContactTrace& trace) {
   return *middle;
 }
 
-/// Returns the unit with which the trace covers much more of the run; null if there is none.
+/// Returns the unit with which the trace covers much more of the run; null if no unit does.
 const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                                const TraceCoverage& coverage) {
   for (const ClockUnit& unit : kClockUnits) {
@@ -147,7 +147,7 @@ const ClockUnit* unit_of_interval(double interval, double query) {
   return interval <= 0.0 || fits(1.0) || unit == std::end(kClockUnits) ? nullptr : unit;
 }
 
-/// Returns what is wrong with the trace's clock; empty if nothing is.
+/// Returns what is wrong with the trace's clock; empty if the clock is right.
 std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                           const TraceCoverage& coverage) {
   const double first = trace.times.front().time, last = trace.times.back().time;

@@ -19,9 +19,9 @@ class DragProgress {
   /// Adds a step at `time` [s] with the tool at `position` [m].
   void add(double time, const Vec3& position) noexcept;
 
-  /// Returns the interval in which the tool stood still until the end of the run; empty if it did not. The tool
-  /// stands still if, while the target point advances by one tool width, the tool advances by less than a tenth of
-  /// this width.
+  /// Returns the interval in which the tool stood still until the end of the run; empty if the tool moved at the end.
+  /// The tool stands still if, while the target point advances by one tool width, the tool advances by less than a
+  /// tenth of this width.
   std::optional<Stuck> stuck() const;
   double progress() const { return now_.tool; }           ///< largest progress of the tool along the path [m]
   double target_progress() const { return now_.target; }  ///< progress of the target point along the path [m]

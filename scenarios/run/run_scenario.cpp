@@ -249,7 +249,7 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutpu
                     RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell) {
   const Scenario& scenario = checked.scenario();
   const auto start = Clock::now();
-  // Build the point shell, unless the caller has one.
+  // Build the point shell, unless the caller gives a point shell.
   if (!shell) {
     const WaitNotice notice(scenario.name + ": computing the point shell", progress.is_shown);
     shell = make_shell(scenario, checked.files());

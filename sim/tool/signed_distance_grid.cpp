@@ -298,7 +298,7 @@ void SignedDistanceGrid::classify() {
   });
 }
 
-/// Determines whether the body is convex and, if it is, finds its largest flat faces.
+/// Determines whether the body is convex. Finds the largest flat faces of a convex body.
 void SignedDistanceGrid::find_faces(const ClosedSurface& surface) {
   const double tolerance = kConvexWithin * nodes_.spacing;
   // In a convex body, triangles with the same normal lie in the same plane.

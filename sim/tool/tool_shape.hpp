@@ -41,8 +41,8 @@ struct PackRange {
 /// the edge of the face above the surface too early.
 inline constexpr double kFlush = 0.9945;
 
-/// Shape of the tool: the geometry that contact search, depth models, the proxy and metrics need. Code outside of
-/// the shapes uses only this interface and knows neither a radius nor a type of tip.
+/// Shape of the tool: the geometry that contact search, depth models, the proxy and metrics need. Code outside of the
+/// shapes uses only this interface and does not depend on a radius or a type of tip.
 ///
 /// Poses and points are in the world frame, lengths in m. The position of a pose is the tip centre. A shape that is
 /// not a solid of revolution uses the pose's rotation().
@@ -85,8 +85,8 @@ class ToolShape {
   /// Precondition: margin >= 0.
   virtual void mark_near(const ToolPose& pose, double margin, const PointArrays& points,
                          std::span<const PackRange> ranges, std::uint8_t* marks) const noexcept = 0;
-  /// Returns a box that contains every point of `bounds` within `margin` [m] of the body. Ideally the box encloses
-  /// only the part of the body near `bounds`. Empty if no part is near.
+  /// Returns a box that contains every point of `bounds` within `margin` [m] of the body. Ideally the box encloses only
+  /// the part of the body near `bounds`. The box is empty if no part of the body is near `bounds`.
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
   /// Number and radius [m] of balls whose union contains the body and everything that `mark_near` marks with this
   /// margin. Used to bound the number of points that the body can touch (max_points_in, grid_index.hpp); many

@@ -152,7 +152,7 @@ bool contact_lasts(const SettledState& settled, bool is_moved) {
          (is_moved || !settled.contacts_change);
 }
 
-/// Writes the linear limit of a tool on a surface, or the reason why there is none.
+/// Writes the linear limit of a tool on a surface, or the reason why there is no linear limit.
 void add_linear_limit(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   if (limit.theory || limit.theory_has_none || question.search.smallest || !limit.end.value) return;
   const Scenario scenario = question.at(*limit.end.value).scenario;

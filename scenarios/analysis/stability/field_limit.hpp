@@ -24,7 +24,7 @@ struct IntervalEnd {
   std::optional<double> value;        ///< outermost stable value; empty if no run is stable
   std::optional<JudgedValue> beyond;  ///< nearest unstable value beyond it; empty if the end of the range is stable
 
-  /// Returns |beyond - value|: the limit lies between the two. Empty if one of them is empty.
+  /// Returns |beyond - value|: the limit lies between `value` and `beyond`. Returns nothing if one of them is empty.
   std::optional<double> tolerance() const;
 };
 
@@ -37,7 +37,7 @@ struct QuotedLimit {
 /// The result of a search for a stability limit.
 struct FieldLimit {
   QuotedLimit quoted = {};
-  IntervalEnd end;    ///< the limit: the end of the interval that the question asks for
+  IntervalEnd end;    ///< the limit: the end of the interval that the question selects
   IntervalEnd other;  ///< the other end of the interval
   /// Linear limit by the eigenvalues of a step, for springs that stay in contact. If the whole range is stable, it is
   /// infinite, or 0 in a search for the smallest stable value. Empty if the theory does not apply or no value is
@@ -84,9 +84,9 @@ struct FieldLimit {
 /// Finds a stability limit. Evaluates 17 equidistant parameters, the scenario's value and the middles of intervals that
 /// are stable in theory, then searches the interval: with find_stable_interval (`beside`), or with
 /// find_verified_interval if LimitQuestion::between. Makes 35 to 120 runs; each failed verification costs up to 56
-/// more. Bounds on metrics hold with the metrics' errors at the limit added, as in `tune`; if they do not, searches
-/// again with bounds that are tighter by these errors. Throws InputError, with the file, if the rule limits vibration
-/// and the sampling rate is 60 Hz or less.
+/// more. Bounds on metrics hold with the metrics' errors at the limit added, as in `tune`; if a metric with its error
+/// violates a bound, searches again with bounds that are tighter by these errors. Throws InputError, with the file, if
+/// the rule limits vibration and the sampling rate is 60 Hz or less.
 FieldLimit field_limit(const LimitQuestion& question);
 
 }  // namespace hapbench

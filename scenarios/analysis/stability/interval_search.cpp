@@ -71,7 +71,7 @@ class TransitionSearch {
     start_ = current && evaluate(*current) ? *current : 0.0;
   }
 
-  /// Returns the first group of stable parameters at or above the start; empty if there is none.
+  /// Returns the first group of stable parameters at or above the start; empty if there is no such group.
   std::optional<Transition> next_transition() const {
     const auto first = std::find_if(evaluated_.lower_bound(start_), evaluated_.end(), is_stable_entry);
     if (first == evaluated_.end()) return std::nullopt;

@@ -56,7 +56,7 @@ bool relax(const Trials& trials, const TuneTrial& trial, const std::string& name
   return true;
 }
 
-/// Returns the confirmed relaxation of all limits that a trial violates; empty if there is none.
+/// Returns the confirmed relaxation of all limits that a trial violates; empty if no relaxation is confirmed.
 std::optional<std::string> confirmed(Trials& trials, const TuneLimits& limits, const TuneTrial& trial,
                                      const MetricValues& violated, const IsFeasible& is_feasible) {
   for (const double factor : {1.0, 1.1, 1.5}) {

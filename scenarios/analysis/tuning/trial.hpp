@@ -35,8 +35,8 @@ std::string setting_text(const TuneSetting& setting);
 /// A failure of a trial other than a violated limit on metrics: a run or a linear loop that is not stable, or a force
 /// that is zero.
 struct TuneFailure {
-  std::string binding;  ///< as TuneTrial::binding
-  std::string why;      ///< as TuneTrial::why
+  std::string binding;  ///< the violated constraint, as in TuneTrial::binding
+  std::string why;      ///< the reason for the user, as in TuneTrial::why
   /// Name of the variant; empty for the scene itself.
   std::string variant = {};
   std::string family = {};  ///< variant set that contains the variant (kFamilies); empty for the scene itself

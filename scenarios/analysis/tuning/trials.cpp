@@ -132,7 +132,7 @@ TuneTrial& Trials::mutable_trial(const TuneSetting& setting, double stiffness) {
     trial.stiffness = stiffness;
   }
   if (requested_.insert(&trial).second) {
-    search_runs_ += trial.runs;  // as if this search had made the runs
+    search_runs_ += trial.runs;  // counted as if this search had made the runs
     judge(trial);
   }
   return trial;

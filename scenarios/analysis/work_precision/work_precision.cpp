@@ -172,7 +172,7 @@ class Motions {
 
   const Study& study_;
   std::map<StudyRun, SampledMotion> motions_;
-  std::vector<SampledMotion> shifted_;  ///< by problem
+  std::vector<SampledMotion> shifted_;  ///< shifted motions, by problem
 };
 
 /// Marks the Pareto front of a problem and its knee. Errors that are not resolved do not count: their true value is

@@ -22,7 +22,7 @@ namespace hapbench {
 /// The question of a work-precision study.
 struct WorkPrecisionQuestion {
   ScenarioText scenario;
-  std::vector<std::string> overrides = {};  ///< as in --set, for all runs
+  std::vector<std::string> overrides = {};  ///< overrides for all runs, as in --set
   /// Fields that vary. The axis `integrator.type` gives the curves of a problem, every other axis gives problems.
   std::vector<Axis> over = {};
   std::size_t levels = 4;   ///< number of time steps; the coarsest is the time step of the scenario
@@ -60,7 +60,7 @@ struct WorkPrecisionProblem {
   bool is_predictable = true;  ///< true if grown_shift is at most the requested error
   std::vector<WorkPrecisionSetting> settings = {};
 
-  /// Returns the cheapest setting with a position error of at most `max_error`; null if there is none.
+  /// Returns the cheapest setting with a position error of at most `max_error`; null if no setting has such an error.
   const WorkPrecisionSetting* cheapest_below(double max_error) const;
 };
 

@@ -107,7 +107,7 @@ void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceFiel
     acting = force_then;
     set = field.contact_set();
     done = last ? dt : done + h;
-    if (!same) h = dt;  // after the event, try the whole rest of the step
+    if (!same) h = dt;  // after the event, try the rest of the step as one interval
   }
 }
 
