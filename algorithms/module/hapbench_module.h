@@ -45,7 +45,7 @@ typedef struct HapbenchRun {
   size_t capacity;        /* largest number of contacts in a step */
   const double* vertices; /* vertices of the environment: x, y, z of each vertex [m] */
   size_t vertex_count;
-  /* triangles of a block_with_hole or a mesh: three vertex indices for each triangle, counter-clockwise from outside */
+  /* triangles of a block_with_hole or a mesh: three vertex indices each, counter-clockwise seen from outside */
   const uint32_t* triangles;
   size_t triangle_count;
   double tool_radius; /* half of the tool's width [m] */

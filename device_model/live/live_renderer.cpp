@@ -159,8 +159,8 @@ void LiveRenderer::set_orientation(const Measurement& now, const HapbenchInput& 
   if (loop_.tool_rolls()) tool_.pose.roll = now.roll;
 }
 
-/// Sets the tool's position to the measured position of the tip, after the position filter if there is one. Sets the
-/// tool's velocity to the given velocity, or to the estimate of the velocity filter.
+/// Sets the tool's position to the measured position of the tip, filtered if the device has a position filter.
+/// Sets the tool's velocity to the given velocity, or to the estimate of the velocity filter.
 void LiveRenderer::follow_handle(const Measurement& now, const HapbenchInput& input) noexcept {
   Vec3 position = now.tip, velocity = Vec3::Zero();
   if (has_tool_)

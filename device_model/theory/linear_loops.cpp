@@ -69,7 +69,8 @@ Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
 
 /// Writes the motion over one period into the rows of the map A that belong to the state components `body`. The
 /// force is `before` for the fraction `fraction` of the period and `after` for the rest. `hand` is the force of a
-/// sampled hand over the whole period, empty without one. The forces are row vectors over the state.
+/// sampled hand over the whole period; it is empty if no sampled hand holds the handle. The forces are row vectors over
+/// the state.
 void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, double fraction, const Eigen::MatrixXd& rate,
                 const Eigen::RowVectorXd& before, const Eigen::RowVectorXd& after, const Eigen::RowVectorXd& hand) {
   const auto n = static_cast<Eigen::Index>(body.size());

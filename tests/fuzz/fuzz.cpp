@@ -46,7 +46,8 @@ void require(bool holds, const char* what) {
   if (!holds) finding(what);
 }
 
-/// Returns a file with these bytes, in a memory file system if there is one.
+/// Writes these bytes to a file and returns the path of the file. The file is in the memory file system /dev/shm if
+/// that exists, otherwise in the directory for temporary files.
 const fs::path& file_with(std::string_view bytes) {
   static const fs::path file = (fs::is_directory("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path()) /
                                ("hapbench-fuzz-" + std::to_string(::getpid()));
