@@ -42,8 +42,8 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
   }
 }
 
-/// Maximum number of passes in a step; most steps need two. The first passes bring the proxy near its goal, the
-/// last makes the constraints exact at its final position.
+/// Maximum number of passes in a step; most steps need two. The first passes bring the proxy near its goal. The last
+/// pass makes the constraints exact at the final position of the proxy.
 constexpr int kMaxPasses = 64;
 /// Speed at which a proxy leaves points that are inside it, in half widths of the tool per second. For a drill
 /// of 1 mm it is 0.02 m/s, the highest speed at which the simulated subjects move the drill.
@@ -175,7 +175,7 @@ class ProxyRendering final : public ForceAlgorithm {
   /// Moves the proxy for the tool's pose and updates the spring force. `free`: the tool touches no point.
   void update_proxy(const ToolPose& tool, bool free) noexcept {
     if (!has_proxy_) set_proxy(tool.position);
-    // A tool in free air that is too far away for the proxy to follow: move the proxy to the tool.
+    // If a tool in free air is too far away for the proxy to follow, move the proxy to the tool.
     if (!follow(tool) && free) set_proxy(tool.position);
     spring_ = K_ * (proxy_ - tool.position);
   }
@@ -302,7 +302,7 @@ class ProxyRendering final : public ForceAlgorithm {
       constraint_position_ = proxy_;
       proxy_ += arrives ? allowed.move : Vec3(margin / length * allowed.move);
       if (!allowed.feasible || depth_scale_ < 1.0) {
-        // Leaving takes many steps, so one pass in each step is enough.
+        // The proxy takes many steps to leave the points inside it, so one pass in each step is enough.
         clear_ = false;
         return arrives;
       }
@@ -332,7 +332,8 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   /// Replaces the colliding points by the contacts that hold the proxy back, up to the buffer's capacity. In a
-  /// compromise, more points and patches than this may hold the proxy; force and energy still include all of them.
+  /// compromise, more points and patches than this capacity may hold the proxy; force and energy still include all of
+  /// them.
   void copy_holding_contacts(ContactBuffer& contacts) const noexcept {
     contacts.clear();
     for_each_holding(*near_contacts_, [&](std::size_t i) {

@@ -26,8 +26,8 @@ namespace {
 constexpr std::uint64_t kMaxKept = 1u << 17;
 constexpr double kKeptInterval = 5e-4;  ///< shortest time between kept samples, approximately [s]
 
-/// Returns Pearson's correlation coefficient over all components of two signals of equal length; nothing if one of
-/// them does not vary.
+/// Returns Pearson's correlation coefficient over all components of two signals of equal length; nothing if one of the
+/// signals does not vary.
 std::optional<double> correlation(std::span<const Vec3> early, std::span<const Vec3> late) {
   const double n = static_cast<double>(early.size());
   const auto mean = [n](auto of) { return Vec3(std::accumulate(of.begin(), of.end(), Vec3(0.0, 0.0, 0.0)) / n); };

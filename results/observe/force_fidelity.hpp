@@ -46,17 +46,16 @@ struct Lag {
   std::optional<double> period;  ///< distance to the next equally good lag [s], for periodic signals
 };
 
-/// Returns the lag of `late` behind `early`: the shift with the largest correlation (Pearson, over all components
-/// of the overlapping samples), refined by a parabola. If several shifts have equally large correlations, within
-/// 0.01, the shift nearest to 0. Returns nothing if a signal does not vary, or if the maximum is at an end of the
-/// range +-`max_lag` [s]. `dt`: time between samples [s]. Cost: O(n max_lag / dt).
+/// Returns the lag of `late` behind `early`: the shift with the largest correlation (Pearson, over all components of
+/// the overlapping samples), refined by a parabola. If several shifts have correlations that are equally large within
+/// 0.01, returns the shift nearest to 0. Returns nothing if a signal does not vary, or if the maximum is at an end of
+/// the range +-`max_lag` [s]. `dt`: time between samples [s]. Cost: O(n max_lag / dt).
 std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
                                double max_lag);
 
 /// Measures the deviation of the rendered force f from the reference force f_m, in the steps with a reference force
-/// (evaluation of Ruffaldi et al. 2006). The normal n of a step is the direction of f_spring, the force before
-/// damping and friction; if f_spring is zero, the direction of f_m. Allocates nothing during the run; about 50 ns a
-/// step.
+/// (evaluation of Ruffaldi et al. 2006). The normal n of a step is the direction of f_spring, the force before damping
+/// and friction. If f_spring is zero, n is the direction of f_m. Allocates nothing during the run; about 50 ns a step.
 class ForceFidelityObserver final : public MetricObserver {
  public:
   ForceFidelityObserver() = default;

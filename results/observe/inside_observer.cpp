@@ -25,9 +25,10 @@ constexpr std::size_t kMaxEvaluations = 8000, kMaxClosedFormEvaluations = 100000
 /// kSamePose: if no point of the tool differs by more than this [half widths], one search is enough for all poses.
 constexpr double kSharedBound = 0.1, kSamePose = 0.01;
 
-/// kDeepContact: contact depth [half widths] from which on the tip centre is part of the core. At smaller depths it
-/// is not, because the tip centre of a flat tip is in the surface at any depth. kCoreStep: smallest distance between
-/// two checked points on the core, and between two checked positions of the core on its path [half widths].
+/// kDeepContact: contact depth [half widths] from which on the tip centre is part of the core. At smaller depths the
+/// tip centre is not part of the core, because the tip centre of a flat tip is in the surface at any depth. kCoreStep:
+/// smallest distance between two checked points on the core, and between two checked positions of the core on its
+/// path [half widths].
 constexpr double kDeepContact = 0.9, kCoreStep = 5e-3;
 /// Contact depth from which on the core is checked, relative to the smallest radius of the tool, such as the radius
 /// of a neck. It is a little smaller than kDeepContact, because surface points may be some fifths of this radius
@@ -134,7 +135,7 @@ Vec3 CorePassage::normal_at(const Vec3& point) const noexcept {
   return solid_->gradient(point, kGradientStep * width_);
 }
 
-/// Checks the core at positions along its path from the pose of the step before. Between two checked positions the
+/// Checks the core at positions along its path from the pose of the previous step. Between two checked positions the
 /// core cannot meet the surface.
 void CorePassage::check_core(const ToolPose& pose, double deepest_contact, double time) noexcept {
   const Vec3 displacement = began_ ? Vec3(pose.position - position_) : Vec3::Zero();
@@ -197,7 +198,7 @@ double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double
     // Move along the axis by the distance to the surface.
     s = std::max(far_end_, s - std::max(std::abs(phi.value), kCoreStep * width_));
   }
-  return 0.5 * nearest;  // between two evaluated points the surface may be half as far
+  return 0.5 * nearest;  // between two evaluated points the surface may be at half the evaluated distance
 }
 
 /// Detects a passage. Matches each segment that is inside now with a segment of the last check, from which it

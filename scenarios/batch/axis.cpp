@@ -136,7 +136,7 @@ Axis parse_axis(const std::string& text, bool sampled) {
     const std::string shown = text.size() > kMaxShownLength ? text.substr(0, kMaxShownLength) + "..." : text;
     fail_in({.about_options = {"--vary"}}, fmt::format("--vary \"{}\": {}", shown, error.problem()));
   }
-  // The schema of the field tells whether its values are integers, and which names "all" stands for.
+  // The schema of the field states whether its values are integers, and which names "all" stands for.
   const std::vector<ScenarioField> fields = scenario_fields();
   const auto field = std::ranges::find(fields, axis.path, &ScenarioField::path);
   if (field == fields.end()) return axis;

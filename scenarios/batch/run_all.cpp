@@ -17,7 +17,7 @@ std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
     const Cases& cases;
     std::size_t i, number;
   };
-  std::vector<Run> runs;  // in execution order
+  std::vector<Run> runs;  // all runs, in execution order
   for (const Cases& cases : all) {
     const std::size_t first = runs.size();
     for (std::size_t position = 0; position < cases.size(); ++position)

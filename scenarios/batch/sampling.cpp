@@ -58,7 +58,8 @@ namespace {
 /// Splits the lines of a file of --points into cells. Skips blank lines and comments.
 class PointLines {
  public:
-  /// Reads the header: the first line, or a comment before it if that line has values instead of paths.
+  /// Reads the header: the first line, or the comment before the first line if the first line has values instead of
+  /// paths.
   PointLines(std::string_view text, const std::filesystem::path& file) : lines_(text), file_(file) {
     std::string_view comment;
     std::size_t comment_line = 0;

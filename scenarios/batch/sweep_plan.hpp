@@ -25,10 +25,10 @@ struct SweepPlan {
 /// Maximum number of runs of a sample, and of values of a field of a grid, that are checked before the first run.
 inline constexpr std::size_t kMaxChecked = 1000;
 
-/// Returns the runs to check before the first run, in increasing order. If there are at most kMaxChecked runs,
-/// these are all runs. Of a larger sample, they are the first kMaxChecked. Of a larger grid, they are the runs
-/// on the lines through the first and the last run along which a single field varies; each line contributes at
-/// most kMaxChecked runs, including both ends.
+/// Returns the runs to check before the first run, in increasing order. If there are at most kMaxChecked runs, these
+/// are all runs. Of a larger sample, they are the first kMaxChecked runs. Of a larger grid, they are the runs on the
+/// lines through the first and the last run along which a single field varies; each line contributes at most
+/// kMaxChecked runs, including both ends.
 std::vector<std::size_t> runs_to_check(const Cases& cases);
 
 /// Loads the scenarios of the runs to check and reads the files that they name, so that errors are found before

@@ -29,7 +29,7 @@ struct SweepCounts {
   std::size_t runs = 0;
   std::size_t failed = 0;      ///< runs that ended with an exception
   std::size_t unexpected = 0;  ///< runs whose outcome their scenario does not expect; failed runs are not included
-  /// Number of the first unexpected run; empty if there is none.
+  /// Number of the first unexpected run; empty if every outcome is expected.
   std::optional<std::size_t> first_unexpected;
 
   void add(std::size_t run, const std::string& outcome, bool is_expected);

@@ -42,7 +42,7 @@ int status_with_faults(int status, ProgramContext& context) {
   return status == kSuccess ? kUnexpectedOutcome : status;
 }
 
-/// Returns the command of this name; null if there is none.
+/// Returns the command with this name; null if no command has this name.
 const CLI::App* command_named(const CLI::App& program, const std::string& name) {
   const std::vector<const CLI::App*> found =
       program.get_subcommands([&name](const CLI::App* command) { return command->get_name() == name; });

@@ -241,7 +241,7 @@ LevelRun run_of(const CheckedScenario& scene) {
   return {std::move(result), processor_seconds() - before};
 }
 
-/// Returns the levels for refining the field. Throws InputError if the scene has no such number.
+/// Returns the levels for refining the field. Throws InputError if the scene has no such numeric field.
 LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenario) {
   // Warnings of this scenario are returned by plan_sweep().
   const CheckedScenario scene = checked(load_scenario(scenario, options.overrides));

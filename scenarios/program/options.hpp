@@ -27,7 +27,8 @@ std::span<const SharedOption> shared_options();
 /// Returns the help text of a shared option; empty for other options.
 std::string shared_option_help(const std::string& name);
 
-/// Returns true for a shared option that the help of a command only names. Other options are explained there.
+/// Returns true for a shared option that the help of a command only lists by name. The help of the program explains
+/// such an option.
 bool is_listed_briefly(const std::string& name);
 
 /// Options that most commands have.

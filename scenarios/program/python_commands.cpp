@@ -113,9 +113,9 @@ int simulate_log_for_pipe() {
   return kSuccess;
 }
 
-/// Makes "hapbench plot" evaluate the conditions of --where for its own Python. The arguments after it are the folder
-/// of a sweep and the conditions. Prints the number of each run whose row in sweep.csv meets all conditions, one number
-/// per line.
+/// Internal argument of "hapbench plot" by which its Python package evaluates the conditions of --where. The arguments
+/// after it are the folder of a sweep and the conditions. Prints the number of each run whose row in sweep.csv meets
+/// all conditions, one number per line.
 constexpr const char* kRunsWhere = "--runs-where";
 
 int print_runs_where(const ProgramArguments& given, ProgramContext& context) {

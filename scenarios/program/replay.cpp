@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 /// One rendering of a log.
 struct ReplayRow {
   std::string algorithm;
-  ReplayComparison compared;    ///< with the recorded outputs
+  ReplayComparison compared;    ///< comparison with the recorded outputs
   double largest_force = 0.0;   ///< [N]
   double rms_force = 0.0;       ///< [N]
-  double largest_change = 0.0;  ///< of the force between two calls [N]
+  double largest_change = 0.0;  ///< largest change of the force between two calls [N]
   std::size_t faults = 0, stale = 0, clamped = 0;
 };
 

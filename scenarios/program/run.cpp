@@ -91,7 +91,7 @@ Columns<Result> latency_columns() {
   return columns;
 }
 
-/// Returns the diagnosis of runs. For a single run it includes advice. For several runs it has one line for each,
+/// Returns the diagnosis of runs. For a single run it includes advice. For several runs it has one line for each run,
 /// with the names of the rules. Empty if no rule applies.
 std::string diagnosis_text(std::span<const Result> reports, const Layout& layout) {
   std::string text;

@@ -52,13 +52,13 @@ std::string run_table(std::span<const Result> reports, bool of_scenes, const Lay
 /// Metric whose square root is the vibration of the tool.
 inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
 
-/// Returns a sentence with the 99th percentile of the time of a step in the slowest run. Returns an empty text
-/// if all runs are too short for it, and after --latency, whose table has the percentiles, unless a step is too slow.
-/// Precondition: there is at least one run.
+/// Returns a sentence with the 99th percentile of the time of a step in the slowest run. Returns an empty text if all
+/// runs are too short for this percentile. After --latency, whose table has the percentiles, returns the sentence only
+/// if a step is too slow. Precondition: there is at least one run.
 std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
-/// Returns a table that compares the rendered force with the reference force, for the runs with a reference.
-/// Returns an empty text if there are none.
+/// Returns a table that compares the rendered force with the reference force, for the runs with a reference. Returns an
+/// empty text if no run has a reference.
 std::string fidelity_text(std::span<const Result> reports, const Layout& layout);
 
 /// Returns the warnings about the runs of one scenario, without the warnings that were printed before the runs. Equal

@@ -41,8 +41,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the printed columns of a run: the varied fields, the outcome and the columns of `run`. Adds a column
-/// for the metric if none of them has it.
+/// Returns the printed columns of a run: the varied fields, the outcome and the columns of `run`. Adds a column for the
+/// metric if no other column has the metric.
 Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric) {
   Columns<SweepRow> columns;
   // Begin with the varied fields. If several fields vary, add the index of the run. Round sampled numbers.

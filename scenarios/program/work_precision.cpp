@@ -26,8 +26,8 @@ std::string error_text(const Setting& s, double error, double of_reference, doub
   return fmt::format("{}{}", error < kResolvedError * of_reference ? "< " : "", significant(shown, 2));
 }
 
-/// Returns the columns of convergence.csv, which are the same in every run of the command.
-/// `max_error` [m]: the error that is asked for.
+/// Returns the columns of convergence.csv, which are the same in every run of the command. `max_error` [m]: the
+/// requested error.
 Columns<Setting> error_columns(double max_error) {
   const auto reference_position = [](const Setting& s) { return s.reference_error.position; };
   const auto reference_force = [](const Setting& s) { return s.reference_error.force; };
@@ -87,7 +87,8 @@ Columns<Setting> timing_columns() {
            &Setting::is_knee}};
 }
 
-/// Returns what a user wants to know of a problem.
+/// Returns a sentence with the cheapest setting of a problem below `max_error` [m], or the reason why no setting is
+/// named.
 std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
   if (!problem.is_predictable) {
     return fmt::format(

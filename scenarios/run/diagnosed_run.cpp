@@ -73,7 +73,7 @@ Number ratio_in_vibration(const DiagnosedRun& run) {
 }
 
 bool is_unstable_at_any_stiffness(double ratio) {
-  constexpr double kRounding = 1e-3;  // of six digits
+  constexpr double kRounding = 1e-3;  // larger than the relative rounding error of a number with six digits
   return ratio >= (1.0 - kRounding) / kSmallestStiffness;
 }
 

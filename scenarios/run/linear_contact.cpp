@@ -13,9 +13,10 @@
 namespace hapbench {
 namespace {
 
-constexpr double kPositionStep = 1e-8;   // of differences [m]; a ten-thousandth of the smallest tools and depths
-constexpr double kVelocityStep = 1e-4;   // of differences [m/s]; dampers are linear
-constexpr double kRelativeError = 1e-7;  // of the differences; smaller entries count as zero
+constexpr double kPositionStep = 1e-8;   // step of the differences in position [m]; a ten-thousandth of the smallest
+                                         // tools and depths
+constexpr double kVelocityStep = 1e-4;   // step of the differences in velocity [m/s]; dampers are linear
+constexpr double kRelativeError = 1e-7;  // relative error of the differences; smaller entries count as zero
 
 /// Returns the scenario without the parts that the linear theory leaves out.
 Scenario without_nonlinear_parts(Scenario scenario) {
@@ -67,8 +68,9 @@ class RestingTool {
   /// contact.
   bool find_equilibrium() {
     constexpr int kIterations = 40;
-    constexpr double kLargestStep = 0.1;              // of the tool's half width
-    constexpr double kConverged = 1e-10;              // [m]; the error of the derivatives times the first steps
+    constexpr double kLargestStep = 0.1;              // largest step, in half widths of the tool
+    constexpr double kConverged = 1e-10;              // step below which the search ends [m]: the error of the
+                                                      // derivatives times the first steps
     if (parts_.hand->task() != nullptr) return true;  // a subject corrects its force; the pose of the run counts
     for (int i = 0; i < kIterations; ++i) {
       const Vec3 before = position_;
@@ -150,7 +152,8 @@ class RestingTool {
     return force_.rendered;
   }
 
-  /// Returns the rendered force at a position, and true if the contacts there are those of `set`.
+  /// Returns the rendered force at a position, and true if the contacts at this position are the contacts with the hash
+  /// `set`.
   std::pair<Vec3, bool> force_at(const Vec3& position, std::uint64_t set) {
     place(position);
     return {force_.rendered, contact_set_ == set};
@@ -161,7 +164,8 @@ class RestingTool {
   void hold(const Vec3& position) {
     HandleState handle{position, Vec3::Zero()};
     const ToolPose pose{position, axis_, roll_};
-    constexpr int kIterations = 8;  // each reduces the error by the ratio of hand to servo stiffness
+    constexpr int kIterations = 8;  // each iteration reduces the error by the ratio of hand stiffness to servo
+                                    // stiffness
     for (int i = 0; i < (admittance_ != nullptr ? kIterations : 1); ++i) {
       hand_ = parts_.hand->force(time_, {handle, pose, force_.rendered, force_.spring});
       if (admittance_ != nullptr && admittance_->servo.stiffness > 0.0)

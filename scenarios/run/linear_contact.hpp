@@ -35,9 +35,9 @@ struct ContactAtRest {
 /// differences with respect to position and velocity of the tool, relative errors 1e-7. The set of contacts is held
 /// constant: where a point begins to touch, the difference is one-sided.
 ///
-/// The equilibrium is found by Newton's method, with the targets of the hand as at the time of `near`. Without
-/// an equilibrium, the derivatives belong to the last pose of the search; a law whose force jumps when a point begins
-/// to touch need not have an equilibrium. Returns nothing if the tool touches nothing there, or if a force is not
+/// The equilibrium is found by Newton's method, with the targets of the hand as at the time of `near`. Without an
+/// equilibrium, the derivatives belong to the last pose of the search; a law whose force jumps when a point begins to
+/// touch need not have an equilibrium. Returns nothing if the tool touches nothing at `near`, or if a force is not
 /// finite.
 std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near);

@@ -38,7 +38,7 @@ constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #endif
 
 // State of this process; load_module.hpp explains why it is not per context.
-std::vector<LoadedModule> modules;  ///< in the order of loading
+std::vector<LoadedModule> modules;  ///< loaded modules, in the order of loading
 std::atomic<int> allowing = 0;      ///< number of existing ModulePermission objects that allow all modules
 
 /// Tables of the libraries of contacts by file. The mutex protects the map.

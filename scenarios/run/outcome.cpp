@@ -36,7 +36,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
         tool_(parts.tool),
         drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
     const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
-    // Observe the depth inside the solid, if the environment has one.
+    // Observe the depth inside the environment's solid, if the environment has a solid.
     if (auto solid = make_solid(scenario, files)) {
       const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
       inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);

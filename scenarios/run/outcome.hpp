@@ -34,9 +34,9 @@ class OutcomeObserver : public Observer {
   /// Returns warnings that explain the outcome, and a warning if the path of a drag was too short. Called after
   /// the run. Precondition: the observer was created with `metrics`.
   virtual std::vector<Warning> warnings(Outcome outcome) = 0;
-  /// Returns the longest displacement of the tip in a single step near the surface [m]. Only steps count that
-  /// began no further from the environment's bounding box than the step is long: such a step may have reached
-  /// the surface or jumped over it. 0 without a point shell.
+  /// Returns the longest displacement of the tip in a single step near the surface [m]. Counts only steps whose length
+  /// is at least the distance from the environment's bounding box at the start of the step: such a step may have
+  /// reached the surface or jumped over it. 0 without a point shell.
   virtual double longest_step() const = 0;
   /// Returns the facts that explain the outcome. Called after the run; default facts without a point shell.
   virtual OutcomeFacts facts() const = 0;

@@ -89,7 +89,7 @@ class Run {
   /// progress bar; empty: no bar.
   void run_trial(Trial trial, const std::optional<RecordTarget>& target, const std::string& label,
                  const ProgressListener* listener) {
-    // Build the parts, and tell the observers that a trial begins.
+    // Build the parts, and notify the observers that a trial begins.
     SimulationParts parts = assemble(scenario_, checked_.files(), shell_, trial);
     const SimulationConfig config = simulation_config(scenario_);
     const TrialParts trial_parts{config, parts, reference_.get(), trial.subject, trial.number};
@@ -187,7 +187,7 @@ class Run {
 
   void end_trial(OutcomeObserver& observer, const SimulationResult& result) {
     const Outcome outcome = observer.outcome(result.ending);
-    // Keep the warnings of the first trial that has any.
+    // Keep the warnings of the first trial that has warnings.
     std::vector<Warning> warnings = observer.warnings(outcome);
     ++trials_;
     if (!warnings.empty() && with_warnings_++ == 0) {
@@ -226,7 +226,7 @@ class Run {
   std::optional<InsideDepths> inside_;
   std::optional<StepTimes> times_;               ///< times of all steps; empty unless requested
   std::vector<std::uint64_t> step_nanoseconds_;  ///< sampled durations of single steps [ns] (StepSampler)
-  std::vector<Warning> warnings_;                ///< warnings of the first trial that has any
+  std::vector<Warning> warnings_;                ///< warnings of the first trial that has warnings
   std::size_t trials_ = 0, with_warnings_ = 0, first_with_warnings_ = 0;
   Result result_;  ///< result so far: end, work, and times of the step loop
   Recorders recorders_;
@@ -249,7 +249,7 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutpu
                     RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell) {
   const Scenario& scenario = checked.scenario();
   const auto start = Clock::now();
-  // Build the point shell, unless the caller has one.
+  // Build the point shell, unless the caller gives a point shell.
   if (!shell) {
     const WaitNotice notice(scenario.name + ": computing the point shell", progress.is_shown);
     shell = make_shell(scenario, checked.files());

@@ -42,8 +42,8 @@ SpringDamper tool_on_spring(const Scenario& scenario, double lambda);
 /// has_device(scenario).
 DeviceLoop device_loop(const Scenario& scenario, double lambda);
 
-/// Returns the paths of the device fields that differ from their defaults and that the linear model does not
-/// include, such as "device.viscous_N_s_per_m", separated by commas. Empty if there are none. Precondition:
+/// Returns the paths of the device fields that differ from their defaults and that the linear model does not include,
+/// such as "device.viscous_N_s_per_m", separated by commas. Empty if there are no such fields. Precondition:
 /// has_device(scenario).
 std::string unmodelled_fields(const Scenario& scenario);
 

@@ -21,9 +21,9 @@ constexpr std::size_t kMaxEvaluations = 20000;
 /// smaller than kCoarse are not searched beyond the border of an open surface.
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
-/// Lengths in half widths of the tool. A segment of the tool's axis shorter than kShort is not halved. A segment
-/// longer than kLong gets a single ball. kPolyline: largest distance between a round body and the polyline that
-/// represents its outline.
+/// Lengths in half widths of the tool. A segment of the tool's axis shorter than kShort is not halved. A segment longer
+/// than kLong has a single ball around it; a shorter segment has further balls. kPolyline: largest distance between a
+/// round body and the polyline that represents its outline.
 constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
 /// Offsets of further ball centres from the centre of the smallest ball, in half widths.
 constexpr double kCentreOffsets[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
@@ -218,8 +218,8 @@ std::vector<InsideBound::Ball> InsideBound::balls_of(const Segment& segment) con
   return balls;
 }
 
-/// Returns the bound from one ball. Reuses the ball's last evaluation in two cases: its bound is sufficient; or only
-/// a sufficient bound is useful, and a new evaluation clearly cannot give one.
+/// Returns the bound from one ball. Reuses the ball's last evaluation in two cases: its bound is sufficient; or only a
+/// sufficient bound is useful, and a new evaluation clearly cannot give a sufficient bound.
 InsideBound::Evaluation InsideBound::evaluate(Ball& ball, const BoundRequest& q) {
   const Vec3 centre = q.pose.position + ball.position * q.pose.axis;
   const double beyond = ball.radius + q.moved + std::abs(ball.position) * q.turned;

@@ -119,7 +119,7 @@ class InsideBound {
   std::vector<Ball> balls_of(const Segment& segment) const;
   struct Evaluation {
     double bound;  ///< upper bound from one ball [m]
-    bool known;    ///< true if the solid knows whether the ball's centre is inside
+    bool known;    ///< true if the solid can determine whether the ball's centre is inside
   };
   Evaluation evaluate(Ball& ball, const BoundRequest& request);
   double bound_of_segment(std::size_t segment, const BoundRequest& request);

@@ -148,7 +148,7 @@ class MeshSolid final : public Solid {
   std::vector<Vec3> vertex_normals_;
   std::vector<bool> border_vertices_;
   std::vector<std::uint8_t> at_border_;            ///< bit k of a triangle: its edge from corner k is on the border
-  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< by triangle and corner: sum of the edge's normals
+  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< sums of the normals of each edge, by triangle and corner
 };
 
 /// Solid given by points with normals.

@@ -22,8 +22,8 @@ namespace hapbench {
 namespace {
 
 /// Returns the formal order of convergence in the time step. A device holds the force between samples: first order.
-/// Without damping, leapfrog is of second order in amplitudes and energies: its velocity belongs to half a step before.
-/// Values at a fixed time are of first order, because the run begins with the velocity of the full step.
+/// Without damping, leapfrog is of second order in amplitudes and energies: its velocity belongs to a time half a step
+/// earlier. Values at a fixed time are of first order, because the run begins with the velocity of the full step.
 double order_in_step(const Scenario& scenario) {
   const IntegratorEntry& integrator = *scenario.integrator.type;
   if (has_device(scenario)) return 1.0;

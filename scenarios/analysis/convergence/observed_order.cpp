@@ -54,12 +54,13 @@ std::string switching_reason(std::span<const LevelResult> last) {
   return "";
 }
 
-/// Returns why the differences or orders of the last `count` results are not credible; empty if they are. `f`:
+/// Returns why the differences or orders of the last `count` results are not credible; empty if they are credible. `f`:
 /// results, coarsest first. `formal`, `ratio`: as in LevelSweep.
 std::string incredible_reason(std::span<const double> f, std::span<const std::optional<double>> orders,
                               std::size_t count, double formal, double ratio) {
   const std::size_t last = f.size() - 1, from = f.size() >= count ? f.size() - count : 0;
-  // The same deviation of the differences from a power of the step as in the asymptotic range.
+  // The largest credible order. It allows the same relative deviation of the differences as the asymptotic range,
+  // beyond twice the formal order.
   const double most = 2.0 * formal + math::log(1.0 + kAsymptoticWithin) / math::log(ratio);
   for (std::size_t i = from + 2; i <= last; ++i) {
     const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];

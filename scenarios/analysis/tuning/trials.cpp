@@ -132,7 +132,7 @@ TuneTrial& Trials::mutable_trial(const TuneSetting& setting, double stiffness) {
     trial.stiffness = stiffness;
   }
   if (requested_.insert(&trial).second) {
-    search_runs_ += trial.runs;  // as if this search had made the runs
+    search_runs_ += trial.runs;  // counted as if this search had made the runs
     judge(trial);
   }
   return trial;
@@ -307,7 +307,7 @@ std::optional<TuneFailure> Trials::loop_failure(const TuneTrial& trial, std::siz
   const std::string who = hand->empty() ? own : *hand + with(variants_[variant]);
   TuneFailure failure{"margin", fmt::format("between K and {:g} K the contact loop is unstable with {}", G, who)};
   failure.variant = hand->empty() && variant == 0 ? "" : who;
-  // A loop that is unstable only with other hands fails because of the family "hands".
+  // A loop that is unstable only with other hands fails because of the variant set "hands".
   const bool is_own = unstable_loop(scenario, contact, K, G * K, false).has_value();
   failure.family = is_own ? variants_[variant].family : "hands";
   failure.unstable_at_K = unstable_loop(scenario, contact, K, K, over_hands_).has_value();
@@ -317,7 +317,7 @@ std::optional<TuneFailure> Trials::loop_failure(const TuneTrial& trial, std::siz
 
 /// Runs the variants [first, last) at K and at G K. Records the first run that is not settled.
 void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
-  std::vector<RunStability> judged(2 * (last - first));  // of each variant at K, then at G K
+  std::vector<RunStability> judged(2 * (last - first));  // verdicts on each variant at K, then at G K
   std::vector<ContactOfTrial> contacts(last - first);    // of each variant at K
   in_parallel(&trial, judged.size(), [&](std::size_t job) {
     const double gain = job % 2 != 0 ? question_.margin : 1.0;

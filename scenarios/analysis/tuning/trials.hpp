@@ -84,7 +84,7 @@ class Trials {
   void evaluate_and_measure(const TuneSetting& setting, double stiffness);
   /// Returns all trials of all searches, by setting and K.
   const std::map<std::pair<TuneSetting, double>, TuneTrial>& all() const { return all_; }
-  /// Returns the feasible trial of this search with the largest K; null without any.
+  /// Returns the feasible trial of this search with the largest K; null if no trial is feasible.
   const TuneTrial* stiffest_feasible() const;
   /// Returns the stiffnesses of the feasible trials of a setting in this search [N/m].
   std::vector<double> feasible_stiffnesses(const TuneSetting& setting) const;

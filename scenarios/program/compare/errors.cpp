@@ -106,7 +106,8 @@ std::string vibration_text(const Ranking& league, const Layout& layout) {
     if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
   if (failing.size() == league.algorithms.size())
     return "\n" + layout.wrapped("every run failed: there is no vibration to compare", 0);
-  // Compare the force; if a law without failures has no value of it, compare the tool.
+  // Compare the vibration of the force. If a law without failures has no value of this metric, compare the vibration of
+  // the tool.
   for (const auto& [of, metric, threshold] : kVibrations) {
     const auto metric_index =
         static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());

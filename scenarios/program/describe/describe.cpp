@@ -78,7 +78,8 @@ std::vector<Description> described_headings(const Index& index, const std::strin
                   name, nearest_name_hint(name, names)));
 }
 
-/// Returns the meanings of a name that the program itself does not define. Throws InputError if there are none.
+/// Returns the meanings of a name that the program itself does not define. Throws InputError if the name has no
+/// meaning.
 std::vector<Description> other_meanings(const Index& index, const std::string& name, const Layout& layout) {
   if (const std::optional<Description> place = describe_thesis_location(name, layout)) return {*place};
   // Find fields with this name in any object: "torque" finds record.torque.

@@ -25,7 +25,7 @@ bool is_object(const ValueGuide& value) {
   return value.choices.empty() && value.schema.is_object() && value.schema.contains("properties");
 }
 
-/// Returns the default as JSON, with spaces where a line may break; empty if there is none.
+/// Returns the default as JSON, with spaces where a line may break; empty if the field has no default.
 std::string default_of(const FieldGuide& field) {
   std::string text;
   if (field.presence == Presence::has_default)

@@ -9,7 +9,7 @@
 /// The descriptions of the fields of scenario files.
 namespace hapbench {
 
-/// Returns the field at a dotted path; null if there is none. If several types of an object have the field,
+/// Returns the field at a dotted path; null if no field has this path. If several types of an object have the field,
 /// returns the field of the first type.
 const FieldGuide* find_field(const std::string& path);
 

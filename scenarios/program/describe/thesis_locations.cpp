@@ -27,8 +27,8 @@ struct ThesisLocation {
   std::string kind, number;
 };
 
-/// Returns the kind of the locations whose numbers follow a word. After every word other than "figure" and "table"
-/// they are sections.
+/// Returns the kind of the locations whose numbers follow a word. After every word other than "figure" and "table", the
+/// numbers are sections.
 std::string location_kind(const std::string& word) {
   const std::string lower = lower_case(word);
   if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";

@@ -121,8 +121,8 @@ class Start {
     return make_shell(loaded.scenario, loaded.files);
   }
 
-  /// Returns the points over which the tool starts, in the side's frame: of the largest component of a mesh, unless a
-  /// point of the start is given.
+  /// Returns the points over which the tool starts, in the side's frame. These are the points of the largest component
+  /// if is_over_largest_, otherwise all points.
   std::vector<SurfacePoint> points() const {
     return in_frame_of_side(is_over_largest_ ? largest_component().points() : shell()->points());
   }
@@ -157,7 +157,7 @@ class Start {
     return scale;
   }
 
-  /// Returns the relation of a scale to the closest unit, if that is within 20 %.
+  /// Returns the difference of the scale from the closest unit as text; empty if the difference is more than 20 %.
   static std::string scale_note(double scale) {
     const auto distance = [scale](const LengthUnit& unit) { return std::abs(scale / unit.metres - 1.0); };
     const LengthUnit& unit = *std::ranges::min_element(kLengthUnits, {}, distance);
@@ -240,7 +240,8 @@ class Start {
     choose_tool(box.size().maxCoeff());
     const Vec3 top = top_center(shell, box.max.z(), 0.1 * diameter_);
     const bool is_open = !has_type("environment", "mesh") || !largest_component().open_edges().empty();
-    // Sum the normals around the top along the side's axis; a negative sum means that they point away.
+    // Sum the normals around the top along the side's axis; a negative sum means that the normals point away from the
+    // side.
     double facing = 0.0;
     for (const SurfacePoint& point : shell) {
       const Vec3 from_top = point.position - top;
@@ -420,7 +421,8 @@ class Start {
   std::vector<Vec3> requested_points_;       ///< points of --path, or the point of --at [m]
   Mat3 to_world_ = Mat3::Identity();         ///< rotates vectors of the side's frame into the world frame
   double diameter_ = 0.001;                  ///< [m]
-  mutable std::optional<MeshFile> largest_;  ///< the largest component of the mesh of largest_environment_
+  mutable std::optional<MeshFile> largest_;  ///< largest component of the mesh; valid if the environment is equal to
+                                             ///< largest_environment_
   mutable Json largest_environment_;
   double press_target_ = 0.0;  ///< final target of a pressing hand along the side's axis [m]
 };

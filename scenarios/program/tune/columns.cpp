@@ -13,8 +13,8 @@ namespace {
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
 
-/// Returns the columns of the choice and of the constraint that a larger stiffness violates; empty without a
-/// feasible choice.
+/// Returns the columns of the choice and of the constraint that a larger stiffness violates. Their cells are empty
+/// without a feasible choice.
 Columns<TunedLaw> choice_columns() {
   using Row = TunedLaw;
   const auto of_setting = [](auto member) {

@@ -47,7 +47,7 @@ TEST(Axis, EndPointsAreExactAndValuesBetweenThemInOrder) {
   }
   EXPECT_EQ(numbers("a=0.1:0.7:97").back(), 0.7);
   EXPECT_EQ(numbers("a=0.1:0.7:97:log").back(), 0.7);
-  // The same value throughout stays the same: no rounding leaves the range.
+  // A constant range gives the same value everywhere: no rounding leaves the range.
   for (const double value : numbers("a=0.1:0.1:1000")) ASSERT_EQ(value, 0.1);
 }
 

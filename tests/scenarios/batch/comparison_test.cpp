@@ -22,7 +22,7 @@ class ComparisonOf : public testing::Test {
     test::write_plainly(directory_ / name, scenario.dump());
     return directory_ / name;
   }
-  /// Two scenes, the second with random springs.
+  /// Returns a question with two scenes, the second with random springs.
   ComparisonQuestion two_scenes() const {
     Json springs = test::minimal_scenario("springs");
     springs["environment"] = {{"type", "springs"}, {"random", {{"count", 5}}}};
@@ -63,7 +63,7 @@ TEST_F(ComparisonOf, JitteredScenesStartFromOnePlaceForEachSeed) {
     EXPECT_NEAR(start(seed).norm(), 1e-4, 1e-18);
     EXPECT_EQ(start(seed), start(3 + seed)) << "the other algorithm";
     EXPECT_NE(start(seed), start((seed + 1) % 3));
-    // Springs in the plane stay there. Adding to 1e-3 rounds by up to 1e-19.
+    // Springs in the plane remain in the plane. Adding to 1e-3 rounds by up to 1e-19.
     EXPECT_EQ(start(6 + seed).z(), 0.0);
     EXPECT_NEAR((start(6 + seed) - Vec3(0.001, 0.0, 0.0)).norm(), 1e-4, 1e-18);
   }
@@ -82,7 +82,7 @@ TEST_F(ComparisonOf, WhatCannotBeComparedSaysWhichFile) {
   question.scenarios.push_back(write("copy/plane.json", test::minimal_scenario("plane")));
   EXPECT_NE(refused(question).find("a second scenario named \"plane\"; allowed: "), std::string::npos);
   question = two_scenes();
-  question.overrides = {"seed=9007199254740991"};  // 2^53 - 1: two more is too many
+  question.overrides = {"seed=9007199254740991"};  // 2^53 - 1: two larger seeds exceed the limit
   EXPECT_NE(refused(question).find("/seed: got 9007199254740991; allowed: at most "), std::string::npos);
   question.seeds = 1'000'000;
   EXPECT_NE(refused(question).find("= 4000000 runs; allowed: at most 1000000"), std::string::npos);
@@ -100,14 +100,14 @@ TEST_F(ComparisonOf, ScenesRemovesWhatAnEarlierOneLeftAndNothingElse) {
   EXPECT_FALSE(fs::exists(out / "plane/mean"));
 }
 
-/// Two blocks of different grids, one of them twice with another start, however many runs each has and whoever comes
-/// first.
+/// Two blocks with different grids, one of them twice with another start, for any number of runs and any order of the
+/// threads.
 TEST_F(ComparisonOf, AnyScenesBuildsEachDistinctShellOnce) {
   for (const unsigned jobs : {1u, 4u}) {
     Json scene = test::minimal_scenario("block_with_hole");
     ComparisonQuestion question{.scenarios = {}, .algorithms = {"mean", "summation", "proxy"}, .seeds = 4};
     for (const auto& [name, grid] : {std::pair{"a", 1e-4}, {"b", 2e-4}, {"c", 1e-4}}) {
-      scene["environment"]["grid_m"] = grid + 1e-6 * jobs;  // shells that no earlier run has left
+      scene["environment"]["grid_m"] = grid + 1e-6 * jobs;  // shells that no earlier run has cached
       scene["initial"]["position_m"] = {0.0, 0.0, name[0] == 'c' ? 1e-3 : 0.0};
       question.scenarios.push_back(write(std::string(name) + ".json", scene));
     }

@@ -11,8 +11,8 @@ namespace {
 
 using Values = std::vector<std::optional<double>>;
 
-/// One scene, metric and seed, or so many seeds; a value for each algorithm and seed. A negative one stands for a run
-/// that diverged. Each number may be wrong by `error`.
+/// Ranks one scene and one metric, with a value for each algorithm and seed. A negative value stands for a run that
+/// diverged. The error of each number is `error`.
 Ranking rank_comparison(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0) {
   Ranking league{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}, {}};
   for (std::size_t a = 0; a < values.size() / seeds; ++a) league.algorithms.push_back("law_" + std::to_string(a));
@@ -47,7 +47,8 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(of_one_seed({0.5, 1.0, 0.25}, Better::more), (Ranks{2, 1, 3}));
   EXPECT_EQ(of_one_seed({1.0, 2.0}, Better::none), (Ranks{0, 0}));
   EXPECT_EQ(of_one_seed({2.0, 1.0, 2.0, 5.0}), (Ranks{2, 1, 2, 4}));
-  // 0.1 % of the larger of two is the limit: two are less than 1.0015 by more, the third is not.
+  // The resolution is 0.1 % of the larger number: 1.0015 exceeds the first two numbers by more, but not the third
+  // number.
   EXPECT_EQ(of_one_seed({1.0 + 1e-15, 1.0, 1.0009, 1.0015}), (Ranks{1, 1, 1, 3}));
   EXPECT_EQ(of_one_seed({0.0, 1e-300, 0.0}), (Ranks{1, 3, 1})) << "nothing is like zero";
   EXPECT_EQ(ranks(rank_comparison({1.0, 1.3, 1.5}, Better::less, 1, 0.2)), (Ranks{1, 1, 2}))
@@ -56,12 +57,13 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(of_one_seed({-1.0, kNone, 2.0}), (Ranks{3, 2, 1}));
   EXPECT_EQ(of_one_seed({7.0, -1.0, 3.0, -9.0}), (Ranks{2, 3, 1, 3})) << "however small the numbers of failures";
   EXPECT_EQ(of_one_seed({-1.0, kNone}), (Ranks{0, 0})) << "nobody has a number that counts";
-  // Failing with one seed of three beats two of three, whatever the rest is.
+  // An algorithm that fails for one of three seeds ranks before an algorithm that fails for two, whatever their other
+  // values are.
   const Ranking league = rank_comparison({9.0, 9.0, -1.0, 1.0, -1.0, -1.0, 50.0, 60.0, 70.0}, Better::less, 3);
   EXPECT_EQ(ranks(league), (Ranks{2, 3, 1}));
   EXPECT_EQ(league.at(0, 0, 0).mean, 9.0) << "of those that did not fail";
   EXPECT_EQ(league.at(0, 1, 0).outcome, "completes 1; diverges 2");
-  // No seed is common to both: the law that never failed is judged by all.
+  // No seed is common to both laws: the law that never failed is ranked by all seeds.
   const Ranking apart = rank_comparison({-1.0, 2.0, 3.0, -1.0, 4.0, 6.0}, Better::less, 2);
   EXPECT_EQ(apart.at(0, 2, 0).common_seeds, 2u);
   EXPECT_EQ(apart.at(0, 2, 0).mean, 5.0);

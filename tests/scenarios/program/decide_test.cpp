@@ -21,7 +21,7 @@ using test::lines_of;
 using test::ProgramRun;
 using test::read_file;
 
-// hapbench limit, tune and converge: what they find and write. What they print is in tests/data/golden/studies.txt.
+// hapbench limit, tune and converge: their results and files. tests/data/golden/studies.txt has their printed texts.
 
 using Words = std::vector<std::string>;
 
@@ -64,7 +64,8 @@ TEST_F(LimitCommand, OnADeviceIsThatOfTheSceneWithIt) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_TRUE(rows[i]["limit"].is_number());
     EXPECT_EQ(rows[i]["stable_low"], own[i]["stable_low"]);
-    // Asked for alone, the interval is tried between its ends: its edge may be lower, never higher.
+    // The question without --device also verifies samples between the ends of the interval. Its limit may therefore be
+    // lower, never higher.
     EXPECT_LE(own[i]["limit"], rows[i]["limit"]);
     EXPECT_EQ(own[i]["tried_between"], 48);
     EXPECT_EQ(rows[i]["tried_between"], 0);
@@ -83,14 +84,15 @@ TEST_F(LimitCommand, GivesTheSameBytesWhateverTheJobs) {
 
 class TuneCommand : public Decide {
  protected:
-  /// Over less of zeta than by default, in half the time.
+  /// Searches a smaller range of zeta than the default, in half the time.
   ProgramRun tune(const Words& more, const std::string& out = "out") const {
     return ask({"tune", "tap_wall", "--damping-ratio", "0.3:0.6"}, more, out);
   }
 };
 
 TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
-  // Another device over the scene's, and one of its fields: sections that extending alone would mix.
+  // Replaces the scene's device by another device, and one field of this device. Merging by "extends" alone would mix
+  // the fields of both devices.
   const Json json = tune({"--device", "touch", "--set", "device.delay_samples=0.5", "--bound", "inside_max_m=0.01",
                           "--algorithms", "shaped_stiffness,mean", "--json"})
                         .json();
@@ -118,8 +120,8 @@ TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
   EXPECT_GT(lines_of(read_file(file("out/tune_trials.csv"))).size(), 30u);
 }
 
-/// Recommended stiffness, linear limit and simulated limit: for one scene and device the same from tune, limit and the
-/// device table.
+/// For one scene and device, the recommended stiffness, linear limit and simulated limit are the same in tune, limit
+/// and the device table.
 TEST_F(TuneCommand, SaysTheEdgesThatLimitSays) {
   const Json law = tune({"--device", "touch", "--json"}).json()["algorithms"][0];
   ASSERT_TRUE(law["simulated_limit_N_per_m"].is_number() && law["linear_limit_N_per_m"].is_number()) << law.dump(1);
@@ -139,7 +141,8 @@ TEST_F(TuneCommand, SaysTheEdgesThatLimitSays) {
   EXPECT_GE(law["linear_limit_N_per_m"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
 }
 
-/// A limit is kept by as much as half the step, half the spacing and a look at every row move the metric.
+/// A limit is kept with the error of its metric: the change if the step or the spacing is halved, or the depth is
+/// evaluated in every step.
 TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
   const Json law = tune({"--bound", "inside_max_m=6e-4", "--json"}).json()["algorithms"][0];
   ASSERT_TRUE(law["feasible"].get<bool>()) << law.dump(1);
@@ -148,7 +151,7 @@ TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
   EXPECT_LE(law["metrics"]["inside_max_m"].get<double>() + error, 0.6e-3);
 }
 
-/// A bound of the user leaves the requirement of low vibration in place; --allow-vibration drops it.
+/// A bound of the user does not remove the requirement of low vibration; --allow-vibration removes it.
 TEST_F(TuneCommand, KeepsLowVibrationBesideABound) {
   const auto findings = [&](const Words& more, const std::string& out) {
     tune(more, out);
@@ -165,7 +168,7 @@ TEST_F(TuneCommand, KeepsLowVibrationBesideABound) {
   EXPECT_GE(any["algorithms"][0]["stiffness_N_per_m"], bound["algorithms"][0]["stiffness_N_per_m"]);
 }
 
-/// Without limits the recommendation keeps what the diagnosis calls quiet.
+/// Without limits, the run of the recommended setting has low vibration by the rules of the diagnosis.
 TEST_F(TuneCommand, RecommendsAQuietRunInTheSameBytesHoweverManyJobs) {
   tune({"--jobs", "1", "--quiet"}, "a");
   tune({"--jobs", "3", "--quiet"}, "b");

@@ -11,7 +11,7 @@
 #include "scenarios/program/text.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 
-/// Tables, digits and the words for fields. What they look like is in tests/data/golden.
+/// Tests tables, digits and the names of fields. tests/data/golden has the printed texts.
 namespace hapbench::text_test {
 namespace {
 
@@ -54,7 +54,7 @@ TEST(Fitted, BreaksWideLinesAtBlanksAndKeepsTheirIndent) {
   EXPECT_EQ(fitted("a  b\n\n", 80), "a  b\n\n");
 }
 
-/// A warning is merged only with equal texts: each law has its own number.
+/// Only equal texts are merged: here each law has its own number.
 TEST(RunWarnings, QuoteEachLawsOwnNumber) {
   const auto run = [](const char* law, const char* text) {
     Result result;
@@ -106,7 +106,7 @@ std::vector<const ModelInfo*> all_models() {
   return models;
 }
 
-/// Parameters are documented with the models and enforced where scenarios are described.
+/// The models document the parameters, and the descriptions of scenarios enforce their ranges.
 TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
   EXPECT_FALSE(find_algorithm("shaped_stiffness")->info->parameters.empty());
   const std::vector<ScenarioField> fields = scenario_fields();
