@@ -72,7 +72,7 @@ def prepare(folder):
     log = "".join(
         f"{i / 100},{turn},{round(2.533e4 * (1 - turn)) * 1e-5}\n" for i, turn in enumerate(turns)
     )
-    device = re.search(r"^    {\n.*?^    }$", text_of("device_model/README.md"), re.M | re.S)[0]
+    device = re.search(r"^    {\n.*?^    }$", text_of("device_model/STIFFNESS.md"), re.M | re.S)[0]
     for name, text in (
         ("rec.csv", f"t,fx,fy,fz,x,y,z,qx,qy,qz,qw\n{stroke}"),
         ("log.csv", f"time_s,force_N,position_m\n{log}"),
