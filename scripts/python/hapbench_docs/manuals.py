@@ -30,6 +30,7 @@ TASKS = {
     "D3": "turning, 3 mm high",
     "D4": "turning, 4 mm high",
 }
+STAMP = re.compile(r"hapbench \d[\w.]*, \d{4}-\d\d-\d\d, [^\n]+\.")  # see Program.provenance()
 PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 
 
@@ -119,8 +120,8 @@ def renewed(text, makers):
 
 
 def session(old, program, directory):
-    """A command in a manual with what it printed, on which commit and machine: the block with the
-    output of its first command."""
+    """A block with a command and its output, which ends with version, date and processor. The command
+    is the first command of the old block."""
     line = next(
         (line.strip() for line in old.splitlines() if line.strip().startswith("$ hapbench ")), None
     )
@@ -219,19 +220,18 @@ class Program:
         return done.stdout
 
     def stamped(self, text, old):
-        """The text and where it comes from; the old block where the text says the same, since a
-        date or a time is no news."""
-        known = old.rpartition("\n\nPrinted by ")[0]
-        return (
-            old if same_but_for_times(text, known) else f"{text}\n\nPrinted by {self.provenance()}."
-        )
+        """Returns the text with its provenance. Returns the old block if its text differs only in times
+        and its provenance has today's form."""
+        known, _, stamp = old.strip("\n").rpartition("\n\nPrinted by ")
+        if STAMP.fullmatch(stamp) and same_but_for_times(text, known):
+            return old
+        return f"{text}\n\nPrinted by {self.provenance()}."
 
     def provenance(self):
-        """Commit, date and processor: "commit 5e60010bc2c9, 2026-11-21, AMD EPYC"."""
-        commit = re.search(r"\(([^)]+)\)", self.run(["--version"], "."))
-        return (
-            f"commit {commit[1] if commit else 'unknown'}, {datetime.date.today()}, {processor()}"
-        )
+        """Version, date and processor, such as "hapbench 0.3.0, 2026-11-21, AMD EPYC". Without the
+        commit, so that no reader has to check out a commit to compare."""
+        version = self.run(["--version"], ".").partition(" (")[0].strip()
+        return f"{version}, {datetime.date.today()}, {processor()}"
 
 
 def same_but_for_times(a, b):
