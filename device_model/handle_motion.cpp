@@ -42,8 +42,8 @@ FreeMotion by_series(const MotionLaw& law, double time) noexcept {
 /// Returns the solution after twice the time of `m`.
 FreeMotion doubled(const MotionLaw& law, const FreeMotion& m) noexcept {
   const double k = law.stiffness, S2 = m.S * m.S;
-  const double left = 1.0 - k * m.P;  // at the position P g the spring bears the fraction k P of the force g; `left` is
-                                      // the remaining fraction 1 - k P
+  // The handle starts at rest under an acceleration g and reaches x = P g. There the spring balances k P g of g.
+  const double left = 1.0 - k * m.P;  // remaining fraction of g
   return {.time = 2.0 * m.time,
           .S = m.S * (m.V + left),
           .P = m.P * (1.0 + left) + S2,

@@ -49,11 +49,11 @@ struct TensorPack {
   }
 };
 
-// The functions below take the generators of the cone as a class
+// The generators of the cone are tensors. The functions below take them as an object of a class of this form:
 //
 //   struct Tensors { std::size_t size, padded_size; double* weight; TensorPack pack(std::size_t i) const; };
 //
-// with `size` tensors of trace 1 and one weight for each. `pack(i)` returns the eight tensors from index i on.
+// It has `size` tensors of trace 1, and one weight for each. `pack(i)` returns the eight tensors from index i on.
 // Tensors and weights are padded to whole packs with zeros.
 
 /// Sums over the tensors and their weights c_i.

@@ -93,7 +93,7 @@ class LiveRenderer {
   ToolState tool_;
   Measurement last_measurement_;
   bool has_tool_ = false;      ///< true if tool_ belongs to the previous call; false after a restart
-  bool has_position_ = false;  ///< true if tool_ has a position that a clutch can keep
+  bool has_position_ = false;  ///< true if tool_ has a position; a clutch then holds the tool there
 
   Release release_ = Release::none;
   double release_gain_ = 0.0;         ///< factor on held_force_, from 1 to 0

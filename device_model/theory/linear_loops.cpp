@@ -411,8 +411,8 @@ PassivityAt passivity_at(const SampledLoop& loop, double theta) {
           -(F.real() * math::cos(full_delay_angle) + F.imag() * math::sin(full_delay_angle))};
 }
 
-/// Returns the smallest value of f between two angles: evaluates a grid, then refines it eight times around the
-/// best point.
+/// Returns the smallest value of f between two angles: evaluates eight grids, each around the best point of
+/// the grid before.
 template <class Function>
 double minimum(Function f, double low, double high, int points) {
   double smallest = kInfinity;

@@ -400,7 +400,7 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
   // Search the most promising pose first.
   search(std::ranges::max_element(parts, {}, &PoseSamples::Sample::key)->pose, 0.0);
   InsideBound bound(*tool_, *solid_);
-  // Bounds the depth of the poses of a range of blocks.
+  // Bounds the depth of the tool over all poses in the blocks `first` to `end` - 1.
   const auto bounded = [&](std::size_t first, std::size_t end) {
     const ToolPose& pose = parts[(first + end) / 2].pose;
     Segment s{first, end, 0.0, 0.0};

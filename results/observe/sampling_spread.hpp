@@ -6,7 +6,8 @@
 
 namespace hapbench {
 
-/// Estimates how far the metrics of a run whose every n-th step counts depend on the choice of the first counted step.
+/// For a run in which only every n-th step counts: estimates how much the choice of the first counted step changes the
+/// metrics.
 /// The step with the largest force, or the step of a landing, can lie between two counted steps; a slightly different
 /// time step then moves it to another counted step, and the metric jumps. Measures the metrics for up to four choices.
 class SamplingSpread {

@@ -154,7 +154,8 @@ class PointLines {
   std::vector<std::string> paths_;
 };
 
-/// Returns the value of a cell of --points. Throws InputError if it is missing, or a number in another notation.
+/// Returns the value of a cell of --points. Throws InputError if it is missing, not finite, or a number
+/// with a decimal comma.
 std::string point_value(const std::string& cell, const std::string& path) {
   const std::string lower = lower_case(cell);
   if (has_decimal_comma(cell))

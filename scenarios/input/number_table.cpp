@@ -221,7 +221,7 @@ struct TakenColumns {
   std::vector<std::optional<std::size_t>> chosen;
 };
 
-/// Returns the columns that a file may have, as a message lists them.
+/// Returns the text of an error message about the columns that a file may have.
 std::string allowed_columns(std::span<const TableQuantity> quantities) {
   std::vector<std::string> texts;
   for (const TableQuantity& quantity : quantities) {

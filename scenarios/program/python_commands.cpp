@@ -87,10 +87,11 @@ int run_captured(CapturedOutput& host, const std::string& line) {
   return status;
 }
 
-/// Internal argument of "hapbench import device" that simulates a device log for the Python package, thousands
-/// of times through pipes of doubles. Standard input has the number of rows, their times, their forces, and
-/// then requests. A request is a number of rows (0 ends the requests) and the fields of a LoggedHandle. The
-/// answer to a request on standard output is the positions at these rows.
+/// Internal argument of "hapbench import device". The Python package starts one process with this argument and requests
+/// thousands of simulations of a device log from it. Both pipes carry doubles. The input is, in this order: the number
+/// of rows, the times of the rows, the forces of the rows, and the requests. A request is a number of rows (0 ends the
+/// requests) and the fields of a LoggedHandle. The answer to a request on standard output is the positions at these
+/// rows.
 constexpr const char* kSimulateLog = "--simulate-log";
 
 int simulate_log_for_pipe() {

@@ -234,7 +234,7 @@ int reprint(const SweepCommand& command, ProgramContext& context) {
 }
 
 int sweep(const SweepCommand& command, ProgramContext& context) {
-  // A folder with results is printed; complete shards are joined first.
+  // If the argument is a folder with results, print the results. If it has all shards of a sweep, join them first.
   std::error_code ignored;
   if (fs::is_directory(command.scenario, ignored))
     if (join_shards(command.scenario) || fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored))

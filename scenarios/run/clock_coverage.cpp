@@ -112,7 +112,7 @@ TraceCoverage coverage_of(const ContactTrace& trace, const RunTimes& run, std::i
   return coverage;
 }
 
-/// Returns the median time between successive times of the trace [s]; 0 for fewer than two times.
+/// Returns the median of the first 1000 intervals between the times of the trace [s]; 0 for fewer than two times.
 double median_interval(const ContactTrace& trace) {
   constexpr std::size_t kMaxIntervals = 1000;
   std::vector<double> intervals;

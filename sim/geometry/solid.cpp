@@ -27,7 +27,7 @@ class ShapeSolid final : public Solid {
       return std::max(-box.min.x(), box.max.x()) - shape_.gap / 2;
     else if constexpr (std::is_same_v<Shape, ConicalHole>)
       return Solid::max_depth_in(box);
-    else  // below the flat top
+    else  // otherwise: the depth below the flat top
       return -(std::is_same_v<Shape, Hole2d> ? box.min.y() : box.min.z());
   }
 

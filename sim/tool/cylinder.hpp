@@ -62,8 +62,8 @@ class Cylinder final : public ToolShape {
 };
 
 /// Returns the largest double whose square root does not exceed r. The contact search compares squared distances with
-/// this number and needs no square roots. It still agrees, about every point on the surface, with the depth functions,
-/// which use the square root.
+/// this number and needs no square roots. For every point on the surface, the comparison agrees with the depth
+/// functions, which use the square root.
 double largest_square_within(double r);
 
 }  // namespace hapbench

@@ -121,8 +121,9 @@ class Motion {
   virtual Vec3 axis_at(double t) const noexcept = 0;
   /// Returns ToolPose::roll at time t [s], in rad. Called only if something reads the roll.
   virtual double roll_at(double /*t*/) const noexcept { return 0.0; }
-  /// Returns true if the script rotates the tool about its axis. The angular velocity of a solid of revolution then
-  /// includes this rotation; the angular velocity of any other tool always includes it.
+  /// Returns true if the script rotates the tool about its axis. If false, the angular velocity of a solid of
+  /// revolution leaves out the rotation about its axis. The angular velocity of any other tool contains it in both
+  /// cases.
   virtual bool scripts_roll() const noexcept { return false; }
   /// Returns true if the tip centre is integrated, false if position_at() prescribes it.
   virtual bool position_is_free() const noexcept { return true; }
@@ -138,7 +139,7 @@ struct Orientation {
   Vec3 up = {0.0, 0.0, 1.0};    ///< unit vector
   Vec3 lean = {1.0, 0.0, 0.0};  ///< unit vector, perpendicular to up
   Profile tilt;                 ///< [rad]
-  Profile azimuth;              ///< [rad], right-handed about up
+  Profile azimuth;              ///< [rad], right-handed about the vector `up`
   Profile roll = {};            ///< [rad], right-handed about the axis
 };
 

@@ -77,7 +77,7 @@ std::string incredible_reason(std::span<const double> f, std::span<const std::op
 /// The levels that count: the finest consecutive levels that have a result and the outcome of the finest level.
 struct CountedLevels {
   std::size_t first = 0;  ///< index of the first level that counts
-  std::vector<double> f;  ///< results of the levels that count, coarsest first
+  std::vector<double> f;  ///< results of the levels that are used, coarsest first
   double largest = 0.0;   ///< largest magnitude of the results
 
   std::size_t count() const { return f.size(); }

@@ -19,7 +19,7 @@
 namespace hapbench {
 namespace {
 
-/// The kinds of names that have lists, in the order of the lists.
+/// The kinds of names that `describe` lists, in the order in which it prints them.
 constexpr const char* kListed[] = {"algorithm", "depth model", "stage",  "integrator", "environment",
                                    "tool",      "hand",        "device", "preset",     "scenario",
                                    "study",     "metric",      "claim",  "term"};
