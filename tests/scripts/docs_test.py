@@ -16,7 +16,15 @@ from fixture import PROGRAM, SOURCE, hapbench, must, ran, scratch_folder
 
 from hapbench.columns import read_columns
 from hapbench.errors import InputError
-from hapbench_docs.manuals import MAKERS, Manual, broken_links, manuals, renewed, same_but_for_times
+from hapbench_docs.manuals import (
+    MAKERS,
+    Manual,
+    broken_links,
+    manuals,
+    renewed,
+    same_but_for_times,
+    write_files_of_getting_started,
+)
 
 RECORD = SOURCE / "results" / "reference"
 TUTORIALS = SOURCE / "scenarios" / "library" / "tutorials"
@@ -71,6 +79,7 @@ def prepare(folder):
         ("log_device.json", device),
     ):
         (folder / name).write_text(text, encoding="ascii")
+    write_files_of_getting_started(folder)
     # The example in C, by the manual's line.
     compiler = re.search(r"^    (gcc .*) -o \S+$", text_of("algorithms/README.md"), re.M)[1].split()
     must(*compiler, "-o", folder / "depth_weighted.so", cwd=SOURCE)
