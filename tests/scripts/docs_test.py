@@ -25,6 +25,7 @@ from hapbench_docs.manuals import (
     manuals,
     renewed,
     same_but_for_times,
+    write_files_of_getting_started,
 )
 
 RECORD = SOURCE / "results" / "reference"
@@ -80,6 +81,7 @@ def prepare(folder):
         ("log_device.json", device),
     ):
         (folder / name).write_text(text, encoding="ascii")
+    write_files_of_getting_started(folder)
     # The example in C, by the manual's line.
     compiler = re.search(r"^    (gcc .*) -o \S+$", text_of("algorithms/WRITE_A_LAW.md"), re.M)[
         1

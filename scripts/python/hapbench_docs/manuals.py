@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import textwrap
 from dataclasses import dataclass
@@ -23,6 +24,7 @@ ENDS = re.compile(r"^(?:\||&&|;|\d?>.*|<.*)$")
 BLOCK = re.compile(r"(<!-- generated: (\S+)[^\n]*-->\n)(.*?)(<!-- /generated -->)", re.S)
 BEGIN = "<!-- generated:"
 COLUMNS = 100  # of a session in a manual
+STARTED = ROOT / "scenarios" / "GETTING_STARTED.md"
 REFERENCE = ROOT / "results" / "reference"
 TASKS = {
     "D1": "upright, 0.52 mm aside",
@@ -132,6 +134,17 @@ def session(old, program, directory):
         f"    {text}".rstrip() for text in [line, "", *output.strip("\n").splitlines()]
     )
     return program.stamped(shown, old)
+
+
+def write_files_of_getting_started(folder):
+    """Writes the files that the tutorial makes without hapbench: a mesh my.obj and a compiled law mine.so."""
+    shutil.copy(ROOT / "scenarios/library/examples/data/molar.obj", folder / "my.obj")
+    text = STARTED.read_text(encoding="utf-8")
+    law = re.search(r"^```c\n(.*?)^```$", text, re.M | re.S)[1]
+    (folder / "mine.c").write_text(law, encoding="utf-8")
+    compiler = re.search(r"^    (gcc .*) mine.c -o mine.so$", text, re.M)[1].split()
+    command = [*compiler, folder / "mine.c", "-o", folder / "mine.so"]
+    subprocess.run(command, cwd=ROOT, check=True)
 
 
 def read(name):
