@@ -277,7 +277,7 @@ int study_settings(const ConvergeOptions& options, ProgramContext& context) {
   const double max_error = parse_position_error(options.to);
   const std::filesystem::path file = find_scenario(options.scenario);
   WorkPrecisionQuestion question{read_scenario_text(file), options.overrides};
-  for (const std::string& axis : options.over) question.over.push_back(parse_axis(axis));
+  for (const std::string& axis : options.over) question.over.push_back(parse_axis(axis, false, "--over"));
   question.levels = static_cast<std::size_t>(options.levels > 0 ? options.levels : kLevelsOfSettings);
   question.ratio = options.ratio;
   question.max_error = max_error;
