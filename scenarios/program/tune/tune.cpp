@@ -85,8 +85,8 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
   if (!tuned.empty()) {
     report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
-    report.say(
-        fmt::format("in your own loop (scenarios/LOOP.md): setup.scenario = {};\n", Json(tuned.string()).dump()));
+    report.say(fmt::format("your own haptic loop renders them with setup.scenario = {}; (scenarios/LOOP.md)\n",
+                           Json(tuned.string()).dump()));
   }
   report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", out.string(), shell_file(out)));
   report.json() = tuning_json(tuning, tuned);
