@@ -102,7 +102,7 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
   return {
       {"metric", "", "name of the metric", &Row::metric, kOnlyCsv},
       {"value", "unit of the field", "value of the refined field at this level", value},
-      {study.field, "1", "", &Row::value, only_printed()},
+      {study.field, "1", "", [](const Row& r) { return axis_cell(r.value); }, varied(only_printed())},
       {"outcome", "", "outcome of the run", &Row::outcome, under("outcome")},
       {"result", "unit of the metric",
        "value of the metric, sampled at the times of the coarsest level's steps; empty if the run has no value or "
@@ -210,7 +210,8 @@ std::string sufficient_level_text(const ConvergeStudy& study, double max_error) 
     const LevelRow& sufficient = levels[first];
     const std::string cost = fmt::format(", {:.2g} s per run, {:.2g} times the time of the first level",
                                          sufficient.seconds, sufficient.seconds / levels.front().seconds);
-    return below + fmt::format("{} = {} ({:.2g} %{}){}", study.field, sufficient.value, 100.0 * *sufficient.share,
+    return below + fmt::format("{} = {} ({:.2g} %{}){}", study.field, rounded_text(*finite_number(sufficient.value), 6),
+                               100.0 * *sufficient.share,
                                study.order ? "" : ", estimated from the differences of the levels",
                                first == 0 ? ", already at the coarsest level" : cost);
   }
@@ -229,7 +230,7 @@ double parse_relative_error(const std::string& text) {
   const auto number = finite_number(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
   const double share = number.value_or(0.0) * (percent ? 0.01 : 1.0);
   if (!(share > 0.0 && share < 1.0))
-    fail_in_option("--to", fmt::format("got \"{}\"; allowed: a relative error, as 1% or 0.01", text));
+    fail_in_option("--to", fmt::format("got \"{}\"; allowed: a relative error, such as 1% or 0.01", text));
   return share;
 }
 
@@ -262,9 +263,10 @@ double parse_position_error(const std::string& text) {
   if (text.empty()) return kErrorAskedFor;
   const auto number = finite_number(text);
   if (!number || *number <= 0.0)
-    fail_in_option("--to", fmt::format("got \"{}\"; allowed with --over: an error of the tip's position in metres, as "
-                                       "1e-6",
-                                       text));
+    fail_in_option("--to",
+                   fmt::format("got \"{}\"; allowed with --over: an error of the tip's position in metres, such "
+                               "as 1e-6",
+                               text));
   return *number;
 }
 
@@ -277,7 +279,7 @@ int study_settings(const ConvergeOptions& options, ProgramContext& context) {
   const double max_error = parse_position_error(options.to);
   const std::filesystem::path file = find_scenario(options.scenario);
   WorkPrecisionQuestion question{read_scenario_text(file), options.overrides};
-  for (const std::string& axis : options.over) question.over.push_back(parse_axis(axis));
+  for (const std::string& axis : options.over) question.over.push_back(parse_axis(axis, false, "--over"));
   question.levels = static_cast<std::size_t>(options.levels > 0 ? options.levels : kLevelsOfSettings);
   question.ratio = options.ratio;
   question.max_error = max_error;
@@ -311,7 +313,7 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(checked(plan.cases.load(i))); });
   report.say(fmt::format("{}: {} refined from {} by a factor of {:g} per level, formal order {:g}\n\n",
-                         runs.front().result.name, levels.axis.path, levels.axis.values.front(), levels.ratio,
+                         runs.front().result.name, levels.axis.path, level_text(levels, 0), levels.ratio,
                          levels.formal_order));
   std::vector<ConvergeStudy> studies;
   std::vector<LevelRow> rows;
@@ -358,8 +360,8 @@ void add_converge(CommandLine& line) {
               "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
               "environment.grid_m or tool.grid_m; any positive number whose error falls with it");
   command.add("--over <field=values>", options.over,
-              "run time against error of settings: fields to compare, such as integrator.type=all and "
-              "rendering.algorithm=a,b; may be repeated",
+              "print run time against error for each value of these fields, such as integrator.type=all or "
+              "rendering.algorithm=mean,proxy, at each time step; repeatable",
               {.several = true});
   command.add("--levels <n>", options.levels,
               "number of levels; the coarsest has the scenario's value (default: 5; with --over: 4)",
@@ -369,18 +371,20 @@ void add_converge(CommandLine& line) {
   command.add(
       "--to <error>", options.to,
       "also print the coarsest level with a relative error below this, such as 1%, and its run time; with --over: "
-      "the error of the tip's position [m] that is asked for (default: 1e-6)");
+      "print the cheapest setting whose error of the tip's position is below this [m] (default: 1e-6)");
   add_common(command, options, "converge_NAME");
   command.footer(
       "Result: one row per level with its error; the first row is your scenario's own setting. Below: observed order, "
       "extrapolated value, and grid convergence index (Roache), the relative error of the finest level.\n\n"
       "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names the "
-      "reason. Take the range of the finest levels as the answer, printed as \"last levels A ... B\".\n\n"
+      "reason. Take the range of the finest levels as the answer, printed as \"the last levels give A ... B\".\n\n"
       "Files: converge.csv (one row per metric: order, extrapolated value, range), converge_levels.csv (one row per "
       "metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier files."
       "\n\n"
-      "Run time against error: --over compares integrators and time steps with the converged solution of the same "
-      "problem. Every law is a problem of its own. Files: convergence.csv (errors) and convergence_timing.csv.\n\n"
+      "Run time against error: --over compares each setting with the converged solution, which another integrator "
+      "computes with a step at least 16 times smaller. Errors are rms differences of the tip's position and of the "
+      "force over the run. Each law has a solution of its own. Files: convergence.csv (errors) and "
+      "convergence_timing.csv.\n\n"
       "Time: with the default levels of the time step, about 31 times one run.");
 }
 

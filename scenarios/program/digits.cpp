@@ -4,13 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
+#include "results/io/columns.hpp"
+#include "scenarios/input/rounding.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
 
 std::string significant(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
+}
+
+std::string rounded_text(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const double rounded = rounded_to_digits(value, digits), size = std::abs(rounded);
+  if (size >= 1e-4 && size < 1.0) return fmt::format("{}", rounded);
+  return std::string(std::string_view(NumberText(rounded)));
 }
 
 int deserved_digits(double value, const std::optional<double>& tolerance, int max_digits) {

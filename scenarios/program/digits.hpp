@@ -9,6 +9,11 @@ namespace hapbench {
 
 /// Returns a number with `digits` significant digits; "-" for NaN and infinities.
 std::string significant(double value, int digits = 4);
+inline constexpr int kAllDigits = 17;
+/// Returns a number rounded to `digits` significant digits, in the shorter of the notations "43373200" and "4.34e+17",
+/// but from 1e-4 to 1 without an exponent; "-" for NaN and infinities. With kAllDigits the text reads back as the same
+/// double.
+std::string rounded_text(double value, int digits);
 /// Returns the number of digits of `value` from its leading digit down to the leading digit of the tolerance,
 /// from 1 to `max_digits`. Returns `max_digits` without a tolerance above 0, and for a value that is 0 or not finite.
 int deserved_digits(double value, const std::optional<double>& tolerance, int max_digits);

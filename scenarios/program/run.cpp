@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
@@ -66,7 +67,7 @@ Columns<Result> latency_columns() {
   const auto time = [](std::uint64_t StepLatency::*of) {
     return [of](const Result& r) {
       const StepLatency& latency = *r.timing.latency;
-      return latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(latency.*of) / 1e3) : "-";
+      return latency.steps > 0 ? short_text(static_cast<double>(latency.*of), std::nullopt, 1e-3) : "-";
     };
   };
   Columns<Result> columns = {
@@ -95,21 +96,24 @@ Columns<Result> latency_columns() {
 /// with the names of the rules. Empty if no rule applies.
 std::string diagnosis_text(std::span<const Result> reports, const Layout& layout) {
   std::string text;
+  const bool several = reports.size() > 1;
   for (const Result& report : reports) {
-    std::string rules;
+    std::vector<std::string> rules;
     // Explain each rule for a single run; only name the rules for several runs.
     for (const Diagnosed& found : *report.diagnosis) {
-      rules += fmt::format("{}{} ({:.3g})", rules.empty() ? "" : ", ", found.rule, found.value);
-      if (reports.size() > 1) continue;
+      rules.push_back(finding_text(found));
+      if (several) continue;
       const std::string unit = found.unit == "1" ? "" : " " + found.unit;
       text += layout.wrapped(
           fmt::format("{} (rule {}: {:.3g} > {:g}{})", found.says, found.rule, found.value, found.threshold, unit), 0);
       text += layout.wrapped("try: " + found.attempt, 2);
     }
-    if (reports.size() > 1 && !rules.empty())
-      text += layout.wrapped(fmt::format("diagnosis of {}: {}", report.name, rules), 0);
+    if (several && !rules.empty())
+      text += layout.wrapped(fmt::format("diagnosis of {}: {}", report.name, fmt::join(rules, ", ")), 0);
   }
-  return text.empty() ? "" : "\n" + text;
+  if (text.empty()) return "";
+  if (several) text += "run one scenario alone to get advice; \"hapbench describe diagnosis\" explains the rules\n";
+  return "\n" + text;
 }
 
 /// Returns where an expectation comes from: the scenario's field or its default.
@@ -196,9 +200,12 @@ void add_run(CommandLine& line) {
               "folder of the results (default: results/out/NAME); several scenarios get a subfolder each");
   add_overrides(command, options.overrides);
   command.add("--replay <log.csv>", options.replay,
-              "render the log of a haptic loop instead of the scenario's motion, and compare every force "
-              "(scenarios/LOOP.md)");
-  command.flag("--latency", options.latency, "measure the time of every step; print percentiles and missed deadlines");
+              "render the log of a haptic loop (scenarios/LOOP.md) instead of the scenario's motion, and compare every "
+              "output with the recorded output");
+  command.flag(
+      "--latency", options.latency,
+      "measure the time of every step; print percentiles, and the numbers of steps longer than 0.5 ms and than "
+      "1/2048 s");
   command.flag("--no-skip", options.no_skip,
                "disable all shortcuts of the computation; results are the same, only slower: for checks");
   command.footer(
@@ -206,7 +213,10 @@ void add_run(CommandLine& line) {
       "diagnosis), scenario.effective.json (all fields; repeats the run), columns.json (units and meanings). "
       "\"hapbench plot FOLDER\" draws them.\n\n"
       "Earlier results: a run in the same folder is replaced; other files stay. Use --out to keep both.\n\n"
-      "Exit status: 3 if a run does not end as its scenario expects; its results are written all the same.");
+      "Replay: give the scenario with which the log was recorded. With another scenario the forces may differ, which a "
+      "note says. replay.csv is the log with the new outputs, in results/out/NAME_replay.\n\n"
+      "Exit status: 3 if a run does not end as its scenario expects, or if a replay with the recorded scenario gives "
+      "other outputs; the results are written all the same.");
 }
 
 }  // namespace hapbench

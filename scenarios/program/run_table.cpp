@@ -170,6 +170,11 @@ std::string step_time_text(std::span<const Result> reports, const Layout& layout
   return "\n" + layout.wrapped(text, 0);
 }
 
+std::string finding_text(const Diagnosed& found) {
+  return fmt::format("{} ({:.3g} > {:g}{})", found.rule, found.value, found.threshold,
+                     found.unit == "1" ? "" : " " + found.unit);
+}
+
 std::string number_text(double value, const std::optional<double>& error) {
   if (error && *error == 0.0) return significant(value, 6);
   return error && *error >= std::abs(value) ? significant(value, 1) : deserved(value, error);

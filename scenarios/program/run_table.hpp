@@ -66,6 +66,9 @@ std::string fidelity_text(std::span<const Result> reports, const Layout& layout)
 /// differ in their numbers, its line quotes the first run and counts the others.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
+/// Returns a rule of the diagnosis that applies, with its value, its threshold and their unit: "buzz (0.289 > 0.1)".
+std::string finding_text(const Diagnosed& found);
+
 /// Returns a number with the digits that are significant at its error: one digit if the error is not smaller
 /// than the number, six digits if the error is 0, four if it is unknown.
 std::string number_text(double value, const std::optional<double>& error);

@@ -24,7 +24,6 @@
 #include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/columns.hpp"
-#include "scenarios/program/digits.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
@@ -45,16 +44,13 @@ namespace fs = std::filesystem;
 /// metric if no other column has the metric.
 Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric) {
   Columns<SweepRow> columns;
-  // Begin with the varied fields. If several fields vary, add the index of the run. Round sampled numbers.
-  const bool single = table.fields() == 1, sampled = table.about.contains("sample");
+  // Begin with the varied fields. If several fields vary, add the index of the run.
+  const bool single = table.fields() == 1;
   for (std::size_t c = single ? 1 : 0; c <= table.fields(); ++c) {
     std::string title = table.columns[c];
     if (const std::size_t dot = title.rfind('.'); !single && dot != std::string::npos) title.insert(dot + 1, "\n");
-    const auto value = [c, rounds = sampled && c > 0](const SweepRow& row) {
-      const auto number = rounds ? finite_number(row[c]) : std::nullopt;
-      return number ? significant(*number, 6) : row[c];
-    };
-    columns.add({{title, "unit of the metric", table.columns[c], value, only_printed()}});
+    const auto value = [c](const SweepRow& row) { return axis_cell(row[c]); };
+    columns.add({{title, "unit of the field", table.columns[c], value, varied(only_printed())}});
   }
   const auto outcome = [&table](const SweepRow& row) { return table.outcome(row); };
   columns.add({{"outcome", "", "outcome", outcome, only_printed()}});
@@ -135,14 +131,24 @@ struct SweepCommand : CommonOptions {
   bool resume = false, keep_runs = false, print = false;
 };
 
-constexpr const char* kNothingToSweep =
-    "sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep";
+constexpr const char* kNoScene =
+    "sweep: no scenario is given; allowed: a scenario and --vary, or the folder of a "
+    "finished sweep";
+
+/// Throws InputError about a scenario without --vary and --points.
+[[noreturn]] void fail_without_axes(const std::string& scenario) {
+  if (scenario.empty()) throw InputError(kNoScene);
+  throw InputError(
+      fmt::format("sweep: got {} without --vary, and it is no folder of a finished sweep; allowed: with "
+                  "--vary or --points, such as --vary rendering.stiffness_N_per_m=1e3:1e5:9:log",
+                  shell_word(scenario)));
+}
 
 /// Returns the scenes that an axis names, or the scene of the command line. Throws InputError.
 std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vector<Axis>& axes) {
   const auto axis = std::ranges::find(axes, kSceneAxis, &Axis::path);
   if (axis == axes.end()) {
-    if (command.scenario.empty()) throw InputError(kNothingToSweep);
+    if (command.scenario.empty()) throw InputError(kNoScene);
     return {read_scenario_text(find_scenario(command.scenario))};
   }
   if (!command.scenario.empty() || axis->range)
@@ -226,7 +232,8 @@ int reprint(const SweepCommand& command, ProgramContext& context) {
                     command.keep_runs || command.print;
   if (runs) {
     throw InputError(fmt::format(
-        "{}: holds a finished sweep, which is printed again; allowed with it: --where, --metric, --json, --quiet",
+        "{}: holds a finished sweep, which is printed again; allowed with it: --where, --metric, --json, --quiet; "
+        "--row and --print need the scenario and the options of the sweep instead",
         command.scenario));
   }
   print_sweep(command, read_sweep(fs::path(command.scenario) / "sweep.csv", command.where), context);
@@ -239,7 +246,7 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
   if (fs::is_directory(command.scenario, ignored))
     if (join_shards(command.scenario) || fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored))
       return reprint(command, context);
-  if (command.vary.empty() && command.points.empty()) throw InputError(kNothingToSweep);
+  if (command.vary.empty() && command.points.empty()) fail_without_axes(command.scenario);
   if (!command.where.empty() && !command.shard.empty())
     fail_in_option("--where",
                    "got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");
@@ -314,7 +321,8 @@ void add_sweep(CommandLine& line) {
   command.flag("--keep-runs", options.keep_runs, "also write the files of each run into OUT/runs/INDEX");
   command.add("--row <index>", options.row, "row of sweep.csv for --print, from 0");
   command.flag("--print", options.print,
-               "print the \"hapbench run\" line that repeats one row; add it to the options of the sweep");
+               "run nothing, but print the \"hapbench run\" command that repeats one row; give the scenario and the "
+               "options of the sweep too");
   command.needs("--row", "--print");
   command.needs("--print", "--row");
   command.add(

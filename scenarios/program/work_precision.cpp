@@ -43,7 +43,7 @@ Columns<Setting> error_columns(double max_error) {
   return {
       {"problem", "", "values of the fields of --over that define the problem, such as the law", &Setting::problem},
       {"integrator", "", "integrator of the curve", &Setting::integrator, under("integrator")},
-      {"step_s", "s", "time step", &Setting::step_s, under("step\ns")},
+      {"step_s", "s", "time step", &Setting::step_s, varied(under("step\ns"))},
       {"position_error_m", "m",
        "rms distance of the tip's positions from the reference solution, at the times of the largest time step; empty "
        "if the trajectory cannot be predicted, or if one of the runs ended early",

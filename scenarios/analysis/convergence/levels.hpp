@@ -28,6 +28,9 @@ struct LevelSweep {
 /// ratio of time steps is not an integer.
 LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
 
+/// Returns the value of level i for messages: a number with six significant digits, other text unchanged.
+std::string level_text(const LevelSweep& levels, std::size_t i);
+
 /// Returns the cases at all levels except the first. Throws InputError if a case is not valid.
 Cases finer_cases(const LevelSweep& levels, const Cases& cases);
 

@@ -47,8 +47,8 @@ std::string switching_reason(std::span<const LevelResult> last) {
     const auto& [name, coarse] = last.front().contacts[i];
     for (const LevelResult& level : last.subspan(1)) {
       if (level.contacts[i].second == coarse) continue;
-      return fmt::format("contacts change between the last levels ({} is {:.10g} at {}, {:.10g} at {})", name, coarse,
-                         last.front().setting, level.contacts[i].second, level.setting);
+      return fmt::format("contacts change between the last {} levels ({} is {:.10g} at {}, {:.10g} at {})", last.size(),
+                         name, coarse, last.front().setting, level.contacts[i].second, level.setting);
     }
   }
   return "";
@@ -198,7 +198,7 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
   // only the number of landings is comparable.
   constexpr const char* kContactCounts[] = {"landings", "steps_in_contact", "colliding_mean", "rendered_mean"};
   const std::string& path = levels.axis.path;
-  LevelResult result{.setting = fmt::format("{} = {}", path, levels.axis.values[level]),
+  LevelResult result{.setting = fmt::format("{} = {}", path, level_text(levels, level)),
                      .outcome = std::string(outcome_name(summary.end.outcome)),
                      .result = std::nullopt,
                      .state_hash = summary.state_hash};

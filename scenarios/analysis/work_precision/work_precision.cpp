@@ -213,7 +213,7 @@ std::string reference_text(const Study& study) {
     if (std::ranges::find(names, reference_integrator(curve)) == names.end())
       names.push_back(reference_integrator(curve));
   return fmt::format("{} at {} = {}", fmt::join(names, " and "), kStepPath,
-                     study.levels().axis.values[study.reference_level()]);
+                     level_text(study.levels(), study.reference_level()));
 }
 
 }  // namespace

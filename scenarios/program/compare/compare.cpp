@@ -110,7 +110,7 @@ void write_runs(const Comparison& comparison, const std::vector<Result>& reports
 /// Reports the ranking in ranking.csv, in the printed text and in the JSON.
 void report_ranking(const Ranking& league, const Layout& layout, Report& report) {
   report.write("ranking.csv", ranking_columns(false), league.standings);
-  report.say(ranking_text(league, layout));
+  report.say(ranking_text(league, report.folder().string(), layout));
   report.json()["standings"] = ranking_columns(false).json_list(league.standings);
   Json& laws = report.json()["laws"] = law_ranking_columns().json_list(league.laws);
   for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
@@ -184,11 +184,6 @@ int compare(const CompareOptions& given, ProgramContext& context) {
     const FinerRuns finer(comparison, reports, jobs);
     for (std::size_t s = 0; s < league.scenarios.size(); ++s)
       report_errors(league, finer, s, ranks || layout.in_full(), report, layout);
-    report.say("\n" +
-               layout.wrapped(
-                   "<: smaller by more than the sum of both errors; ~: not distinguishable; ?: a finer run has another "
-                   "outcome, so that no error is known",
-                   0));
   }
   if (options.time) report_times(comparison, reports, jobs, layout, report);
   report.say(fmt::format("\nresults in {}\n", out.string()));
@@ -222,16 +217,16 @@ void add_compare(CommandLine& line) {
               "render the log of a haptic loop with each law instead of the scenario's motion (scenarios/LOOP.md)");
   command.flag(
       "--errors", options.errors,
-      "repeat all runs at half and a quarter of the time step and of the point spacing, to print errors and check "
-      "which ranks hold; about 9 times the work");
+      "repeat all runs at half and a quarter of the time step and of the point spacing, to print the errors of the "
+      "metrics and the order that is significant at these errors; about 9 times the work");
   command.flag(
       "--time", options.time,
-      "also measure the processor time of each law, in runs without observers, and rank the laws by it; writes "
-      "comparison_timing.csv");
+      "also measure the processor time of a step with each law, and rank the laws by it; one run at a time, without "
+      "observers, the smallest of five repetitions; writes comparison_timing.csv");
   command.footer(
       "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
-      "of laws that are better by more than 0.1 % and by more than the errors of both. Laws with a failed run rank "
-      "last.\n\n"
+      "of laws whose mean is better by more than 0.1 % and by more than the errors of both; the spread over seeds does "
+      "not count. Laws with a failed run rank last.\n\n"
       "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "
       "along, or does not end as its scenario expects.\n\n"
       "Files: comparison.csv (one row per run), ranking.csv (one row per scenario, law and metric), and each run in "

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/input/shell_words.hpp"
 #include "scenarios/program/compare/columns.hpp"
 #include "scenarios/program/names.hpp"
 
@@ -72,22 +73,25 @@ std::string first_ranks_text(const Ranking& league) {
     rankings = count.rankings;
     if (count.first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count.first));
   }
-  if (firsts.size() == 1)
-    return fmt::format("{} alone has rank 1 in all {} rankings (scenario and metric)", league.laws.front().algorithm,
-                       rankings);
-  return fmt::format("no algorithm alone has rank 1 in all {} rankings (scenario and metric); times with rank 1: {}",
-                     rankings, fmt::join(first_few(firsts, kMaxNamed), ", "));
+  const std::string where =
+      rankings == 1 ? "" : fmt::format(" in each of the {} rankings (one per scenario and metric)", rankings);
+  if (firsts.size() == 1) return fmt::format("only {} has rank 1{}", league.laws.front().algorithm, where);
+  return fmt::format("no algorithm has rank 1 alone{}; rank 1: {}", where,
+                     fmt::join(first_few(firsts, kMaxNamed), ", "));
 }
 
 /// Summarizes which algorithms are first, and whether the seeds give a spread.
-std::string verdict(const Ranking& league, const Layout& layout) {
+std::string verdict(const Ranking& league, const std::string& folder, const Layout& layout) {
   std::string text = layout.wrapped(first_ranks_text(league), 0);
   if (!is_ranked(league)) return text;
   if (league.seeds < 2) return text + "one seed: the spread is unknown; --seeds K estimates it\n";
   std::vector<std::string> alike;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s)
     if (!league.depends_on_seed[s]) alike.push_back(league.scenarios[s]);
-  if (alike.empty()) return text + "\"hapbench report\" shows the differences between algorithms, seed by seed\n";
+  if (alike.empty())
+    return text + layout.wrapped(fmt::format("\"hapbench report {}\" compares the algorithms in pairs, seed by seed",
+                                             shell_file(folder)),
+                                 0);
   return text +
          layout.wrapped(
              fmt::format(
@@ -99,7 +103,7 @@ std::string verdict(const Ranking& league, const Layout& layout) {
 
 }  // namespace
 
-std::string ranking_text(const Ranking& league, const Layout& layout) {
+std::string ranking_text(const Ranking& league, const std::string& folder, const Layout& layout) {
   constexpr std::size_t kMaxPrinted = 60;
   const std::string table =
       league.standings.size() <= kMaxPrinted || layout.in_full()
@@ -107,10 +111,13 @@ std::string ranking_text(const Ranking& league, const Layout& layout) {
           : fmt::format("{} ranks are in ranking.csv; --wide prints them\n", league.standings.size());
   const std::string note =
       is_ranked(league)
-          ? layout.wrapped("rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %", 0)
+          ? layout.wrapped(std::string("rank: 1 is best; algorithms share a rank if their means differ by at most 0.1 "
+                                       "% or the errors of the metric") +
+                               (league.seeds > 1 ? "; the spread over the seeds does not count" : ""),
+                           0)
           : "";
   return fmt::format("{}\n{}\n{}{}", table, law_ranking_columns().text(league.laws, layout), note,
-                     verdict(league, layout));
+                     verdict(league, folder, layout));
 }
 
 }  // namespace hapbench

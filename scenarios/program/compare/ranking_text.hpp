@@ -10,7 +10,7 @@
 namespace hapbench {
 
 /// Returns the ranking in each scenario by each metric, the table of the algorithms over all scenarios and
-/// metrics, and sentences that summarize them.
-std::string ranking_text(const Ranking& league, const Layout& layout);
+/// metrics, and sentences that summarize them. `folder`: folder of the results.
+std::string ranking_text(const Ranking& league, const std::string& folder, const Layout& layout);
 
 }  // namespace hapbench

@@ -43,7 +43,7 @@ Index program_index(const Layout& layout) {
   add_presets(index, layout);
   for (const auto& [name, describe] : kSections)
     index.push_back({"section", name, "", [describe = describe, layout] { return describe(layout); }});
-  add_metric_terms(index, layout);
+  add_metric_terms(index, tables, layout);
   for (const DescribedTable& table : tables)
     if (!table.file.empty())
       index.push_back({"file", table.file, "", [table, layout] { return describe_table(table, layout); }});

@@ -1,5 +1,7 @@
 #include "scenarios/program/describe/result_names.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string_view>
 #include <utility>
@@ -7,6 +9,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/program/result_tables.hpp"
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/thesis/claims.hpp"
@@ -52,13 +55,16 @@ constexpr PrintedName kPrintedNames[] = {
 
 Json printed_names() {
   Json all = Json::array();
-  const auto add = [&all](std::string_view name, const char* kind, const char* meaning) {
+  const auto add = [&all](std::string_view name, const char* kind, std::string_view meaning) {
     all.push_back({{"kind", kind}, {"name", name}, {"meaning", meaning}});
   };
   for (const auto& [name, kind, meaning] : kPrintedNames) add(name, kind, meaning);
   for (const OutcomeInfo& outcome : outcome_infos()) add(outcome.name, "outcome of a run", outcome.meaning);
   for (const RunVerdictText& verdict : run_verdict_texts())
     add(verdict.name, "class of motion, of limit and stability", verdict.meaning);
+  for (const Diagnosed& rule : diagnosis_rules())
+    add(rule.rule, "rule of the diagnosis",
+        fmt::format("applies above {:g}{}: {}", rule.threshold, rule.unit == "1" ? "" : " " + rule.unit, rule.number));
   for (const auto& [name, meaning, mark] : kVerdicts) add(name, "verdict on a claim", meaning);
   return all;
 }
@@ -100,10 +106,15 @@ Description describe_printed_names(const Layout& layout) {
   return {"terms that the program prints\n" + entry_text(json, layout), json};
 }
 
-void add_metric_terms(Index& index, const Layout& layout) {
-  for (const Metric& metric : all_metrics())
-    add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}},
-             layout);
+void add_metric_terms(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout) {
+  for (const Metric& metric : all_metrics()) {
+    Json json = {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}};
+    for (const DescribedTable& table : tables)
+      for (const auto& column : table.columns)
+        if (!table.file.empty() && column.name == metric.name && column.meaning == metric.meaning)
+          json["files"].push_back(table.file);
+    add_term(index, json, layout);
+  }
 }
 
 void add_columns(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout) {
@@ -111,6 +122,9 @@ void add_columns(Index& index, const std::vector<DescribedTable>& tables, const 
   for (const DescribedTable& table : tables) {
     if (table.file.empty()) continue;
     for (const auto& [name, unit, meaning] : table.columns) {
+      // The entry of a metric names the files with this column.
+      const Metric* metric = find_metric(all_metrics(), name);
+      if (metric != nullptr && metric->meaning == meaning) continue;
       Json column = {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}};
       const auto same = std::ranges::find_if(all, [&column](const Json& known) {
         return known["name"] == column["name"] && known["meaning"] == column["meaning"];

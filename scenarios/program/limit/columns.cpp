@@ -8,7 +8,6 @@
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/analysis/stability/compared_devices.hpp"
-#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/digits.hpp"
 
 namespace hapbench {
@@ -28,11 +27,8 @@ Columns<Row> case_columns(const LimitTable* table) {
        when(devices || table->cases.scenes().size() > 1, under("scenario"))}};
   for (std::size_t i = 1; table != nullptr && i <= table->over(); ++i) {
     const std::string& path = table->cases.axes()[i].path;
-    const auto value = [i](const LimitRow& r) {
-      const auto number = finite_number(r.axis_values[i]);
-      return number ? Cell(*number) : Cell(r.axis_values[i]);
-    };
-    columns.add({{path, "unit of the field", "value of the field given by --over", value, under(path)}});
+    const auto value = [i](const LimitRow& r) { return axis_cell(r.axis_values[i]); };
+    columns.add({{path, "unit of the field", "value of the field given by --over", value, varied(under(path))}});
   }
   columns.add(
       {{"algorithm", "", "force algorithm", [](const LimitRow& r) { return r.algorithm(); }, under("algorithm")}});
@@ -63,7 +59,7 @@ Cell class_beyond_limit(const LimitRow& row) {
 std::string linear_limit_text(const LimitRow& row) {
   const auto& edge = row.limit.linear_edge();
   if (!edge) return "-";
-  return std::isinf(*edge) || *edge == 0.0 ? "none" : significant(*edge, 6);
+  return std::isinf(*edge) || *edge == 0.0 ? "none" : rounded_text(*edge, 6);
 }
 
 /// Returns a function of a row that applies `get` to a part of the row.

@@ -222,7 +222,7 @@ TEST_F(Override, IsCheckedLikeTheFile) {
       {"environment.groups.2.count=1", "environment.groups.2.count: got list index \"2\"; allowed: 0 ... 1"},
       {"environment.groups.-1=1", "environment.groups.-1: got list index \"-1\"; allowed: 0 ... 1"},
       {"environment.groups.99999999999999999999=1", "environment.groups.99999999999999999999: got list index"},
-      {"=5", "--set: got \"=5\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000"},
+      {"=5", "--set: got \"=5\"; allowed: path=value, such as rendering.stiffness_N_per_m=40000"},
   };
   for (const auto& [override, message] : kRefusals)
     EXPECT_EQ(refusal(override).find(message), 0u) << override << ": " << refusal(override);

@@ -91,7 +91,7 @@ TEST(ObservedOrder, IsNotStatedWhereContactsSwitch) {
   EXPECT_TRUE(judged(levels, 1.0).order) << "the coarse levels do not count";
   levels[4].contacts[1].second = 21.5;
   const Convergence c = judged(levels, 1.0);
-  expect_no_order(c, "contacts change between the last levels (colliding_mean is 21 at");
+  expect_no_order(c, "contacts change between the last 3 levels (colliding_mean is 21 at");
   EXPECT_EQ(c.band, std::pair(1.0625, 1.25));
   EXPECT_NEAR(*c.errors[0], 1.0 - 0.0625, 1e-12);
 }
