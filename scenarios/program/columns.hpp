@@ -107,19 +107,25 @@ class Columns {
     return list;
   }
 
-  /// Returns the printed table in the width of the layout. `rows` has rows or references to rows.
+  /// Returns the printed table. `rows` has rows or references to rows. `in_full` includes the columns for --wide.
   template <class Rows>
-  std::string text(const Rows& rows, const Layout& layout) const {
-    Table table{headings(layout.in_full())};
+  Table table(const Rows& rows, std::string caption, bool in_full) const {
+    Table table{headings(in_full), {}, std::move(caption)};
     for (const Row& row : rows) {
       std::vector<std::string> cells;
       for (const Entry& entry : entries_) {
-        if (!entry.is_printed(layout.in_full())) continue;
+        if (!entry.is_printed(in_full)) continue;
         cells.push_back(printed(entry.cell(row), entry.shown, entry.tolerance ? entry.tolerance(row) : std::nullopt));
       }
       table.rows.push_back(std::move(cells));
     }
-    return table.text(layout.width());
+    return table;
+  }
+
+  /// Returns the printed table as text in the width of the layout.
+  template <class Rows>
+  std::string text(const Rows& rows, const Layout& layout) const {
+    return table(rows, "", layout.in_full()).text(layout.width());
   }
 
   /// Returns the columns of the printed table; `in_full` includes the columns for --wide.
@@ -127,7 +133,8 @@ class Columns {
     std::vector<Table::Column> headings;
     for (const Entry& entry : entries_)
       if (entry.is_printed(in_full))
-        headings.push_back({entry.title(), !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning});
+        headings.push_back({entry.title(), !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning,
+                            entry.unit.starts_with("unit of") ? "" : entry.unit});
     return headings;
   }
 

@@ -78,7 +78,7 @@ void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t sc
     const bool known = heading != std::end(kRunHeadings);
     if (!all && (!known || heading->wide)) continue;
     const double factor = known ? heading->factor : 1.0;
-    table.columns.push_back({known ? heading->title : metric});
+    table.columns.push_back({.title = known ? heading->title : metric, .unit = metric_unit(metric)});
     for (std::size_t a = 0; a < numbers.size(); ++a) {
       const auto& [value, error] = numbers[a];
       const auto shown_error = error ? std::optional(factor * *error) : error;
@@ -86,9 +86,12 @@ void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t sc
     }
     sentences += layout.wrapped(fmt::format("{}: {}", metric, says), 0);
   }
-  report.say(fmt::format(
-      "\nerror estimates: {}\n\n{}\n{}\n{}", league.scenarios[scenario], table.text(layout.prose_width()), sentences,
-      layout.wrapped(fmt::format("+-: error estimated by refinement: {}", finer.refined(scenario)), 0)));
+  table.caption = fmt::format("error estimates: {}", league.scenarios[scenario]);
+  report.say(fmt::format("\n{}\n\n", table.caption));
+  report.show(std::move(table), layout.prose_width());
+  report.say(
+      fmt::format("\n{}\n{}", sentences,
+                  layout.wrapped(fmt::format("+-: error estimated by refinement: {}", finer.refined(scenario)), 0)));
 }
 
 std::string vibration_text(const Ranking& league, const Layout& layout) {
