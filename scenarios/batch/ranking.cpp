@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/run/expectations.hpp"
@@ -79,6 +80,22 @@ std::optional<std::uint64_t> rank_of(const Ranking& ranking, std::size_t s, std:
   return has_mean && ranking.better[m] != Better::none ? std::optional(rank) : std::nullopt;
 }
 
+/// Removes the ranks in scenario s for metric m that the errors do not allow: the rank of an algorithm whose mean is
+/// only bounded, and all ranks if they are equal.
+void remove_unfounded_ranks(Ranking& ranking, std::size_t s, std::size_t m) {
+  std::set<std::uint64_t> ranks;
+  const std::size_t first = s * ranking.algorithms.size();
+  const auto entry = [&](std::size_t a) -> RankingEntry& {
+    return ranking.standings[(first + a) * ranking.metrics.size() + m];
+  };
+  for (std::size_t a = 0; a < ranking.algorithms.size(); ++a) {
+    RankingEntry& own = entry(a);
+    if (own.failed == 0 && is_only_bounded({own.mean, own.tolerance})) own.rank.reset();
+    if (own.rank) ranks.insert(*own.rank);
+  }
+  for (std::size_t a = 0; a < ranking.algorithms.size() && ranks.size() < 2; ++a) entry(a).rank.reset();
+}
+
 /// Returns the result of algorithm a over all scenarios and metrics.
 LawRankingEntry law_ranking_entry(const Ranking& ranking, std::size_t a) {
   LawRankingEntry law{ranking.algorithms[a], {}, {}};
@@ -117,6 +134,7 @@ void Ranking::rank() {
     for (std::size_t a = 0; a < algorithms.size(); ++a)
       for (std::size_t m = 0; m < metrics.size(); ++m)
         standings[first + a * metrics.size() + m].rank = rank_of(*this, s, a, m);
+    for (std::size_t m = 0; m < metrics.size(); ++m) remove_unfounded_ranks(*this, s, m);
   }
   // Rank the algorithms over all scenarios.
   for (std::size_t a = 0; a < algorithms.size(); ++a) laws.push_back(law_ranking_entry(*this, a));

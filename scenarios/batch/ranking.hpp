@@ -29,7 +29,8 @@ struct RankingEntry {
   /// 1 + the number of better algorithms. Algorithms without failures come first, in the order of their means
   /// (is_less()). Algorithms without failures and without a mean come after them: for example, a tool that is thrown
   /// out at once has no settled force. Algorithms with failures follow, in the order of their number of failed seeds.
-  /// Empty if no algorithm has the metric, or if neither smaller nor larger values are better.
+  /// Empty if no algorithm has the metric, if neither smaller nor larger values are better, if only a bound of the mean
+  /// is known (is_only_bounded()), or if all algorithms would have the same rank.
   std::optional<std::uint64_t> rank = {};
   std::uint64_t common_seeds = 1;
   Better better = Better::less;

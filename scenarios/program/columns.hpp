@@ -118,13 +118,13 @@ class Columns {
     return list;
   }
 
-  /// Returns the printed table in the width of the layout. `rows` has rows or references to rows.
+  /// Returns the printed table. `rows` has rows or references to rows. `in_full` includes the columns for --wide.
   template <class Rows>
-  std::string text(const Rows& rows, const Layout& layout) const {
-    Table table{headings(layout.in_full())};
+  Table table(const Rows& rows, std::string caption, bool in_full) const {
+    Table table{headings(in_full), {}, std::move(caption)};
     table.rows.resize(std::size(rows));
     for (const Entry& entry : entries_) {
-      if (!entry.is_printed(layout.in_full())) continue;
+      if (!entry.is_printed(in_full)) continue;
       std::vector<Cell> cells;
       std::vector<std::optional<double>> tolerances;
       for (const Row& row : rows) {
@@ -134,7 +134,13 @@ class Columns {
       const std::vector<std::string> texts = printed(cells, entry.shown, tolerances);
       for (std::size_t i = 0; i < texts.size(); ++i) table.rows[i].push_back(texts[i]);
     }
-    return table.text(layout.width());
+    return table;
+  }
+
+  /// Returns the printed table as text in the width of the layout.
+  template <class Rows>
+  std::string text(const Rows& rows, const Layout& layout) const {
+    return table(rows, "", layout.in_full()).text(layout.width());
   }
 
   /// Returns the columns of the printed table; `in_full` includes the columns for --wide.
@@ -142,7 +148,8 @@ class Columns {
     std::vector<Table::Column> headings;
     for (const Entry& entry : entries_)
       if (entry.is_printed(in_full))
-        headings.push_back({entry.title(), !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning});
+        headings.push_back({entry.title(), !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning,
+                            entry.unit.starts_with("unit of") ? "" : entry.unit});
     return headings;
   }
 

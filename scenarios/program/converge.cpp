@@ -20,6 +20,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
+#include "scenarios/program/describe/fields.hpp"
 #include "scenarios/program/digits.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
@@ -90,11 +91,16 @@ ConvergeStudy convergence_study(const LevelSweep& levels, const std::vector<Leve
   return study;
 }
 
+/// Returns a result with the digits that are significant at its error, six if the error is 0.
+std::string result_text(double value, const std::optional<double>& error) {
+  return error && *error == 0.0 ? significant(value, 6) : deserved(value, error);
+}
+
 /// Returns the columns of the levels. `study` provides the field and metric for the printed headings.
 Columns<LevelRow> level_columns(const ConvergeStudy& study) {
   using Row = LevelRow;
   const auto value = [](const Row& r) { return finite_number(r.value); };
-  const auto result = [](const Row& r) { return r.result ? number_text(*r.result, r.error) : "-"; };
+  const auto result = [](const Row& r) { return r.result ? result_text(*r.result, r.error) : "-"; };
   const auto order = [has_order = study.order.has_value()](const Row& r) {
     return has_order && r.order ? fmt::format("{:.2f}", *r.order) : "-";
   };
@@ -102,13 +108,14 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
   return {
       {"metric", "", "name of the metric", &Row::metric, kOnlyCsv},
       {"value", "unit of the field", "value of the refined field at this level", value},
-      {study.field, "1", "", [](const Row& r) { return axis_cell(r.value); }, varied(only_printed())},
+      {study.field, field_unit(study.field), "", [](const Row& r) { return axis_cell(r.value); },
+       varied(only_printed())},
       {"outcome", "", "outcome of the run", &Row::outcome, under("outcome")},
       {"result", "unit of the metric",
        "value of the metric, sampled at the times of the coarsest level's steps; empty if the run has no value or "
        "diverges",
        &Row::result},
-      {study.metric, "1", "", result, only_printed()},
+      {study.metric, metric_unit(study.metric), "", result, only_printed()},
       {"observed_order", "1",
        "observed order p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level (f_3) and the two coarser levels, with "
        "the refinement ratio r; empty without these",
@@ -320,7 +327,8 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   for (const std::string& metric : metrics) {
     const ConvergeStudy& study = studies.emplace_back(convergence_study(levels, runs, metric));
     rows.insert(rows.end(), study.levels.begin(), study.levels.end());
-    report.say(level_columns(study).text(study.levels, layout) + "\n" + layout.wrapped(verdict_text(study), 0));
+    report.show(level_columns(study).table(study.levels, fmt::format("convergence of {}", metric), layout.in_full()));
+    report.say("\n" + layout.wrapped(verdict_text(study), 0));
     if (max_error) report.say(layout.wrapped(sufficient_level_text(study, *max_error), 0));
     report.say("\n");
     report.json().push_back(study_json(study));
@@ -373,6 +381,7 @@ void add_converge(CommandLine& line) {
       "also print the coarsest level with a relative error below this, such as 1%, and its run time; with --over: "
       "print the cheapest setting whose error of the tip's position is below this [m] (default: 1e-6)");
   add_common(command, options, "converge_NAME");
+  add_table(command, options.output);
   command.footer(
       "Result: one row per level with its error; the first row is your scenario's own setting. Below: observed order, "
       "extrapolated value, and grid convergence index (Roache), the relative error of the finest level.\n\n"

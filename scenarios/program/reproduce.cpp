@@ -214,7 +214,7 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
   report.json() = ledger_json(judged, published, robustness);
   const Json& json = report.json();
   if (options.only.empty()) report.say(layout.wrapped(json.at("headline").get<std::string>()) + "\n\n");
-  report.say(claim_columns().text(json.at("claims").get<std::vector<Json>>(), layout));
+  report.show(claim_columns().table(json.at("claims").get<std::vector<Json>>(), "claims", layout.in_full()));
   if (!options.only.empty()) report.say(claims_text(judged, layout));
   if (!ledger.empty()) {
     report.files().write(ledger, json_text(json));
@@ -247,6 +247,7 @@ void add_reproduce(CommandLine& line) {
       "file of the ledger, with a Markdown table next to it (default: OUT/claims.json; with --only, no ledger)");
   command.flag("--rerun", options.rerun, "repeat all runs, also those whose results are current");
   add_jobs(command, options.jobs);
+  add_table(command, options.output);
   command.add("--choices <file.csv>", options.readings,
               "judge all claims again under other assumptions: one set of assumptions per row, one column per changed "
               "assumption, such as results/reference/readings.csv");

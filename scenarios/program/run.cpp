@@ -50,8 +50,7 @@ Columns<PlaceMetrics> target_columns() {
     return [=](const PlaceMetrics& p) {
       const SubjectMean& m = p.*of;
       if (m.subjects == 0) return std::string("-");
-      return fmt::format("{} +- {}", deserved(factor * m.mean, 0.1 * factor * m.standard_error, 3),
-                         significant(factor * m.standard_error, 2));
+      return with_spread(factor * m.mean, factor * m.standard_error, std::nullopt, 3);
     };
   };
   return {
@@ -122,6 +121,24 @@ const char* expectation_source(const Scenario& scenario) {
   return is_default ? "by default, without the field expect" : "field expect";
 }
 
+/// Reports the tables and the diagnosis of the runs.
+void report_results(const std::vector<Result>& results, bool latency, const Layout& layout, Report& report) {
+  report.show(run_table(results, true, layout));
+  report_fidelity(results, layout, report);
+  report.say(step_time_text(results, layout));
+  for (const Result& result : results) {
+    if (!result.sections.contains("targets")) continue;
+    const std::string caption = fmt::format("{}: targets, mean +- standard error over subjects", result.name);
+    report.say(fmt::format("\n{}\n\n", caption));
+    report.show(target_columns().table(place_metrics(result.targets), caption, layout.in_full()));
+  }
+  if (latency) {
+    report.say("\n");
+    report.show(latency_columns().table(results, "wall time of the time steps", layout.in_full()));
+  }
+  report.say(diagnosis_text(results, layout));
+}
+
 /// Throws InputError for options that have no meaning with --replay.
 int run_replay(const RunOptions& options, ProgramContext& context) {
   if (options.latency || options.no_skip)
@@ -154,7 +171,6 @@ int run(const RunOptions& options, ProgramContext& context) {
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   Report report(options.output, where, context);
   std::vector<Result> results;
-  std::string targets;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const Result& result =
         results.emplace_back(run_scenario(scenarios[i], RunOutput(directories[i], /*has_lock=*/true),
@@ -164,9 +180,6 @@ int run(const RunOptions& options, ProgramContext& context) {
       print_note(context,
                  fmt::format("replaced the results of a run with other fields in {}; --out DIRECTORY keeps both",
                              directories[i].string()));
-    if (result.sections.contains("targets"))
-      targets += fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", result.name,
-                             target_columns().text(place_metrics(result.targets), layout));
     print_warnings(context, run_warnings({&result, 1}));
     Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
@@ -177,10 +190,8 @@ int run(const RunOptions& options, ProgramContext& context) {
                    kUnexpectedOutcome);
     }
   }
-  const std::string latency_text = options.latency ? "\n" + latency_columns().text(results, layout) : "";
-  report.say(run_table(results, true, layout) + fidelity_text(results, layout) + step_time_text(results, layout) +
-             targets + latency_text + diagnosis_text(results, layout) +
-             fmt::format("\nresults in {}\n", where.string()));
+  report_results(results, options.latency, layout, report);
+  report.say(fmt::format("\nresults in {}\n", where.string()));
   return report.finish();
 }
 
@@ -206,6 +217,7 @@ void add_run(CommandLine& line) {
       "--latency", options.latency,
       "measure the time of every step; print percentiles, and the numbers of steps longer than 0.5 ms and than "
       "1/2048 s");
+  add_table(command, options.output);
   command.flag("--no-skip", options.no_skip,
                "disable all shortcuts of the computation; results are the same, only slower: for checks");
   command.footer(

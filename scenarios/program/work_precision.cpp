@@ -112,8 +112,9 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
   std::vector<Setting> all;
   for (const WorkPrecisionProblem& problem : problems) {
     all.insert(all.end(), problem.settings.begin(), problem.settings.end());
-    report.say(fmt::format("{}\n\n{}\n{}", problem.name, error_columns(max_error).text(problem.settings, layout),
-                           layout.wrapped(answer_text(problem, max_error), 0)));
+    report.say(problem.name + "\n\n");
+    report.show(error_columns(max_error).table(problem.settings, problem.name, layout.in_full()));
+    report.say("\n" + layout.wrapped(answer_text(problem, max_error), 0));
     const auto& first = problem.settings.front();
     report.say(layout.wrapped(fmt::format("reference: {}; its error is about {} m and {} N", problem.reference,
                                           significant(first.reference_error.position, 1),

@@ -10,7 +10,7 @@ from pictures_test import Given, made, make_root, plotted
 from hapbench.columns import read_records
 from hapbench_pictures.device_plot import BEYOND_LABEL, PUBLISHED_LABEL
 from hapbench_pictures.study_plot import draw_study
-from hapbench_style import SHEETS, plt
+from hapbench_style import RED, SHEETS, plt
 
 setUpModule = make_root
 OVER = "rendering.damping_N_s_per_m"
@@ -285,6 +285,22 @@ class Limits(Given):
         rewrite(folder / "tune_trials.csv", refuse)
         self.assertEqual(legend_labels(draw_study(folder)), ["mean", "not feasible"])
         plt.close()
+
+    def test_the_bounds_of_tune_are_drawn(self):
+        bounds = ("--bound", "inside_max_m=4e-3", "--bound", "force_rms_above_30Hz_N=0.5:20")
+        words = ("tune", "impedance_at_wall", "--algorithms", "mean", "--damping-ratio", "0.2:0.3")
+        folder = made("bounded", *words, *bounds)
+        figure = draw_study(folder, SHEETS["double"])
+        depth, vibration = {4.0}, {0.5, 20.0}
+        for ax, x, y in zip(figure.axes, (set(), set(), depth), (depth, vibration, vibration)):
+            lines = [line for line in ax.lines if line.get_color() == RED]
+            drawn = [tuple(map(set, zip(*line.get_xydata()))) for line in lines]
+            self.assertEqual({xs.pop() for xs, _ in drawn if len(xs) == 1}, x)
+            self.assertEqual({ys.pop() for _, ys in drawn if len(ys) == 1}, y)
+            (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+            self.assertTrue(all(left < v < right for v in x) and all(low < v < high for v in y))
+        self.assertIn("bound", legend_labels(figure))
+        plt.close(figure)
 
     def test_they_fit_every_sheet(self):
         folders = [

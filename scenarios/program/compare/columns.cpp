@@ -27,17 +27,14 @@ constexpr std::string_view kComparedMetrics =
     "inside_settled_m centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
     "fidelity.force_direction_error_rad fidelity.force_artefact_share";
 
-/// Returns the error of the mean: the largest of three numbers: the error of the single values, the standard error
-/// over seeds, and a tenth of the difference up to which two means share a rank. Without a spread, returns the error
-/// of the single values.
+}  // namespace
+
 std::optional<double> error_of_mean(const RankingEntry& standing) {
   if (!standing.spread) return standing.tolerance;
   const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));
   return std::max(
       {standing.tolerance, std::optional(of_seeds), std::optional(0.1 * kRankResolution * std::abs(*standing.mean))});
 }
-
-}  // namespace
 
 Columns<ComparedRun> comparison_columns(bool seeds) {
   using Row = ComparedRun;
@@ -79,7 +76,8 @@ Columns<RankingEntry> ranking_columns(bool seeds) {
       {"rank", "1",
        "rank of the algorithm in this scenario by this metric: 1 + the number of algorithms that are better by more "
        "than 0.1 % and by more than the sum of both errors; algorithms with failed runs come last, ordered by the "
-       "number of failed runs; empty if the metric has no better direction",
+       "number of failed runs; empty if the metric has no better direction, if the error of the mean is not smaller than "
+       "the mean, or if all algorithms would have the same rank",
        &Row::rank, under("rank")},
       {"common_seeds", "1",
        "number of seeds over which mean and spread are taken: seeds with which every algorithm succeeded that "

@@ -110,19 +110,21 @@ void write_runs(const Comparison& comparison, const std::vector<Result>& reports
 /// Reports the ranking in ranking.csv, in the printed text and in the JSON.
 void report_ranking(const Ranking& league, const Layout& layout, Report& report) {
   report.write("ranking.csv", ranking_columns(false), league.standings);
-  report.say(ranking_text(league, report.folder().string(), layout));
+  report_ranking_text(league, layout, report);
   report.json()["standings"] = ranking_columns(false).json_list(league.standings);
   Json& laws = report.json()["laws"] = law_ranking_columns().json_list(league.laws);
   for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
 }
 
-/// Returns the table of the runs of one scene. `errors`: errors are reported, so that the sentence on vibration
+/// Reports the table of the runs of one scene. `errors`: errors are reported, so that the sentence on vibration
 /// is omitted.
-std::string runs_text(const std::vector<Result>& reports, const Ranking& league, bool errors, const Layout& layout) {
-  std::string text = reports.front().name + "\n\n" + run_table(reports, false, layout) + fidelity_text(reports, layout);
-  if (!errors) text += vibration_text(league, layout);
-  if (layout.in_full()) text += step_time_text(reports, layout);
-  return text;
+void report_runs(const std::vector<Result>& reports, const Ranking& league, bool errors, const Layout& layout,
+                 Report& report) {
+  report.say(reports.front().name + "\n\n");
+  report.show(run_table(reports, false, layout));
+  report_fidelity(reports, layout, report);
+  if (!errors) report.say(vibration_text(league, layout));
+  if (layout.in_full()) report.say(step_time_text(reports, layout));
 }
 
 /// Throws InputError for options that have no meaning with --replay.
@@ -177,7 +179,7 @@ int compare(const CompareOptions& given, ProgramContext& context) {
   if (ranks) {
     report_ranking(league, layout, report);
   } else {
-    report.say(runs_text(reports, league, options.errors, layout));
+    report_runs(reports, league, options.errors, layout, report);
   }
   if (options.errors) {
     // Repeat the runs with finer steps and spacings for the errors of their metrics.
@@ -223,6 +225,7 @@ void add_compare(CommandLine& line) {
       "--time", options.time,
       "also measure the processor time of a step with each law, and rank the laws by it; one run at a time, without "
       "observers, the smallest of five repetitions; writes comparison_timing.csv");
+  add_table(command, options.output);
   command.footer(
       "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
       "of laws whose mean is better by more than 0.1 % and by more than the errors of both; the spread over seeds does "

@@ -80,7 +80,7 @@ void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t sc
     if (!all && (!known || heading->wide)) continue;
     const double factor = known ? heading->factor : 1.0;
     std::string title = known ? heading->title : metric;
-    table.columns.push_back({title});
+    table.columns.push_back({.title = title, .unit = metric_unit(metric)});
     for (std::size_t a = 0; a < numbers.size(); ++a) {
       const auto& [value, error] = numbers[a];
       const auto shown_error = error ? std::optional(factor * *error) : error;
@@ -97,8 +97,10 @@ void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t sc
   if (has_order) signs += "\n<: smaller by more than the sum of both errors";
   if (has_ties) signs += "\n~: the difference is within the sum of both errors";
   if (has_unknown) signs += "\n?: unknown, because a finer run has another outcome";
-  report.say(fmt::format("\nerror estimates: {}\n\n{}\n{}\n{}", league.scenarios[scenario],
-                         table.text(layout.prose_width()), sentences, layout.wrapped(signs, 0)));
+  table.caption = fmt::format("error estimates: {}", league.scenarios[scenario]);
+  report.say(fmt::format("\n{}\n\n", table.caption));
+  report.show(std::move(table), layout.prose_width());
+  report.say(fmt::format("\n{}\n{}", sentences, layout.wrapped(signs, 0)));
 }
 
 std::string vibration_text(const Ranking& league, const Layout& layout) {

@@ -1,16 +1,15 @@
 #pragma once
 
-#include <string>
-
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/ranking.hpp"
 #include "scenarios/program/layout.hpp"
+#include "scenarios/program/report.hpp"
 
 /// The printed ranking of `compare`.
 namespace hapbench {
 
-/// Returns the ranking in each scenario by each metric, the table of the algorithms over all scenarios and
-/// metrics, and sentences that summarize them. `folder`: folder of the results.
-std::string ranking_text(const Ranking& league, const std::string& folder, const Layout& layout);
+/// Reports the ranking in each scenario by each metric, the table of the algorithms over all scenarios and
+/// metrics, and sentences that summarize them. With --table, law_metric_table() replaces the two tables.
+void report_ranking_text(const Ranking& league, const Layout& layout, Report& report);
 
 }  // namespace hapbench

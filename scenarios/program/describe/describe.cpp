@@ -120,6 +120,9 @@ int describe(const DescribeOptions& options, ProgramContext& context) {
   if (meanings.empty()) meanings = described_headings(index, options.name);
   const bool is_group = std::ranges::find(kScenarioGroups, options.name) != std::end(kScenarioGroups);
   if (meanings.empty() && is_group) return list(options, context);
+  if (!options.output.table.empty())
+    fail_in_option("--table",
+                   fmt::format("got it with \"{}\"; allowed: with a list, such as claims or algorithms", options.name));
   if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
   const bool is_known = !meanings.empty();
   if (!is_known) meanings = other_meanings(index, options.name, layout);
@@ -139,6 +142,7 @@ void add_describe(CommandLine& line) {
   auto [command, options] = line.command("describe", "Explain a name, or list what exists.", describe);
   command.add("name <name>", options.name, "what to explain, see below; without it, everything is listed");
   command.add("--grep <text>", options.grep, "list only entries with this text in name, description or source");
+  add_table(command, options.output);
   command.footer(
       "A list: algorithms, scenarios, studies, devices, metrics, columns, claims, terms, or a group of scenarios such "
       "as thesis.\n\n"

@@ -93,6 +93,15 @@ const FieldGuide* find_field(const std::string& path) {
   return found == all.end() ? nullptr : found->field;
 }
 
+std::string field_unit(const std::string& path) {
+  // The text of the allowed values ends with the unit, as in "a number > 0 and <= 10 [m]".
+  const FieldGuide* field = find_field(path);
+  if (field == nullptr || !field->value.allowed.ends_with(']')) return "1";
+  const std::string& allowed = field->value.allowed;
+  const std::size_t begin = allowed.rfind('[') + 1;
+  return allowed.substr(begin, allowed.size() - begin - 1);
+}
+
 Description describe_field(const std::string& path, const Layout& layout) {
   if (Description types = describe_types(path, layout); !types.text.empty()) return types;
   // Group the types that share the schema of the field.

@@ -13,6 +13,9 @@ namespace hapbench {
 /// returns the field of the first type.
 const FieldGuide* find_field(const std::string& path);
 
+/// Returns the unit of the numbers of a field, such as "N/m"; "1" for numbers without a unit and for other fields.
+std::string field_unit(const std::string& path);
+
 /// Describes the field at a dotted path, with one description for each group of types that share the field's
 /// schema.
 Description describe_field(const std::string& path, const Layout& layout);

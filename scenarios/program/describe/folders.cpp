@@ -76,7 +76,10 @@ IndexEntry on_record(const char* kind, const Json& item, const Layout& layout) {
     return Description{entry_text(titled, layout), item};
   };
   Json more = Json::object();
-  if (item.contains("claim")) more = {{"verdict", item.at("verdict")}, {"source", item.at("place")}};
+  if (item.contains("claim")) {
+    more = {{"verdict", item.at("verdict")}, {"source", item.at("place")}};
+    for (const char* member : {"sureness", "published", "measured"}) more[member] = item.value(member, "");
+  }
   return {kind, item.at("id").get<std::string>(), item.value("claim", ""), describe, more};
 }
 

@@ -67,6 +67,29 @@ std::string list_text(const Index& all, bool only_names, const Layout& layout) {
   return text;
 }
 
+/// Returns the list as a table: kind (if there are several), name, summary, and the further members of the JSON.
+Table list_table(const Index& all) {
+  const bool is_one_kind = std::ranges::all_of(all, [&all](const IndexEntry& i) { return i.kind == all.front().kind; });
+  std::vector<std::string> members;
+  for (const IndexEntry& item : all)
+    for (const auto& member : item.more.items()) append_new(members, {member.key()});
+  Table table{.caption = is_one_kind ? list_name(all.front().kind) : "names"};
+  if (!is_one_kind) table.columns.push_back({"kind", false});
+  table.columns.push_back({is_one_kind ? all.front().kind : "name", false});
+  table.columns.push_back({"summary", false});
+  for (const std::string& member : members) table.columns.push_back({member, false});
+  for (const IndexEntry& item : all) {
+    auto& row = table.rows.emplace_back();
+    if (!is_one_kind) row.push_back(item.kind);
+    row.insert(row.end(), {item.name, item.summary});
+    for (const std::string& member : members) {
+      const Json value = item.more.value(member, Json(""));
+      row.push_back(value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+  return table;
+}
+
 }  // namespace
 
 std::span<const char* const> listed_kinds() {
@@ -100,6 +123,10 @@ int list(const DescribeOptions& options, ProgramContext& context) {
     for (const IndexEntry& item : index)
       if (item.kind == kind && is_requested(item)) all.push_back(item);
   if (all.empty()) throw InputError(fmt::format("--grep: no name or text contains \"{}\"", options.grep));
+  if (!options.output.table.empty()) {
+    print_tables(context, options.output, std::vector{list_table(all)});
+    return kSuccess;
+  }
   Json json = Json::array();
   for (const IndexEntry& item : all) {
     Json& entry = json.emplace_back(Json{{"kind", item.kind}, {"name", item.name}, {"summary", item.summary}});

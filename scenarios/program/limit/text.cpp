@@ -186,7 +186,8 @@ std::string limit_answer(const FieldLimit& found) {
                     found.tried_between, 100.0 * may_fail_share(found.tried_between));
 }
 
-std::string limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout) {
+void report_limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout,
+                        Report& report) {
   std::string text, answers, remarks;
   for (std::size_t i = 0; i < table.columns(); ++i) {
     const LimitRow& row = table.rows[i];
@@ -197,9 +198,11 @@ std::string limits_text(const LimitTable& table, const Columns<LimitRow>& column
     remarks += remarks_text(row, layout);
   }
   const LimitRow& first = table.first();
-  return fmt::format("{}\n{}{}{}\n{}{}{}", text, answers, answers.empty() ? "" : "\n", columns.text(table.rows, layout),
-                     layout.wrapped(rule_text(first.question.rule, first.scenario), 0), remarks,
-                     notes_text(table, layout));
+  report.say(fmt::format("{}\n{}{}", text, answers, answers.empty() ? "" : "\n"));
+  const std::string caption = fmt::format("{} stable {}", first.question.side(), first.question.path);
+  report.show(columns.table(table.rows, caption, layout.in_full()));
+  report.say("\n" + layout.wrapped(rule_text(first.question.rule, first.scenario), 0) + remarks +
+             notes_text(table, layout));
 }
 
 }  // namespace hapbench

@@ -79,14 +79,15 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
 
 }  // namespace
 
-std::string tuning_text(const Tuning& tuning, const Layout& layout) {
-  std::string text = layout.wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
-                     recommendation_text(tuning, layout) + "\n" + tuned_columns().text(tuning.laws, layout) + "\n";
+void report_tuning(const Tuning& tuning, const Layout& layout, Report& report) {
+  report.say(layout.wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
+             recommendation_text(tuning, layout) + "\n");
+  report.show(tuned_columns(tuning.question).table(tuning.laws, tuning.scene, layout.in_full()));
+  report.say("\n");
   for (const TunedLaw& law : tuning.laws)
     if (!law.choice)
-      text += layout.wrapped(
-          fmt::format("{}: no stiffness keeps all constraints: {}; {}", law.algorithm, law.why, law.relax), 0);
-  return text;
+      report.say(layout.wrapped(
+          fmt::format("{}: no stiffness keeps all constraints: {}; {}", law.algorithm, law.why, law.relax), 0));
 }
 
 }  // namespace hapbench

@@ -71,7 +71,7 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   const std::filesystem::path& out = report.folder();
   // Tune the laws and write their tables.
   tune_laws(algorithms, options.output.quiet, tuning, context);
-  report.write("tune.csv", tuned_columns(), tuning.laws);
+  report.write("tune.csv", tuned_columns(tuning.question), tuning.laws);
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
   report.write("tune_trials.csv", trial_columns(), trials);
@@ -86,7 +86,7 @@ int tune(const TuneOptions& options, ProgramContext& context) {
     tuned_json = tuned_scenario(tuning, *tuning.ranking[0], out);
     report.files().write(tuned, json_text(tuned_json));
   }
-  report.say(tuning_text(tuning, layout));
+  report_tuning(tuning, layout, report);
   if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
   if (!tuned.empty()) {
     report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
@@ -127,6 +127,7 @@ void add_tune(CommandLine& line) {
               "scale of the mount in your own loop: the printed lines divide the coefficients by it (default: 1)");
   command.flag("--filters", options.question.filters, "on an impedance device, choose the velocity filter too");
   add_common(command, options, "tune_NAME");
+  add_table(command, options.output);
   command.footer(fmt::format(
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
       "limit "

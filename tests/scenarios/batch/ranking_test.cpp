@@ -69,5 +69,19 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(apart.at(0, 2, 0).mean, 5.0);
 }
 
+/// The page of tests/scripts/ranking_test.py has the same ranks.
+TEST(Ranking, LeavesOutWhatTheErrorsDoNotAllow) {
+  const auto with_error = [](const Values& values, double error) {
+    return ranks(rank_comparison(values, Better::less, 1, error));
+  };
+  EXPECT_EQ(with_error({1.0, 1.1, 1.2}, 0.2), (Ranks{0, 0, 0})) << "no two can be told apart";
+  EXPECT_EQ(with_error({1.0, 1.1, -1.0}, 0.2), (Ranks{1, 1, 3})) << "a failure can";
+  EXPECT_EQ(with_error({0.1, 3.0, 9.0}, 0.4), (Ranks{0, 2, 3})) << "only a bound of the first is known";
+  EXPECT_EQ(with_error({0.0, 3.0, 9.0}, 0.4), (Ranks{0, 2, 3}));
+  EXPECT_EQ(with_error({0.0, 3.0, 9.0}, 0.0), (Ranks{1, 2, 3})) << "an exact zero";
+  EXPECT_EQ(with_error({0.1, 3.0}, 0.4), (Ranks{0, 0})) << "a single rank says nothing";
+  EXPECT_EQ(with_error({2.0}, 0.0), (Ranks{0}));
+}
+
 }  // namespace
 }  // namespace hapbench::ranking_test
