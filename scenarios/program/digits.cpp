@@ -66,7 +66,7 @@ std::string deserved(double value, const std::optional<double>& tolerance, int d
 
 std::string with_spread(double mean, const std::optional<double>& spread, const std::optional<double>& tolerance,
                         int digits) {
-  if (!spread) return deserved(mean, tolerance, digits);
+  if (!spread || is_only_bounded({mean, tolerance})) return deserved(mean, tolerance, digits);
   const double error = std::max(*spread, tolerance.value_or(0.0));
   if (!(error > 0.0)) return significant(mean, digits) + " +- " + significant(*spread, 2);
   const int last = leading_place(error) - 1;

@@ -25,7 +25,7 @@ std::string bound_text(double value, double tolerance);
 /// bound_text() if the number is only bounded.
 std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4);
 /// Returns "MEAN +- SPREAD", both to the second significant digit of the larger of the spread and the tolerance of the
-/// mean. Returns deserved() without a spread.
+/// mean. Returns deserved() without a spread, and if only a bound of the mean is known.
 std::string with_spread(double mean, const std::optional<double>& spread, const std::optional<double>& tolerance,
                         int digits = 4);
 

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
 
 #include "results/io/columns.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/math.hpp"
 
@@ -80,21 +82,26 @@ std::string replaced(std::string_view text, const std::array<std::pair<std::stri
   return result;
 }
 
+/// Returns the text in one line. Other control characters, which LaTeX refuses, become "?".
+std::string in_one_line(std::string_view text) {
+  std::string line(text);
+  std::ranges::replace_if(
+      line, [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  return one_line(std::move(line));
+}
+
 // --- Markdown ---
 
 /// Returns text with a backslash before each character that has a meaning in Markdown. An underscore within a word has
 /// none.
-std::string markdown_text(std::string_view text) {
+std::string markdown_text(std::string_view given) {
+  const std::string text = in_one_line(given);
   constexpr std::string_view kSpecial = "\\`*[]<>|&$~#";
-  const auto is_word = [text](std::size_t i) {
+  const auto is_word = [&text](std::size_t i) {
     return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) != 0);
   };
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\n') {
-      result += ' ';
-      continue;
-    }
     const bool is_outer = text[i] == '_' && !(i > 0 && is_word(i - 1) && is_word(i + 1));
     if (is_outer || kSpecial.find(text[i]) != std::string_view::npos) result += '\\';
     result += text[i];
@@ -162,47 +169,34 @@ std::string csv(const Table& table, bool /*captioned*/) {
 /// Returns text in which every character that has a meaning in LaTeX is escaped. Also replaces the symbols that
 /// pdfLaTeX does not know, and pairs of characters that a font would join.
 std::string latex_text(std::string_view text) {
-  constexpr auto kEscapes =
-      std::to_array<std::pair<std::string_view, std::string_view>>({{" +- ", R"( $\pm$ )"},
-                                                                    {"<= ", R"($\leq$ )"},
-                                                                    {">= ", R"($\geq$ )"},
-                                                                    {"\\", R"(\textbackslash{})"},
-                                                                    {"{", R"(\{)"},
-                                                                    {"}", R"(\})"},
-                                                                    {"_", R"(\_)"},
-                                                                    {"%", R"(\%)"},
-                                                                    {"&", R"(\&)"},
-                                                                    {"#", R"(\#)"},
-                                                                    {"$", R"(\$)"},
-                                                                    {"~", R"(\textasciitilde{})"},
-                                                                    {"<", R"(\textless{})"},
-                                                                    {">", R"(\textgreater{})"},
-                                                                    {"|", R"(\textbar{})"},
-                                                                    {"^", R"(\textasciicircum{})"},
-                                                                    {"\"", R"({''})"},
-                                                                    {"--", R"(-{}-)"},
-                                                                    {"\n", " "},
-                                                                    {"≤", R"($\leq$)"},
-                                                                    {"≥", R"($\geq$)"},
-                                                                    {"≈", R"($\approx$)"},
-                                                                    {"≠", R"($\neq$)"},
-                                                                    {"−", R"($-$)"},
-                                                                    {"∞", R"($\infty$)"},
-                                                                    {"√", R"($\surd$)"},
-                                                                    {"α", R"($\alpha$)"},
-                                                                    {"β", R"($\beta$)"},
-                                                                    {"δ", R"($\delta$)"},
-                                                                    {"Δ", R"($\Delta$)"},
-                                                                    {"ζ", R"($\zeta$)"},
-                                                                    {"λ", R"($\lambda$)"},
-                                                                    {"π", R"($\pi$)"},
-                                                                    {"ρ", R"($\rho$)"},
-                                                                    {"τ", R"($\tau$)"},
-                                                                    {"ω", R"($\omega$)"},
-                                                                    {"→", R"($\to$)"},
-                                                                    {"µ", R"(\textmu{})"},
-                                                                    {"μ", R"(\textmu{})"}});
-  return replaced(text, kEscapes);
+  constexpr auto kEscapes = std::to_array<std::pair<std::string_view, std::string_view>>(
+      {{" +- ", R"( $\pm$ )"},  {"<= ", R"($\leq$ )"},
+       {">= ", R"($\geq$ )"},   {"\\", R"(\textbackslash{})"},
+       {"{", R"(\{)"},          {"}", R"(\})"},
+       {"_", R"(\_)"},          {"%", R"(\%)"},
+       {"&", R"(\&)"},          {"#", R"(\#)"},
+       {"$", R"(\$)"},          {"~", R"(\textasciitilde{})"},
+       {"<", R"(\textless{})"}, {">", R"(\textgreater{})"},
+       {"|", R"(\textbar{})"},  {"^", R"(\textasciicircum{})"},
+       {"\"", R"({''})"},       {"--", R"(-{}-)"},
+       {"≤", R"($\leq$)"},      {"≥", R"($\geq$)"},
+       {"≈", R"($\approx$)"},   {"≠", R"($\neq$)"},
+       {"−", R"($-$)"},         {"∞", R"($\infty$)"},
+       {"√", R"($\surd$)"},     {"α", R"($\alpha$)"},
+       {"β", R"($\beta$)"},     {"δ", R"($\delta$)"},
+       {"Δ", R"($\Delta$)"},    {"ζ", R"($\zeta$)"},
+       {"λ", R"($\lambda$)"},   {"π", R"($\pi$)"},
+       {"ρ", R"($\rho$)"},      {"τ", R"($\tau$)"},
+       {"ω", R"($\omega$)"},    {"→", R"($\to$)"},
+       {"µ", R"(\textmu{})"},   {"μ", R"(\textmu{})"}});
+  return replaced(in_one_line(text), kEscapes);
+}
+
+/// Returns the number of decimals with which a number and its error are written.
+int decimals_of(const Quantity& quantity) {
+  const int of_error =
+      quantity.error ? quantity.error->decimals - quantity.error->exponent + quantity.number.exponent : 0;
+  return std::max({0, quantity.number.decimals, of_error});
 }
 
 /// Returns a number as siunitx reads it. A number and its error share the exponent of the number.
@@ -210,25 +204,32 @@ std::string latex_number(const Quantity& quantity) {
   const Decimal& number = quantity.number;
   const std::string exponent = number.exponent == 0 ? "" : fmt::format("e{}", number.exponent);
   if (!quantity.error) return number.mantissa + exponent;
-  const Decimal& error = *quantity.error;
-  const int decimals = std::max({0, number.decimals, error.decimals - error.exponent + number.exponent});
+  const int decimals = decimals_of(quantity);
   const double unit = math::pow(10.0, number.exponent);
-  return fmt::format("{:.{}f} +- {:.{}f}{}", number.value / unit, decimals, error.value / unit, decimals, exponent);
+  return fmt::format("{:.{}f} +- {:.{}f}{}", number.value / unit, decimals, quantity.error->value / unit, decimals,
+                     exponent);
 }
 
 /// Returns the type of a column of numbers: S with the largest number of digits before and after the point, so that
-/// the points are below each other.
+/// the points are below each other, and with the largest number of digits of an error.
 std::string latex_number_column(const std::vector<Quantity>& quantities) {
   std::size_t integer_digits = 1;
-  int decimals = 0;
+  int decimals = 0, error_digits = 1;
   bool has_exponent = false;
   for (const Quantity& quantity : quantities) {
     integer_digits = std::max(integer_digits, quantity.number.integer_digits);
-    decimals = std::max(decimals, quantity.number.decimals);
+    decimals = std::max(decimals, decimals_of(quantity));
     has_exponent |= quantity.number.exponent != 0;
+    if (!quantity.error || quantity.error->value <= 0.0) continue;
+    const double units = quantity.error->value * math::pow(10.0, decimals_of(quantity) - quantity.number.exponent);
+    error_digits = std::max(error_digits, 1 + static_cast<int>(std::floor(math::log10(units) + 1e-9)));
   }
-  if (has_errors(quantities)) return "S[separate-uncertainty=true,retain-zero-uncertainty=true]";
-  return fmt::format("S[table-format={}.{}{}]", integer_digits, decimals, has_exponent ? "e-2" : "");
+  const char* exponent = has_exponent ? "e-2" : "";
+  if (!has_errors(quantities)) return fmt::format("S[table-format={}.{}{}]", integer_digits, decimals, exponent);
+  return fmt::format(
+      "S[separate-uncertainty=true,retain-zero-uncertainty=true,table-align-uncertainty=false,"
+      "table-format={}.{}({}){}]",
+      integer_digits, decimals, error_digits, exponent);
 }
 
 std::string latex(const Table& table, bool /*captioned*/) {
@@ -253,7 +254,7 @@ std::string latex(const Table& table, bool /*captioned*/) {
   };
   const bool has_upper = std::ranges::any_of(upper, [](const std::string& head) { return head != "{}"; });
   std::string text =
-      fmt::format("% {}\n\\begin{{tabular}}{{{}}}\n  \\toprule\n{}{}  \\midrule\n", one_line(table.caption),
+      fmt::format("% {}\n\\begin{{tabular}}{{{}}}\n  \\toprule\n{}{}  \\midrule\n", in_one_line(table.caption),
                   fmt::join(types, " "), has_upper ? line(upper) : "", line(lower));
   for (const auto& row : table.rows) {
     std::vector<std::string> cells;

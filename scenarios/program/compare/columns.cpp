@@ -27,14 +27,17 @@ constexpr std::string_view kComparedMetrics =
     "inside_settled_m centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
     "fidelity.force_direction_error_rad fidelity.force_artefact_share";
 
-}  // namespace
-
+/// Returns the error of the mean: the largest of three numbers: the error of the single values, the standard error
+/// over seeds, and a tenth of the difference up to which two means share a rank. Without a spread, returns the error
+/// of the single values.
 std::optional<double> error_of_mean(const RankingEntry& standing) {
   if (!standing.spread) return standing.tolerance;
   const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));
   return std::max(
       {standing.tolerance, std::optional(of_seeds), std::optional(0.1 * kRankResolution * std::abs(*standing.mean))});
 }
+
+}  // namespace
 
 Columns<ComparedRun> comparison_columns(bool seeds) {
   using Row = ComparedRun;

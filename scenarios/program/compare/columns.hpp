@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "scenarios/batch/comparison.hpp"
@@ -17,10 +16,6 @@ struct ComparedRun {
   const Result& run;
 };
 
-/// Returns the error of the mean: the largest of three numbers: the error of the single values, the standard error
-/// over seeds, and a tenth of the difference up to which two means share a rank. Without a spread, returns the error
-/// of the single values.
-std::optional<double> error_of_mean(const RankingEntry& standing);
 /// Returns the columns of comparison.csv, without times, so that equal comparisons give identical files.
 /// `seeds`: true if there are several seeds; the first column then has the seed.
 Columns<ComparedRun> comparison_columns(bool seeds);

@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "scenarios/program/compare/columns.hpp"
 #include "scenarios/program/digits.hpp"
 #include "scenarios/program/run_table.hpp"
 
@@ -25,7 +24,7 @@ std::string metric_text(const RankingEntry& entry, double factor) {
   const auto scaled = [factor](const std::optional<double>& number) {
     return number ? std::optional(factor * *number) : std::nullopt;
   };
-  return with_spread(factor * *entry.mean, scaled(entry.spread), scaled(error_of_mean(entry)));
+  return with_spread(factor * *entry.mean, scaled(entry.spread), scaled(entry.tolerance));
 }
 
 }  // namespace

@@ -40,20 +40,20 @@ TEST(TableFormat, Csv) {
 }
 
 TEST(TableFormat, Latex) {
-  EXPECT_EQ(
-      formatted(every_kind(), "latex"),
-      "% runs of x\n"
-      "\\begin{tabular}{l S[separate-uncertainty=true,retain-zero-uncertainty=true] S[table-format=4.0] S[table-format=1.1e-2] "
-      "S[table-format=1.0]}\n"
-      "  \\toprule\n"
-      "  {} & {largest} & {} & {} & {} \\\\\n"
-      "  {law} & {force [N]} & {published [N/m]} & {depth [m]} & {rank} \\\\\n"
-      "  \\midrule\n"
-      "  {a\\_b} & 1.25 +- 0.05 & 1440 & 7.3e-5 & 1 \\\\\n"
-      "  {c\\textbar{}d} & 12.5 +- 0.5 & {--} & {$\\leq$ 0.0004} & {--} \\\\\n"
-      "  {[soft]} & -3.00 +- 0.25 & {none} & 2.5e-6 & 2 \\\\\n"
-      "  \\bottomrule\n"
-      "\\end{tabular}\n");
+  EXPECT_EQ(formatted(every_kind(), "latex"),
+            "% runs of x\n"
+            "\\begin{tabular}{l S[separate-uncertainty=true,retain-zero-uncertainty=true,table-align-uncertainty=false,"
+            "table-format=2.2(2)] S[table-format=4.0] S[table-format=1.1e-2] "
+            "S[table-format=1.0]}\n"
+            "  \\toprule\n"
+            "  {} & {largest} & {} & {} & {} \\\\\n"
+            "  {law} & {force [N]} & {published [N/m]} & {depth [m]} & {rank} \\\\\n"
+            "  \\midrule\n"
+            "  {a\\_b} & 1.25 +- 0.05 & 1440 & 7.3e-5 & 1 \\\\\n"
+            "  {c\\textbar{}d} & 12.5 +- 0.5 & {--} & {$\\leq$ 0.0004} & {--} \\\\\n"
+            "  {[soft]} & -3.00 +- 0.25 & {none} & 2.5e-6 & 2 \\\\\n"
+            "  \\bottomrule\n"
+            "\\end{tabular}\n");
 }
 
 /// Each special character stands escaped, and the text around it stays.
@@ -67,7 +67,7 @@ TEST(TableFormat, EscapesEverySpecialCharacter) {
   EXPECT_EQ(formatted(table, "latex").find("% 50 % of it\n\\begin"), 0u) << "a comment of one line";
   EXPECT_EQ(formatted(table, "markdown"),
             "| name |\n| --- |\n"
-            "| a\\\\b{c}_d%e\\&f\\#g\\$h\\~i^j\\<k\\>l\\|m\"n--o p |\n");
+            "| a\\\\b{c}\\_d%e\\&f\\#g\\$h\\~i^j\\<k\\>l\\|m\"n--o p |\n");
   EXPECT_EQ(formatted({{{"name", false}}, {{"a,\"b\""}, {"=1+2"}}}, "csv"), "name\n\"a,\"\"b\"\"\"\n'=1+2\n")
       << "as in the result files";
 }

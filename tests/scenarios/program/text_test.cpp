@@ -106,9 +106,10 @@ TEST(WithSpread, EndsWithTheSecondDigitOfTheLargerError) {
   EXPECT_EQ(with_spread(1234.56, 56.7, {}), "1235 +- 57");
   EXPECT_EQ(with_spread(12345.6, 567.0, {}), "12350 +- 570");
   EXPECT_EQ(with_spread(0.01, 0.4, {}), "0.01 +- 0.40");
-  EXPECT_EQ(with_spread(7.345e-6, 1.2e-7, {}), "7.35e-06 +- 1.2e-07");
+  EXPECT_EQ(with_spread(7.3456e-6, 1.2e-7, {}), "7.35e-06 +- 1.2e-07");
   EXPECT_EQ(with_spread(1.5, 0.0, {}), "1.5 +- 0");
   EXPECT_EQ(with_spread(1.5, {}, 0.1), "1.5");
+  EXPECT_EQ(with_spread(0.056, 2e-5, 0.37), "<= 0.5") << "the spread says nothing of an error that all seeds share";
 }
 
 TEST(Deserved, DigitsAreNeverNone) {
