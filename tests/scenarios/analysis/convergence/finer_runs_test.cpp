@@ -48,7 +48,7 @@ TEST(FinerRuns, LeaveNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
   EXPECT_LE(*known[0].spacing, 10.0 * kOne);
   EXPECT_GE(*known[1].spacing, (25.3 - 4.45) * kOne);
   EXPECT_EQ(known[0].step, 0.0) << "the motion is prescribed";
-  EXPECT_EQ(finer.refined(0), "time.step_s 0.0005, 0.00025, 0.000125; environment.spacing_m 4e-04, 2e-04, 1e-04");
+  EXPECT_EQ(finer.refined(0), "time.step_s 0.0005, 0.00025, 0.000125; environment.spacing_m 0.0004, 0.0002, 0.0001");
 }
 
 /// A drill is pushed onto a plane. Its largest speed is the speed in the last step before the landing. At the first
