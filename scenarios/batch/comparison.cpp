@@ -98,7 +98,7 @@ std::vector<fs::path> Comparison::run_folders(const fs::path& out) const {
 
 Comparison planned(const ComparisonQuestion& question) {
   const auto names = names_of_scenarios(question.scenarios);
-  Comparison comparison{{}, names, question.algorithms, question.seeds};
+  Comparison comparison{{}, names, question.algorithms, question.seeds, {}, question.length};
   const std::size_t scenes = question.scenarios.size(), size = scenes * comparison.each();
   if (size > kMaxRuns) {
     throw InputError(fmt::format("got {} scenarios x {} algorithms x {} seeds = {} runs; allowed: at most {}", scenes,

@@ -99,14 +99,18 @@ std::size_t Ranking::failures(std::size_t scenario, std::size_t algorithm) const
   return static_cast<std::size_t>(std::count(first, first + static_cast<std::ptrdiff_t>(seeds), true));
 }
 
+bool Ranking::seeds_matter(std::size_t scenario) const {
+  for (std::size_t a = 0; a < algorithms.size(); ++a) {
+    const auto same = runs.subspan(first_run(scenario, a), seeds);
+    if (std::ranges::any_of(same, [&](const Result& run) { return run.state_hash != same.front().state_hash; }))
+      return true;
+  }
+  return false;
+}
+
 void Ranking::rank() {
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
-    // Find out whether the seed changes any run.
-    bool matter = false;
-    for (std::size_t a = 0; a < algorithms.size(); ++a)
-      for (const Result& run : runs.subspan(first_run(s, a), seeds))
-        matter |= run.state_hash != runs[first_run(s, a)].state_hash;
-    depends_on_seed.push_back(matter);
+    depends_on_seed.push_back(seeds_matter(s));
     // Choose the seeds over which means are computed.
     common.push_back(seeds_without_failure(*this, s, seeds - 1));
     if (common.back().empty()) common.back() = seeds_without_failure(*this, s, 0);

@@ -70,6 +70,8 @@ struct Ranking {
   const RankingEntry& at(std::size_t scenario, std::size_t algorithm, std::size_t metric) const {
     return standings[(scenario * algorithms.size() + algorithm) * metrics.size() + metric];
   }
+  /// Returns true if the seed changes any run of a scenario.
+  bool seeds_matter(std::size_t scenario) const;
   /// Returns the number of seeds for which an algorithm failed in a scenario.
   std::size_t failures(std::size_t scenario, std::size_t algorithm) const;
 };

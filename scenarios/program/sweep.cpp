@@ -114,7 +114,7 @@ Json summary_json(const SweepTable& table) {
   Json outcomes = Json::object();
   for (const auto& [outcome, count] : counts.outcomes) outcomes[outcome] = count.runs;
   Json json = {{"definition", table.about["definition"]}, {"runs", counts.runs},     {"outcomes", std::move(outcomes)},
-               {"unexpected", counts.unexpected},         {"failed", counts.failed}, {"file", table.file.string()}};
+               {"unexpected", counts.unexpected.size()},  {"failed", counts.failed}, {"file", table.file.string()}};
   if (counts.runs > SweepTable::kMaxRows) return json;
   Json& rows = json["rows"] = Json::array();
   for (const SweepRow& row : table.rows) {
@@ -132,7 +132,7 @@ struct SweepCommand : CommonOptions {
   std::string scenario, sample, points, metric, shard;
   std::vector<std::string> vary, where;
   std::uint64_t seed = 1, row = 0;
-  bool resume = false, keep_runs = false, print = false;
+  bool resume = false, keep_runs = false, print = false, full = false;
 };
 
 constexpr const char* kNothingToSweep =
@@ -167,6 +167,14 @@ Cases cases_of(const SweepCommand& command) {
   return {std::move(scenes), command.overrides, std::move(axes), std::move(sampling)};
 }
 
+/// Returns the outcomes that are failures, with their numbers of runs: "went_through 12, diverges 3".
+std::string failures_text(const SweepCounts& counts) {
+  std::vector<std::string> texts;
+  for (const auto& [outcome, count] : counts.outcomes)
+    if (is_failure(outcome)) texts.push_back(fmt::format("{} {}", outcome, count.runs - count.expected));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 /// Reports the number and the first of the runs that failed or ended unexpectedly, and returns the exit status.
 int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& counts, ProgramContext& context) {
   const std::string scene = cases.scenes().front().file.string();
@@ -178,9 +186,16 @@ int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& co
                                      run_text(*report.failed), one_line(report.problem)));
     return kInternalFault;
   }
-  if (counts.unexpected == 0) return kSuccess;
+  // Runs that fail by their physics are results. Only an unmet "expect" of the user is an error.
+  std::vector<std::size_t> unmet, failures;
+  for (const std::size_t run : counts.unexpected) (states_expectations(cases, run) ? unmet : failures).push_back(run);
+  if (!failures.empty()) {
+    print_note(context, fmt::format("{}: {} of {} runs failed ({}), the first: {}", scene, failures.size(), counts.runs,
+                                    failures_text(counts), run_text(failures.front())));
+  }
+  if (unmet.empty()) return kSuccess;
   print_note(context, fmt::format("{}: {} of {} runs did not meet the scenario's expect, the first: {}", scene,
-                                  counts.unexpected, counts.runs, run_text(*counts.first_unexpected)));
+                                  unmet.size(), counts.runs, run_text(unmet.front())));
   return kUnexpectedOutcome;
 }
 
@@ -223,7 +238,7 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramCo
 int reprint(const SweepCommand& command, ProgramContext& context) {
   const bool runs = !command.vary.empty() || !command.overrides.empty() || !command.sample.empty() ||
                     !command.points.empty() || !command.out.empty() || !command.shard.empty() || command.resume ||
-                    command.keep_runs || command.print;
+                    command.keep_runs || command.print || command.full;
   if (runs) {
     throw InputError(fmt::format(
         "{}: holds a finished sweep, which is printed again; allowed with it: --where, --metric, --json, --quiet",
@@ -252,7 +267,8 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
       .resume = command.resume,
       .keep_runs = command.keep_runs};
   if (!command.shard.empty()) options.shard = parse_shard(command.shard);
-  const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking", context));
+  const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking", context),
+                                    command.full ? RunLength::full : RunLength::until_failure);
   chosen_metric(plan.metrics, command.metric);            // throws if the metric does not exist
   print_warnings(context, first_few(plan.warnings, 20));  // there may be a warning for each run
   const FolderLock lock = locked_results(context, options.directory, options.table().filename().string(), "sweep");
@@ -272,7 +288,8 @@ std::vector<DescribedTable> sweep_tables() {
       {"index", "1", "index of the run, from 0; one column per varied field follows, named by the field's path"},
       {"outcome", "", "outcome of the run; \"error\" if the run could not be computed"},
       {"expected", "", "true if the run meets the scenario's expect"},
-      {"steps", "1", "number of time steps of the run"}};
+      {"steps", "1", "number of time steps of the run"},
+      {std::string(kEndedAt), "s", kEndedAtMeaning}};
   for (const Metric& metric : all_metrics()) table.columns.push_back({metric.name, metric.unit, metric.meaning});
   for (const Metric& metric : all_metrics())
     if (metric.bounded)
@@ -312,6 +329,10 @@ void add_sweep(CommandLine& line) {
   command.flag("--resume", options.resume,
                "continue an interrupted sweep with the same options, and repeat runs that could not be computed");
   command.flag("--keep-runs", options.keep_runs, "also write the files of each run into OUT/runs/INDEX");
+  command.flag(
+      "--full", options.full,
+      "make all steps of runs that fail; otherwise such a run ends when it has failed for good, and its metrics "
+      "are empty");
   command.add("--row <index>", options.row, "row of sweep.csv for --print, from 0");
   command.flag("--print", options.print,
                "print the \"hapbench run\" line that repeats one row; add it to the options of the sweep");
@@ -321,14 +342,16 @@ void add_sweep(CommandLine& line) {
       "--shard <i/n>", options.shard,
       "run only rows i, i+n, i+2n, ... (i from 0), for several machines; \"hapbench sweep FOLDER\" joins the shards");
   command.footer(
-      "Files: sweep.csv has one row per run: index, the varied fields, outcome, expected, steps, all metrics, "
-      "state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in "
+      "Files: sweep.csv has one row per run: index, the varied fields, outcome, expected, steps, ended_at_s, all "
+      "metrics, state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in "
       "sweep.csv.part until the sweep ends.\n\n"
       "Fields: rendering.algorithm=all tries every law; scenario=v,w,... varies the scenario, without <scenario>.\n\n"
       "Earlier results: a finished sweep in the folder is replaced. An interrupted one is not: use --resume or "
       "another --out.\n\n"
-      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not end as its scenario "
-      "expects, 130 stopped by Ctrl-C; running runs are finished first.");
+      "Failed runs: a run that goes through the surface, diverges or leaves for good ends at this moment "
+      "(hapbench describe \"early end\"). Such runs are counted; the exit status is still 0.\n\n"
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not meet the field expect of its "
+      "scenario (an override that changes the run lifts it), 130 stopped by Ctrl-C; running runs are finished first.");
 }
 
 }  // namespace hapbench

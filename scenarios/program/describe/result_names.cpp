@@ -1,6 +1,9 @@
 #include "scenarios/program/describe/result_names.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -52,11 +55,15 @@ constexpr PrintedName kPrintedNames[] = {
 
 Json printed_names() {
   Json all = Json::array();
-  const auto add = [&all](std::string_view name, const char* kind, const char* meaning) {
+  const auto add = [&all](std::string_view name, const char* kind, const std::string& meaning) {
     all.push_back({{"kind", kind}, {"name", name}, {"meaning", meaning}});
   };
   for (const auto& [name, kind, meaning] : kPrintedNames) add(name, kind, meaning);
-  for (const OutcomeInfo& outcome : outcome_infos()) add(outcome.name, "outcome of a run", outcome.meaning);
+  for (const OutcomeInfo& outcome : outcome_infos()) {
+    const std::string early =
+        outcome.ends_early == nullptr ? "" : fmt::format("; compare and sweep end such a run {}", outcome.ends_early);
+    add(outcome.name, "outcome of a run", outcome.meaning + early);
+  }
   for (const RunVerdictText& verdict : run_verdict_texts())
     add(verdict.name, "class of motion, of limit and stability", verdict.meaning);
   for (const auto& [name, meaning, mark] : kVerdicts) add(name, "verdict on a claim", meaning);
