@@ -70,9 +70,11 @@ bool is_better(const RankingEntry& a, const RankingEntry& b) {
 /// Returns RankingEntry::rank of algorithm a in scenario s for metric m. Precondition: the entries of all
 /// algorithms exist.
 std::optional<std::uint64_t> rank_of(const Ranking& ranking, std::size_t s, std::size_t a, std::size_t m) {
+  if (ranking.shares_reference(s, a, m)) return std::nullopt;
   std::uint64_t rank = 1;
   bool has_mean = false;
   for (std::size_t other = 0; other < ranking.algorithms.size(); ++other) {
+    if (ranking.shares_reference(s, other, m)) continue;
     if (is_better(ranking.at(s, other, m), ranking.at(s, a, m))) ++rank;
     has_mean |= ranking.at(s, other, m).mean.has_value();
   }
@@ -97,6 +99,11 @@ LawRankingEntry law_ranking_entry(const Ranking& ranking, std::size_t a) {
 std::size_t Ranking::failures(std::size_t scenario, std::size_t algorithm) const {
   const auto first = failed.begin() + static_cast<std::ptrdiff_t>(first_run(scenario, algorithm));
   return static_cast<std::size_t>(std::count(first, first + static_cast<std::ptrdiff_t>(seeds), true));
+}
+
+bool Ranking::shares_reference(std::size_t scenario, std::size_t algorithm, std::size_t metric) const {
+  return !is_rigid_reference.empty() && is_rigid_reference[scenario] && algorithms[algorithm] == kSharesReference &&
+         metrics[metric].starts_with("fidelity.");
 }
 
 bool Ranking::seeds_matter(std::size_t scenario) const {
@@ -148,6 +155,10 @@ Ranking rank_comparison(const Comparison& comparison, std::span<const Result> re
   for (const std::string& name : ranking.metrics) {
     const Metric* metric = find_metric(all_metrics(), name);
     ranking.better.push_back(metric == nullptr ? Better::none : metric->better);
+  }
+  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
+    const auto& reference = comparison.load(s * comparison.each()).scenario.reference_force;
+    ranking.is_rigid_reference.push_back(reference && std::holds_alternative<RigidContactFields>(*reference));
   }
   // Find the runs that failed.
   for (const Result& summary : reports) {

@@ -19,6 +19,7 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/result_folder.hpp"
+#include "scenarios/run/rigid_contact_force.hpp"
 #include "scenarios/run/scene_warnings.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/scene/environments.hpp"
@@ -47,7 +48,11 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
 /// Returns the force with which the rendered force is compared: an ideal force, or the force that was measured
 /// with a stroke. Null if there is no reference.
 std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, const NamedFiles& files) {
-  if (scenario.reference_force) return std::make_shared<const ReferenceForce>(scenario.reference_force->force);
+  if (scenario.reference_force) {
+    if (const auto* given = std::get_if<GivenForceFields>(&*scenario.reference_force))
+      return std::make_shared<const ReferenceForce>(given->force);
+    return rigid_contact_force(scenario, files);
+  }
   if (!std::holds_alternative<RecordedPosition>(scenario.motion.position)) return nullptr;
   const auto stroke = files.at(kMotionFile).stroke();
   if (stroke->force) return {stroke, &*stroke->force};

@@ -121,7 +121,8 @@ void report_ranking(const Ranking& league, const Layout& layout, Report& report)
 /// Returns the table of the runs of one scene. `errors`: errors are reported, so that the sentence on vibration
 /// is omitted.
 std::string runs_text(const std::vector<Result>& reports, const Ranking& league, bool errors, const Layout& layout) {
-  std::string text = reports.front().name + "\n\n" + run_table(reports, false, layout) + fidelity_text(reports, layout);
+  std::string text = reports.front().name + "\n\n" + run_table(reports, false, layout) +
+                     fidelity_text(reports, layout) + unranked_text(league, layout);
   if (!errors) text += vibration_text(league, layout);
   if (layout.in_full()) text += step_time_text(reports, layout);
   return text;

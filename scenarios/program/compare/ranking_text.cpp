@@ -65,11 +65,11 @@ const char* no_ranks_reason(const Ranking& league) {
 std::string first_ranks_text(const Ranking& league) {
   constexpr std::size_t kMaxNamed = 5;
   if (!is_ranked(league)) return std::string("nothing is ranked: ") + no_ranks_reason(league);
-  std::size_t rankings = 0;  // equal for all laws
+  std::size_t rankings = 0;
   std::vector<std::string> firsts;
   for (const LawRankingEntry& law : league.laws) {
     const RankCount count = rank_count(league, law.algorithm);
-    rankings = count.rankings;
+    rankings = std::max(rankings, count.rankings);  // smaller for kSharesReference
     if (count.first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count.first));
   }
   if (firsts.size() == 1)
@@ -99,6 +99,17 @@ std::string verdict(const Ranking& league, const Layout& layout) {
 
 }  // namespace
 
+std::string unranked_text(const Ranking& league, const Layout& layout) {
+  const bool has_unranked = std::ranges::count(league.algorithms, kSharesReference) > 0 &&
+                            std::ranges::count(league.is_rigid_reference, true) > 0;
+  if (!has_unranked) return "";
+  return layout.wrapped(
+      fmt::format(
+          "{} is not ranked by fidelity: it renders by the same constraints as the reference force, rigid contact",
+          kSharesReference),
+      0);
+}
+
 std::string ranking_text(const Ranking& league, const Layout& layout) {
   constexpr std::size_t kMaxPrinted = 60;
   const std::string table =
@@ -109,8 +120,8 @@ std::string ranking_text(const Ranking& league, const Layout& layout) {
       is_ranked(league)
           ? layout.wrapped("rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %", 0)
           : "";
-  return fmt::format("{}\n{}\n{}{}", table, law_ranking_columns().text(league.laws, layout), note,
-                     verdict(league, layout));
+  return fmt::format("{}\n{}\n{}{}{}", table, law_ranking_columns().text(league.laws, layout), note,
+                     unranked_text(league, layout), verdict(league, layout));
 }
 
 }  // namespace hapbench
