@@ -11,6 +11,7 @@
 #include "scenarios/batch/join_shards.hpp"
 #include "scenarios/batch/number_with_error.hpp"
 #include "scenarios/batch/ranking.hpp"
+#include "scenarios/batch/run_cost.hpp"
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/batch/sampling.hpp"
 #include "scenarios/batch/shard.hpp"
@@ -32,6 +33,7 @@
 #include "scenarios/program/program_context.hpp"
 #include "scenarios/program/results_folder.hpp"
 #include "scenarios/program/run_table.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
@@ -41,9 +43,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kTimesFile = "sweep_timing.csv";
+
 /// Returns the printed columns of a run: the varied fields, the outcome and the columns of `run`. Adds a column
-/// for the metric if none of them has it.
-Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric) {
+/// for the metric if none of them has it, and the time of a step if `costs` has the cost of each run.
+Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric, const std::vector<RunCost>& costs) {
   Columns<SweepRow> columns;
   // Begin with the varied fields. If several fields vary, add the index of the run. Round sampled numbers.
   const bool single = table.fields() == 1, sampled = table.about.contains("sample");
@@ -69,6 +73,11 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
   add_metrics(columns, headings, [&table](const SweepRow& row, const char* name) {
     return NumberWithError{table.number(row, name), table.tolerance(row, name)};
   });
+  if (costs.empty()) return columns;
+  const auto microseconds = [&costs](const SweepRow& row) {
+    return significant(1e6 * costs[*whole_number(row[0])].step_s, 3);
+  };
+  columns.add({{"us per\nstep", "1", "seconds_per_step in microseconds", microseconds, only_printed()}});
   return columns;
 }
 
@@ -84,7 +93,8 @@ Columns<OutcomeCount> count_columns() {
 
 /// Returns the table of the runs, followed by the counts of outcomes. With several fields, the runs are in
 /// ascending order of the metric, failures last.
-std::string summary_text(const SweepTable& table, const std::string& metric, const Layout& layout) {
+std::string summary_text(const SweepTable& table, const std::string& metric, const std::vector<RunCost>& costs,
+                         const Layout& layout) {
   constexpr std::size_t kMaxShown = 100, kMaxListed = 20;
   std::vector<SweepRow> rows = table.rows;
   const bool single = table.fields() == 1;
@@ -99,7 +109,7 @@ std::string summary_text(const SweepTable& table, const std::string& metric, con
   }
   if (shown < rows.size() && single) text = fmt::format("the first {} of {} runs\n\n", shown, rows.size());
   rows.resize(shown);
-  if (shown > 0) text += run_columns(table, metric).text(rows, layout) + "\n";
+  if (shown > 0) text += run_columns(table, metric, costs).text(rows, layout) + "\n";
   return text + count_columns().text(table.kept.outcomes, layout);
 }
 
@@ -132,8 +142,10 @@ struct SweepCommand : CommonOptions {
   std::string scenario, sample, points, metric, shard;
   std::vector<std::string> vary, where;
   std::uint64_t seed = 1, row = 0;
-  bool resume = false, keep_runs = false, print = false, full = false;
+  bool resume = false, keep_runs = false, print = false, full = false, time = false;
 };
+
+constexpr std::size_t kMaxTimed = 1000;
 
 constexpr const char* kNothingToSweep =
     "sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep";
@@ -217,14 +229,20 @@ int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& c
 
 /// Prints the rows of a finished sweep that satisfy the conditions of --where. `resumed`: number of runs that
 /// an earlier call had computed.
-void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramContext& context,
-                 std::size_t resumed = 0) {
+void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramContext& context, std::size_t resumed = 0,
+                 const std::vector<RunCost>& costs = {}) {
   const Layout layout = context.layout();
   const std::string metric = chosen_metric(table.metrics(), command.metric);
   if (command.output.json) return print(context, command.output, "", summary_json(table));
-  std::string text = summary_text(table, metric, layout);
+  std::string text = summary_text(table, metric, costs, layout);
   if (resumed > 0) text += fmt::format("\n{} of the runs were taken from the interrupted sweep\n", resumed);
   text += fmt::format("\nresults in {}\n", table.file.string());
+  if (!costs.empty())
+    text += layout.wrapped(
+        fmt::format(
+            "processor times in {}: runs without observers and files, one at a time, smallest of {} repetitions",
+            kTimesFile, kTimingRepetitions),
+        0);
   if (!command.where.empty())
     text += fmt::format("{} of {} runs satisfy {}\n", table.kept.runs, table.counts.runs,
                         fmt::join(command.where, " and "));
@@ -234,11 +252,60 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramCo
   print(context, command.output, text, {});
 }
 
+/// Cost of a run of a sweep.
+struct TimedRun {
+  std::size_t index;
+  std::vector<std::string> values;  ///< of the varied fields
+  RunCost cost;
+};
+
+/// Returns the columns of sweep_timing.csv. `fields`: paths of the varied fields.
+Columns<TimedRun> timing_columns(const std::vector<std::string>& fields) {
+  Columns<TimedRun> columns = {{"index", "1", "index of the run, as in sweep.csv", &TimedRun::index}};
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    columns.add(
+        {{fields[i], "unit of the field", "value of the field", [i](const TimedRun& r) { return r.values[i]; }}});
+  columns.add(
+      {{"seconds_per_step", "s", "processor time of a step in a run without observers: smallest of five repetitions",
+        [](const TimedRun& r) { return r.cost.step_s; }},
+       {"spread_s", "s", "median of the repetitions minus the smallest repetition, of one step",
+        [](const TimedRun& r) { return r.cost.spread_s; }},
+       {"seconds_per_simulated_second", "s/s", "processor time per simulated second",
+        [](const TimedRun& r) { return r.cost.per_simulated_second(); }},
+       {"deadline_share", "1", "processor time of a step divided by 0.5 ms",
+        [](const TimedRun& r) { return r.cost.deadline_share(); }},
+       {"steps", "1", "steps of the measured run; fewer than the scenario's if it diverges or its task ends",
+        [](const TimedRun& r) { return r.cost.steps; }}});
+  return columns;
+}
+
+/// Measures the cost of each run of a sweep and writes sweep_timing.csv. A block of runs is measured together, because
+/// each run keeps its simulation until the end of the measurement.
+std::vector<RunCost> timed_runs(const Cases& cases, const fs::path& directory, const JobOptions& jobs) {
+  constexpr std::size_t kTogether = 32;
+  std::vector<TimedRun> rows;
+  std::vector<RunCost> costs;
+  for (std::size_t first = 0; first < cases.size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, cases.size() - first);
+    for (const RunCost& cost : measure_cost(
+             count, [&](std::size_t i) { return checked(cases.load(first + i)); }, jobs)) {
+      rows.push_back({costs.size(), cases.values(costs.size()), cost});
+      costs.push_back(cost);
+    }
+  }
+  std::vector<std::string> fields;
+  for (const Axis& axis : cases.axes()) fields.push_back(axis.path);
+  FileSet files;
+  timing_columns(fields).write(directory / kTimesFile, rows, files);
+  files.commit();
+  return costs;
+}
+
 /// Prints a finished sweep again. Throws InputError for options that would run something.
 int reprint(const SweepCommand& command, ProgramContext& context) {
   const bool runs = !command.vary.empty() || !command.overrides.empty() || !command.sample.empty() ||
                     !command.points.empty() || !command.out.empty() || !command.shard.empty() || command.resume ||
-                    command.keep_runs || command.print || command.full;
+                    command.keep_runs || command.print || command.full || command.time;
   if (runs) {
     throw InputError(fmt::format(
         "{}: holds a finished sweep, which is printed again; allowed with it: --where, --metric, --json, --quiet",
@@ -258,8 +325,14 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
   if (!command.where.empty() && !command.shard.empty())
     fail_in_option("--where",
                    "got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");
+  if (command.time && !command.shard.empty())
+    fail_in_option("--time", "got it for a shard; allowed: for a whole sweep");
   // Check all input before anything runs or is written.
   Cases cases = cases_of(command);
+  if (command.time && cases.size() > kMaxTimed)
+    fail_in_option("--time",
+                   fmt::format("got {} runs; allowed: at most {}, each of which is repeated for 0.1 s or more",
+                               cases.size(), kMaxTimed));
   if (command.print) return print_row(command, cases, context);
   SweepOptions options{
       .directory = results_directory(command.out, "sweep_" + cases.scenes().front().file.stem().string()),
@@ -276,7 +349,13 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
   // Run the sweep, then print its table.
   const SweepReport report = run_sweep(plan, options);
   const SweepTable table = read_sweep(options.table(), command.where);
-  print_sweep(command, table, context, report.resumed);
+  std::error_code ignored_error;
+  fs::remove(options.directory / kTimesFile, ignored_error);  // of an earlier sweep
+  const bool is_timed = command.time && !report.failed;
+  const std::vector<RunCost> costs =
+      is_timed ? timed_runs(plan.cases, options.directory, job_options(command, "timing", context))
+               : std::vector<RunCost>();
+  print_sweep(command, table, context, report.resumed, costs);
   return verdict(plan.cases, report, table.counts, context);
 }
 
@@ -298,7 +377,9 @@ std::vector<DescribedTable> sweep_tables() {
   table.columns.push_back(
       {"state_hash", "",
        "hash over the bits of position, velocity and force of every time step: equal for identical runs"});
-  return {table};
+  return {table, timing_columns({}).described(kTimesFile,
+                                              "written by sweep --time: one line per run; after index, one "
+                                              "column per varied field")};
 }
 
 void add_sweep(CommandLine& line) {
@@ -333,6 +414,9 @@ void add_sweep(CommandLine& line) {
       "--full", options.full,
       "make all steps of runs that fail; otherwise such a run ends when it has failed for good, and its metrics "
       "are empty");
+  command.flag("--time", options.time,
+               "also measure the processor time of each run, without observers and one run at a time; writes "
+               "sweep_timing.csv");
   command.add("--row <index>", options.row, "row of sweep.csv for --print, from 0");
   command.flag("--print", options.print,
                "print the \"hapbench run\" line that repeats one row; add it to the options of the sweep");
