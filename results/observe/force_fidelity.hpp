@@ -24,15 +24,20 @@ class ReferenceForce {
   using Ideal = std::array<Profile, 3>;  ///< x, y, z of the force over time
 
   /// Measured force. Precondition: at least one sample, and times increase.
-  explicit ReferenceForce(std::vector<Sample> samples) : force_(std::move(samples)) {}
+  /// `error`: largest error of a sample [N].
+  explicit ReferenceForce(std::vector<Sample> samples, double error = 0.0)
+      : force_(std::move(samples)), error_(error) {}
   explicit ReferenceForce(Ideal ideal) : force_(std::move(ideal)) {}
 
   /// Returns the force at time t [s], interpolated linearly between samples; nothing before the first sample and
   /// after the last. Cost: O(log n).
   std::optional<Vec3> at(double t) const noexcept;
+  /// Largest error of the force itself [N]; 0 if it is given or measured.
+  double error() const noexcept { return error_; }
 
  private:
   std::variant<std::vector<Sample>, Ideal> force_;
+  double error_ = 0.0;
 };
 
 /// Directions of two forces are compared if both exceed this value [N]; weaker forces have no meaningful direction.
@@ -67,6 +72,8 @@ class ForceFidelityObserver final : public MetricObserver {
   void begin(const TrialParts& trial) override;
   void on_step(const StepRecord& record) noexcept override;
   void report(Section& section) const override;
+  /// Adds reference_error_N, if the reference force has an error.
+  void add_members(nlohmann::ordered_json& section) const override;
 
   /// Reference force f_m in the last step [N]; empty if the step has no reference force.
   const std::optional<Vec3>& reference() const noexcept { return at_row_; }

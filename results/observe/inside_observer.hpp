@@ -112,6 +112,13 @@ class CorePassage {
     bool continued = false;  ///< true if a segment of the next check overlaps this segment
   };
 
+  /// A point of the axis whose distance was evaluated: its coordinate on the axis [m], and the distance.
+  struct AxisPoint {
+    double s;
+    KnownDistance distance;
+    bool known;
+  };
+  SurfaceDistance distance_at(const Vec3& point, double s) noexcept;
   void check_core(const ToolPose& pose, double deepest_contact, double time) noexcept;
   double find_segments(const Vec3& position, const Vec3& axis, double front) noexcept;
   void compare(const Vec3& position, const Vec3& axis, double time) noexcept;
@@ -129,6 +136,9 @@ class CorePassage {
                                                    ///< checked
   double free_distance_ = 0.0;                     ///< distance that the core can move without meeting the surface [m]
   std::vector<Segment> segments_, last_segments_;  ///< segments of this check and of the last check
+  /// Evaluated points of this check and of the last check, from the tip on, and the next point of the last check.
+  std::vector<AxisPoint> axis_points_, last_axis_points_;
+  std::size_t next_axis_point_ = 0;
   std::optional<Event> event_;
 };
 
@@ -218,7 +228,8 @@ class InsideObserver final : public Observer {
   /// outside (tip_free2_), and while it is inside (tip_free2_inside_).
   double tip_free2_ = 0.0, tip_free2_inside_ = 0.0;
   SurfaceDistance tip_phi_;
-  Vec3 core_ = Vec3::Zero();    ///< front point of the core in the previous step [m]
+  std::optional<KnownDistance> core_distance_;  ///< last evaluated position of the front point
+  Vec3 core_ = Vec3::Zero();                    ///< front point of the core in the previous step [m]
   double free_distance_ = 0.0;  ///< distance that the front point can move without meeting the surface [m]
   SolidSide side_ = SolidSide::unknown;
   Vec3 outside_ = Vec3::Zero();       ///< last position of the front point outside [m]

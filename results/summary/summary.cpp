@@ -113,6 +113,7 @@ ordered_json summary_json(const Result& run) {
                        {"expected", run.expected},
                        {"steps", run.end.rows},
                        {"duration_s", number_or_null(run.duration)},
+                       {"ended_at_s", number_or_null(run.end.ended_at)},
                        {"divergence", divergence_json(run.end)},
                        {"warnings", warnings}};
   if (run.diagnosis) {

@@ -290,6 +290,20 @@ int study_settings(const ConvergeOptions& options, ProgramContext& context) {
   question.levels = static_cast<std::size_t>(options.levels > 0 ? options.levels : kLevelsOfSettings);
   question.ratio = options.ratio;
   question.max_error = max_error;
+  // Along a prescribed path nothing is integrated: laws are compared with the reference force.
+  const LoadedScenario loaded = load_scenario(question.scenario, options.overrides);
+  if (loaded.scenario.reference_force) {
+    if (std::ranges::count(question.over, "integrator.type", &Axis::path) > 0)
+      fail_in_option("--over",
+                     "got integrator.type for a scene with a reference_force, whose path is prescribed; "
+                     "allowed: rendering.algorithm and other fields of rendering");
+    const Cases cases({question.scenario}, options.overrides, question.over);
+    Report report(options, "converge", "converge_" + file.stem().string(), context);
+    report_model_errors(cases, job_options(options, "converge", context), context.layout(), report);
+    report.say(fmt::format("\nresults in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
+                           shell_file(report.folder())));
+    return report.finish();
+  }
   Report report(options, "converge", "converge_" + file.stem().string(), context);
   const auto problems = work_precision(question, job_options(options, "converge", context));
   report.json() = Json::array();
@@ -393,7 +407,9 @@ void add_converge(CommandLine& line) {
       "Run time against error: --over compares each setting with the converged solution, which another integrator "
       "computes with a step at least 16 times smaller. Errors are rms differences of the tip's position and of the "
       "force over the run. Each law has a solution of its own. Files: convergence.csv (errors) and "
-      "convergence_timing.csv.\n\n"
+      "convergence_timing.csv. In a scene with a reference_force (hapbench new fidelity), it compares the laws with this "
+      "force instead: direction and size of the error, and median and 99.9th percentile of the time of a step. Files: "
+      "convergence_model.csv and convergence_model_timing.csv.\n\n"
       "Time: with the default levels of the time step, about 31 times one run.");
 }
 

@@ -32,6 +32,8 @@ std::string Result::*distinct_name(std::span<const Result> reports) {
 std::string ending_text(const Result& report) {
   const std::string name(outcome_name(report.end.outcome));
   const auto last = number_of(report.metrics, "last_contact_s");
+  if (report.end.ended_at && report.end.outcome != Outcome::diverges)
+    return fmt::format("{} at {:.3g} s", name, *report.end.ended_at);
   switch (report.end.outcome) {
     case Outcome::leaves_hole:
     case Outcome::tool_horizontal:

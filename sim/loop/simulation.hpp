@@ -147,6 +147,8 @@ class Simulation {
   bool advance(std::uint64_t steps) noexcept;
   /// Takes all remaining steps and returns the result.
   SimulationResult run() noexcept;
+  /// Notifies no observer of further steps, and computes nothing that only observers read. The motion does not change.
+  void drop_observers() noexcept;
 
   const SimulationResult& result() const { return result_; }
   /// Number of the next step.

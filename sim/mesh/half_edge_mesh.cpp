@@ -106,18 +106,7 @@ class MeshParts {
       while (!open.empty()) {
         const std::uint32_t t = open.back();
         open.pop_back();
-        for (const std::uint32_t h : at[t]) {
-          if (h == kNone) {
-            closed_[part] = false;
-            continue;
-          }
-          const Hinge& hinge = hinges[h];
-          const std::uint32_t neighbour = hinge.triangles[hinge.triangles[0] == t ? 1 : 0];
-          if (part_[neighbour] != kNone) continue;
-          part_[neighbour] = part;
-          reversed_[neighbour] = hinge.opposed ? reversed_[t] : !reversed_[t];
-          open.push_back(neighbour);
-        }
+        for (const std::uint32_t h : at[t]) visit_neighbour(t, h, part, open);
       }
     }
   }
@@ -208,6 +197,20 @@ class MeshParts {
 
  private:
   std::size_t count() const { return closed_.size(); }
+  /// Adds the triangle beyond hinge h of triangle t to a part and to the `open` triangles, unless it has a part
+  /// already.
+  void visit_neighbour(std::uint32_t t, std::uint32_t h, std::uint32_t part, std::vector<std::uint32_t>& open) {
+    if (h == kNone) {
+      closed_[part] = false;
+      return;
+    }
+    const Hinge& hinge = hinges_[h];
+    const std::uint32_t neighbour = hinge.triangles[hinge.triangles[0] == t ? 1 : 0];
+    if (part_[neighbour] != kNone) return;
+    part_[neighbour] = part;
+    reversed_[neighbour] = hinge.opposed ? reversed_[t] : !reversed_[t];
+    open.push_back(neighbour);
+  }
   void reverse(const std::vector<bool>& parts) {
     for (std::size_t t = 0; t < part_.size(); ++t) {
       if (parts[part_[t]]) reversed_[t] = !reversed_[t];

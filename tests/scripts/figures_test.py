@@ -1,5 +1,6 @@
 """scripts/figures on freshly made results."""
 import json
+import os
 import re
 import shutil
 import unittest
@@ -151,6 +152,9 @@ class Figures(unittest.TestCase):
         cls.directory = scratch_folder(cls)
         cls.results, cls.drawn = cls.directory / "results", cls.directory / "figures"
         make_results(cls.results)
+        program = mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})  # it finds knees
+        program.start()
+        cls.addClassCleanup(program.stop)
         with mock.patch.object(command, "FORMATS", ("svg",)):
             cls.status, _, cls.said = in_process(command.main, cls.results, "--out", cls.drawn)
 

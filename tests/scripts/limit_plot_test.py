@@ -5,6 +5,7 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from figure_checks import assert_fits, curves_of, legend_labels
+from fixture import hapbench
 from pictures_test import Given, made, make_root, plotted
 
 from hapbench.columns import read_records
@@ -101,6 +102,35 @@ class Limits(Given):
         )
         made("converge", "converge", "springs_oscillation", "--metric", "inside_max_m")
         self.assertIn("nothing to draw: no level has an error above 0", plotted(folder, expected=2))
+
+    def test_the_program_finds_knees(self):
+        """In logarithms to the base 10: (0, 0), (1, -3), (2, -3.5), (3, -4): the second is farthest below the chord."""
+        bent = hapbench("plot", "--knee", "1:1", "1000:1e-4", "10:1e-3", "100:3.2e-4")
+        self.assertEqual(bent, "2\n")
+        self.assertEqual(
+            hapbench("plot", "--knee", "1:1", "2:0.25", "4:0.0625", "8:0.015625"), "\n"
+        )
+        for wrong in ("1", "1:0", "a:1", "-1:1"):
+            self.assertIn("COST:ERROR", hapbench("plot", "--knee", wrong, expected=2))
+
+    def test_laws_against_a_reference_force(self):
+        folder = made(
+            "model",
+            "converge",
+            "plane_wiped_round",
+            "--over",
+            "rendering.algorithm=mean,summation",
+            "--set",
+            "time.duration_s=0.1",
+        )
+        self.assert_plot_shows(
+            folder,
+            "mean",
+            "summation",
+            "rms error of the force [N]",
+            "mean error of the direction [°]",
+            "deadline, 0.5 ms",
+        )
 
     def test_tuning(self):
         folder = made(

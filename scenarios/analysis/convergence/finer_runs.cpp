@@ -62,7 +62,7 @@ FinerRuns::FinerRuns(const Comparison& comparison, std::span<const Result> repor
     scenes_.push_back({part_of(cases, [&] { return level_sweep(loaded, kStepPath, kErrorLevels, kErrorRatio); }),
                        part_of(cases, [&] { return spacing_levels(loaded, has_points); }), has_points});
   }
-  finer_ = run_all(finer, jobs);
+  finer_ = run_all(finer, jobs, {}, comparison.length);
 }
 
 KnownError FinerRuns::known_error(std::size_t run, const std::string& metric) const {

@@ -53,6 +53,7 @@ Columns<ComparedRun> comparison_columns(bool seeds) {
     columns.add(
         {{metric.name, metric.unit, metric.meaning, [name](const Row& r) { return value_of(r.run.metrics, name); }}});
   }
+  columns.add({{"ended_at_s", "s", kEndedAtMeaning, [](const Row& r) { return cell_of(r.run.end.ended_at); }}});
   return columns;
 }
 

@@ -42,6 +42,7 @@ struct CompareOptions : CommonOptions {
   ComparisonQuestion question;  ///< if it has no algorithms, all algorithms are compared
   bool errors = false;
   bool time = false;
+  bool full = false;
   std::string replay;  ///< log of a haptic loop; empty: the scenarios' own motions
 };
 
@@ -57,6 +58,7 @@ Comparison planned(const CompareOptions& options) {
     fail_in_option("--jitter", fmt::format("got {}; allowed: 0 ... {} m", question.jitter, kMaxJitter));
   question.scenarios = find_scenarios(options.scenarios);
   question.overrides = options.overrides;
+  question.length = options.full ? RunLength::full : RunLength::until_failure;
   question.algorithms = question.algorithms.empty() ? algorithm_names() : chosen_algorithms(question.algorithms);
   return planned(question);
 }
@@ -123,17 +125,19 @@ void report_runs(const std::vector<Result>& reports, const Ranking& league, bool
   report.say(reports.front().name + "\n\n");
   report.show(run_table(reports, false, layout));
   report_fidelity(reports, layout, report);
+  report.say(unranked_text(league, layout));
   if (!errors) report.say(vibration_text(league, layout));
   if (layout.in_full()) report.say(step_time_text(reports, layout));
 }
 
 /// Throws InputError for options that have no meaning with --replay.
 int compare_replay(const CompareOptions& options, ProgramContext& context) {
-  if (options.errors || options.time || options.question.seeds != 1 || options.question.jitter != 0.0 ||
+  if (options.errors || options.time || options.full || options.question.seeds != 1 || options.question.jitter != 0.0 ||
       !options.metrics.empty())
-    fail_in_option("--replay",
-                   "got it together with --errors, --time, --seeds, --jitter or --by; allowed: --algorithms, --set, "
-                   "--out, --json, --quiet");
+    fail_in_option(
+        "--replay",
+        "got it together with --errors, --time, --full, --seeds, --jitter or --by; allowed: --algorithms, --set, "
+        "--out, --json, --quiet");
   if (options.scenarios.size() != 1)
     fail_in_option("--replay", fmt::format("got {} scenarios; allowed: one", options.scenarios.size()));
   const std::vector<std::string> algorithms =
@@ -169,8 +173,8 @@ int compare(const CompareOptions& given, ProgramContext& context) {
   // The wide table of a single scene shows times, and concurrent runs would be slower. Therefore make one run at a
   // time unless --jobs is given.
   if (options.jobs == 0 && !ranks && layout.in_full()) timed.threads = 1;
-  const std::vector<Result> reports =
-      run_all(comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); });
+  const std::vector<Result> reports = run_all(
+      comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); }, comparison.length);
   // Rank the algorithms and write the results of all runs.
   const Ranking league = rank_comparison(comparison, reports, ranks ? options.metrics : printed_metrics(reports));
   write_runs(comparison, reports, context, report);
@@ -226,12 +230,17 @@ void add_compare(CommandLine& line) {
       "also measure the processor time of a step with each law, and rank the laws by it; one run at a time, without "
       "observers, the smallest of five repetitions; writes comparison_timing.csv");
   add_table(command, options.output);
+  command.flag(
+      "--full", options.full,
+      "make all steps of runs that fail; otherwise such a run ends when it has failed for good, and its metrics "
+      "are empty");
   command.footer(
       "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
       "of laws whose mean is better by more than 0.1 % and by more than the errors of both; the spread over seeds does "
       "not count. Laws with a failed run rank last.\n\n"
       "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "
-      "along, or does not end as its scenario expects.\n\n"
+      "along, or does not end as its scenario expects. It ends when it has failed for good (hapbench describe \"early "
+      "end\").\n\n"
       "Files: comparison.csv (one row per run), ranking.csv (one row per scenario, law and metric), and each run in "
       "OUT/[SCENARIO/]ALGORITHM[/seed_K]; the parts in brackets exist if there are several. An earlier comparison in "
       "the folder is removed, other files stay.\n\n"

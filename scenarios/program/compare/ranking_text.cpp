@@ -111,6 +111,17 @@ std::string verdict(const Ranking& league, const std::string& folder, const Layo
 
 }  // namespace
 
+std::string unranked_text(const Ranking& league, const Layout& layout) {
+  const bool has_unranked = std::ranges::count(league.algorithms, kSharesReference) > 0 &&
+                            std::ranges::count(league.is_rigid_reference, true) > 0;
+  if (!has_unranked) return "";
+  return layout.wrapped(
+      fmt::format(
+          "{} is not ranked by fidelity: it renders by the same constraints as the reference force, rigid contact",
+          kSharesReference),
+      0);
+}
+
 void report_ranking_text(const Ranking& league, const Layout& layout, Report& report) {
   if (report.prints_tables()) return report.show(law_metric_table(league));
   constexpr std::size_t kMaxPrinted = 60;
@@ -129,6 +140,7 @@ void report_ranking_text(const Ranking& league, const Layout& layout, Report& re
             "metric; - if all do, or if the error of the number is not smaller than the number (<=)") +
             (league.seeds > 1 ? "; the spread over the seeds does not count" : ""),
         0));
+  report.say(unranked_text(league, layout));
   report.say(verdict(league, report.folder().string(), layout));
 }
 

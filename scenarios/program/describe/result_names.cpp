@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -59,7 +60,11 @@ Json printed_names() {
     all.push_back({{"kind", kind}, {"name", name}, {"meaning", meaning}});
   };
   for (const auto& [name, kind, meaning] : kPrintedNames) add(name, kind, meaning);
-  for (const OutcomeInfo& outcome : outcome_infos()) add(outcome.name, "outcome of a run", outcome.meaning);
+  for (const OutcomeInfo& outcome : outcome_infos()) {
+    const std::string early =
+        outcome.ends_early == nullptr ? "" : fmt::format("; compare and sweep end such a run {}", outcome.ends_early);
+    add(outcome.name, "outcome of a run", outcome.meaning + early);
+  }
   for (const RunVerdictText& verdict : run_verdict_texts())
     add(verdict.name, "class of motion, of limit and stability", verdict.meaning);
   for (const Diagnosed& rule : diagnosis_rules())

@@ -7,6 +7,8 @@
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/run_all.hpp"
 #include "scenarios/input/shared_cache.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/motions.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -69,14 +71,40 @@ TEST_F(ComparisonOf, JitteredScenesStartFromOnePlaceForEachSeed) {
   }
 }
 
+TEST_F(ComparisonOf, JitterShiftsAPrescribedPathAsAWhole) {
+  Json script = test::minimal_scenario("plane");
+  script["motion"] = {{"position",
+                       {{"type", "prescribed"},
+                        {"x_m", {{"type", "ramp"}, {"start", 0.0}, {"rate_per_s", 0.01}}},
+                        {"y_m", {{"type", "sine"}, {"amplitude", 1e-3}}},
+                        {"z_m", {{"type", "waypoints"}, {"points", {{0, 0.001}, {1, -0.001}}}}}}}};
+  const ComparisonQuestion question{
+      .scenarios = {write("script.json", script)}, .algorithms = {"mean"}, .seeds = 3, .jitter = 1e-4};
+  const Comparison comparison = planned(question);
+  const auto place = [](const Scenario& scenario, double t) -> Vec3 {
+    return make_motion(scenario, NamedFiles(scenario))->position_at(t);
+  };
+  const Scenario own = load_scenario(question.scenarios[0]).scenario;
+  for (std::size_t seed = 0; seed < 3; ++seed) {
+    const Scenario shifted = comparison.load(seed).scenario;
+    const Vec3 shift = place(shifted, 0.0) - place(own, 0.0);
+    EXPECT_NEAR(shift.norm(), 1e-4, 1e-17);
+    for (const double t : {0.3, 0.7, 2.0}) EXPECT_NEAR((place(shifted, t) - place(own, t) - shift).norm(), 0.0, 1e-16);
+  }
+}
+
 TEST_F(ComparisonOf, WhatCannotBeComparedSaysWhichFile) {
   ComparisonQuestion question = two_scenes();
   Json script = test::minimal_scenario("plane");
   script["motion"] = {{"position", {{"type", "prescribed"}, {"x_m", 0.0}, {"y_m", 0.0}, {"z_m", 0.0}}}};
   question.scenarios.push_back(write("script.json", script));
   EXPECT_NO_THROW(planned(question));
+  // A prescribed path is shifted, unless its forces are given.
   question.jitter = 1e-4;
-  EXPECT_NE(refused(question).find("script.json: /motion/position: "), std::string::npos) << refused(question);
+  EXPECT_NO_THROW(planned(question));
+  script["reference_force"] = {{"z_N", 1.0}};
+  question.scenarios.back() = write("script.json", script);
+  EXPECT_NE(refused(question).find("script.json: /reference_force: "), std::string::npos) << refused(question);
   question = two_scenes();
   fs::create_directory(directory_ / "copy");
   question.scenarios.push_back(write("copy/plane.json", test::minimal_scenario("plane")));

@@ -30,6 +30,31 @@ Ranking rank_comparison(const Values& values, Better better = Better::less, std:
   return league;
 }
 
+/// The proxy renders by the constraints of rigid contact: its fidelity has no rank, and moves no other law.
+TEST(Ranking, DoesNotRankTheFidelityOfTheReferencesOwnConstraints) {
+  for (const bool is_rigid : {true, false}) {
+    Ranking league{{"scene"},
+                   {"proxy", "mean", "summation"},
+                   {"fidelity.force_error_rms_N", "force_max_N"},
+                   {Better::less, Better::less},
+                   1,
+                   {},
+                   {false, false, false},
+                   {is_rigid}};
+    std::vector<Result> runs(3);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (const std::string& name : league.metrics)
+        Section(runs[a].metrics, "").metric(name, "N", "", static_cast<double>(a + 1), Better::less).within(0.0, 0.0);
+    league.runs = runs;
+    league.rank();
+    const auto rank = [&](std::size_t a, std::size_t m) { return league.at(0, a, m).rank.value_or(0); };
+    EXPECT_EQ(rank(0, 0), is_rigid ? 0u : 1u);
+    EXPECT_EQ(rank(1, 0), is_rigid ? 1u : 2u);
+    EXPECT_EQ(rank(0, 1), 1u) << "other metrics are ranked";
+    EXPECT_EQ(rank(2, 1), 3u);
+  }
+}
+
 std::vector<std::size_t> ranks(const Ranking& league) {
   std::vector<std::size_t> ranks;
   for (const RankingEntry& standing : league.standings) ranks.push_back(standing.rank.value_or(0));

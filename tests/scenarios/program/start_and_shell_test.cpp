@@ -35,10 +35,10 @@ TEST_F(NewCommand, WritesScenariosOfEveryKindThatRunAtOnceAndTouch) {
   for (const Json& entry : kinds) {
     const std::string kind = entry["kind"].get<std::string>(), file = path(kind + ".json");
     std::vector<std::string> arguments = {"new", kind, "--out", file};
-    const std::string source = kind == "mesh" || kind == "tool" ? "cube.obj"
-                               : kind == "shell"                ? "shell.csv"
-                                                                : "stroke.csv";
-    if (kind == "mesh" || kind == "tool" || kind == "shell" || kind == "stroke")
+    const std::string source = kind == "mesh" || kind == "tool" || kind == "fidelity" ? "cube.obj"
+                               : kind == "shell"                                      ? "shell.csv"
+                                                                                      : "stroke.csv";
+    if (kind == "mesh" || kind == "tool" || kind == "fidelity" || kind == "shell" || kind == "stroke")
       arguments.insert(arguments.end(), {"--from", data(source)});
     if (source == "cube.obj") arguments.insert(arguments.end(), {"--extent", "10mm"});
     const ProgramRun written = hapbench(arguments);

@@ -293,5 +293,32 @@ TEST(Inside, OfAMeshToolIsThatOfItsMesh) {
   }
 }
 
+/// A known distance nearby bounds the search and changes no bit of the result, also at a point of the surface.
+TEST(Solid, KnownDistanceNearbyChangesNothing) {
+  const TriangleSoup sphere = test::sphere(0.004, 3);
+  TriangleSoup open = sphere;
+  open.triangles.resize(open.triangles.size() / 2);
+  std::vector<SurfacePoint> points;
+  for (const Vec3& v : sphere.vertices) points.push_back({v, v.normalized()});
+  std::vector<std::unique_ptr<const Solid>> solids;
+  solids.push_back(solid_of(sphere));
+  solids.push_back(solid_of(open));
+  solids.push_back(make_solid(points));
+  solids.push_back(make_solid(BlockWithHole{}));
+  Random random(5);
+  for (const auto& solid : solids) {
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 near = i % 4 == 0 ? sphere.vertices[static_cast<std::size_t>(i) % sphere.vertices.size()]
+                                   : random_point(random, 0.006);
+      const Vec3 q = i % 3 == 0 ? near : Vec3(near + random_point(random, i % 2 == 0 ? 1e-5 : 0.003));
+      const KnownDistance known{near, solid->at(near).value};
+      const SurfaceDistance alone = solid->at(q), helped = solid->at(q, &known);
+      EXPECT_EQ(alone.value, helped.value);
+      EXPECT_EQ(alone.known, helped.known);
+      EXPECT_EQ(solid->gradient(q, 1e-6), solid->gradient(q, 1e-6, &known));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hapbench::solid_test
