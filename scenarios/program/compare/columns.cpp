@@ -11,6 +11,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/batch/number_with_error.hpp"
 #include "scenarios/batch/ranking.hpp"
+#include "scenarios/batch/sweep_columns.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/compare/times.hpp"
 #include "scenarios/scene/metric_sections.hpp"
