@@ -118,10 +118,10 @@ void report_ranking_text(const Ranking& league, const Layout& layout, Report& re
   report.show(law_ranking_columns().table(league.laws, "mean ranks", layout.in_full()));
   report.say("\n");
   if (is_ranked(league))
-    report.say(
-        layout.wrapped("rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %; - if all "
-                       "differences are, or if the error of the number is not smaller than the number (<=)",
-                       0));
+    report.say(layout.wrapped(
+        "rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %; no rank (-): "
+        "only a bound of the number is known (<=), or all ranks would be equal",
+        0));
   report.say(verdict(league, layout));
 }
 
