@@ -47,7 +47,7 @@ class Pip(unittest.TestCase):
             "print(r.outcome, len(r.trajectory))\n"
             "r.plot().savefig('run.png')\n"
             "print(hapbench.describe('linear limit'))\n"
-            "print(len(hapbench.command('describe', 'schema')['properties']))\n"
+            "print(hapbench.command('describe', 'schema')['title'])\n"
             "hapbench.load('out').plot().savefig('out.png')\n"
         )
         hapbench = venv / "bin/hapbench"

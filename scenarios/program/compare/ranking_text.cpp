@@ -137,7 +137,7 @@ void report_ranking_text(const Ranking& league, const Layout& layout, Report& re
     report.say(layout.wrapped(
         std::string(
             "rank: 1 is best; algorithms share a rank if their means differ by at most 0.1 % or the errors of the "
-            "metric; - if all do, or if the error of the number is not smaller than the number (<=)") +
+            "metric; no rank (-): only a bound of the number is known (<=), or all ranks would be equal") +
             (league.seeds > 1 ? "; the spread over the seeds does not count" : ""),
         0));
   report.say(unranked_text(league, layout));
