@@ -69,7 +69,7 @@ constexpr CommandGuide kCommands[] = {
     {"decide", "reproduce", "test the claims of the thesis", add_reproduce,
      "reproduce\n"
      "reproduce --only T2,R1b\n"
-     "reproduce --choices results/reference/readings.csv",
+     "reproduce --only J1 --assumptions other.csv",
      "scenarios/thesis/README.md, section \"The command reproduce\""},
     {"look", "describe", "explain a name, or list what exists", add_describe,
      "describe\n"

@@ -86,7 +86,7 @@ std::vector<Description> other_meanings(const Index& index, const std::string& n
   std::vector<Description> found =
       described(index, [&](const IndexEntry& item) { return item.kind == "field" && item.name.ends_with("." + name); });
   if (!found.empty()) return found;
-  // Find scenarios, studies, claims and choices of this name.
+  // Find scenarios, studies, claims and assumptions of this name.
   const Index in_folders = folder_index(layout);
   found = described(in_folders, [&](const IndexEntry& item) {
     return item.name == name || (item.kind == "claim" && lower_case(item.name) == lower_case(name));
@@ -144,7 +144,7 @@ void add_describe(CommandLine& line) {
   command.add("--grep <text>", options.grep, "list only entries with this text in name, description or source");
   add_table(command, options.output);
   command.footer(
-      "A list: algorithms, scenarios, studies, devices, metrics, columns, claims, terms, or a group of scenarios such "
+      "A list: algorithms, scenarios, studies, devices, metrics, columns, claims, assumptions, terms, or a group of scenarios such "
       "as thesis.\n\n"
       "Scenario files: \"scenario\" (all fields), a field such as rendering.limits (unit, allowed values, default), or "
       "\"schema\".\n\n"
@@ -153,7 +153,7 @@ void add_describe(CommandLine& line) {
       "Concepts: \"stability\", \"diagnosis\", or a term of the glossary such as \"linear limit\".\n\n"
       "Models: the name of a force law, depth model, integrator, environment, hand, device, scenario or study.\n\n"
       "Thesis: a claim such as C5, an assumption such as planar.first_tilt, a place such as \"Fig. A.2\", or "
-      "\"choices_schema\".");
+      "\"assumptions_schema\".");
 }
 
 }  // namespace hapbench

@@ -7,7 +7,7 @@
 #include "scenarios/program/describe/result_names.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
-#include "scenarios/thesis/choices.hpp"
+#include "scenarios/thesis/assumptions.hpp"
 
 namespace hapbench {
 namespace {
@@ -21,9 +21,9 @@ constexpr std::pair<const char*, Description (*)(const Layout&)> kSections[] = {
     {"algorithm", describe_algorithms},
     {"profile", describe_profile},
     {"scenario", describe_scenario_fields},
-    {"choices_schema",
+    {"assumptions_schema",
      [](const Layout&) {
-       return Description{"", choices_schema()};
+       return Description{"", assumptions_schema()};
      }},
     {"diagnosis", describe_diagnosis},
     {"schema",

@@ -22,7 +22,7 @@ namespace {
 /// The kinds of names that `describe` lists, in the order in which it prints them.
 constexpr const char* kListed[] = {"algorithm", "depth model", "stage",  "integrator", "environment",
                                    "tool",      "hand",        "device", "preset",     "scenario",
-                                   "study",     "metric",      "claim",  "term"};
+                                   "study",     "metric",      "claim",  "assumption", "term"};
 
 std::string group_of(const IndexEntry& item) {
   return item.more.value("group", "");
@@ -111,7 +111,8 @@ int list(const DescribeOptions& options, ProgramContext& context) {
   const bool of_everything = options.name.empty() && options.grep.empty();
   const std::string pattern = lower_case(options.grep);
   const auto is_requested = [&](const IndexEntry& item) {
-    if (of_everything) return item.kind != "metric" && item.kind != "claim" && item.kind != "term";
+    if (of_everything)
+      return item.kind != "metric" && item.kind != "claim" && item.kind != "assumption" && item.kind != "term";
     const std::string text = item.name + " " + item.summary + " " + item.more.value("source", "");
     return (options.name.empty() || list_name(item.kind) == options.name || group_of(item) == options.name) &&
            lower_case(text).find(pattern) != std::string::npos;
@@ -134,7 +135,7 @@ int list(const DescribeOptions& options, ProgramContext& context) {
   }
   const char* more =
       of_everything
-          ? ", \"hapbench describe KIND\" lists one kind with summaries; further kinds: metrics, claims, terms"
+          ? ", \"hapbench describe KIND\" lists one kind with summaries; further kinds: metrics, claims, assumptions, terms"
           : "";
   print(context, options.output,
         list_text(all, of_everything, layout) + "\n" +

@@ -42,14 +42,14 @@ constexpr PrintedName kPrintedNames[] = {
     {"plot.svg", kResultFile, "picture written by plot"},
     {"figures.json", kResultFile, "figures drawn by scripts/figures, with their captions and source files"},
     {"claims.json", kResultFile, "ledger written by reproduce: claims, measured values, verdicts, robustness"},
-    {"claims.md", kResultFile, "ledger written by reproduce, as a table to read"},
-    {"choices.json", kResultFile,
-     "assumptions: what the thesis leaves open, and the value that the reproduction uses; \"describe choices_schema\" "
-     "explains the format"},
-    {"robustness.csv", kResultFile,
-     "written by reproduce --choices: one row per assumption set, with its assumptions and the verdicts"},
-    {"robustness.json", kResultFile,
-     "for each claim: number of assumption sets that give the recorded verdict, and the assumptions that decide it"},
+    {"claims.md", kResultFile, "ledger written by reproduce, to read"},
+    {"claim_pages.md", kResultFile, "written by reproduce: a section for each claim, with rule, cases and sensitivity"},
+    {"assumptions.json", kResultFile,
+     "assumptions: what the thesis leaves open, and the value that the reproduction uses; \"describe "
+     "assumptions_schema\" explains the format"},
+    {"sensitivity.json", kResultFile,
+     "written by reproduce --sensitivity: verdict and number of each claim for each plausible value of each assumption, "
+     "one at a time"},
     {"quantum", "number of import",
      "resolution of a recording along an axis: smallest step between the recorded coordinates (quantum_m with "
      "--json); K times this step is the force step that the recording alone causes"}};

@@ -8,7 +8,6 @@ import re
 import shlex
 import shutil
 import subprocess
-import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -152,8 +151,9 @@ def read(name):
 
 
 def main_results(_old=""):
-    """The main results, as the ledger opens with them."""
-    return (REFERENCE / "claims.md").read_text(encoding="utf-8").split("\n\n")[0]
+    """The sentences of the abstract, as the ledger opens with them; links lead to the ledger."""
+    page = (REFERENCE / "claims.md").read_text(encoding="utf-8")
+    return next(part for part in page.split("\n\n") if part.startswith("| the abstract claims |"))
 
 
 def experiments(_old=""):
@@ -172,37 +172,18 @@ def experiments(_old=""):
 
 
 def robustness(_old=""):
-    """How firmly the verdicts hold over the choices on record: and the fragile ones."""
+    """The assumptions that decide verdicts, each with the claims."""
     claims = read("claims.json")["claims"]
-    sampled = [claim for claim in claims if claim["robustness"]]
-    always = [
-        claim for claim in sampled if claim["robustness"]["holds"] == claim["robustness"]["judged"]
-    ]
-    fragile = [claim for claim in sampled if claim["sureness"] == "fragile"]
-    untouched = [
-        claim["id"]
-        for claim in claims
-        if not claim["choices_reach_it"] and claim["verdict"] != "not reproducible"
-    ]
-    judged = [claim["robustness"]["judged"] for claim in sampled]
-    lines = [
-        f"Of {len(sampled)} verdicts that were sampled, in {min(judged)} to {max(judged)} readings, "
-        f" {len(always)} are the same in every sample. No recorded choice reaches {' '.join(untouched)}. Fragile are "
-        "these; the ledger has the others:",
-        "",
-        "| claim | recorded | recorded verdict in | decided by (first-order Sobol index) |",
-        "|---|---|---|---|",
-    ]
-    for claim in fragile:
-        counts = claim["robustness"]
-        by = counts["decided_by"]
-        decided = f"`{by['choice']}` ({by['index']:.2f})" if by else "no single choice"
-        lines.append(
-            f"| {claim['id']} | {claim['verdict']} | {counts['holds']} of {counts['judged']} | {decided} |"
-        )
-    return "\n".join(
-        line if line.startswith("|") else "\n".join(textwrap.wrap(line, 110)) for line in lines
-    )
+    what = {entry["id"]: entry["what"] for entry in read("assumptions.json")["assumptions"]}
+    decided = {}
+    for claim in claims:
+        for name in claim["deciders"]:
+            alone = len(claim["deciders"]) == 1
+            decided.setdefault(name, []).append(f"**{claim['id']}**" if alone else claim["id"])
+    lines = ["| assumption | what | decides |", "|---|---|---|"]
+    for name, ids in sorted(decided.items(), key=lambda entry: (-len(entry[1]), entry[0])):
+        lines.append(f"| `{name}` | {what[name]} | {' '.join(ids)} |")
+    return "\n".join(lines)
 
 
 class Program:

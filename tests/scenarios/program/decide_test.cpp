@@ -5,10 +5,11 @@
 #include <map>
 #include <optional>
 
-#include "scenarios/thesis/choices.hpp"
+#include "scenarios/thesis/assumption_sets.hpp"
+#include "scenarios/thesis/assumptions.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/ledger.hpp"
-#include "scenarios/thesis/robustness.hpp"
+#include "scenarios/thesis/sensitivity.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
@@ -198,7 +199,7 @@ TEST_F(ConvergeCommand, WritesTheSameBytesHoweverManyJobs) {
     EXPECT_EQ(read_file(directory_ / "one" / name), read_file(directory_ / "three" / name)) << name;
 }
 
-/// The error of an extreme includes the difference between choices of the first counted step.
+/// The error of an extreme includes the difference between assumptions of the first counted step.
 TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
   for (const auto& [to, said] :
        {std::pair{"0.03", "\nerror below 3 %: time.step_s = 0.00025 ("},
@@ -222,14 +223,36 @@ std::map<std::string, Json> repeatable_claims(const Json& ledger) {
   return claims;
 }
 
-TEST(Ledger, IsReadInAMinute) {
+TEST(Ledger, HasFourPartsWithANumberInEveryRow) {
+  std::vector<std::string> parts;
   std::size_t rows = 0;
   for (const std::string& line : test::lines_of(test::read_file(kReference / "claims.md"))) {
-    if (!line.starts_with("| ")) continue;
+    if (line.starts_with("## ")) parts.push_back(line.substr(3, 1));
+    EXPECT_EQ(line.find("…"), std::string::npos) << "a cell is cut: " << line;
+    if (!line.starts_with("| [")) continue;
     ++rows;
-    EXPECT_LE(std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; }), 300) << line;
+    std::vector<std::string> cells;
+    for (const std::string_view cell : parts_of(line, '|')) cells.emplace_back(cell);
+    if (cells.size() != 8) continue;  // of the table of revised rules
+    for (std::size_t i = 1; i < 7; ++i) EXPECT_GT(cells[i].size(), 2u) << line;
+    EXPECT_NE(cells[4], " – ") << "no number: " << line;
   }
-  EXPECT_GE(rows, 2u + 6u + all_claims().size() - 3u) << "the main results, and what can be judged";
+  EXPECT_EQ(parts, (std::vector<std::string>{"1", "2", "3", "4"}));
+  std::size_t judged = 0, revised = 0;
+  for (const Claim& claim : all_claims()) {
+    judged += claim.judge != nullptr ? 1U : 0U;
+    revised += claim.revised.rule.empty() ? 0U : 1U;
+  }
+  EXPECT_EQ(rows, judged + revised);
+}
+
+TEST(Ledger, OpensWithTheSentencesOfTheAbstract) {
+  const std::string page = test::read_file(kReference / "claims.md");
+  for (const AbstractSentence& sentence : abstract_sentences()) {
+    EXPECT_LT(page.find("| " + sentence.sentence + " |"), page.find("## 2.")) << sentence.sentence;
+    for (const std::string& id : sentence.claims)
+      EXPECT_EQ(std::ranges::count(all_claims(), id, &Claim::id), 1) << id;
+  }
 }
 
 /// Compares what the program says of these claims with the ledger in the tree.
@@ -304,38 +327,54 @@ Verdicts verdicts_on_record() {
   return verdicts;
 }
 
-/// The verdicts on these claims under a reading: the last one of a file, or that on record.
-Verdicts verdicts_under(const std::optional<fs::path>& file) {
-  const Choices choices(kReference / "choices.json");
-  Readings readings{choices, PublishedNumbers(kReference / "published.json"), {}, {choices.values_on_record()}};
-  if (file) readings.values = read_readings(*file, choices);
-  for (const Claim& claim : all_claims())
-    if (!claim.timing && !claim.costly) readings.claims.push_back({claim, {}});
+/// The verdicts on these claims under an assumption set.
+Verdicts verdicts_under(const Assumptions& assumptions, AssumptionSet set) {
+  std::vector<Claim> claims = all_claims();
+  std::erase_if(claims, [](const Claim& claim) { return claim.timing || claim.costly || claim.judge == nullptr; });
   const test::TemporaryDirectory directory;
-  const ReadingVerdicts judged = judge_reading(readings, readings.values.size() - 1, directory / "reading");
-  EXPECT_EQ(judged.problems, std::vector<std::string>());
+  const PublishedNumbers published(kReference / "published.json");
+  const std::vector<SetFinding> found =
+      judge_set({assumptions, published}, calibrated(std::move(set), assumptions), claims, directory / "set");
   Verdicts verdicts;
-  for (std::size_t i = 0; i < readings.claims.size(); ++i) verdicts[readings.claims[i].claim.id] = judged.verdicts[i];
+  for (std::size_t i = 0; i < claims.size(); ++i) verdicts[claims[i].id] = found[i].verdict;
   return verdicts;
 }
 
 // Takes a minute of a core.
-TEST(RobustnessOnRecord, HasTheVerdictsThatTheProgramMakesOfAReading) {
-  const Verdicts made = verdicts_under(kReference / "readings.csv");
-  const Json ledger = Json::parse(test::read_file(kReference / "claims.json"));
-  std::size_t sampled = 0;
-  for (const Json& entry : ledger.at("claims")) {
-    const std::string id = entry.at("id").get<std::string>();
-    if (entry.at("robustness").is_null() || !made.contains(id)) continue;
-    ++sampled;
-    EXPECT_TRUE(entry.at("robustness").at("verdicts").contains(made.at(id))) << id << ": " << made.at(id);
-  }
-  EXPECT_GT(sampled, 10u);
+TEST(RobustnessOnRecord, HasTheVerdictsThatTheProgramMakesWithAnotherAssumption) {
+  const Assumptions assumptions(kReference / "assumptions.json");
+  AssumptionSet set{assumptions.recorded_values()};
+  const auto& all = assumptions.all();
+  set.values[static_cast<std::size_t>(std::ranges::find(all, "local.average", &Assumption::id) - all.begin())] = "false";
+  const Verdicts made = verdicts_under(assumptions, set);
+  std::size_t compared = 0;
+  const Json record = read_json(kReference / "sensitivity.json");
+  for (const Json& claim : record.at("claims"))
+    for (const Json& one : claim.at("cases")) {
+      const auto found = made.find(claim.at("id").get<std::string>());
+      if (one.at("assumption") != "local.average" || found == made.end()) continue;
+      ++compared;
+      EXPECT_EQ(one.at("verdict"), found->second) << found->first;
+    }
+  EXPECT_GT(compared, 10u);
 }
 
-/// A reading gets its verdicts as the ledger does.
-TEST(RobustnessOnRecord, OfTheChoicesOnRecordIsTheLedger) {
-  EXPECT_EQ(verdicts_under(std::nullopt), verdicts_on_record());
+/// An assumption set gets its verdicts as the ledger does.
+TEST(RobustnessOnRecord, OfTheAssumptionsOnRecordIsTheLedger) {
+  const Assumptions assumptions(kReference / "assumptions.json");
+  Verdicts on_record = verdicts_on_record();
+  for (const Claim& claim : all_claims())
+    if (claim.judge == nullptr) on_record.erase(claim.id);
+  EXPECT_EQ(verdicts_under(assumptions, {assumptions.recorded_values()}), on_record);
+}
+
+TEST(RobustnessOnRecord, HasEveryClaimThatAnAssumptionCanChange) {
+  const Json ledger = read_json(kReference / "claims.json");
+  for (const Json& claim : ledger.at("claims")) {
+    if (claim.at("timing").get<bool>() || claim.at("verdict") == "not testable") continue;
+    EXPECT_NE(claim.at("robustness"), "not sampled")
+        << claim.at("id") << ": renew it with hapbench reproduce --sensitivity results/reference/sensitivity.json";
+  }
 }
 
 }  // namespace

@@ -207,7 +207,7 @@ TEST(DescribeCommand, ExplainsEveryNameThereIs) {
 }
 
 TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
-  std::vector<std::string> words = {"reproduced in kind"};
+  std::vector<std::string> words = {"qualitatively replicated"};
   for (const OutcomeInfo& outcome : outcome_infos()) words.emplace_back(outcome.name);
   for (const RunVerdictText& verdict : run_verdict_texts()) words.emplace_back(verdict.name);
   for (const RunHeading& heading : kRunHeadings) words.emplace_back(heading.title);
@@ -223,7 +223,40 @@ TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
   // Section A.2 is about the springs, and Fig. 2 has the parts 2c and 2d.
   EXPECT_EQ(claims("section A.2"), Json::array({"A2", "A3"}));
   EXPECT_EQ(claims("A.2"), Json::array({"A1", "A2", "A3", "D2", "D7"}));
-  EXPECT_EQ(claims("Fig. 2"), Json::array({"V1", "V2", "S1"}));
+  EXPECT_EQ(claims("Fig. 2"), Json::array({"V1", "V2", "S3", "S1"}));
+}
+
+/// Every figure, table and equation that the thesis prints. Two tables have the same number.
+TEST(DescribeCommand, ExplainsEveryNumberThatTheThesisPrints) {
+  const Json places = read_json(fs::path(HAPBENCH_SCENARIOS) / "../../results/reference/thesis_places.json").at("places");
+  EXPECT_GT(places.size(), 70u);
+  for (const Json& place : places) {
+    const std::string name = place.at("place").get<std::string>();
+    const ProgramRun run = hapbench_in_process({"describe", name, "--json"});
+    ASSERT_EQ(run.status, 0) << name << run.err;
+    const Json contents = run.json()["contents"];
+    EXPECT_NE(std::ranges::find(contents, place), contents.end()) << name;
+  }
+  EXPECT_EQ(hapbench_in_process({"describe", "Table A. 1", "--json"}).json()["contents"].size(), 2u);
+  for (const char* name : {"Eq. (4)", "eq 4", "equation 4", "Fig. F4"})
+    EXPECT_EQ(hapbench_in_process({"describe", name, "--json"}).json()["contents"].size(), 1u) << name;
+  EXPECT_EQ(hapbench_in_process({"describe", "Fig. 99"}).status, 2);
+}
+
+TEST(DescribeCommand, ListsAssumptionsAndTheClaimsThatEachDecides) {
+  const std::string list = hapbench_in_process({"describe", "assumptions"}).out;
+  EXPECT_NE(list.find("local.average"), std::string::npos) << list;
+  const Json claims = read_json(fs::path(HAPBENCH_SCENARIOS) / "../../results/reference/claims.json").at("claims");
+  const std::string text = hapbench_in_process({"describe", "local.average"}).out;
+  const std::size_t decides = text.find("decides");
+  ASSERT_NE(decides, std::string::npos) << text;
+  for (const Json& claim : claims) {
+    const auto deciders = claim.at("deciders").get<std::vector<std::string>>();
+    const bool is_one = std::ranges::find(deciders, "local.average") != deciders.end();
+    if (is_one) EXPECT_NE(text.find(claim.at("id").get<std::string>(), decides), std::string::npos) << text;
+  }
+  // A name of an earlier version is answered with its new name.
+  EXPECT_NE(hapbench_in_process({"describe", "choices"}).err.find("renamed it to \"assumptions\""), std::string::npos);
 }
 
 /// This includes all tables that a run can write.
