@@ -65,7 +65,8 @@ Json list_on_record(const std::string& list) {
   return with_file(file, [&] { return read_json(file).at(list); });
 }
 
-/// Returns the entry of a claim or assumption of the reference results, with the members that `titled` gives to its text.
+/// Returns the entry of a claim or assumption of the reference results, with the members that `titled` gives to its
+/// text.
 IndexEntry on_record(const char* kind, const Json& item, const std::string& summary,
                      const std::function<Json(Json)>& titled, const Layout& layout) {
   const auto describe = [=] {
@@ -93,18 +94,20 @@ IndexEntry recorded_claim(const Json& claim, const Layout& layout) {
     const auto tried = named.at("cases_tried").get<std::size_t>();
     if (tried > 0) {
       const std::vector<std::string> moved = moved_cases(named);
-      named["sensitivity"] = fmt::format("{} other values of assumptions tried; {}", tried,
-                                         moved.empty() ? "none moves the verdict" : fmt::format("{}", fmt::join(moved, "; ")));
+      named["sensitivity"] =
+          fmt::format("{} other values of assumptions tried; {}", tried,
+                      moved.empty() ? "none moves the verdict" : fmt::format("{}", fmt::join(moved, "; ")));
     }
     if (named.contains("revised")) {
       const Json before = named.at("revised");
-      named["rule before"] = fmt::format("{} ({}); revised because {}", before.at("rule").get<std::string>(),
-                                         before.at("verdict").get<std::string>(), before.at("reason").get<std::string>());
+      named["rule before"] =
+          fmt::format("{} ({}); revised because {}", before.at("rule").get<std::string>(),
+                      before.at("verdict").get<std::string>(), before.at("reason").get<std::string>());
     }
     // Move the measured cases under their title, and omit data for programs.
     named["cases"] = named.at("measured");
-    for (const char* member : {"measured", "ours", "timing", "added", "deciders", "cases_tried", "cases_moved", "revised",
-                               "published_short"})
+    for (const char* member : {"measured", "ours", "timing", "added", "deciders", "cases_tried", "cases_moved",
+                               "revised", "published_short"})
       named.erase(member);
     return named;
   };

@@ -22,8 +22,7 @@ namespace {
 /// The kinds of names that have lists, in the order of the lists.
 constexpr const char* kListed[] = {"algorithm", "depth model", "stage",  "integrator", "environment",
                                    "tool",      "hand",        "device", "preset",     "scenario",
-                                   "study",     "metric",      "claim",  "assumption",
-                                   "term"};
+                                   "study",     "metric",      "claim",  "assumption", "term"};
 
 std::string group_of(const IndexEntry& item) {
   return item.more.value("group", "");
@@ -89,7 +88,8 @@ int list(const DescribeOptions& options, ProgramContext& context) {
   const bool of_everything = options.name.empty() && options.grep.empty();
   const std::string pattern = lower_case(options.grep);
   const auto is_requested = [&](const IndexEntry& item) {
-    if (of_everything) return item.kind != "metric" && item.kind != "claim" && item.kind != "assumption" && item.kind != "term";
+    if (of_everything)
+      return item.kind != "metric" && item.kind != "claim" && item.kind != "assumption" && item.kind != "term";
     const std::string text = item.name + " " + item.summary + " " + item.more.value("source", "");
     return (options.name.empty() || list_name(item.kind) == options.name || group_of(item) == options.name) &&
            lower_case(text).find(pattern) != std::string::npos;
