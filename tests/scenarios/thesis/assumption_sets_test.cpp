@@ -41,18 +41,17 @@ class AssumptionSets : public testing::Test {
     return read_assumption_sets(directory_ / "sets.csv", assumptions());
   }
   static std::vector<Claim> claims() {
-    const Claim stiff = {
-        .id = "stiff",
-        .measure = [](const Evidence& e) -> Measured {
-          return {{"",
-                   {{"stiffness", {e.load("springs_unlimited_mean").scenario.rendering.stiffness}},
-                    {"force", {e.number("springs_unlimited_mean", "metrics.force_max_N")}}}}};
-        },
-        .judge = [](const Measured& m, const PublishedNumbers&) -> Finding {
-          EXPECT_GT(m[0]["force"], 0.0);
-          return {m[0]["stiffness"] > 20000.0 ? Verdict::replicated : Verdict::qualitatively};
-        },
-        .number = "<stiffness.mean:.0f> N/m"};
+    const Claim stiff = {.id = "stiff",
+                         .measure = [](const Evidence& e) -> Measured {
+                           return {{"",
+                                    {{"stiffness", {e.load("springs_unlimited_mean").scenario.rendering.stiffness}},
+                                     {"force", {e.number("springs_unlimited_mean", "metrics.force_max_N")}}}}};
+                         },
+                         .judge = [](const Measured& m, const PublishedNumbers&) -> Finding {
+                           EXPECT_GT(m[0]["force"], 0.0);
+                           return {m[0]["stiffness"] > 20000.0 ? Verdict::replicated : Verdict::qualitatively};
+                         },
+                         .number = "<stiffness.mean:.0f> N/m"};
     const Claim failing = {.id = "failing",
                            .measure = [](const Evidence& e) -> Measured {
                              e.table("springs_unlimited_mean", "none.csv");

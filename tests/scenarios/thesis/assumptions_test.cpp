@@ -163,7 +163,8 @@ TEST_F(AssumptionsFile, GivesOverridesOfScenariosItNames) {
   Json springs = {{"name", "task1"},
                   {"time", {{"step_s", 0.001}, {"steps", 1}}},
                   {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}}};
-  EXPECT_EQ(assumptions.overrides(scenario_of(springs), Texts{"1.5", "b"}), (Texts{"rendering.stiffness_N_per_m=30000"}));
+  EXPECT_EQ(assumptions.overrides(scenario_of(springs), Texts{"1.5", "b"}),
+            (Texts{"rendering.stiffness_N_per_m=30000"}));
   springs["name"] = "atask1";
   EXPECT_TRUE(assumptions.overrides(scenario_of(springs), Texts{"1.5", "b"}).empty());
 }
@@ -183,7 +184,8 @@ TEST_F(AssumptionsFile, RefusesPathsThatAreNotThere) {
     Json assumption = factor();
     assumption["fields"][0]["path"] = path;
     const Assumptions assumptions = read(file({assumption}));
-    const auto error = test::input_error_of([&] { assumptions.overrides(scenario_of(subjects_scenario()), Texts{"2"}); });
+    const auto error =
+        test::input_error_of([&] { assumptions.overrides(scenario_of(subjects_scenario()), Texts{"2"}); });
     ASSERT_TRUE(error) << path;
     EXPECT_EQ(std::string(error->what()).find("assumption \"stiffness\": in scenario task2_x, "), 0u) << error->what();
   }
@@ -198,7 +200,8 @@ TEST_F(AssumptionsFile, WithoutFieldsAreNumbersThatRulesRead) {
   EXPECT_EQ(assumptions.with_numbers(published, Texts{"1.5", "a"})["rule.easily"].mean, 1.5);
   const Texts task = {"task2_a"}, other = {"task3"};
   EXPECT_EQ(assumptions.reach(other, "at least <T2.raw> times"), "");
-  const std::string by_rule = assumptions.reach(other, "at least <rule.easily> times"), by_scene = assumptions.reach(task, "");
+  const std::string by_rule = assumptions.reach(other, "at least <rule.easily> times"),
+                    by_scene = assumptions.reach(task, "");
   EXPECT_NE(by_rule, "");
   EXPECT_NE(by_scene, "");
   EXPECT_NE(by_rule, by_scene);

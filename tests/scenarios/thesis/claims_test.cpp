@@ -162,8 +162,9 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       counts = "raw_mean=41 raw_deviation=19 reduced_mean=6.9 reduced_deviation=1.8 reduced_max=25 outside_taps=14|",
       costs = "points=1000 matrix=1.3e-3 reduced=5e-6 tensor=2e-6",
       depths = "at_0.35=1e-4 at_1=1e-4 | at_0.35=2e-4 at_1=2e-4",
-      ratios = "inside_1=1 inside_2=1 inside_3=1 min_1=0.9 max_1=1.1 min_2=0.9 max_2=1.1 min_3=0.9 max_3=1.1 any_max=1.4 "
-               "damped_1=1 damped_2=1 damped_3=0.96 | | | | average signed_distance: | average binary:",
+      ratios =
+          "inside_1=1 inside_2=1 inside_3=1 min_1=0.9 max_1=1.1 min_2=0.9 max_2=1.1 min_3=0.9 max_3=1.1 any_max=1.4 "
+          "damped_1=1 damped_2=1 damped_3=0.96 | | | | average signed_distance: | average binary:",
       vibration = "velocity_variation=0.1 vibration_power=1e-5 force_reversals=6 | | |";
   const std::vector<Rule> rules = {
       // The deepest of all tilts counts.
@@ -224,8 +225,12 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"R3", ratios, {{"", replicated}, {"1.inside_3=0.94", qualitatively}, {"1.inside_1=0.4", replicated}}},
       {"R4", ratios, {{"", replicated}, {"2.any_max=1.51", not_replicated}}},
       {"R6", ratios, {{"", replicated}, {"2.damped_3=0.94", qualitatively}, {"2.damped_3=0.49", not_replicated}}},
-      {"R5", "min=1 max_per_n=1 sets=10", {{"", replicated}, {"min=0.99", not_replicated}, {"max_per_n=1.01", not_replicated}}},
-      {"S3", "mean: lambda_max=1 | virtual_coupling: lambda_max=0.9", {{"", replicated}, {"1.lambda_max=1.01", not_replicated}}},
+      {"R5",
+       "min=1 max_per_n=1 sets=10",
+       {{"", replicated}, {"min=0.99", not_replicated}, {"max_per_n=1.01", not_replicated}}},
+      {"S3",
+       "mean: lambda_max=1 | virtual_coupling: lambda_max=0.9",
+       {{"", replicated}, {"1.lambda_max=1.01", not_replicated}}},
       {"F5", "min=0 max=1", {{"", replicated}, {"max=1.1", not_replicated}}},
       {"S2",
        "completes=1 buzz=0.05 pop=0.1 disturbed=0 |",
@@ -254,7 +259,10 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         {"p99=nan median=nan", not_replicated}}},  // no such row: nothing is shown
       {"L3",
        "frequency=2 mass=0.1 mass_unlimited=0.1 force=0.5 | frequency=4 mass=0.7 force=20",
-       {{"", replicated}, {"0.mass=0.12", qualitatively}, {"0.force=2.1", qualitatively}, {"1.mass=0.15", not_replicated}}},
+       {{"", replicated},
+        {"0.mass=0.12", qualitatively},
+        {"0.force=2.1", qualitatively},
+        {"1.mass=0.15", not_replicated}}},
       {"L4", "off=1e4 on=2e4", {{"", replicated}, {"on=1.9e4", qualitatively}, {"on=1e4", not_replicated}}},
       // Published: 0.25 mm, both; "around" is 0.3 mm.
       {"J1",
@@ -270,7 +278,8 @@ TEST(Claims, AreJudgedByTheirThresholds) {
        vibration,
        {{"0.velocity_variation=0.5 0.vibration_power=2.5e-4", replicated},
         // Much more power, not as much more variation.
-        {"0.velocity_variation=0.4 0.vibration_power=1e-3 2.velocity_variation=0.5 2.vibration_power=2.5e-4", qualitatively},
+        {"0.velocity_variation=0.4 0.vibration_power=1e-3 2.velocity_variation=0.5 2.vibration_power=2.5e-4",
+         qualitatively},
         // The force turns to and fro as much more often.
         {"0.velocity_variation=0.11 0.vibration_power=1.1e-5 0.force_reversals=30", replicated},
         {"0.force_reversals=30", not_replicated},
@@ -278,7 +287,8 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"B4",
        vibration,
        {{"2.velocity_variation=0.5 2.vibration_power=2.5e-4", replicated},
-        {"0.velocity_variation=0.4 0.vibration_power=1e-3 2.velocity_variation=0.4 2.vibration_power=1e-3", qualitatively},
+        {"0.velocity_variation=0.4 0.vibration_power=1e-3 2.velocity_variation=0.4 2.vibration_power=1e-3",
+         qualitatively},
         {"0.velocity_variation=0.4 0.vibration_power=1e-3", not_replicated}}},
       {"A2",
        "a: pairs=100 arrives=1 overshoot=1e-4 swings=2 signed=1 | b: | a: pairs=4 swings=9",
@@ -296,7 +306,9 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"A5", "there=560 alone=400", {{"", replicated}, {"there=600", qualitatively}, {"there=390", not_replicated}}},
       {"A6",
        "mass=0 kept=0 naive=1 bound=1.1",
-       {{"", replicated}, {"naive=1.1", qualitatively}, {"naive=1.1 kept=0.1", qualitatively},
+       {{"", replicated},
+        {"naive=1.1", qualitatively},
+        {"naive=1.1 kept=0.1", qualitatively},
         {"naive=1.1 kept=0.1 mass=0.1", not_replicated}}},
       {"G1",
        "shortest_product=-1 normal_product=1",
@@ -385,7 +397,9 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"D6",
        "offset: value=0.4e-3 original=0.9 shaped=1 | value=0.6e-3 original=0.1 | height: value=2e-3 | "
        "value=4e-3 original=0.9",
-       {{"", consistent}, {"2.original=0.2", not_consistent}, {"1.original=0.2", not_consistent},
+       {{"", consistent},
+        {"2.original=0.2", not_consistent},
+        {"1.original=0.2", not_consistent},
         {"0.shaped=0.2", consistent}}},
       // A threshold further out than the published one.
       {"D6",
