@@ -193,7 +193,7 @@ class Sweeps(Given):
             "lhs:40",
             *FEW_STEPS,
         )
-        said = plotted(folder, "--metric", "force_max_N")
+        said = plotted(folder, "--metric", "force_step_max_N")
         self.assertIn("of the logarithm", said.splitlines()[0])
         lines = {
             line.split()[0]: line.split()[1:]
@@ -203,7 +203,7 @@ class Sweeps(Given):
         self.assertEqual({len(cells) for cells in lines.values()}, {5})
         self.assertEqual(list(lines)[0], "rendering.stiffness_N_per_m")
         self.assertIn(
-            "Of the logarithm: the index of the logarithm of force_max_N", " ".join(said.split())
+            "Of the logarithm: the index of the logarithm of force_step_max_N", " ".join(said.split())
         )
         self.assert_shows(folder / "plot.svg", "of the logarithm")
 
