@@ -203,7 +203,8 @@ class Sweeps(Given):
         self.assertEqual({len(cells) for cells in lines.values()}, {5})
         self.assertEqual(list(lines)[0], "rendering.stiffness_N_per_m")
         self.assertIn(
-            "Of the logarithm: the index of the logarithm of force_step_max_N", " ".join(said.split())
+            "Of the logarithm: the index of the logarithm of force_step_max_N",
+            " ".join(said.split()),
         )
         self.assert_shows(folder / "plot.svg", "of the logarithm")
 

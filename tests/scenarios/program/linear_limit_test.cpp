@@ -44,7 +44,8 @@ class LinearLimitOfCommands : public testing::Test {
   std::optional<double> edge_at(const std::string& scene, double K) const {
     const auto run = hapbench(
         {"run", scene, "--set", fmt::format("rendering.stiffness_N_per_m={}", K), "--out", folder_ / "run", "--json"});
-    for (const Json& found : run.json()[0]["diagnosis"])
+    const Json results = run.json();
+    for (const Json& found : results[0]["diagnosis"])
       if (found["rule"] == "edge") return found["value"].get<double>();
     return std::nullopt;
   }

@@ -63,7 +63,9 @@ TEST(RigidContactForce, IsComparedWithTheRenderedForce) {
   const Result run = run_scenario(checked(read_scenario(json, test::data_directory())), std::nullopt, false);
   const Metric* error = find_metric(run.metrics, "fidelity.force_error_rms_N");
   ASSERT_NE(error, nullptr);
-  EXPECT_LT(*number_of(error->value), 0.2) << "points 0.1 mm apart on a plane";
+  // Half the diagonal of four points 0.1 mm apart is 0.0707 mm. A point so far from the axis of a ball of 0.5 mm turns
+  // a force of 2 N by 0.142 rad, 0.28 N across, and lowers it by K times 5 um, 0.1 N.
+  EXPECT_LT(*number_of(error->value), 0.3);
   const Json summary = summary_json(run);
   const double reference_error = summary["fidelity"]["reference_error_N"].get<double>();
   EXPECT_DOUBLE_EQ(*error->tolerance(), 5.0 * reference_error);
