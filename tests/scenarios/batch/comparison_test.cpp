@@ -76,7 +76,7 @@ TEST_F(ComparisonOf, JitterShiftsAPrescribedPathAsAWhole) {
   script["motion"] = {{"position",
                        {{"type", "prescribed"},
                         {"x_m", {{"type", "ramp"}, {"start", 0.0}, {"rate_per_s", 0.01}}},
-                        {"y_m", {{"type", "sine"}, {"amplitude", 1e-3}}},
+                        {"y_m", {{"type", "sine"}, {"mean", 0.0}, {"amplitude", 1e-3}, {"period_s", 1.0}}},
                         {"z_m", {{"type", "waypoints"}, {"points", {{0, 0.001}, {1, -0.001}}}}}}}};
   const ComparisonQuestion question{
       .scenarios = {write("script.json", script)}, .algorithms = {"mean"}, .seeds = 3, .jitter = 1e-4};
