@@ -45,7 +45,7 @@ CalibratedSet calibrated(AssumptionSet set, const Assumptions& assumptions);
 /// subjects.
 inline constexpr const char* kReducedSubjects[] = {"hand.trials=1", "hand.task.targets_per_place=4"};
 
-/// What the claims are judged with.
+/// Inputs with which the claims are judged.
 struct JudgingInputs {
   const Assumptions& assumptions;
   const PublishedNumbers& published;  ///< without the values of assumptions

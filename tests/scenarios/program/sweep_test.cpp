@@ -92,7 +92,7 @@ TEST_F(SweepCommand, CountsRunsThatFailAndEndsThemEarly) {
   const auto full = lines_of(table("full"));
   for (std::size_t row = 1; row < 4; ++row) EXPECT_EQ(cells_of(full[row])[2], cells_of(lines[row])[2]);
   EXPECT_EQ(full[3], lines[3]);
-  // What the user expects is an error if it is not met.
+  // An unmet expectation of the user is an error.
   const ProgramRun expected = sweep_of("expected", {"--set", "expect.outcome=completes"});
   EXPECT_EQ(expected.status, 3);
   EXPECT_NE(expected.err.find("2 of 3 runs did not meet the scenario's expect"), std::string::npos) << expected.err;

@@ -131,7 +131,7 @@ TEST(EarlyEnd, IsNotForOutcomesThatAreExpectedOrScripted) {
   EXPECT_FALSE(ended(scripted).end.ended_at);
 }
 
-/// What a table shows of a run that ended early.
+/// Columns of a table for a run that ended early.
 TEST(EarlyEnd, HasATimeAndNoNumbers) {
   const Result run = ended(R"({"hand": {"z_N": -50}, "rendering": {"stiffness_N_per_m": 10}})");
   ASSERT_TRUE(run.end.ended_at);

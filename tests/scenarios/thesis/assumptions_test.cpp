@@ -88,7 +88,7 @@ TEST(AssumptionsOnRecord, AreAsTheSchemaSays) {
     EXPECT_NE(schema.complaints(Json::parse(other)), "") << other;
 }
 
-/// What the schema cannot say: an assumption set is one value for each assumption, in a cell without quotes.
+/// Checks what the schema cannot express: an assumption set is one value for each assumption, in a cell without quotes.
 TEST(AssumptionsOnRecord, AreInTheirRangesAndFitIntoTables) {
   const Assumptions assumptions(kReference / "assumptions.json");
   std::set<std::string> ids;
