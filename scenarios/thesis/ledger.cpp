@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <regex>
 
@@ -53,12 +54,19 @@ std::string link_to(const Json& claim) {
   return fmt::format("[{}](claim_pages.md#{})", id, lower_case(id));
 }
 
-/// Returns the robustness of a claim with its assumptions as code: "sensitive to `local.average`".
-std::string decided_by(const Json& claim) {
-  const auto deciders = claim.at("deciders").get<std::vector<std::string>>();
+/// Returns the robustness of a claim with its assumptions as code: "sensitive to `local.average`". Names the first
+/// `most` assumptions and counts the others.
+std::string decided_by(const Json& claim, std::size_t most) {
+  auto deciders = claim.at("deciders").get<std::vector<std::string>>();
   if (deciders.empty()) return text_at(claim, "robustness");
-  return fmt::format("{} `{}`", deciders.size() == 1 ? kSensitiveVerdict : std::string(kSeveralVerdict) + ":",
-                     fmt::join(deciders, "`, `"));
+  const std::size_t count = deciders.size();
+  if (count > most) deciders.resize(most);
+  return fmt::format("{} `{}`{}", count == 1 ? kSensitiveVerdict : std::string(kSeveralVerdict) + ":",
+                     fmt::join(deciders, "`, `"), count > most ? fmt::format(" and {} more", count - most) : "");
+}
+
+std::string decided_by(const Json& claim) {
+  return decided_by(claim, std::numeric_limits<std::size_t>::max());
 }
 
 std::string seconds_text(const Json& claim) {
@@ -105,11 +113,13 @@ std::string abstract_table(const Json& ledger) {
           if (figure.empty()) figure = text_at(claim, "figure");
           seconds += claim.at("seconds").get<double>();
         }
-    if (claims.empty()) continue;  // --only
+    if (claims.empty()) continue;          // --only
+    constexpr std::size_t kMostNames = 2;  // the page of the claim has them all
+    const auto deciders = [](const Json& claim) { return decided_by(claim, kMostNames); };
     const auto member = [](const char* key) { return [key](const Json& claim) { return text_at(claim, key); }; };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | `hapbench reproduce --only {}` ({:.0f} s) |\n",
                         text_at(sentence, "sentence"), joined(claims, member("published_short")), joined(claims, ours),
-                        joined(claims, member("verdict")), joined(claims, decided_by), figure, ids, std::ceil(seconds));
+                        joined(claims, member("verdict")), joined(claims, deciders), figure, ids, std::ceil(seconds));
   }
   return text;
 }
