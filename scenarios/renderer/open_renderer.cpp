@@ -123,7 +123,7 @@ std::string inspection(const CheckedScenario& checked, const RendererSetup& setu
                         scenario.integrator.type->info.name);
     text += "ignored in admittance mode: mount.max_force, mount.max_force_rate\n";
   }
-  if (scenario.rendering.late && scenario.rendering.late->any())
+  if (has_multi_rate_contacts(scenario))
     text += "used: rendering.contacts, so contacts are late or lost as in the simulation\n";
   if (std::holds_alternative<Hole2d>(scenario.environment))
     text += "note: the scene is planar; it has contacts near z = 0 only\n";

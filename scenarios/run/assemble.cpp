@@ -111,7 +111,7 @@ SimulationParts assemble_rendering(const Scenario& scenario, const NamedFiles& f
                                                  make_depth_model(rendering), rendering.skips);
   }
   // Multi-rate contacts wrap the source and evaluate it only at some steps.
-  if (rendering.late && rendering.late->any()) {
+  if (has_multi_rate_contacts(scenario)) {
     parts.source = std::make_unique<MultiRateContacts>(std::move(parts.source), *rendering.late,
                                                        parts.springs && parts.springs->bilateral,
                                                        derived_seed(scenario, trial, RandomUse::lost_queries));

@@ -47,10 +47,10 @@ std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
 LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to);
 
 /// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable, searched from the
-/// scenario's K in steps of 1 %, up to twice this K and down to a billionth of it. Infinite if the loop is stable up to
-/// twice K; 0 if no K is stable. At each K, the contact is the equilibrium of the tool near `near`; a K without an
-/// equilibrium has the last contact that was found, scaled(). Empty without has_linear_loop(), and if the tool touches
-/// nothing near `near`.
+/// scenario's K in steps of 10 %, up to twice this K and down to a billionth of it. Infinite if the loop is stable up
+/// to twice K; 0 if no K is stable. At each K, the contact is the equilibrium of the tool near `near`; a K without an
+/// equilibrium has the last contact that was found, scaled(). Empty without has_linear_loop(), and without an
+/// equilibrium in contact near `near` at the scenario's K.
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 

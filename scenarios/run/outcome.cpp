@@ -196,8 +196,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   /// passivity controllers have a memory.
   static bool never_returns(const Scenario& scenario) {
     const RenderingConfig& rendering = scenario.rendering;
-    const bool remembers =
-        (rendering.late && rendering.late->any()) || rendering.force_stage || rendering.passivity_controller;
+    const bool remembers = has_multi_rate_contacts(scenario) || rendering.force_stage || rendering.passivity_controller;
     if (!std::holds_alternative<IdealDeviceFields>(scenario.device) || has_external_contacts(scenario) || remembers)
       return false;
     if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand))

@@ -20,11 +20,6 @@ namespace hapbench {
 /// contacts, on a tool that is free to move.
 bool has_permanent_springs(const Scenario& scenario);
 
-/// Returns true if a slower loop finds the contacts, so that the contact is not part of a loop at the period of a step.
-inline bool has_multi_rate_contacts(const Scenario& scenario) {
-  return scenario.rendering.late && scenario.rendering.late->any();
-}
-
 /// Returns true if the scenario has a device other than the ideal device. Only such a device is part of the
 /// loop.
 inline bool has_device(const Scenario& scenario) {

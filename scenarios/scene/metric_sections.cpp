@@ -56,7 +56,7 @@ const SectionKind kSections[] = {
      make<FrictionObserver>},
     {"force_stage", [](const Scenario& s, bool) { return std::size_t{s.rendering.force_stage.has_value()}; },
      make<ForceStageObserver>},
-    {"contacts", [](const Scenario& s, bool) { return std::size_t{s.rendering.late && s.rendering.late->any()}; },
+    {"contacts", [](const Scenario& s, bool) { return std::size_t{has_multi_rate_contacts(s)}; },
      make<ContactAgeObserver>},
     {"targets", target_places, observe_targets, true}};
 

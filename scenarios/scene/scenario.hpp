@@ -288,6 +288,11 @@ double trial_count(const HandFields& hand);
 /// search.
 bool has_external_contacts(const Scenario& scenario);
 
+/// Returns true if a slower loop finds the contacts, so that the contact is not part of a loop at the period of a step.
+inline bool has_multi_rate_contacts(const Scenario& scenario) {
+  return scenario.rendering.late && scenario.rendering.late->any();
+}
+
 /// Returns the scenario with another algorithm, and with the depth model and reduction that this algorithm fixes.
 /// Precondition: `algorithm` is the name of a registered algorithm.
 Scenario with_algorithm(Scenario scenario, std::string_view algorithm);

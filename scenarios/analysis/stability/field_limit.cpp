@@ -19,7 +19,6 @@
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_loop.hpp"
-#include "scenarios/run/scripted_motion.hpp"
 #include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/field_files.hpp"
 
@@ -145,13 +144,6 @@ void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   if (limit.unstable_alone && limit.unstable_part.empty()) limit.unstable_part = "hand and device";
 }
 
-/// Returns true if the contact of a run lasts in its last quarter and has a linear loop: the same points touch. While a
-/// script or a hand moves the tool, other points may touch, as long as the stiff directions do not change.
-bool contact_lasts(const SettledState& settled, bool is_moved) {
-  return settled.last_contact && settled.share_away == 0.0 && !settled.directions_change &&
-         (is_moved || !settled.contacts_change);
-}
-
 /// Writes the linear limit of a tool on a surface, or the reason why there is no linear limit.
 void add_linear_limit(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   if (limit.theory || limit.theory_has_none || question.search.smallest || !limit.end.value) return;
@@ -167,12 +159,9 @@ void add_linear_limit(const LimitQuestion& question, const std::map<double, RunS
   // Find the largest stable value up to the limit whose run has a contact that lasts.
   for (auto run = std::make_reverse_iterator(runs.upper_bound(*limit.end.value)); run != runs.rend(); ++run) {
     const auto& [value, judged] = *run;
-    const Scenario at = question.at(value).scenario;
-    const double duration = at.time.step * static_cast<double>(at.time.steps);
-    const bool is_moved = script_moves_until(at) > 0.75 * duration;
-    if (!question.rule.holds(judged.verdict) || !contact_lasts(judged.settled, is_moved)) continue;
+    if (!question.rule.holds(judged.verdict) || !contact_lasts(judged.settled, question.at(value).scenario)) continue;
     limit.linear = contact_limit(question, value, *judged.settled.last_contact);
-    if (!limit.linear) limit.no_linear = "the tool touches nothing at its equilibrium";
+    if (!limit.linear) limit.no_linear = "the tool has no equilibrium in contact";
     return;
   }
   limit.no_linear = "contacts come and go in every stable run";

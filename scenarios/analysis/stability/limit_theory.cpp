@@ -115,10 +115,11 @@ std::optional<double> contact_limit(const LimitQuestion& question, double stable
     const auto at_rest = linear_contact(scenario, make_shell(scenario.scenario(), scenario.files()), near);
     const RenderingConfig& rendering = scenario.scenario().rendering;
     std::optional<LinearContact> contact;
-    if (at_rest) contact = at_rest->contact;
     // A surface too soft to hold the tool has no equilibrium, nor has a force that jumps. The contact is then the last
     // contact that was found, with this K and B.
-    if (!(at_rest && at_rest->is_equilibrium) && known && question.path == kStiffnessPath)
+    if (at_rest && at_rest->is_equilibrium)
+      contact = at_rest->contact;
+    else if (known && question.path == kStiffnessPath)
       contact = scaled(*known, known_rendering, rendering);
     if (!contact) return std::nullopt;
     known = contact;

@@ -34,7 +34,7 @@ TheoreticalLimit inequality_limit(const LimitQuestion& question);
 /// field, the contact has the derivatives of the rendered force at the equilibrium of the tool (linear_contact). `near`
 /// is the state of a run at the field's value `stable`; the search for the equilibrium starts from `near`, and the
 /// search for the limit starts at `stable`. Returns infinity if the whole range above `stable` is stable, zero if no
-/// value is stable. Returns nothing if the tool touches nothing at `stable`, or without has_linear_loop().
+/// value is stable. Returns nothing without an equilibrium in contact at `stable`, or without has_linear_loop().
 std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near);
 
 /// Limits of the stiffness K [N/m] on a two-sided wall that holds the handle of an impedance device.

@@ -7,6 +7,13 @@
 
 namespace hapbench {
 
+bool contact_lasts(const SettledState& settled, const Scenario& scenario) {
+  const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
+  const bool is_moved = script_moves_until(scenario) > 0.75 * duration;
+  return settled.last_contact && settled.share_away == 0.0 && !settled.directions_change &&
+         (is_moved || !settled.contacts_change);
+}
+
 RunEndObserver::RunEndObserver(const Scenario& scenario, bool alone)
     : steps_(static_cast<std::uint64_t>(scenario.time.steps)),
       judged_(steps_, script_period(scenario) / scenario.time.step),

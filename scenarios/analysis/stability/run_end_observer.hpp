@@ -32,6 +32,10 @@ struct SettledState {
   bool is_held = false;  ///< true if dry friction of device or surface acts on the tool that rests
 };
 
+/// Returns true if the contact lasts over the last quarter of the run and has one linear loop: the same points touch.
+/// While a script or a hand moves the tool, other points may touch, as long as the stiff directions do not change.
+bool contact_lasts(const SettledState& settled, const Scenario& scenario);
+
 /// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the
 /// judged steps (EvaluationWindow). Accumulates contacts and stiffness tensors over the current quarter of the run.
 /// At the end this is the last quarter, or the quarter in which the tool came to rest.

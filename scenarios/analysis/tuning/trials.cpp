@@ -285,14 +285,16 @@ std::vector<NamedLoop> Trials::loops_in_contact(const Scenario& scenario, const 
   return contact_loops(scenario, scaled(*contact.linear, contact.rendering, scenario.rendering), over_hands);
 }
 
-/// Returns the contact of a settled run, near the last step in which the tool was in contact.
+/// Returns the contact of a settled run, near the last step in which the tool was in contact. Without a contact that
+/// lasts there is no linear loop.
 ContactOfTrial Trials::contact_of(const CheckedScenario& scene, const RunStability& run) const {
   ContactOfTrial contact;
   contact.rendering = scene.scenario().rendering;
-  if (springs_lambda_ || !run.settled.last_contact || !has_linear_loop(scene.scenario()) ||
+  if (springs_lambda_ || !contact_lasts(run.settled, scene.scenario()) || !has_linear_loop(scene.scenario()) ||
       has_multi_rate_contacts(scene.scenario()))
     return contact;
-  if (const auto at_rest = linear_contact(scene, shell_, *run.settled.last_contact)) contact.linear = at_rest->contact;
+  const auto at_rest = linear_contact(scene, shell_, *run.settled.last_contact);
+  if (at_rest && at_rest->is_equilibrium) contact.linear = at_rest->contact;
   return contact;
 }
 
