@@ -47,12 +47,16 @@ Columns<Setting> error_columns(double max_error) {
     return error_text(s, s.error ? s.error->force : 0.0, s.reference_error.force, 1e-3);
   };
   const auto cost = [](const Setting& s) { return significant(1e3 * s.cost.per_simulated_second(), 3); };
-  const auto share = [](const Setting& s) { return significant(100.0 * s.cost.deadline_share(), 2); };
+  const auto share = [](const Setting& s) { return significant(100.0 * s.cost.per_simulated_second(), 2); };
   const auto mark = [](const Setting& s) { return s.is_knee ? "knee" : s.on_front ? "front" : ""; };
   return {
       {"problem", "", "values of the fields of --over that define the problem, such as the law", &Setting::problem},
       {"integrator", "", "integrator of the curve", &Setting::integrator, under("integrator")},
       {"step_s", "s", "time step", &Setting::step_s, varied(under("step\ns"))},
+      {"outcome", "", "outcome of the run", [](const Setting& s) { return outcome_name(s.outcome); }},
+      {"expected", "",
+       "true if the scenario expects the outcome; other settings are not on the front and are not recommended",
+       &Setting::is_expected},
       {"position_error_m", "m",
        "rms distance of the tip's positions from the reference solution, at the times of the largest time step; empty "
        "if the trajectory cannot be predicted, or if one of the runs ended early",
@@ -70,7 +74,8 @@ Columns<Setting> error_columns(double max_error) {
       {"asked_error_m", "m", "position error that is asked for (--to)",
        [max_error](const Setting&) { return max_error; }},
       {"ms/s", "1", "processor time per simulated second [ms]", cost, only_printed()},
-      {"% of 0.5 ms", "1", "processor time of a step as a percentage of 0.5 ms", share, only_printed()},
+      {"% of\nstep", "1", "processor time of a step as a percentage of the time step, its deadline in real time", share,
+       only_printed()},
       {"on front", "",
        "front: no other setting of the problem is both cheaper and more accurate; knee: bend of the front", mark,
        only_printed()}};
@@ -78,22 +83,24 @@ Columns<Setting> error_columns(double max_error) {
 
 /// Returns the columns of convergence_timing.csv, which differ from run to run.
 Columns<Setting> timing_columns() {
-  const auto deadline = [](const Setting& s) { return s.cost.deadline_share(); };
   const auto simulated = [](const Setting& s) { return s.cost.per_simulated_second(); };
   const auto step = [](const Setting& s) { return s.cost.step_s; };
   const auto spread = [](const Setting& s) { return s.cost.spread_s; };
-  return {{"problem", "", "problem of convergence.csv", &Setting::problem},
-          {"integrator", "", "integrator of the curve", &Setting::integrator},
-          {"step_s", "s", "time step", &Setting::step_s},
-          {"seconds_per_step", "s", "processor time of a step in a run without observers: smallest of five repetitions",
-           step},
-          {"spread_s", "s", "median of the repetitions minus the smallest repetition", spread},
-          {"seconds_per_simulated_second", "s/s", "processor time per simulated second", simulated},
-          {"deadline_share", "1", "processor time of a step divided by 0.5 ms", deadline},
-          {"on_front", "", "true if no other resolved setting of the problem is both cheaper and more accurate",
-           &Setting::on_front},
-          {"knee", "", "true for the knee of the front: the point farthest below the chord, in logarithms",
-           &Setting::is_knee}};
+  return {
+      {"problem", "", "problem of convergence.csv", &Setting::problem},
+      {"integrator", "", "integrator of the curve", &Setting::integrator},
+      {"step_s", "s", "time step", &Setting::step_s},
+      {"seconds_per_step", "s", "processor time of a step in a run without observers: smallest of five repetitions",
+       step},
+      {"spread_s", "s", "median of the repetitions minus the smallest repetition", spread},
+      {"seconds_per_simulated_second", "s/s", "processor time per simulated second", simulated},
+      {"deadline_share", "1", "processor time of a step divided by the time step, its deadline in real time",
+       simulated},
+      {"on_front", "",
+       "true if the outcome is expected and no other resolved setting of the problem is both cheaper and more accurate",
+       &Setting::on_front},
+      {"knee", "", "true for the knee of the front: the point farthest below the chord, in logarithms",
+       &Setting::is_knee}};
 }
 
 /// Returns a sentence with the cheapest setting of a problem below `max_error` [m], or the reason why no setting is
@@ -106,12 +113,19 @@ std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
         significant(problem.grown_shift, 2), max_error);
   }
   const WorkPrecisionSetting* best = problem.cheapest_below(max_error);
+  const auto failed = std::ranges::find(problem.settings, false, &Setting::is_expected);
+  if (best == nullptr && failed != problem.settings.end())
+    return fmt::format(
+        "no setting is recommended: with {} at {} s the run ends as {}, which the scene does not expect; an error says "
+        "nothing about a scene that fails, such as one in which the tool does not move",
+        failed->integrator, significant(failed->step_s, 6), outcome_name(failed->outcome));
   if (best == nullptr)
     return fmt::format("no setting has an error below {:g} m; smaller time steps: more --levels", max_error);
   return fmt::format(
-      "the cheapest setting below {:g} m is {} at {} s: {} ms per simulated second, {} % of the deadline", max_error,
-      best->integrator, significant(best->step_s, 6), significant(1e3 * best->cost.per_simulated_second(), 2),
-      significant(100.0 * best->cost.deadline_share(), 2));
+      "the cheapest setting below {:g} m is {} at {} s: {} ms per simulated second, {} % of the deadline, one step",
+      max_error, best->integrator, significant(best->step_s, 6),
+      significant(1e3 * best->cost.per_simulated_second(), 2),
+      significant(100.0 * best->cost.per_simulated_second(), 2));
 }
 
 }  // namespace

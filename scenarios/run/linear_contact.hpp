@@ -24,7 +24,7 @@ inline ContactState contact_state(const StepRecord& record) noexcept {
   return state;
 }
 
-/// The linearisation at the pose where the search for the equilibrium ended.
+/// The linearisation at the equilibrium; without an equilibrium, at the pose of the run.
 struct ContactAtRest {
   LinearContact contact;
   bool is_equilibrium = false;  ///< false if the search did not converge: a surface too soft, or a force that jumps
@@ -36,8 +36,8 @@ struct ContactAtRest {
 /// constant: where a point begins to touch, the difference is one-sided.
 ///
 /// The equilibrium is found by Newton's method, with the targets of the hand as at the time of `near`. Without an
-/// equilibrium, the derivatives belong to the last pose of the search; a law whose force jumps when a point begins to
-/// touch need not have an equilibrium. Returns nothing if the tool touches nothing at `near`, or if a force is not
+/// equilibrium, the derivatives belong to the pose of `near`; a law whose force jumps when a point begins to touch need
+/// not have an equilibrium. Returns nothing if the tool touches nothing at `near`, or if a force is not
 /// finite.
 std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near);
@@ -49,8 +49,8 @@ LinearContact scaled(LinearContact contact, const RenderingConfig& from, const R
 /// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable, searched from the
 /// scenario's K in steps of 10 %, up to twice this K and down to a billionth of it. Infinite if the loop is stable up
 /// to twice K; 0 if no K is stable. At each K, the contact is the equilibrium of the tool near `near`; a K without an
-/// equilibrium has the last contact that was found, scaled(). Empty without has_linear_loop(), and without an
-/// equilibrium in contact near `near` at the scenario's K.
+/// equilibrium has the last contact that was found, scaled(). Empty without has_linear_loop(), and if the tool touches
+/// nothing at `near`.
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 

@@ -28,8 +28,8 @@ def oscillator(bench, name):
     )
 
 
-def add_times(bench, table, times, steps):
-    """The columns that both tables of times have."""
+def add_times(bench, table, times, steps, deadline=DEADLINE):
+    """The columns that the tables of times have."""
     each, spread = times["seconds_per_step"], times["spread_s"]
     for name, found, wrong in (
         ("seconds_per_step", (each > FASTEST) & (each < SLOWEST), 640 * each < SLOWEST / 1e3),
@@ -44,8 +44,8 @@ def add_times(bench, table, times, steps):
             ("of a run", bool(np.all(wrong))),
         )
     for name, known, wrong in (
-        ("seconds_per_simulated_second", each / steps, each / DEADLINE),
-        ("deadline_share", each / DEADLINE, each / steps),
+        ("seconds_per_simulated_second", each / steps, each / (2 * DEADLINE + steps)),
+        ("deadline_share", each / deadline, each / (2 * deadline + steps)),
     ):
         bench.add(
             f"{table}:{name}",
@@ -134,6 +134,15 @@ def errors_of_settings(bench):
         bench.add(
             f"{table}:step_s", found["step_s"], h, "halved", ROUNDING, ("in reverse", h[::-1])
         )
+    for name, value, wrong in (("outcome", "completes", "diverges"), ("expected", "true", "false")):
+        bench.add(
+            f"convergence.csv:{name}",
+            errors[name],
+            [value] * 4,
+            "an oscillation that ends with the last step",
+            EXACT,
+            ("another", [wrong] * 4),
+        )
     how = "closed form of velocity Verlet and of the oscillator"
     largest = np.abs(shifted).max(axis=1)
     bench.add(
@@ -178,7 +187,7 @@ def errors_of_settings(bench):
         EXACT,
         ("default", [1e-6] * 4),
     )
-    add_times(bench, "convergence_timing.csv", times, h)
+    add_times(bench, "convergence_timing.csv", times, h, deadline=h)
     # The error falls and the cost grows with each level, so that all settings are on the front, which is straight.
     cost = times["seconds_per_simulated_second"]
     front = [not np.any((cost < cost[i]) & (known < known[i])) for i in range(4)]

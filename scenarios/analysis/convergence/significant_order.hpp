@@ -22,7 +22,10 @@ struct SignificantOrder {
 /// no two numbers differ significantly; then all numbers are in one group.
 SignificantOrder significant_order(std::span<const NumberWithError> numbers);
 
-/// Returns significant_order() as a sentence about named numbers, such as "the order holds: mean < proxy".
+/// Returns significant_order() of named numbers, such as "mean ~ shaped_stiffness < proxy".
+std::string order_text(std::span<const NumberWithError> numbers, std::span<const std::string> names);
+
+/// Returns significant_order() as a sentence about named numbers, such as "significant order: mean < proxy".
 std::string significant_order_text(std::span<const NumberWithError> numbers, std::span<const std::string> names);
 
 }  // namespace hapbench

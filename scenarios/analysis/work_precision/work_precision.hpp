@@ -10,6 +10,7 @@
 #include "scenarios/batch/axis.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/batch/run_cost.hpp"
+#include "scenarios/run/outcome.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
 /// Work-precision studies: the discretisation error of integrators and time steps, and their cost.
@@ -42,13 +43,18 @@ struct WorkPrecisionSetting {
   std::string problem;     ///< values of the axes that define the problem, such as the name of the law
   std::string integrator;  ///< name of the integrator
   double step_s = 0.0;     ///< time step [s]
+  Outcome outcome = {};    ///< of the run; of the first trial if the scenario has several
+  /// True if the scenario expects the outcome. The error of another run says nothing about the scene: a tool that does
+  /// not move has a small error.
+  bool is_expected = true;
   std::optional<MotionDifference> error = {};  ///< empty if the run ended otherwise than the reference solution
   MotionDifference reference_error = {};       ///< error of the reference solution
   RunCost cost = {};
-  bool on_front = false;  ///< no other setting of the problem has a smaller position error at a smaller cost
+  bool on_front = false;  ///< no other setting of the problem has a smaller position error at a smaller cost, among the
+                          ///< settings with an expected outcome
   bool is_knee = false;   ///< knee of the front (pareto_front.hpp)
 
-  /// Returns true if the position error is known and resolved.
+  /// Returns true if the position error is known and resolved. The outcome does not matter.
   bool is_resolved() const { return error && error->position >= kResolvedError * reference_error.position; }
 };
 
@@ -60,7 +66,8 @@ struct WorkPrecisionProblem {
   bool is_predictable = true;  ///< true if grown_shift is at most the requested error
   std::vector<WorkPrecisionSetting> settings = {};
 
-  /// Returns the cheapest setting with a position error of at most `max_error`; null if no setting has such an error.
+  /// Returns the cheapest setting with an expected outcome and a position error of at most `max_error`; null if no
+  /// setting has both.
   const WorkPrecisionSetting* cheapest_below(double max_error) const;
 };
 

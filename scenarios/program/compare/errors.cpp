@@ -131,13 +131,15 @@ std::string vibration_text(const Ranking& league, const Layout& layout) {
           {standing.failed > 0 ? std::nullopt : standing.mean, standing.tolerance.value_or(0.0) + threshold});
       known += numbers.back().value.has_value();
     }
-    says = fmt::format("vibration of the {}: {}", of, significant_order_text(numbers, league.algorithms));
+    says = fmt::format("vibration of the {} in these runs: {}", of, order_text(numbers, league.algorithms));
     if (known + failing.size() == league.algorithms.size()) break;
   }
   if (!failing.empty()) says += fmt::format("; failed: {}", fmt::join(failing, ", "));
   const bool has_order = failing.size() + 1 < league.algorithms.size();
-  return "\n" + layout.wrapped(
-                    says + (has_order ? "; add --errors to check this order with finer time steps and points" : ""), 0);
+  return "\n" +
+         layout.wrapped(
+             says + (has_order ? "; --errors adds the errors of these numbers, from finer time steps and points" : ""),
+             0);
 }
 
 }  // namespace hapbench

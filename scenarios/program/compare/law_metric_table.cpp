@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -24,6 +25,10 @@ std::string metric_text(const RankingEntry& entry, double factor) {
   const auto scaled = [factor](const std::optional<double>& number) {
     return number ? std::optional(factor * *number) : std::nullopt;
   };
+  // Seeds that agree better than the resolution of the ranks do not make a number more precise.
+  const double resolution = kRankResolution * std::abs(*entry.mean);
+  if (entry.spread && *entry.spread < resolution)
+    return deserved(factor * *entry.mean, factor * std::max(entry.tolerance.value_or(0.0), resolution));
   return with_spread(factor * *entry.mean, scaled(entry.spread), scaled(entry.tolerance));
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <set>
 #include <string>
@@ -88,14 +89,35 @@ std::string first_ranks_text(const Ranking& league) {
                      fmt::join(first_few(firsts, kMaxNamed), ", "));
 }
 
+/// Returns true if all values of a scenario agree over the seeds within the resolution of the ranks.
+bool seeds_agree(const Ranking& league, std::size_t scenario) {
+  for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
+    for (std::size_t m = 0; m < league.metrics.size(); ++m) {
+      const RankingEntry& entry = league.at(scenario, a, m);
+      if (entry.mean && entry.spread && *entry.spread > kRankResolution * std::abs(*entry.mean)) return false;
+    }
+  }
+  return true;
+}
+
 /// Summarizes which algorithms are first, and whether the seeds give a spread.
 std::string verdict(const Ranking& league, const std::string& folder, const Layout& layout) {
   std::string text = layout.wrapped(first_ranks_text(league), 0);
   if (!is_ranked(league)) return text;
   if (league.seeds < 2) return text + "one seed: the spread is unknown; --seeds K estimates it\n";
-  std::vector<std::string> alike;
-  for (std::size_t s = 0; s < league.scenarios.size(); ++s)
-    if (!league.depends_on_seed[s]) alike.push_back(league.scenarios[s]);
+  std::vector<std::string> alike, agreeing;
+  for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
+    if (!league.depends_on_seed[s])
+      alike.push_back(league.scenarios[s]);
+    else if (seeds_agree(league, s))
+      agreeing.push_back(league.scenarios[s]);
+  }
+  if (!agreeing.empty())
+    text += layout.wrapped(
+        fmt::format("the seeds of {} agree within 0.1 %, because the runs forget their start: the spread says nothing "
+                    "about the error of the numbers, and --errors estimates it",
+                    fmt::join(agreeing, ", ")),
+        0);
   if (alike.empty())
     return text + layout.wrapped(fmt::format("\"hapbench report {}\" compares the algorithms in pairs, seed by seed",
                                              shell_file(folder)),

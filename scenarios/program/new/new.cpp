@@ -17,6 +17,7 @@
 #include "scenarios/program/python_commands.hpp"
 #include "scenarios/program/results_folder.hpp"
 #include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
@@ -31,6 +32,19 @@ int list_kinds(const OutputOptions& output, ProgramContext& context) {
                                       {"summary", "", "", &StartKind::summary, under("what it starts with")}};
   print(context, output, columns.text(start_kinds(), layout), columns.json_list(start_kinds()));
   return kSuccess;
+}
+
+/// Runs the scene, and returns what its run warns of and a warning if it does not end as a scene of its kind should.
+std::vector<std::string> outcome_warnings(const CheckedScenario& scene) {
+  const Result run = run_scenario(scene, std::nullopt, false);
+  if (outcome_is_expected(scene.scenario().expect, run.end.outcome)) return {};
+  std::vector<std::string> warnings;
+  for (const Warning& warning : run.warnings) warnings.push_back(warning.located_text());
+  warnings.push_back(fmt::format(
+      "a run of this scene ends as \"{0}\" (hapbench describe {0}): another start or path is needed, such as "
+      "--path with points across the middle of the surface, or --at; or change the hand in the file",
+      outcome_name(run.end.outcome)));
+  return warnings;
 }
 
 /// Runs the scene and draws it. The run is written to a folder that the caller has locked.
@@ -69,10 +83,12 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   loaded.file = out;
   const CheckedScenario scene = checked(std::move(loaded));
   print_warnings(context, with_files(scene.loaded(), scene.file_warnings()));
+  const std::vector<std::string> failure = outcome_warnings(scene);
   // Write the scene, draw it with --preview, and explain its fields.
   write_file_atomically(out, json_text(start.scene));
 
   print_warnings(context, start.warnings);
+  print_warnings(context, failure);
   if (options.preview) draw_preview(out, run, picture, options.output.quiet || options.output.json, context);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
   for (const std::string& note : start.notes) text += note + "\n";

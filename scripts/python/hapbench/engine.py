@@ -81,6 +81,7 @@ def compare(
     seeds: int | None = None,
     jitter: float | None = None,
     by: Names = None,
+    full: bool = False,
     jobs: int | None = None,
     out: Place = None,
     progress: Progress = None,
@@ -89,8 +90,8 @@ def compare(
 
     Returns a Report: `runs` by their paths ("mean", of several scenarios and seeds
     "drag_molar/mean/seed_0"), the tables `comparison` and, with several scenarios or seeds or `by`,
-    `ranking`. `out` keeps the folder; without it, it goes with the Report. `scenarios`, `overrides`
-    and `progress` as in `run`."""
+    `ranking`. A run that fails ends there and has no metrics, unless `full`. `out` keeps the folder;
+    without it, it goes with the Report. `scenarios`, `overrides` and `progress` as in `run`."""
     return _report(
         ["compare"],
         scenarios,
@@ -101,6 +102,7 @@ def compare(
         seeds=seeds,
         jitter=jitter,
         by=by,
+        full=full,
         jobs=jobs,
     )
 
@@ -114,6 +116,7 @@ def sweep(
     seed: int | None = None,
     keep_runs: bool = False,
     resume: bool = False,
+    full: bool = False,
     jobs: int | None = None,
     out: Place = None,
     progress: Progress = None,
@@ -121,7 +124,8 @@ def sweep(
     """Run a scenario over a grid, or a sample, of values of any fields, as `hapbench sweep` does.
 
     `vary`: {"rendering.stiffness_N_per_m": [2e4, 4e4]}, of which a string is taken as --vary takes
-    it ("1e4:1e5:10:log"). Returns a Report whose table `sweep` has a row for each run."""
+    it ("1e4:1e5:10:log"). A run that fails ends there and has no metrics, unless `full`. Returns a
+    Report whose table `sweep` has a row for each run."""
     words = ["sweep"]
     for field, values in vary.items():
         words += [
@@ -138,6 +142,7 @@ def sweep(
         seed=seed,
         keep_runs=keep_runs,
         resume=resume,
+        full=full,
         jobs=jobs,
     )
 
