@@ -66,6 +66,11 @@ void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
   std::vector<InputError> faults;
   for (const InputError& fault : error.faults()) {
     const ErrorLocation& location = fault.location();
+    const fs::path& outermost = location.outer.empty() ? location.file : location.outer.front();
+    if (!outermost.empty() && outermost == loaded.file) {
+      faults.push_back(fault);
+      continue;
+    }
     faults.push_back(in_file(fault, location.file.empty() ? file_of(loaded, location.pointer) : loaded.file));
   }
   throw InputError::all(faults);

@@ -30,10 +30,10 @@ void check_scene(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   if (!position_is_free(scenario.motion))
     fail_in({.file = loaded.file, .pointer = "/motion/position/type"},
-            "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
+            "a prescribed tool cannot become unstable; allowed for limit and tune: \"free\"");
   if (scenario.time.steps < 4)
     fail_in({.file = loaded.file, .pointer = "/time/steps"},
-            fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
+            fmt::format("got {}; allowed for limit and tune: at least 4", scenario.time.steps));
 }
 
 /// Returns the range from 2^-10 to 2^10 times the current value. Throws InputError if the current value is not a number
