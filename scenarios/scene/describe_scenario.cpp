@@ -134,7 +134,10 @@ static void describe(Fields& f, RecordFields& record) {
   f.boolean("force_reference", record.force_reference,
             "with reference_force, or a stroke with a measured force: write the reference force and the force error to "
             "force_reference.csv");
-  f.boolean("six_dof", record.six_dof, "with six_dof: write the forces and torques of both devices to six_dof.csv");
+  // Omitted where it is off, so that scenarios without a six_dof are written as before.
+  f.field("six_dof", "with six_dof: write the forces and torques of both devices to six_dof.csv; default: false",
+          record.six_dof ? Presence::no_default : Presence::omitted,
+          [&record](Fields& value) { value.boolean(record.six_dof); });
   for (const TrajectoryGroup& group : trajectory_groups())
     f.boolean(group.field, record.*group.is_wanted, group.effect);
 }
@@ -188,9 +191,10 @@ static void describe(Fields& f, SixDofFields& fields) {
            "distance from the tip centre back along the axis to the point at which the devices apply the force");
   f.number("grip_m", fields.grip, kAlongAxis,
            "distance from the force point to the grip, about which the hand yields; positive towards the tip");
-  f.number("pivot_m", fields.pivot, kAlongAxis,
-           "distance from the tip centre back along the axis to the point that the scripted motion leads, about which "
-           "the intent turns");
+  f.number(
+      "pivot_m", fields.pivot, kAlongAxis,
+      "distance from the tip centre back along the axis to the point about which the intent turns; the scripted motion "
+      "of the tip is added to the turn");
 }
 
 static void describe(Fields& f, ExpectFields& expect) {

@@ -244,7 +244,7 @@ struct SixDofFields {
   double coupling_rotation = 0.4;  ///< K_r, rotational stiffness of the 6-DOF coupling [N m/rad]
   double force_point = 0.0;        ///< distance from the tip centre back to the force point [m]
   double grip = 0.0;               ///< c, distance from the force point to the grip, towards the tip [m]
-  double pivot = 0.0;              ///< distance from the tip centre back to the point that the script leads [m]
+  double pivot = 0.0;              ///< distance from the tip centre back to the point about which turns go [m]
 };
 
 /// Bounds of a metric. An empty bound is not checked.

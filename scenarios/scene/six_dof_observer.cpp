@@ -16,11 +16,13 @@ RenderingConfig rendering_of(const Scenario& scenario, const six_dof::HandAndCou
   return config;
 }
 
-six_dof::Intent intent_of(const SixDofFields& fields, const ToolPose& pose) noexcept {
+/// Returns the intent of the scripted pose. Turns move the tip about the pivot; the script adds its own motion of the
+/// tip.
+six_dof::Intent intent_of(const SixDofFields& fields, const ToolPose& pose, const Vec3& first_axis) noexcept {
   six_dof::Intent intent;
   intent.orientation = Eigen::Quaterniond(pose.rotation()).normalized();
-  // The script leads the point `pivot` behind the tip.
-  intent.grip = pose.position + (fields.pivot - fields.force_point + fields.grip) * pose.axis;
+  const Vec3 tip = pose.position + fields.pivot * (pose.axis - first_axis);
+  intent.grip = tip + (fields.grip - fields.force_point) * pose.axis;
   return intent;
 }
 
@@ -38,11 +40,12 @@ void SixDofObserver::begin(const TrialParts& trial) {
   const ToolShape& tool = *trial.simulation.tool;
   reference_.emplace(shell, tool, springs, scenario_->rendering.skips);
   device_.emplace(shell, tool, springs, rendering_of(*scenario_, springs), trial.config.dt);
+  first_axis_ = trial.simulation.motion->axis_at(0.0);
   metrics_ = {};
 }
 
 void SixDofObserver::on_step(const StepRecord& record) noexcept {
-  const six_dof::Intent intent = intent_of(*scenario_->six_dof, record.tool.pose);
+  const six_dof::Intent intent = intent_of(*scenario_->six_dof, record.tool.pose, first_axis_);
   row_ = {};
   // The 6-DOF device.
   const auto step = reference_->follow(intent);
