@@ -27,23 +27,25 @@ foreach(folder ${folders})
 endforeach()
 
 # The files that come with program and libraries. bin and share stay side by side, which is how the program finds them.
+# The component "program" is what scripts/python/setup.py packs: the program, these files and the Python package.
 set(share share/hapbench)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/library DESTINATION ${share}/scenarios)
-install(FILES ${PROJECT_SOURCE_DIR}/scenarios/GLOSSARY.md DESTINATION ${share}/scenarios)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python DESTINATION ${share}/scripts USE_SOURCE_PERMISSIONS
-  PATTERN __pycache__ EXCLUDE)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/results
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/library DESTINATION ${share}/scenarios COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/scenarios/GLOSSARY.md DESTINATION ${share}/scenarios COMPONENT program)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python DESTINATION ${share}/scripts USE_SOURCE_PERMISSIONS COMPONENT program
+  PATTERN __pycache__ EXCLUDE PATTERN setup.py EXCLUDE PATTERN pyproject.toml EXCLUDE
+  PATTERN hapbench_program.py EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/results COMPONENT program
   PATTERN figures EXCLUDE PATTERN gallery EXCLUDE)
 
 if(HAPBENCH_BUILD_PROGRAM)
-  install(TARGETS hapbench_program RUNTIME DESTINATION bin)
-  install(CODE "set(completion \"${PROJECT_SOURCE_DIR}/scripts/completion\" \"$<TARGET_FILE:hapbench_program>\")")
+  install(TARGETS hapbench_program RUNTIME DESTINATION bin COMPONENT program)
+  install(CODE "set(completion \"${PROJECT_SOURCE_DIR}/scripts/completion\" \"$<TARGET_FILE:hapbench_program>\")" COMPONENT program)
   install(CODE [[
     set(folder "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share/bash-completion/completions")
     file(MAKE_DIRECTORY ${folder})
     execute_process(COMMAND ${completion} OUTPUT_FILE ${folder}/hapbench COMMAND_ERROR_IS_FATAL ANY)
     message(STATUS "Installing: ${folder}/hapbench")
-  ]])
+  ]] COMPONENT program)
 endif()
 
 # The renderer: a package of its own, for find_package(hapbench_renderer) in projects without C++, and for pkg-config.

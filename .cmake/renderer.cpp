@@ -1,1 +1,1 @@
-// CMake wants a source of its own; the library's functions are in scenarios/renderer.
+// CMake requires a source file for this library; the functions of the library are in scenarios/renderer.

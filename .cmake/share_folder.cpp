@@ -1,4 +1,4 @@
-// Compiled into what links the installed static libraries, which look here for scenarios
+// Compiled into every program that links the installed static libraries. The libraries search this folder for scenarios
 // (scenarios/input/installed_folder.hpp).
 extern "C" {
 [[gnu::weak]] extern const char hapbench_share_folder[];

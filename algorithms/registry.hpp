@@ -35,8 +35,8 @@ struct AlgorithmParameter {
 /// Returns the parameter's value in `config`, or its default.
 double parameter_value(const RenderingConfig& config, const char* algorithm, const AlgorithmParameter& parameter);
 
-/// A value for AlgorithmEntry::force_bound: returns the force divided by K of `count` parallel springs at the largest
-/// depth, or of all n springs if there are fewer. Without `count`, all n springs count.
+/// A function for AlgorithmEntry::force_bound: returns the force divided by K of `count` parallel springs at the
+/// largest depth, or of all n springs if there are fewer. Without `count`, all n springs count.
 template <int count = std::numeric_limits<int>::max()>
 double bound_of_springs(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return std::min<double>(count, static_cast<double>(n)) * depth;
@@ -85,7 +85,7 @@ std::vector<std::string> algorithm_names();
 /// Returns the documentation of the optional stages of the penalty pipeline.
 std::span<const ModelInfo* const> stages();
 
-/// Returns the entry of the algorithm with this name; null if there is none.
+/// Returns the entry of the algorithm with this name; null if no algorithm has this name.
 const AlgorithmEntry* find_algorithm(std::string_view name);
 
 /// Returns a copy of the entry that owns copies of all its texts except `info->parameters`. Throws

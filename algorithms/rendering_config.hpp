@@ -49,8 +49,8 @@ struct ActuatorLimitedPassivityConfig {
 };
 using ForceStageConfig = std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig>;
 
-/// Parameters of the rendering, which computes a force from contacts. Names are those of registry.hpp. Units:
-/// N, m, s, kg.
+/// Parameters of the rendering, which computes a force from contacts. Algorithms have their names in registry.hpp.
+/// Units: N, m, s, kg.
 struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
   int iterations = 3;  ///< m, number of shaping iterations, for laws that iterate
@@ -71,13 +71,13 @@ struct RenderingConfig {
   std::optional<DryFrictionConfig> dry_friction;  ///< if set, mu_s and mu_f are 0
   /// chi [s/m] of damping that grows with depth (Hunt and Crossley); replaces B.
   std::optional<double> hunt_crossley;
-  std::optional<double> max_damping;       ///< B_max, limit of the damping [N s/m]; nullopt: none
-  std::optional<double> max_force;         ///< F_max, limit of the force [N]; nullopt: none
+  std::optional<double> max_damping;       ///< B_max, limit of the damping [N s/m]; nullopt: no limit
+  std::optional<double> max_force;         ///< F_max, limit of the force [N]; nullopt: no limit
   std::optional<double> virtual_coupling;  ///< K_vc, stiffness of the coupling spring [N/m]; nullopt: K
   double regularisation = 0.01;            ///< eps of the law least_squares
 
   bool angular_damping = false;  ///< true: damping and friction use the velocity of the tool's material at each
-                                 ///< contact; false: of the tip centre
+                                 ///< contact; false: the velocity of the tip centre
   /// Cut-off frequency of the low-pass filter of the tool's angular velocity, for `angular_damping` [Hz]; nullopt: no
   /// filter.
   std::optional<double> angular_velocity_cutoff = 20.0;
@@ -92,7 +92,7 @@ struct RenderingConfig {
 
   bool has_friction() const { return mu_s != 0.0 || mu_f != 0.0 || dry_friction; }
 
-  /// Whether to skip work that changes nothing: stages without contacts, the reduction of a single contact,
+  /// Selects whether work that changes nothing is skipped: stages without contacts, the reduction of a single contact,
   /// friction with coefficients of zero. The contact search and the observers of a run use the same value.
   Skips skips = Skips::on;
 };

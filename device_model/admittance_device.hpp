@@ -112,7 +112,7 @@ class PositionServo {
     if (length > config_.max_force) command *= config_.max_force / length;
     commands_[next_] = command;
     next_ = (next_ + 1) % commands_.size();
-    return commands_[next_];  // the oldest command; without delay, the one just stored
+    return commands_[next_];  // the oldest command; without delay, the command just stored
   }
 
  private:
@@ -197,7 +197,7 @@ class HandleMechanics {
 
 struct AdmittanceDeviceConfig {
   ForceSensorConfig sensor;
-  std::optional<double> force_limit = 2.0;  ///< f_th of the input-force limiter [N]; none: no limit
+  std::optional<double> force_limit = 2.0;  ///< f_th of the input-force limiter [N]; empty: no limit
   PositionServoConfig servo;
   HandleMechanicsConfig mechanics;
 };

@@ -42,8 +42,8 @@ FreeMotion by_series(const MotionLaw& law, double time) noexcept {
 /// Returns the solution after twice the time of `m`.
 FreeMotion doubled(const MotionLaw& law, const FreeMotion& m) noexcept {
   const double k = law.stiffness, S2 = m.S * m.S;
-  const double left = 1.0 - k * m.P;  // at the position P g the spring takes the part k P of the force g; this part
-                                      // of g is left
+  // The handle starts at rest under an acceleration g and reaches x = P g. There the spring balances k P g of g.
+  const double left = 1.0 - k * m.P;  // remaining fraction of g
   return {.time = 2.0 * m.time,
           .S = m.S * (m.V + left),
           .P = m.P * (1.0 + left) + S2,
@@ -212,7 +212,7 @@ ElasticMotion::Stretch ElasticMotion::stretch(double time) const {
                  std::sqrt(-moving(kMotorSpeed, kMotor) - moving(kHandleSpeed, kHandle))) *
                 time;
   for (; size > kMaxStep && stretch.first < kMaxHalvings; size *= 0.5) ++stretch.first;
-  // Compute the shortest steps by power series and the longer ones by doubling.
+  // Compute the shortest steps by power series and the longer steps by doubling.
   const auto halved = [&](const Matrix& law) {
     const std::size_t halvings = coulomb_ == 0.0 ? 0 : std::min(kChangeHalvings, kMaxHalvings - stretch.first);
     std::vector<Transition> transitions(stretch.first + halvings + 1);
@@ -316,7 +316,8 @@ double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, doub
       left -= fraction_of(level);
     }
     if (!axis.sticks) axis.z[kMotorSpeed] = 0.0;
-    // Motors that just started must not stick again: the force on them still equals c, up to rounding.
+    // Motors that just started must not stick again: the force on them still equals the Coulomb friction, up to
+    // rounding.
     set_friction(axis, !axis.sticks);
     return left;
   }

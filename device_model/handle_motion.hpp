@@ -48,7 +48,7 @@ struct FreeMotion {
 /// whether the motion oscillates or creeps. Takes about 0.1 us.
 FreeMotion free_motion(const MotionLaw& law, double time) noexcept;
 
-/// Returns the first time after the start at which the velocity is zero [s]; infinity if there is none. `v`:
+/// Returns the first time after the start at which the velocity is zero [s]; infinity if there is no such time. `v`:
 /// initial velocity [m/s]; `g`: constant acceleration [m/s^2], force / mass. In closed form.
 double time_to_stop(const MotionLaw& law, double v, double g) noexcept;
 
@@ -80,9 +80,9 @@ class HandleMotionBase {
 ///   m x'' = f - b x' - c sign(x') + f_hand
 ///
 /// with m = handle_mass, b = viscous, c = coulomb of the device, and the force f of the motors. Coulomb friction is
-/// exact: a closed form gives the instant at which the handle stops. The handle then sticks as long as the sum of
-/// the other forces is at most c, and otherwise starts to move in their direction. A step of T seconds has at most
-/// 2 + w T / pi stops, where w is the angular frequency of the handle on the hand's spring.
+/// exact: a closed form gives the instant at which the handle stops. The handle then sticks as long as the sum of the
+/// other forces is at most c, and otherwise starts to move in the direction of this sum. A step of T seconds has at
+/// most 2 + w T / pi stops, where w is the angular frequency of the handle on the hand's spring.
 class HandleMotion : public HandleMotionBase {
  public:
   HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
@@ -163,7 +163,7 @@ class ElasticMotion : public HandleMotionBase {
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
-  enum : Eigen::Index { kMotor, kMotorSpeed, kHandle, kHandleSpeed, kMotorForce, kHandForce };  ///< of State
+  enum : Eigen::Index { kMotor, kMotorSpeed, kHandle, kHandleSpeed, kMotorForce, kHandForce };  ///< indices of State
 
   /// State of one axis.
   struct Axis {

@@ -128,7 +128,7 @@ static Vec3 rounded_to(const Vec3& v, double step) noexcept {
 }
 
 // The ring buffer holds the command of this period, the commands of the whole periods of the delay, and one more
-// for its fraction.
+// command for the fraction of a period in the delay.
 ForcePath::ForcePath(const ImpedanceDeviceConfig& config, double dt)
     : config_(config),
       max_change_(config.force_slew.value_or(0.0) * dt),

@@ -110,8 +110,8 @@ struct ImpedanceDeviceConfig {
   double coulomb = 0.0;        ///< Coulomb friction c of each axis [N]
   double encoder_step = 0.0;   ///< resolution q of the measured position [m]; 0: exact
   double delay_samples = 0.0;  ///< delay d from the sample to the force [periods], may be fractional
-  /// The delay [s], if the scenario gives it in seconds. The code that knows the period converts it to delay_samples.
-  /// The device reads only delay_samples.
+  /// The delay [s], if the scenario gives it in seconds. resolve_delay() converts it to delay_samples. The device reads
+  /// only delay_samples.
   std::optional<double> delay = {};
   VelocityFilterConfig velocity_filter = {};
   std::optional<double> force_max = {};   ///< norm of the force at which the motors saturate [N]; empty: no limit
@@ -121,7 +121,7 @@ struct ImpedanceDeviceConfig {
                                                       ///< computed
   double position_noise = 0.0;  ///< standard deviation of the noise of each axis, added before rounding [m]
   std::uint64_t seed = 0;       ///< seed of the noise's random numbers
-  std::optional<Transmission> transmission = {};  ///< between motors and handle; empty: rigid
+  std::optional<Transmission> transmission = {};  ///< elastic transmission between motors and handle; empty: rigid
 };
 
 /// Force of the motors over one period: `before` during the first fraction ForcePath::switch_fraction of the period,
@@ -232,7 +232,7 @@ struct DevicePreset {
 
 /// Returns all presets, grouped by manufacturer.
 std::span<const DevicePreset> device_presets() noexcept;
-/// Returns the preset with this name, null if there is none.
+/// Returns the preset with this name; null if no preset has this name.
 const DevicePreset* find_device_preset(std::string_view name) noexcept;
 
 /// Selects the values of a preset's unpublished parameters: own: the estimates themselves. soft: the end of each

@@ -36,9 +36,9 @@ struct DepthModelEntry {
 
 /// Returns the table of depth models.
 std::span<const DepthModelEntry> depth_models();
-/// Returns the entry of the depth model with this name; null if there is none.
+/// Returns the entry of the depth model with this name; null if no depth model has this name.
 const DepthModelEntry* find_depth_model(std::string_view name);
-/// Creates the model with this name. Throws std::invalid_argument if there is none.
+/// Creates the model with this name. Throws std::invalid_argument if no depth model has this name.
 std::unique_ptr<DepthModel> make_depth_model(std::string_view name);
 
 /// Contact source of a shell: a search finds the colliding points, and a depth model computes their depths and

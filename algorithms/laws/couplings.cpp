@@ -125,8 +125,9 @@ class LeastSquares final : public SeriesLaw {
   }
 };
 
-/// Bound of |f_spring| / K: x = (eps I + U U^T)^-1 U d with the gradients in the columns of U. With the
-/// singular values s of U, |x| <= max s / (eps + s^2) |d|, which is at most |d| / (2 sqrt eps), at s^2 = eps.
+/// Bound of |f_spring| / K = |x|, where x = (eps I + U U^T)^-1 U d. The columns of U are the gradients, and d is the
+/// vector of the depths. With the singular values s of U, |x| <= max s / (eps + s^2) |d|, which is at most |d| / (2
+/// sqrt eps), at s^2 = eps.
 /// |d| is at most sqrt(n) times the largest depth.
 double least_squares_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
@@ -142,11 +143,11 @@ constexpr AlgorithmParameter kSaturation[] = {
 /// is reached, the rendered force is still the force of the coupling at the last displacement.
 constexpr int kMaxSteps = 30;
 constexpr double kMinFraction = 1e-6;
-/// Smallest stiffness of the coupling along its force, relative to the stiffness across. Far beyond saturation,
-/// rounding would make this stiffness zero or negative.
+/// Smallest stiffness of the coupling along its force, relative to the stiffness perpendicular to it. Far beyond
+/// saturation, rounding would make this stiffness zero or negative.
 constexpr double kMinStiffnessRatio = 1e-12;
-/// Tolerated imbalance, relative to K sqrt(sum p_i^2). The rounding of a sum of n forces is below 1e-16 sqrt(n)
-/// of this.
+/// Tolerated imbalance, relative to K sqrt(sum p_i^2) with the depths p_i of the copy (see StaticCoupling). The
+/// rounding error of a sum of n forces is below 1e-16 sqrt(n) times K sqrt(sum p_i^2).
 constexpr double kMaxImbalance = 1e-13;
 
 double saturation_of(const RenderingConfig& config) {
@@ -229,11 +230,12 @@ class StaticCoupling final : public ForceLaw {
 
   double saturation(const Vec3& s) const noexcept { return std::sqrt(1.0 + (K_vc_ / F_s_ * s).squaredNorm()); }
   Vec3 coupling_force(const Vec3& s) const noexcept { return K_vc_ / saturation(s) * s; }
-  /// Energy W of the coupling [J], written without the cancelling difference.
+  /// Energy W of the coupling [J], written without a difference of nearly equal numbers.
   double coupling_energy(const Vec3& s) const noexcept { return K_vc_ * s.squaredNorm() / (1.0 + saturation(s)); }
   Mat3 coupling_stiffness(const Vec3& s) const noexcept {
     const double q = saturation(s);
-    Vec3 r = K_vc_ / (F_s_ * q) * s;  // |r|^2 = 1 - 1 / q^2, and 1 - |r|^2 is the stiffness along s relative to across
+    Vec3 r = K_vc_ / (F_s_ * q) * s;  // |r|^2 = 1 - 1 / q^2, and 1 - |r|^2 is the stiffness along s relative to the
+                                      // stiffness perpendicular to s
     if (const double along = r.squaredNorm(); along > 1.0 - kMinStiffnessRatio)
       r *= std::sqrt((1.0 - kMinStiffnessRatio) / along);
     return K_vc_ / q * (Mat3::Identity() - r * r.transpose());

@@ -21,14 +21,15 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 constexpr double kEps = kExactShapingEpsilon;
 /// Number of Newton steps with the final epsilon before kPath is used; nearly all scenes need one or two.
 constexpr int kDirectSteps = 6;
-/// Decreasing values of epsilon that are used one after the other if kDirectSteps are not enough (see solve).
+/// Decreasing values of epsilon, the weight of the regularisation. The solver uses one value after the other if it has
+/// not converged after kDirectSteps steps with the final epsilon (see solve).
 constexpr double kPath[] = {1e-2, 1e-4, kEps};
 constexpr int kMaxNewtonSteps = 1000;  ///< maximum number of Newton steps for each epsilon; never reached in exact
                                        ///< arithmetic
 constexpr int kMaxLineSearchSteps = 40;
 constexpr int kMaxRefinements = 5;
-/// Residual of the optimality condition, below which the residual is only rounding: S is computed from up to n terms
-/// of at most 1 in eight partial sums.
+/// Largest residual of the optimality condition that is only rounding: S is computed from up to n terms of at most 1 in
+/// eight partial sums.
 constexpr double kResidualRounding = 1e-14;
 
 /// The identity tensor in the basis of TensorPack.
@@ -48,11 +49,11 @@ struct TensorPack {
   }
 };
 
-// The functions below take the generators of the cone as a class
+// The generators of the cone are tensors. The functions below take them as an object of a class of this form:
 //
 //   struct Tensors { std::size_t size, padded_size; double* weight; TensorPack pack(std::size_t i) const; };
 //
-// with `size` tensors of trace 1 and one weight for each. `pack(i)` returns the eight tensors from index i on.
+// It has `size` tensors of trace 1, and one weight for each. `pack(i)` returns the eight tensors from index i on.
 // Tensors and weights are padded to whole packs with zeros.
 
 /// Sums over the tensors and their weights c_i.
@@ -184,10 +185,10 @@ int solve(const Tensors& tensors) noexcept {
   TensorSums sums = evaluate_at(tensors, w);
   int steps = 0;
   if (!newton(tensors, kEps, kDirectSteps, w, sums, steps)) {
-    // This happens with dense clusters of nearly equal gradients. The optimum gives positive weights to a few of
-    // hundreds of contacts, and Newton's method would find these contacts one by one. Following the optimum from a
-    // large epsilon to a small one takes a few steps for each epsilon. Measured: at most 32 steps in total for 6e6
-    // adversarial sets instead of a hundred, and 135 for the worst of 1e6 mixtures of such sets.
+    // The direct steps do not converge for dense clusters of nearly equal gradients. The optimum gives positive weights
+    // to a few of hundreds of contacts, and Newton's method would find these contacts one by one. Following the optimum
+    // from a large epsilon to a small one takes a few steps for each epsilon. Measured: at most 32 steps in total for
+    // 6e6 adversarial sets instead of a hundred, and 135 for the worst of 1e6 mixtures of such sets.
     double eps = kPath[0];
     w = identity6() / eps;
     sums = evaluate_at(tensors, w);
@@ -365,8 +366,9 @@ class MergedShaping final : public ForceLaw {
   Groups groups_;
 };
 
-/// Bound of |f_spring| / K: |f| / K <= sum c_i d_i <= d sum c_i = d tr S with the largest depth d. At the optimum tr
-/// S >= |S|^2_F, and always |S|^2_F >= (tr S)^2 / 3, so tr S <= 3.
+/// Bound of |f_spring| / K: |f_spring| / K <= sum c_i d_i <= d sum c_i = d tr S, with the weights c_i, the depths d_i,
+/// the largest depth d and the stiffness tensor S. At the optimum tr S >= |S|^2_F (Frobenius norm), and always
+/// |S|^2_F >= (tr S)^2 / 3, so tr S <= 3.
 constexpr auto* kBound = bound_of_springs<3>;
 
 }  // namespace

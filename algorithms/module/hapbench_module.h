@@ -43,13 +43,13 @@ typedef struct HapbenchRun {
   const void* data;       /* HapbenchModule::data */
   double stiffness;       /* K of one penalty spring [N/m] */
   size_t capacity;        /* largest number of contacts in a step */
-  const double* vertices; /* of the environment: x, y, z of each vertex [m] */
+  const double* vertices; /* vertices of the environment: x, y, z of each vertex [m] */
   size_t vertex_count;
-  /* of a block_with_hole or a mesh: three vertex indices each, counter-clockwise seen from outside */
+  /* triangles of a block_with_hole or a mesh: three vertex indices each, counter-clockwise seen from outside */
   const uint32_t* triangles;
   size_t triangle_count;
   double tool_radius; /* half of the tool's width [m] */
-  double tool_length; /* of a cylinder with a flat tip [m]; 0 for other tools */
+  double tool_length; /* length of a cylinder with a flat tip [m]; 0 for other tools */
 } HapbenchRun;
 
 /* Pose of the tool, world frame. */

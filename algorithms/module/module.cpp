@@ -25,8 +25,8 @@ constexpr auto kUnwritten = std::uint64_t{0x7ff4deadc0ffee00};
 
 constexpr double kLengthTolerance = 1e-3;  ///< tolerance of a gradient's length
 
-/// The faults since the last take_module_faults(). A fault may happen in a haptic loop, so it neither locks nor
-/// allocates: the first one claims the text.
+/// The faults since the last take_module_faults(). A fault may happen in a haptic loop, so recording a fault neither
+/// locks nor allocates. Only the text of the first fault is kept.
 std::atomic<std::uint64_t> fault_count = 0;
 std::atomic<bool> text_is_claimed = false, text_is_written = false;
 std::array<char, kFaultTextSize> first_fault{};
@@ -181,7 +181,7 @@ LawForce ModuleLaw::evaluate(ContactBuffer& contacts) noexcept {
   const auto is_unwritten = [](double number) { return std::bit_cast<std::uint64_t>(number) == kUnwritten; };
   if (!std::all_of(weights_.begin(), weights, is_unwritten) || !std::all_of(end, end + kGuards, is_unwritten))
     return failed("writes beyond its weights, of which there is one for each contact");
-  // Take the weights, or the force with equal weights if the module wrote none.
+  // Take the weights, or the force with equal weights if the module wrote no weights.
   gives_weights_ = answer.given == 0;
   if (!gives_weights_) std::replace_if(weights, end, is_unwritten, 1.0 / static_cast<double>(n));
   std::copy(weights, end, contacts.weight.begin());

@@ -37,9 +37,10 @@ class ModuleState {
   bool create(const double* values, const char* config, HapbenchRun run) noexcept;
   /// Returns to t = 0 and clears the fault, unless the state could not be created.
   void reset() noexcept;
-  /// Evaluates one step. Returns false after a fault, of this step or an earlier one.
+  /// Evaluates one step. Returns false after a fault in this step or in an earlier step.
   bool step(const HapbenchPose* pose, HapbenchContacts& contacts, HapbenchForce* force) noexcept;
-  /// Records a problem with the module's result as its fault, with the names of module and file.
+  /// Records `problem`, a problem with the result of the module, as a fault. The text of the fault begins with the
+  /// names of module and file.
   void fail(const char* problem) noexcept;
   /// Returns the fault as one printable line, or null.
   const char* fault() const noexcept { return fault_[0] == '\0' ? nullptr : fault_.data(); }

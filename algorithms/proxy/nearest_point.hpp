@@ -17,8 +17,8 @@
 /// A type `Rows` of constraints has the functions
 ///   size()                  number of constraints,
 ///   depth(i), row(i)        d_i and the vector u_i of dimension N,
-///   largest_violation(x, tolerance)   the largest d_i + <u_i, x> (the first of equals), or amount 0 if all are within
-///                                     the tolerance.
+///   largest_violation(x, tolerance)   the largest d_i + <u_i, x>, the first if several are equal; amount 0 if
+///                                     all are within the tolerance.
 /// Nothing here allocates.
 namespace hapbench::nearest_point {
 
@@ -166,7 +166,7 @@ bool solve_exactly(const Rows& rows, double tolerance, Vector<N>& x, ActiveSet<N
   return true;
 }
 
-/// The least-squares compromise of contradictory constraints at one x,
+/// The least-squares compromise of contradictory constraints at one move x,
 ///
 ///   1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2:
 ///

@@ -71,7 +71,8 @@ constexpr double kMaxPatchDepth = 0.1;
 /// once for each of its cells.
 constexpr double kSamePosition = 1e-7;
 
-/// Returns the distance [m] from a point to the second nearest point at another position.
+/// Returns the distance [m] from a point to the second nearest of the other points. Points at the same position count
+/// as one point.
 double distance_to_second(const PointShell& shell, std::size_t from) {
   const double same = kSamePosition * shell.bounds().size().norm(), same2 = same * same;
   double first2 = kNever, second2 = kNever;
@@ -92,10 +93,10 @@ double distance_to_second(const PointShell& shell, std::size_t from) {
   return std::sqrt(second2);
 }
 
-/// Returns the typical distance from a shell point to its neighbours [m]; 0 for fewer than three points. It is
-/// the median, over a sample of points, of the distance to the second nearest position, which is the spacing of
-/// a square lattice and of a line. Points at the same position count as one. O(size), about a hundred distances
-/// for each point.
+/// Returns the typical distance from a shell point to its neighbours [m]; 0 for fewer than three points. It is the
+/// median, over a sample of points, of the distance to the second nearest position, which is the spacing of a square
+/// lattice and of a line. Points at the same position count as one point. O(size), about a hundred distances for each
+/// point.
 double typical_spacing(const PointShell& shell) {
   if (shell.size() < 3) return 0.0;
   const std::size_t samples = std::min(kSpacingSamples, shell.size());
@@ -147,9 +148,9 @@ ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& too
 /// could sink by up to 0.05 mm between two lines of points 0.1 mm apart, because it touches points with both of
 /// its faces.
 ///
-/// The surface around each point x_i with normal n_i is assumed to be flat up to the next points. Let v_i be
-/// the tool's support point towards the surface, argmin <q, n_i> over the tool. If v_i lies on this patch, the
-/// tool must stay above the patch:
+/// The surface around each point x_i with normal n_i is assumed to be flat up to the neighbouring points. Let v_i be
+/// the tool's support point towards the surface, argmin <q, n_i> over the tool. If v_i lies on this patch, the tool
+/// must stay above the patch:
 ///
 ///   <n_i, v_i + x - x_i> >= 0, appended as a contact with depth <n_i, x_i - v_i> and gradient -n_i.
 ///
@@ -200,7 +201,7 @@ void SpringConstraints::constraints_at(const ToolPose& proxy, const Vec3&, Conta
   for (std::size_t j = 0; j < springs_->gradients.size(); ++j) {
     const Vec3& u = springs_->gradients[j];
     const double depth = proxy.position.dot(u);
-    // The condition is false for a position that is not finite, which compresses no spring.
+    // If the depth is NaN, both conditions are false, so the spring is not compressed.
     if (depth > -kNever) push_spring(j, proxy.position, depth, u, contacts);
     if (springs_->bilateral && -depth > -kNever) push_spring(j, proxy.position, -depth, -u, contacts);
   }

@@ -32,12 +32,11 @@ struct AllowedMove {
 ///
 ///   minimise |x - t|^2   subject to   d_i + <u_i, x> <= 0   for all contacts
 ///
-/// d_i [m] and u_i are depth and gradient of contact i. The solver is the dual active-set method of Goldfarb
-/// and Idnani (Mathematical Programming 27, 1983). With three unknowns, at most three contacts are active. Each
-/// iteration adds the most violated contact (the first of equals). The multipliers lambda_i >= 0 [m] are
-/// written as weights into the buffer; x = t - sum lambda_i u_i, and lambda_i = 0 for contacts that do not hold
-/// the tool back. A constraint counts as satisfied within kViolationTolerance times the largest length of the
-/// problem.
+/// d_i [m] and u_i are depth and gradient of contact i. The solver is the dual active-set method of Goldfarb and Idnani
+/// (Mathematical Programming 27, 1983). With three unknowns, at most three contacts are active. Each iteration adds the
+/// most violated contact, the first if several are equally violated. The multipliers lambda_i >= 0 [m] are written as
+/// weights into the buffer; x = t - sum lambda_i u_i, and lambda_i = 0 for contacts that do not hold the tool back. A
+/// constraint counts as satisfied within kViolationTolerance times the largest length of the problem.
 ///
 /// If no x satisfies all contacts (opposite walls of a slot narrower than the tool), x is the unique minimiser
 /// of

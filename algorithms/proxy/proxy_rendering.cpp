@@ -174,7 +174,7 @@ class ProxyRendering final : public ForceAlgorithm {
   /// Moves the proxy for the tool's pose and updates the spring force. `free`: the tool touches no point.
   void update_proxy(const ToolPose& tool, bool free) noexcept {
     if (!has_proxy_) set_proxy(tool.position);
-    // A tool in free air that is too far away for the proxy to follow: move the proxy to the tool.
+    // If a tool in free air is too far away for the proxy to follow, move the proxy to the tool.
     if (!follow(tool) && free) set_proxy(tool.position);
     spring_ = K_ * (proxy_ - tool.position);
   }
@@ -301,7 +301,7 @@ class ProxyRendering final : public ForceAlgorithm {
       constraint_position_ = proxy_;
       proxy_ += arrives ? allowed.move : Vec3(margin / length * allowed.move);
       if (!allowed.feasible || depth_scale_ < 1.0) {
-        // Leaving takes many steps, so one pass in each step is enough.
+        // The proxy takes many steps to leave the points inside it, so one pass in each step is enough.
         clear_ = false;
         return arrives;
       }
@@ -331,7 +331,8 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   /// Replaces the colliding points by the contacts that hold the proxy back, up to the buffer's capacity. In a
-  /// compromise, more points and patches than this may hold the proxy; force and energy still include all of them.
+  /// compromise, more points and patches than this capacity may hold the proxy; force and energy still include all of
+  /// them.
   void copy_holding_contacts(ContactBuffer& contacts) const noexcept {
     contacts.clear();
     for_each_holding(*near_contacts_, [&](std::size_t i) {
@@ -389,8 +390,8 @@ AlgorithmEntry proxy_entry() {
           "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed "
           "distance of the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above "
           "the surface's flat patch about each point; f_spring = K (x - p), S = projector onto the span of the "
-          "active gradients. With a finite rotational_stiffness k the proxy turns, too: (x, theta) = argmin K/2 |x - p|^2 "
-          "+ k/2 |Log(phi^T theta)|^2 with no point inside it",
+          "active gradients. With a finite rotational_stiffness k the proxy turns, too: (x, theta) = argmin "
+          "K/2 |x - p|^2 + k/2 |Log(phi^T theta)|^2 with no point inside it",
       .source =
           "not in the thesis; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 "
           "rejects",

@@ -12,10 +12,6 @@
 namespace hapbench {
 namespace {
 
-/// Maximum number of passes in a step. A pass moves no point of the proxy by more than the margin of the constraints,
-/// so it bounds the speed of the proxy, too.
-constexpr int kMaxProxyPasses = 64;
-
 Eigen::Quaterniond orientation_of(const ToolPose& tool) noexcept {
   return Eigen::Quaterniond(tool.rotation()).normalized();
 }

@@ -23,9 +23,13 @@ constexpr double kDifference = 1e-4;
 /// rounding of a depth. Constraints of points on one line of the tool depend on each other but for rounding, and may
 /// contradict each other within the first tolerance. The second, 1e-15 m, is 2e-11 N at 20 000 N/m.
 constexpr double kProgramTolerances[] = {1e-13, 1e-11};
-/// Move off a saddle, in margins, and how often it may be tried.
+/// First move off a saddle, in margins. Moves after a return to the saddle are longer.
 constexpr double kNudge = 0.02;
-constexpr int kMaxNudges = 8;
+/// Shortest move off a saddle relative to the first, where another point is as near as this: 2e-12 m for a drill of 1
+/// mm.
+constexpr double kShortestNudge = 1e-6;
+/// Smallest stiffness of a direction in a quadratic program, in units of the springs' stiffness along it.
+constexpr double kFlat = 1e-3;
 /// Passes after which second derivatives of the constraints are used in every second pass only: active sets that
 /// alternate under one model may converge under the other.
 constexpr int kManyPasses = 40;
@@ -191,35 +195,57 @@ double ToolEquilibrium::residual_of(const PoseSprings& springs, const EnergyMode
 }
 
 /// Returns the second derivatives with which a pass models energy and constraints, and whether the pose is a minimum as
-/// far as they show it.
+/// far as they show it for the points that hold the tool.
 ToolEquilibrium::SecondOrder ToolEquilibrium::second_order(const PoseSprings& springs, const EnergyModel& model,
                                                            const CoupledPose& pose) noexcept {
-  if (holding_count_ == 0) return {model.hessian, true};
-  const Mat6 whole = model.hessian + curvature(pose);
+  SecondOrder second{model.hessian, Vec6::Zero(), true};
+  if (holding_count_ == 0) return second;
   const auto is_positive = [](const Mat6& m) { return Eigen::LLT<Mat6>(m).info() == Eigen::Success; };
-  if (is_positive(whole)) return {whole, true};
+  second.hessian += curvature(pose);
+  if (is_positive(second.hessian)) return second;
   // Stiffen the directions along which the holding points allow no motion. This changes no move that keeps them in
   // touch; what is still not positive is a descent of the energy along the constraints.
-  const Eigen::LLT<Mat6> scale(model.hessian / springs.stiffness);
-  Mat6 stiffened = whole;
+  const Mat6 L = Eigen::LLT<Mat6>(model.hessian / springs.stiffness).matrixL();
+  const Mat6 inverse = L.inverse();
   for (const Holding& h : holding()) {
-    const double length2 = scale.matrixL().solve(h.row).squaredNorm();
-    stiffened += kStiffening * springs.stiffness / length2 * h.row * h.row.transpose();
+    const double length2 = (inverse * h.row).squaredNorm();
+    second.hessian += kStiffening * springs.stiffness / length2 * h.row * h.row.transpose();
   }
-  if (is_positive(stiffened)) return {stiffened, true};
-  return {stiffened, false};
+  if (is_positive(second.hessian)) return second;
+  // Make the descents stiff by as much as they descend, so that a pass moves away from a saddle and not towards it.
+  const Eigen::SelfAdjointEigenSolver<Mat6> axes(inverse * second.hessian * inverse.transpose());
+  const Mat6 turned_back = L * axes.eigenvectors();
+  const Vec6 stiffness = axes.eigenvalues().cwiseAbs().cwiseMax(kFlat * springs.stiffness);
+  second.hessian = turned_back * stiffness.asDiagonal() * turned_back.transpose();
+  second.descent = inverse.transpose() * axes.eigenvectors().col(0);
+  second.is_minimum = false;
+  return second;
 }
 
-/// Returns a small move along the steepest descent that the second derivatives show.
-Vec6 ToolEquilibrium::nudge(const PoseSprings& springs, const EnergyModel& model, const Mat6& hessian) const noexcept {
-  const Mat6 inverse = Mat6(Eigen::LLT<Mat6>(model.hessian / springs.stiffness).matrixL()).inverse();
-  const Eigen::SelfAdjointEigenSolver<Mat6> axes(inverse * hessian * inverse.transpose());
-  Vec6 z = inverse.transpose() * axes.eigenvectors().col(0);
-  // Both ways descend alike. Take one that does not depend on the sign of the eigenvector.
+/// Returns the fraction of the move z after which a point that does not hold the tool would be inside.
+double ToolEquilibrium::room(const Vec6& z) const noexcept {
+  double fraction = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const auto is_it = [&](const Holding& h) { return h.index == contacts_.index[i]; };
+    const double rate = rows_[i].dot(z);
+    if (rate > 0.0 && std::ranges::none_of(holding(), is_it))
+      fraction = std::min(fraction, std::max(0.0, -contacts_.depth[i]) / rate);
+  }
+  return fraction;
+}
+
+/// Returns the n-th move off a saddle, n >= 0. Both ways descend alike, but other points may be near: the first move
+/// goes the way with more room, the next one the other way, and then twice as far.
+Vec6 ToolEquilibrium::nudge(const Vec6& descent, int n) const noexcept {
+  const double first = kNudge * margin_;
+  Vec6 z = first / displacement(descent) * descent;
+  // Neither the way nor its sign may depend on rounding where both have room.
   Eigen::Index largest = 0;
   z.cwiseAbs().maxCoeff(&largest);
   if (z[largest] < 0.0) z = -z;
-  return kNudge * margin_ / displacement(z) * z;
+  const double length = std::min(std::ldexp(1.0, n / 2), margin_ / first);
+  if ((std::min(room(-z), length) > std::min(room(z), length)) != (n % 2 == 1)) z = -z;
+  return std::max(kShortestNudge, std::min(room(z), length)) * z;
 }
 
 ToolEquilibrium::Outcome ToolEquilibrium::solve(const PoseSprings& springs, CoupledPose& pose,
@@ -230,22 +256,19 @@ ToolEquilibrium::Outcome ToolEquilibrium::solve(const PoseSprings& springs, Coup
     // Linearise the constraints, and solve the quadratic program of the pass.
     find_constraints(pose);
     const EnergyModel model = energy_model(springs, pose);
-    const SecondOrder second = second_order(springs, model, pose);
     const bool alternates = out.passes > kManyPasses && out.passes % 2 == 0;
     Vec6 z;
-    if (!second.is_minimum || alternates || !solve_program(springs, model, second.hessian, z)) {
+    if (alternates || !solve_program(springs, model, second_order(springs, model, pose).hessian, z)) {
       if (!solve_program(springs, model, model.hessian, z)) return out;
     }
     out.feasible = feasible_;
     out.residual = residual_of(springs, model);
     // A pass that balances all forces is the last, unless the energy descends from there.
     if (feasible_ && out.residual <= kSolved) {
-      if (second.is_minimum || nudges == kMaxNudges) {
-        out.solved = true;
-        return out;
-      }
-      ++nudges;
-      z = nudge(springs, model, second.hessian);
+      const SecondOrder here = second_order(springs, model, pose);
+      out.solved = here.is_minimum;
+      if (out.solved) return out;
+      z = nudge(here.descent, nudges++);
     }
     if (out.passes >= max_passes) return out;
     const double length = displacement(z);

@@ -31,7 +31,8 @@ inline constexpr double kSolved = 1e-9;
 ///
 /// and the second derivatives of the constraints that hold the tool are added to those of the energy, which makes the
 /// passes converge quadratically. A pass moves no point of the tool by more than a margin. A stationary pose whose
-/// second derivatives show a descent, such as a cylinder balanced on one row of points, is left along this descent.
+/// second derivatives show a descent, such as a cylinder balanced on one row of points, is left along this descent. A
+/// search that does not leave it is not solved.
 /// Unlike the proxy that translates, the constraints are those of the points alone: an edge of the tool may sink in
 /// between points, by 2.5 um for a radius of 0.5 mm and points 0.1 mm apart.
 ///
@@ -45,7 +46,7 @@ class ToolEquilibrium {
   /// they do not balance over the reach of the tool, and K times the violation of a constraint and lambda_i |g_i| over
   /// the margin, in N.
   struct Outcome {
-    bool solved = false;    ///< the residual is at most kSolved
+    bool solved = false;    ///< the residual is at most kSolved, and the second derivatives show a minimum
     bool feasible = false;  ///< the constraints of the last pass do not contradict each other
     double residual = 0.0;  ///< [N]
     double moved = 0.0;     ///< bound of the displacement of all points of the tool [m]
@@ -85,11 +86,13 @@ class ToolEquilibrium {
   Vec6 row(const Vec3& position, const ContactBuffer& contacts, std::size_t i) const noexcept;
   bool solve_program(const PoseSprings& springs, const EnergyModel& model, const Mat6& hessian, Vec6& z) noexcept;
   struct SecondOrder {
-    Mat6 hessian;
+    Mat6 hessian;  ///< positive definite
+    Vec6 descent;  ///< move along which the energy descends, if the pose is no minimum
     bool is_minimum;
   };
   SecondOrder second_order(const PoseSprings& springs, const EnergyModel& model, const CoupledPose& pose) noexcept;
-  Vec6 nudge(const PoseSprings& springs, const EnergyModel& model, const Mat6& hessian) const noexcept;
+  double room(const Vec6& z) const noexcept;
+  Vec6 nudge(const Vec6& descent, int n) const noexcept;
   double residual_of(const PoseSprings& springs, const EnergyModel& model) const noexcept;
   double displacement(const Vec6& z) const noexcept;
 

@@ -84,8 +84,8 @@ class ActuatorLimitedPassivity final : public ForceStage {
 };
 
 /// An algorithm followed by a force stage. The stage's force is limited to max_force again. The stage computes its
-/// change of the force once per step. If an integrator asks for the force within the step, the same change is added
-/// to the algorithm's force there.
+/// change of the force once per step. If an integrator evaluates the force within the step, the same change is added to
+/// the algorithm's force at that time.
 class StagedRendering final : public ForceAlgorithm {
  public:
   StagedRendering(std::unique_ptr<ForceAlgorithm> algorithm, std::unique_ptr<ForceStage> stage,

@@ -33,7 +33,7 @@ class DryFriction {
     dt_ = scene.dt;
     row_ = scene.row;
   }
-  /// Resets the bristle. Called at the start of a run and where no contact has a load.
+  /// Resets the bristle. Called at the start of a run and in steps in which no contact has a load.
   void release() noexcept;
 
   /// Returns the friction force [N] at the tool's velocity v [m/s]. `loads` is sum N_i u_i u_i^T [N], whose
@@ -85,11 +85,12 @@ inline Vec3 limited_to(const Vec3& force, const std::optional<double>& limit) no
 /// kDampingAndLimitsInfo. The friction coefficients mu_s and mu_f are viscous, although the thesis calls them Coulomb
 /// friction.
 ///
-/// Without angular damping, a tool that only rotates is not damped (thesis 4.4). With angular damping, the
-/// velocity is that of the tool's material at contact i, v_i = v + omega x r_i, with r_i from the tip centre.
-/// omega is the angular velocity of the previous step after a low-pass filter, because a trembling hand rotates
-/// the tool much faster than it translates it. `ContactVelocity::mean` uses the mean of the arms r_i with the weights
-/// c_i. For a law that is not made of weighted springs, ForceLaw::turning_velocity defines the normal velocity.
+/// Without angular damping, a tool that only rotates is not damped (thesis 4.4). With angular damping, the velocity at
+/// contact i is the velocity of the tool's material at this contact, v_i = v + omega x r_i, where r_i is the vector
+/// from the tip centre to the contact. omega is the angular velocity of the previous step after a low-pass filter,
+/// because a trembling hand rotates the tool much faster than it translates it. `ContactVelocity::mean` uses the mean
+/// of the arms r_i with the weights c_i. For a law that is not made of weighted springs, ForceLaw::turning_velocity
+/// defines the normal velocity.
 /// Guarantee: the dampers of weighted springs take the power B sum c_i <v_i, u_i>^2 >= 0 from the motion of the tool.
 /// Known failure: if the hand rotates the tool, the damping pushes the tip sideways. The energy comes from the hand's
 /// rotation, but the hand feels no torque against it, because the device renders no torque.

@@ -97,8 +97,8 @@ class LocalAverage final : public PointStage {
     return cells;
   }
 
-  /// Turns the sums into depths and gradients. Returns true if any contact has depth zero, and so an undefined
-  /// gradient.
+  /// Turns the sums into depths and gradients. Returns true if at least one contact has depth zero and therefore an
+  /// undefined gradient.
   bool average(ContactBuffer& contacts) const noexcept {
     using simd::load, simd::Pack, simd::store;
     unsigned cancelled = 0;

@@ -55,7 +55,7 @@ SurfacePoint SmoothedSurface::nearest(const Vec3& at) const {
       centre += weight * point.position;
       normal += weight * point.normal;
     });
-    // Project `at` onto the plane through their centre.
+    // Project `at` onto the plane through the centre of the neighbours.
     if (!(weights > 0.0)) return before;
     normal.normalize();
     centre /= weights;
@@ -76,7 +76,7 @@ static SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, double
 
 SurfacePath::SurfacePath(const SmoothedSurface& surface, std::span<const SurfacePoint> points)
     : radius_(surface.radius()), spacing_(spacing(radius_)), entries_{points.front()} {
-  // Choose an equal spacing.
+  // Divide the path into intervals of equal length, at most the largest spacing.
   double total = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) total += (points[i].position - points[i - 1].position).norm();
   const auto intervals = static_cast<std::size_t>(std::ceil(total / spacing_));
@@ -178,7 +178,7 @@ Vec3 SurfacePath::direction(double s) const noexcept {
 
 Vec3 DragHand::force(double t, const HandView& view) noexcept {
   const auto& [x, v] = view.handle;
-  // Move `nearest_` by half the distance to the foot of the perpendicular on the path. It converges in a few steps;
+  // Move `nearest_` by half the distance to the foot of the perpendicular on the path. This converges in a few steps;
   // moving the full distance would overshoot on curved paths.
   nearest_ += 0.5 * path_->direction(nearest_).dot(x - path_->at(nearest_).position);
   nearest_ = std::clamp(nearest_, 0.0, path_->length());
@@ -192,8 +192,8 @@ Vec3 DragHand::force(double t, const HandView& view) noexcept {
 }
 
 /// Sets progress_ for the handle at x and the moving point at arc length s. Moves nearest_ to the leg of the moving
-/// point if that leg is clearly nearer: nearest_ moves along the path only, and cannot turn back with a path that
-/// returns.
+/// point if that leg is clearly nearer to the handle. This is necessary because nearest_ otherwise moves along the path
+/// only, so it cannot change to another leg where the path turns back.
 void DragHand::find_progress(const Vec3& x, double s) noexcept {
   const double on_leg = std::clamp(s + path_->direction(s).dot(x - path_->at(s).position), 0.0, s);
   const double distance = (x - path_->at(nearest_).position).norm(),

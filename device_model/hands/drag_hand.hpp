@@ -61,9 +61,9 @@ class SurfacePath {
   double length() const noexcept { return spacing_ * static_cast<double>(entries_.size() - 1); }
   /// Returns position and normal at arc length s [m], linearly interpolated; constant beyond the ends.
   SurfacePoint at(double s) const noexcept;
-  /// Returns a unit vector along the path at s, within the surface. It points from one smoothing radius before s to
-  /// one after s, so it turns gradually around corners. If the path has no length, any direction within the
-  /// surface.
+  /// Returns a unit vector along the path at s, within the surface. It points from one smoothing radius before s to one
+  /// smoothing radius after s, so it turns gradually around corners. If the path has no length, any direction within
+  /// the surface.
   Vec3 direction(double s) const noexcept;
   /// Returns the surface's outward normal near the position x [m]. Precondition: s is the arc length of the path
   /// position nearest to x. Includes the curvature of the surface to the sides of the path; constant beyond two
@@ -123,8 +123,9 @@ class DragHand final : public Hand {
   const SurfacePath& path() const noexcept { return *path_; }
   /// Arc length of the path position nearest to the handle [m], from the last call of force().
   double nearest() const noexcept { return nearest_; }
-  /// Arc length up to which the handle has followed the path [m], from the last call of force(): of the path position
-  /// nearest to the handle. If several legs of the path pass there, the leg of the moving point counts.
+  /// Arc length up to which the handle has followed the path [m], from the last call of force(). It is the arc length
+  /// of the path position nearest to the handle. If several legs of the path pass near the handle, the leg of the
+  /// moving point counts.
   double progress() const noexcept { return progress_; }
 
  private:

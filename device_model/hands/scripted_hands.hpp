@@ -116,8 +116,8 @@ class ImpedanceHand final : public Hand {
   std::optional<Tremor> tremor_;
 };
 
-/// Returns the unit vector at `angle` [rad] from -z, tilted towards +x turned by `azimuth` [rad] about z. Exactly
-/// -z at angle 0.
+/// Returns the unit vector at `angle` [rad] from -z, tilted towards the direction that results if +x is rotated by
+/// `azimuth` [rad] about z. Exactly -z at angle 0.
 inline Vec3 push_direction(double angle, double azimuth) {
   return {math::sin(angle) * math::cos(azimuth), math::sin(angle) * math::sin(azimuth), -math::cos(angle)};
 }

@@ -51,8 +51,8 @@ Vec3 TrackingHand::force(double, const HandView& view) noexcept {
          subject_.motor_noise * force_noise_;
 }
 
-/// Stores the current display and returns the display of one reaction delay ago. Until the first stored display is
-/// that old, returns "on target, no force on the gauge".
+/// Stores the current display and returns the display of one reaction delay ago. Until one reaction delay has passed,
+/// returns "on target, no force on the gauge".
 TrackingHand::Display TrackingHand::delayed_display(const HandView& view) noexcept {
   Display& now = seen_[next_];
   now.error = task_.finished() ? Vec3(Vec3::Zero()) : task_.error(view.tool.position);

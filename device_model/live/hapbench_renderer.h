@@ -53,12 +53,12 @@ extern "C" {
  *
  * ADMITTANCE: the hand's force and the pose of the handle go in, set-points of the handle's position and velocity come
  * out. The hand's force, after the scenario's input force limit, and the rendered force move the scenario's virtual
- * mass by its integrator. The tool's orientation is the measured one. */
+ * mass by its integrator. The tool has the measured orientation. */
 enum { HAPBENCH_IMPEDANCE = 1, HAPBENCH_ADMITTANCE = 2 };
 
 /* Flags of a setup.
- * ALLOW_MODULES: load the libraries in HapbenchSetup::modules and those that the scenario names. Their code can do
- *                anything that your program can. Without this flag, opening never loads code.
+ * ALLOW_MODULES: load the libraries in HapbenchSetup::modules and the libraries that the scenario names. Their code
+ *                can do anything that your program can do. Without this flag, opening never loads code.
  * TORQUE:        compute HapbenchOutput::torque. */
 enum { HAPBENCH_ALLOW_MODULES = 1, HAPBENCH_TORQUE = 2 };
 
@@ -71,11 +71,11 @@ typedef struct HapbenchPose3 {
 typedef struct HapbenchMount {
   HapbenchPose3 world_from_device; /* position in the world's metres, applied after `scale` */
   /* Virtual metres per metre of the device, > 0: x_world = scale rotation x_device + position. A force is not scaled.
-   * Stiffness, damping and virtual mass that the hand feels are `scale` times those of the scenario. */
+   * Stiffness, damping and virtual mass that the hand feels are `scale` times the values of the scenario. */
   double scale;
   HapbenchPose3 handle_from_tip; /* pose of the tool in the handle's frame; position in metres of the device */
   /* Impedance mode: largest norm of the force [N], > 0, and of its rate of change [N/s], > 0. INFINITY: no limit. If
-   * the scenario's device has a limit as well, the smaller one holds. */
+   * the scenario's device has a limit as well, the smaller limit holds. */
   double max_force, max_force_rate;
   double ramp_s;       /* time in which the force rises from 0 and falls to 0 [s], 0 to 60 */
   double stale_s;      /* longest time between two calls [s], > 0 */
@@ -95,10 +95,10 @@ typedef struct HapbenchSetup {
    * cannot extend another scenario. */
   const char* scenario;
   const char* folder; /* where relative paths in a scenario text start; NULL: the working folder */
-  /* "path=value", as for `hapbench run --set`, such as "time.step_s=0.001"; ends with NULL. NULL: none. */
+  /* "path=value", as for `hapbench run --set`, such as "time.step_s=0.001"; ends with NULL. NULL: no override. */
   const char* const* overrides;
-  /* Files of modules with a law (hapbench_module.h); ends with NULL; needs HAPBENCH_ALLOW_MODULES. NULL: none. Do not
-   * open a renderer with modules while another thread opens one. */
+  /* Files of modules with a law (hapbench_module.h); ends with NULL; needs HAPBENCH_ALLOW_MODULES. NULL: no module. Do
+   * not open a renderer with modules while another thread opens a renderer. */
   const char* const* modules;
   HapbenchMount mount;
 } HapbenchSetup;
@@ -108,8 +108,8 @@ typedef struct HapbenchSetup {
 
 /* Bits of HapbenchInput::has. The first four say which vectors are given; the others are read and ignored.
  * CLUTCH: the handle moves while the tool stays. The force falls to 0. When the bit is released, world_from_device is
- *         moved so that the tool continues from where it was; its orientation continues from the handle's. The renderer
- *         is WAITING then. In admittance mode, the hand moves the virtual mass without contact meanwhile. A FAULT ends
+ *         moved so that the tool continues from its last position; its orientation follows the handle. The renderer is
+ *         WAITING then. In admittance mode, the hand moves the virtual mass without contact meanwhile. A FAULT ends
  *         the clutch without moving the mount.
  * REARM:  ends a FAULT if the bit was not set in the previous call and the input of this call is valid. */
 enum {
@@ -125,12 +125,12 @@ enum {
 typedef struct HapbenchInput {
   uint64_t time_ns;     /* time of the measurement by a monotonic clock [ns]; increases from call to call */
   HapbenchPose3 handle; /* measured pose, in both modes */
-  /* Of the handle's origin [m/s]. Impedance mode: if not given, the scenario's velocity filter computes the velocity of
-   * the tip. A scenario without one (device.velocity_filter) needs the velocity in every call. Admittance mode: not
-   * used. */
+  /* Velocity of the handle's origin [m/s]. Impedance mode: if not given, the scenario's velocity filter computes the
+   * velocity of the tip. A scenario without a velocity filter (device.velocity_filter) needs the velocity in every
+   * call. Admittance mode: not used. */
   double velocity[3];
   double angular_velocity[3]; /* [rad/s]; if not given, the turn since the previous call divided by the period */
-  double hand_force[3];    /* of the hand on the handle, without the handle's weight [N]; needed in admittance mode */
+  double hand_force[3];    /* hand's force on the handle, without the handle's weight [N]; needed in admittance mode */
   double applied_force[3]; /* force that the device applied in the last period [N]; for the log only */
   uint32_t has;
   uint32_t reserved; /* 0 */
@@ -191,7 +191,7 @@ typedef struct HapbenchOutput {
    * force falls to 0 (CLUTCH, STALE, FAULT) and during FAULT, the last position and velocity 0. Impedance mode: 0. */
   double set_position[3], set_velocity[3];
   double gain;       /* factor on the rendered force, 0 to 1 */
-  double dt;         /* time since the previous call [s]; 0 in the first */
+  double dt;         /* time since the previous call [s]; 0 in the first call */
   uint64_t call;     /* number of the call, from 0 */
   uint32_t status;   /* HAPBENCH_WAITING … HAPBENCH_FAULT */
   uint32_t contacts; /* number of points in contact; 0 if nothing was rendered */
@@ -221,13 +221,13 @@ HAPBENCH_API double hapbench_renderer_period(const HapbenchRenderer* renderer);
  * closed. */
 HAPBENCH_API const char* hapbench_renderer_inspect(const HapbenchRenderer* renderer);
 
-/* Returns why the last FAULT happened, as one line; empty if there was none. Valid until the next step. */
+/* Returns the reason of the last FAULT as one line; empty if there was no FAULT. Valid until the next step. */
 HAPBENCH_API const char* hapbench_renderer_fault(const HapbenchRenderer* renderer);
 
 /* Writes the first lines of a log, or the line of one call, into `text`, terminated by 0, and returns the number of
- * characters; nothing else than an empty text is written if `size` is not larger. HAPBENCH_LOG_ROW_SIZE is enough for a
- * row. Numbers have 17 digits. A file with the header and one row for every call, in order, is what
- * `hapbench run SCENARIO --replay FILE` reads. Not for the thread of the loop: hand the structs to another one. */
+ * characters. If `size` is not larger than this number, only an empty text is written. HAPBENCH_LOG_ROW_SIZE is enough
+ * for a row. Numbers have 17 digits. `hapbench run SCENARIO --replay FILE` reads a file with the header and one row for
+ * every call, in order. Not for the thread of the loop: pass the structs to another thread. */
 #define HAPBENCH_LOG_ROW_SIZE 1200
 HAPBENCH_API size_t hapbench_renderer_log_header(const HapbenchRenderer* renderer, char* text, size_t size);
 HAPBENCH_API size_t hapbench_renderer_log_row(const HapbenchInput* input, const HapbenchOutput* output, char* text,

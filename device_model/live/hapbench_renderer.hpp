@@ -11,8 +11,8 @@
 
 namespace hapbench {
 
-/// hapbench_renderer.h for C++11 and later: the same functions with ownership and exceptions. That header documents
-/// the behaviour. `step` does not throw.
+/// hapbench_renderer.h for C++11 and later: the same functions with ownership and exceptions. hapbench_renderer.h
+/// documents the behaviour. `step` does not throw.
 class Renderer {
  public:
   /// Opens a renderer. Throws std::runtime_error with the text of hapbench_renderer_open.

@@ -15,7 +15,7 @@ namespace {
 constexpr int kCallsBeforeForce = 4;  ///< calls below engage_force before the force rises
 constexpr std::uint32_t kKnownBits = HAPBENCH_VELOCITY | HAPBENCH_ANGULAR_VELOCITY | HAPBENCH_HAND_FORCE |
                                      HAPBENCH_APPLIED_FORCE | HAPBENCH_CLUTCH | HAPBENCH_REARM;
-constexpr double kNormTolerance = 1e-3;  ///< of the norm of an orientation
+constexpr double kNormTolerance = 1e-3;  ///< tolerance of the norm of an orientation
 
 Vec3 vector_of(const double (&v)[3]) noexcept {
   return {v[0], v[1], v[2]};
@@ -159,7 +159,8 @@ void LiveRenderer::set_orientation(const Measurement& now, const HapbenchInput& 
   if (loop_.tool_rolls()) tool_.pose.roll = now.roll;
 }
 
-/// Sets position and velocity of the tool to those of the measured handle.
+/// Sets the tool's position to the measured position of the tip, filtered if the device has a position filter.
+/// Sets the tool's velocity to the given velocity, or to the estimate of the velocity filter.
 void LiveRenderer::follow_handle(const Measurement& now, const HapbenchInput& input) noexcept {
   Vec3 position = now.tip, velocity = Vec3::Zero();
   if (has_tool_)
@@ -178,7 +179,7 @@ void LiveRenderer::follow_handle(const Measurement& now, const HapbenchInput& in
   tool_.velocity = scale_ * world_.turned(velocity);
 }
 
-/// Keeps the position of the tool while the clutch is pressed, and moves the mount when it is released.
+/// Keeps the position of the tool while the clutch is pressed, and moves the mount when the clutch is released.
 void LiveRenderer::handle_clutch(const Measurement& now, bool pressed) noexcept {
   if (pressed && !is_clutched_) {
     kept_position_ = has_position_ ? tool_.pose.position : to_world(now.tip);
@@ -325,7 +326,7 @@ void LiveRenderer::fail(std::uint32_t reason) noexcept {
   release_ = Release::fault;
   reason_ = reason;
   is_clutched_ = has_position_ = false;
-  // A module's text says what failed; otherwise the quantity that is out of bounds.
+  // Use the text of a module that failed, or name the quantity that is out of bounds.
   if (reason == HAPBENCH_ALGORITHM_FAILED)
     std::snprintf(fault_text_.data(), fault_text_.size(), "%s", loop_.fault());
   else if (reason == HAPBENCH_OUT_OF_BOUNDS)

@@ -28,7 +28,7 @@ class MountRotation {
   bool is_identity_;
 };
 
-/// What a LiveRenderer takes from the scenario and from the caller's setup.
+/// Inputs of a LiveRenderer from the scenario and from the caller's setup.
 struct LiveRendererConfig {
   bool is_admittance = false;
   bool wants_torque = false;
@@ -45,20 +45,20 @@ class LiveRenderer {
   LiveRenderer(const LiveRendererConfig& config, SimulationConfig simulation, SimulationParts parts);
 
   void step(const HapbenchInput& input, HapbenchOutput& output) noexcept;
-  /// Returns why the last fault happened; empty if there was none.
+  /// Returns the reason of the last fault; empty if there was no fault.
   const char* fault() const noexcept { return fault_text_.data(); }
   double period() const { return loop_.dt(); }
 
  private:
-  /// Why the force of an earlier call falls to 0.
+  /// Reason why the force of an earlier call falls to 0.
   enum class Release { none, clutch, stale, fault, rearm };
   /// A measurement in the device's frame, and the orientation of the tool in the world.
   struct Measurement {
     Vec3 tip = Vec3::Zero();  ///< tip centre [m]
-    Vec3 arm = Vec3::Zero();  ///< from the handle's origin to the tip centre [m]
-    /// From the tool frame to the world frame.
+    Vec3 arm = Vec3::Zero();  ///< vector from the handle's origin to the tip centre [m]
+    /// Rotation from the tool frame to the world frame.
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-    double roll = 0.0;  ///< of the tool [rad]; 0 if nothing needs it
+    double roll = 0.0;  ///< roll of the tool [rad]; 0 if neither the pose nor the angular velocity needs it
   };
 
   std::uint32_t problem_of(const HapbenchInput& input) const noexcept;
@@ -92,19 +92,19 @@ class LiveRenderer {
 
   ToolState tool_;
   Measurement last_measurement_;
-  bool has_tool_ = false;      ///< tool_ is of the call before; false after a restart
-  bool has_position_ = false;  ///< tool_ has a position that a clutch can keep
+  bool has_tool_ = false;      ///< true if tool_ belongs to the previous call; false after a restart
+  bool has_position_ = false;  ///< true if tool_ has a position; a clutch then holds the tool there
 
   Release release_ = Release::none;
   double release_gain_ = 0.0;         ///< factor on held_force_, from 1 to 0
   double held_gain_ = 0.0;            ///< gain of the last call before the release
   Vec3 held_force_ = Vec3::Zero();    ///< force of the last call before the release, device frame [N]
   Vec3 last_force_ = Vec3::Zero();    ///< force of the last call, device frame [N]
-  Vec3 set_position_ = Vec3::Zero();  ///< of the last call, device frame [m]
+  Vec3 set_position_ = Vec3::Zero();  ///< set-point of the last call, device frame [m]
   double gain_ = 0.0;
   int calls_below_ = 0;  ///< calls in a row with a rendered force below engage_force
   bool is_clutched_ = false;
-  std::optional<Vec3> kept_position_;  ///< of the tool while clutched, world [m]
+  std::optional<Vec3> kept_position_;  ///< position of the tool while clutched, world frame [m]
   std::uint32_t reason_ = HAPBENCH_NO_FAULT;
   std::array<char, 400> fault_text_{};
 };

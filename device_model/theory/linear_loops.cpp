@@ -69,7 +69,8 @@ Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
 
 /// Writes the motion over one period into the rows of the map A that belong to the state components `body`. The
 /// force is `before` for the fraction `fraction` of the period and `after` for the rest. `hand` is the force of a
-/// sampled hand over the whole period, empty without one. The forces are row vectors over the state.
+/// sampled hand over the whole period; it is empty if no sampled hand holds the handle. The forces are row vectors over
+/// the state.
 void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, double fraction, const Eigen::MatrixXd& rate,
                 const Eigen::RowVectorXd& before, const Eigen::RowVectorXd& after, const Eigen::RowVectorXd& hand) {
   const auto n = static_cast<Eigen::Index>(body.size());
@@ -274,7 +275,8 @@ ToolStep tool_step(const SpringDamper& tool, const LinearContact& contact) {
   return {map.leftCols<6>(), map.rightCols<3>()};
 }
 
-/// Returns the rows and columns of a state matrix in three dimensions that belong to two axes.
+/// Returns the block of a state matrix in three dimensions with the rows that belong to `row_axis` and the columns that
+/// belong to `column_axis`.
 Eigen::MatrixXd part_of_axes(const Eigen::MatrixXd& A, Eigen::Index row_axis, Eigen::Index column_axis) {
   const Eigen::Index n = A.rows() / 3;
   Eigen::MatrixXd part(n, n);
@@ -294,8 +296,8 @@ bool has_feedback_between_axes(const Eigen::MatrixXd& A) {
   return twice.trace() > 0 || (twice * drives).trace() > 0;
 }
 
-/// Returns matrices whose eigenvalues are those of A, a state matrix with three components for each component of the
-/// state of one axis: one matrix for each axis in a frame without feedback between the axes, otherwise A itself.
+/// Returns matrices that together have the eigenvalues of A, a state matrix with three components for each component of
+/// the state of one axis: one matrix for each axis in a frame without feedback between the axes, otherwise A itself.
 std::vector<Eigen::MatrixXd> by_axes(const Eigen::MatrixXd& A, const LinearContact& contact) {
   constexpr Eigen::Index kMaxRows = 300;
   const auto& [rendered, hand, input] = contact;
@@ -409,8 +411,8 @@ PassivityAt passivity_at(const SampledLoop& loop, double theta) {
           -(F.real() * math::cos(full_delay_angle) + F.imag() * math::sin(full_delay_angle))};
 }
 
-/// Returns the smallest value of f between two angles: evaluates a grid, then refines it eight times around the
-/// best point.
+/// Returns the smallest value of f between two angles: evaluates eight grids, each around the best point of
+/// the grid before.
 template <class Function>
 double minimum(Function f, double low, double high, int points) {
   double smallest = kInfinity;

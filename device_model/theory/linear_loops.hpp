@@ -65,24 +65,25 @@ double first_stability_limit(double lowest, double highest, StepMatrix step_matr
 struct SampledLoop {
   ImpedanceDeviceConfig device;    ///< contains m, b, d and the filters
   AttachedHand hand;               ///< all zero: no attached hand
-  double sampled_stiffness = 0.0;  ///< k of the sampled hand [N/m]
-  double sampled_damping = 0.0;    ///< c of the sampled hand [N s/m]
+  double sampled_stiffness = 0.0;  ///< stiffness k of a sampled hand [N/m]
+  double sampled_damping = 0.0;    ///< damping c of a sampled hand [N s/m]
   double period = 0.001;           ///< T [s]
   double stiffness = 0.0;          ///< K of the wall [N/m]
   double wall_damping = 0.0;       ///< B of the wall [N s/m]
 
   double moving_mass() const { return device.handle_mass + hand.mass; }   ///< mass of handle and hand [kg]
   double total_damping() const { return device.viscous + hand.damping; }  ///< damping of handle and hand [N s/m]
-  /// Returns a text that names the properties of the device that are not linear; null if there are none.
+  /// Returns a text that names the properties of the device that are not linear; null if the device is linear.
   const char* nonlinearity() const;
 
   /// Returns the matrix that maps the state at sample k to the state at sample k + 1. The state is
   ///   (x_k, T v_k, y'_{k-1}, modes of T w_{k-1} and of y_{k-1}, T^2/m f_{k-1}, T^2/m f_{k-2}, …),
-  /// with the true velocity v of the handle, the moving mass m and the forces that are still delayed. For each
-  /// filter, a pair of complex poles has two state components and a real pole one. A missing velocity filter also has
-  /// one component, a missing position filter none. With a transmission, x and v belong to the motors, and the
-  /// handle's x and T v are the last two components. All components are in metres, so that rounding does not disturb
-  /// the eigenvalues. The motion between samples is exact (matrix exponential).
+  /// with the true velocity v of the handle, the moving mass m and the forces that are still delayed. In each filter, a
+  /// pair of complex poles has two state components and a real pole has one component. Without a velocity filter the
+  /// state has one component in its place; without a position filter it has no component in its place. With a
+  /// transmission, x and v belong to the motors, and the handle's x and T v are the last two components. All components
+  /// are in metres, so that rounding does not disturb the eigenvalues. The motion between samples is exact (matrix
+  /// exponential).
   Eigen::MatrixXd state_matrix() const;
 };
 
@@ -124,7 +125,7 @@ struct AdmittanceLoop {
   double hand_stiffness = 0.0;  ///< k of the hand [N/m]
   double hand_damping = 0.0;    ///< b of the hand [N s/m]
 
-  /// Returns the matrix that maps the state at one step to the state at the next. The state is
+  /// Returns the matrix that maps the state at one step to the state at the next step. The state is
   ///   (x and T v of the virtual mass, of the carriage, of the handle; T^2/M times the servo's delayed commands)
   /// with the time step T, the virtual mass M and the newest command first. All components are in metres.
   Eigen::MatrixXd state_matrix() const;
@@ -143,7 +144,7 @@ struct LinearContact {
   Mat3 input = Mat3::Identity();
 };
 
-/// Returns the matrices that map the state at one step to the state at the next, for the loop of a device in three
+/// Returns the matrices that map the state at one step to the state at the next step, for the loop of a device in three
 /// dimensions. Their eigenvalues together are the eigenvalues of the loop. One matrix for each axis if no axis drives
 /// another in both directions, otherwise a single matrix for all axes. Omits axes in which neither contact nor hand
 /// acts. All components of the state are in metres. Returns an empty list if the axes are coupled and the matrix would
@@ -152,7 +153,7 @@ struct LinearContact {
 /// The stiffness and damping of the wall, of the sampled hand and of the tool in the loop itself are ignored.
 std::vector<Eigen::MatrixXd> contact_loop(const SampledLoop& loop, const LinearContact& contact);
 std::vector<Eigen::MatrixXd> contact_loop(const AdmittanceLoop& loop, const LinearContact& contact);
-/// The loop without a device: the hand's force drives the virtual mass of `tool`.
+/// Returns the matrices for the loop without a device: the hand's force drives the virtual mass of `tool`.
 std::vector<Eigen::MatrixXd> contact_loop(const SpringDamper& tool, const LinearContact& contact);
 
 /// Returns true if the matrices of contact_loop() have no eigenvalue outside the unit circle by more than rounding.

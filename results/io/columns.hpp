@@ -100,11 +100,12 @@ struct Metric {
   Cell value;           ///< a count or a number; empty if it does not exist (such as a ratio without contact)
   Better better = Better::none;
   double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance; see `within`
-  bool bounded = false;                   ///< `within` has set a tolerance
-  /// True for the state at a fixed time, and for sums and means over a fixed time. False for extremes, percentiles and
-  /// counts, and for metrics that depend on when contacts begin or end: these do not vary smoothly with the time step.
+  bool bounded = false;                   ///< true if `within` has set a tolerance
+  /// True if the metric is the state at a fixed time, or a sum or mean over a fixed time. False if it is an extreme, a
+  /// percentile or a count, or if it depends on when contacts begin or end. Such metrics do not vary smoothly with the
+  /// time step.
   bool smooth = false;
-  bool either_sign = false;  ///< the value can be negative
+  bool either_sign = false;  ///< true if the value can be negative
   /// If only every n-th step counts (TimeFields::stride): estimated range of the value over all n choices of the first
   /// counted step [unit of the value]. 0 if every step counts, and without a value.
   double sampling_spread = 0.0;
@@ -153,9 +154,9 @@ std::optional<Value> if_any(bool exists, Value value) {
 /// The metrics of a run or of one section, in the order of summary.json.
 using MetricList = std::vector<Metric>;
 
-/// Returns the metric with this name; null if there is none.
+/// Returns the metric with this name; null if no metric has this name.
 const Metric* find_metric(const MetricList& list, std::string_view name);
-/// Returns the value of the metric with this name; an empty cell if there is none.
+/// Returns the value of the metric with this name; an empty cell if no metric has this name.
 Cell value_of(const MetricList& list, std::string_view name);
 /// Returns a count or a number as a double; empty for all other cells.
 std::optional<double> number_of(const Cell& value);

@@ -80,7 +80,7 @@ class Vibration {
   /// Adds step number `row` of a trial; row 0 sets the filter to the steady state of `signal`. If `counts` is
   /// false, the sample is filtered but not added to the mean.
   void add(std::uint64_t row, const Vec3& signal, bool counts = true) noexcept;
-  /// Returns the squared norm of the last sample after the filter; 0 at 60 Hz or less.
+  /// Returns the squared norm of the last sample after the filter; 0 at sampling rates of 60 Hz or less.
   double last_square() const noexcept { return last_square_; }
   /// Restarts the mean, but keeps the filter's state.
   void restart_count() noexcept { rows_ = 0, sum_ = 0.0; }
@@ -108,7 +108,7 @@ class LastQuarterVibration {
   void begin() noexcept;
   void add(std::uint64_t step, const Vec3& velocity) noexcept;
   /// Returns the root mean square over the last quarter of the steps so far; the largest value if there were several
-  /// trials. Nothing at 60 Hz or less, and nothing without samples.
+  /// trials. Returns nothing at sampling rates of 60 Hz or less, and nothing without samples.
   std::optional<double> value() const noexcept;
 
  private:
@@ -156,7 +156,7 @@ struct SettlingRule {
   double time = 0.05;  ///< settling time [s]
 };
 
-/// Difference between the forces of a step and of the step before.
+/// Difference between the forces of a step and of the previous step.
 struct ForceChange {
   double squared = 0.0;   ///< ||f_k - f_(k-1)||^2 [N^2]; 0 in the first step
   bool reverses = false;  ///< true if the inner product of f_k and f_(k-1) is negative

@@ -30,7 +30,7 @@ void EnergyLedger::begin(const TrialParts& trial) {
 }
 
 void EnergyLedger::on_step(const StepRecord& record) noexcept {
-  // Sort the indices of the rendered contacts, to compare them with the step before.
+  // Sort the indices of the rendered contacts, to compare them with the previous step.
   const auto& index = record.rendered->index;
   rendered_.assign(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(record.rendered->size()));
   std::sort(rendered_.begin(), rendered_.end());

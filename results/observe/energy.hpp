@@ -58,7 +58,7 @@ struct EnergyEvent {
   std::uint64_t step = 0;                              ///< step in which the energy appeared
   double time = 0.0;                                   ///< [s]
   double created = 0.0;                                ///< [J], > 0
-  std::array<std::size_t, 2> colliding{}, rendered{};  ///< number of contacts in the step before and in this step
+  std::array<std::size_t, 2> colliding{}, rendered{};  ///< number of contacts in the previous step and in this step
   std::size_t appeared = 0, vanished = 0;  ///< number of rendered contacts that exist only in this step; only in the
                                            ///< step before
 };
@@ -88,7 +88,7 @@ class EnergyLedger final : public MetricObserver {
   }
 
  private:
-  /// Work of each force from the step before to this step [J].
+  /// Work of each force from the previous step to this step [J].
   struct Works {
     double input = 0.0, hand = 0.0, actuator = 0.0;
     double spring = 0.0, damping = 0.0;
@@ -107,8 +107,8 @@ class EnergyLedger final : public MetricObserver {
   /// of a step until the next step.
   bool position_is_free_, holds_force_;
   bool has_row_ = false;
-  StepRecord last_;  ///< the step before, without its contacts
-  /// Sorted shell indices of the rendered contacts of this step and the step before.
+  StepRecord last_;  ///< the previous step, without its contacts
+  /// Sorted shell indices of the rendered contacts of this step and the previous step.
   std::vector<std::uint32_t> rendered_, last_rendered_;
   EnergyBalance balance_;
   double kinetic_at_start_ = 0.0, unexplained_ = 0.0;  ///< unexplained_: sum of Works::unexplained

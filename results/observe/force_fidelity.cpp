@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <span>
 
@@ -26,8 +27,8 @@ namespace {
 constexpr std::uint64_t kMaxKept = 1u << 17;
 constexpr double kKeptInterval = 5e-4;  ///< shortest time between kept samples, approximately [s]
 
-/// Returns Pearson's correlation coefficient over all components of two signals of equal length; nothing if one of
-/// them does not vary.
+/// Returns Pearson's correlation coefficient over all components of two signals of equal length; nothing if one of the
+/// signals does not vary.
 std::optional<double> correlation(std::span<const Vec3> early, std::span<const Vec3> late) {
   const double n = static_cast<double>(early.size());
   const auto mean = [n](auto of) { return Vec3(std::accumulate(of.begin(), of.end(), Vec3(0.0, 0.0, 0.0)) / n); };
@@ -158,7 +159,18 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   }
 }
 
+void ForceFidelityObserver::add_members(nlohmann::ordered_json& section) const {
+  if (force_ != nullptr && force_->error() > 0.0) section["reference_error_N"] = force_->error();
+}
+
 void ForceFidelityObserver::report(Section& s) const {
+  // A difference between two laws is ranked if it exceeds the sum of their tolerances. With five times the error of the
+  // reference, a ranked difference is at least ten times this error.
+  constexpr double kPerTolerance = 5.0;
+  const double reference_error = force_ == nullptr ? 0.0 : kPerTolerance * force_->error();
+  const auto limited = [reference_error](Metric& metric, double per_newton) -> Metric& {
+    return reference_error > 0.0 ? metric.within(0.0, reference_error * per_newton) : metric;
+  };
   const auto rms = [this](double squares) { return std::sqrt(per(squares, rows_)); };
   s.metric(
       "rows", "1",
@@ -169,23 +181,28 @@ void ForceFidelityObserver::report(Section& s) const {
            "root mean square of ||f_m||, the reference force (mfx_N, mfy_N, mfz_N of force_reference.csv)",
            rms(reference_))
       .varies_smoothly();
-  s.metric("force_error_rms_N", "N",
-           "root mean square of ||f - f_m||, rendered force minus reference force (force_error_x_N, force_error_y_N, "
-           "force_error_z_N of force_reference.csv)",
-           rms(error_), Better::less)
-      .varies_smoothly();
-  s.metric("force_error_relative", "1", "relative force error: force_error_rms_N / reference_force_rms_N",
-           rms(error_) / rms(reference_), Better::less)
-      .varies_smoothly();
-  s.metric("force_error_normal_rms_N", "N",
-           "root mean square of the force error along the contact normal, n n^T (f - f_m), with n = f_spring / "
-           "||f_spring|| (fspring_x_N, fspring_y_N, fspring_z_N of trajectory.csv); where f_spring is zero, n = f_m / "
-           "||f_m||",
-           rms(normal_), Better::less);
-  s.metric("force_error_tangential_rms_N", "N",
-           "root mean square of the force error across the contact normal, (I - n n^T) (f - f_m), with n as in "
-           "force_error_normal_rms_N",
-           rms(tangential_), Better::less);
+  limited(s.metric("force_error_rms_N", "N",
+                   "root mean square of ||f - f_m||, rendered force minus reference force (force_error_x_N, "
+                   "force_error_y_N, force_error_z_N of force_reference.csv)",
+                   rms(error_), Better::less)
+              .varies_smoothly(),
+          1.0);
+  limited(s.metric("force_error_relative", "1", "relative force error: force_error_rms_N / reference_force_rms_N",
+                   rms(error_) / rms(reference_), Better::less)
+              .varies_smoothly(),
+          1.0 / rms(reference_));
+  limited(
+      s.metric("force_error_normal_rms_N", "N",
+               "root mean square of the force error along the contact normal, n n^T (f - f_m), with n = f_spring / "
+               "||f_spring|| (fspring_x_N, fspring_y_N, fspring_z_N of trajectory.csv); where f_spring is zero, n = "
+               "f_m / ||f_m||",
+               rms(normal_), Better::less),
+      1.0);
+  limited(s.metric("force_error_tangential_rms_N", "N",
+                   "root mean square of the force error across the contact normal, (I - n n^T) (f - f_m), with n as in "
+                   "force_error_normal_rms_N",
+                   rms(tangential_), Better::less),
+          1.0);
   s.metric(
       "reference_mu", "1",
       "coefficient of dry friction of the reference force: least-squares fit (through 0) of the size of its component "
@@ -193,16 +210,20 @@ void ForceFidelityObserver::report(Section& s) const {
       "the coefficient that minimises the rendered "
       "tangential error, sweep rendering.dry_friction.mu",
       drag_ / loads_);
-  s.metric(
-      "force_artefact_share", "1",
-      "root mean square of the component of f (fx_N, fy_N, fz_N of trajectory.csv) across f_m (all of f where f_m is "
-      "zero), divided by the root mean "
-      "square of ||f||: fraction of the rendered force that points in a wrong direction",
-      rms(across_) / rms(rendered_), Better::less);
+  limited(
+      s.metric(
+          "force_artefact_share", "1",
+          "root mean square of the component of f (fx_N, fy_N, fz_N of trajectory.csv) across f_m (all of f where f_m is "
+          "zero), divided by the root mean "
+          "square of ||f||: fraction of the rendered force that points in a wrong direction",
+          rms(across_) / rms(rendered_), Better::less),
+      1.0 / rms(rendered_));
   s.metric("direction_rows", "1", "number of steps in which ||f|| and ||f_m|| are both above 0.1 N", direction_rows_);
-  s.metric("force_direction_error_rad", "rad",
-           "mean angle between f and f_m over the steps in which both are above 0.1 N; no value without such a step",
-           per(direction_error_, direction_rows_), Better::less);
+  limited(s.metric("force_direction_error_rad", "rad",
+                   "mean angle between f and f_m over the steps in which both are above 0.1 N; no value without such a "
+                   "step",
+                   per(direction_error_, direction_rows_), Better::less),
+          1.0 / kMinForce);
   const double interval = dt_ * static_cast<double>(every_);  // time between kept samples
   const auto lag = lag_between(kept_reference_, kept_rendered_, interval, kMaxLag);
   s.metric(

@@ -24,15 +24,20 @@ class ReferenceForce {
   using Ideal = std::array<Profile, 3>;  ///< x, y, z of the force over time
 
   /// Measured force. Precondition: at least one sample, and times increase.
-  explicit ReferenceForce(std::vector<Sample> samples) : force_(std::move(samples)) {}
+  /// `error`: largest error of a sample [N].
+  explicit ReferenceForce(std::vector<Sample> samples, double error = 0.0)
+      : force_(std::move(samples)), error_(error) {}
   explicit ReferenceForce(Ideal ideal) : force_(std::move(ideal)) {}
 
   /// Returns the force at time t [s], interpolated linearly between samples; nothing before the first sample and
   /// after the last. Cost: O(log n).
   std::optional<Vec3> at(double t) const noexcept;
+  /// Largest error of the force itself [N]; 0 if it is given or measured.
+  double error() const noexcept { return error_; }
 
  private:
   std::variant<std::vector<Sample>, Ideal> force_;
+  double error_ = 0.0;
 };
 
 /// Directions of two forces are compared if both exceed this value [N]; weaker forces have no meaningful direction.
@@ -46,17 +51,16 @@ struct Lag {
   std::optional<double> period;  ///< distance to the next equally good lag [s], for periodic signals
 };
 
-/// Returns the lag of `late` behind `early`: the shift with the largest correlation (Pearson, over all components
-/// of the overlapping samples), refined by a parabola. If several shifts have equally large correlations, within
-/// 0.01, the shift nearest to 0. Returns nothing if a signal does not vary, or if the maximum is at an end of the
-/// range +-`max_lag` [s]. `dt`: time between samples [s]. Cost: O(n max_lag / dt).
+/// Returns the lag of `late` behind `early`: the shift with the largest correlation (Pearson, over all components of
+/// the overlapping samples), refined by a parabola. If several shifts have correlations that are equally large within
+/// 0.01, returns the shift nearest to 0. Returns nothing if a signal does not vary, or if the maximum is at an end of
+/// the range +-`max_lag` [s]. `dt`: time between samples [s]. Cost: O(n max_lag / dt).
 std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
                                double max_lag);
 
 /// Measures the deviation of the rendered force f from the reference force f_m, in the steps with a reference force
-/// (evaluation of Ruffaldi et al. 2006). The normal n of a step is the direction of f_spring, the force before
-/// damping and friction; if f_spring is zero, the direction of f_m. Allocates nothing during the run; about 50 ns a
-/// step.
+/// (evaluation of Ruffaldi et al. 2006). The normal n of a step is the direction of f_spring, the force before damping
+/// and friction. If f_spring is zero, n is the direction of f_m. Allocates nothing during the run; about 50 ns a step.
 class ForceFidelityObserver final : public MetricObserver {
  public:
   ForceFidelityObserver() = default;
@@ -68,6 +72,8 @@ class ForceFidelityObserver final : public MetricObserver {
   void begin(const TrialParts& trial) override;
   void on_step(const StepRecord& record) noexcept override;
   void report(Section& section) const override;
+  /// Adds reference_error_N, if the reference force has an error.
+  void add_members(nlohmann::ordered_json& section) const override;
 
   /// Reference force f_m in the last step [N]; empty if the step has no reference force.
   const std::optional<Vec3>& reference() const noexcept { return at_row_; }

@@ -25,9 +25,10 @@ constexpr std::size_t kMaxEvaluations = 8000, kMaxClosedFormEvaluations = 100000
 /// kSamePose: if no point of the tool differs by more than this [half widths], one search is enough for all poses.
 constexpr double kSharedBound = 0.1, kSamePose = 0.01;
 
-/// kDeepContact: contact depth [half widths] from which on the tip centre is part of the core. At smaller depths it
-/// is not, because the tip centre of a flat tip is in the surface at any depth. kCoreStep: smallest distance between
-/// two checked points on the core, and between two checked positions of the core on its path [half widths].
+/// kDeepContact: contact depth [half widths] from which on the tip centre is part of the core. At smaller depths the
+/// tip centre is not part of the core, because the tip centre of a flat tip is in the surface at any depth. kCoreStep:
+/// smallest distance between two checked points on the core, and between two checked positions of the core on its
+/// path [half widths].
 constexpr double kDeepContact = 0.9, kCoreStep = 5e-3;
 /// Contact depth from which on the core is checked, relative to the smallest radius of the tool, such as the radius
 /// of a neck. It is a little smaller than kDeepContact, because surface points may be some fifths of this radius
@@ -38,7 +39,11 @@ constexpr double kThinnest = 0.05;
 constexpr std::size_t kCoreSamples = 256;  ///< number of positions on the axis at which the tool's thickness is
                                            ///< computed
 constexpr std::size_t kMaxSegments = 8;    ///< maximum number of segments of the core inside the solid at one time
-constexpr double kMaxSteps = 256.0;        ///< maximum number of checked positions on the path of one time step
+/// Maximum number of points of the axis whose distances are kept for the next check, and the motion, as a fraction of
+/// the distance, up to which a kept distance is used again.
+constexpr std::size_t kMaxAxisPoints = 256;
+constexpr double kReusedFraction = 0.25;
+constexpr double kMaxSteps = 256.0;  ///< maximum number of checked positions on the path of one time step
 
 SolidSide side_of(const SurfaceDistance& phi) noexcept {
   return !phi.known ? SolidSide::unknown : phi.value < 0.0 ? SolidSide::inside : SolidSide::outside;
@@ -128,13 +133,40 @@ CorePassage::CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> sol
   check_displacement_ = (1.0 - kDeepContact) * thinnest;
   segments_.reserve(kMaxSegments);
   last_segments_.reserve(kMaxSegments);
+  axis_points_.reserve(kMaxAxisPoints);
+  last_axis_points_.reserve(kMaxAxisPoints);
+}
+
+/// Returns the signed distance of a point with coordinate s on the axis. A point that has moved by less than a fraction
+/// of its last distance is not evaluated again: it is on the same side, and the last distance minus the motion is a
+/// lower bound of its distance. Otherwise the last distance plus the motion bounds the search. Precondition: s
+/// decreases during a check.
+SurfaceDistance CorePassage::distance_at(const Vec3& point, double s) noexcept {
+  const std::vector<AxisPoint>& last = last_axis_points_;
+  const auto offset = [&](std::size_t i) { return std::abs(last[i].s - s); };
+  while (next_axis_point_ + 1 < last.size() && offset(next_axis_point_ + 1) <= offset(next_axis_point_))
+    ++next_axis_point_;
+  const AxisPoint* near = last.empty() ? nullptr : &last[next_axis_point_];
+  const auto keep = [this](const AxisPoint& evaluated) {
+    if (axis_points_.size() < kMaxAxisPoints) axis_points_.push_back(evaluated);
+  };
+  if (near != nullptr && near->known) {
+    const double moved = (point - near->distance.place).norm(), size = std::abs(near->distance.value);
+    if (moved < kReusedFraction * size) {
+      keep({s, near->distance, true});
+      return {std::copysign(size - moved, near->distance.value)};
+    }
+  }
+  const SurfaceDistance phi = solid_->at(point, near == nullptr ? nullptr : &near->distance);
+  keep({s, {point, phi.value}, phi.known});
+  return phi;
 }
 
 Vec3 CorePassage::normal_at(const Vec3& point) const noexcept {
   return solid_->gradient(point, kGradientStep * width_);
 }
 
-/// Checks the core at positions along its path from the pose of the step before. Between two checked positions the
+/// Checks the core at positions along its path from the pose of the previous step. Between two checked positions the
 /// core cannot meet the surface.
 void CorePassage::check_core(const ToolPose& pose, double deepest_contact, double time) noexcept {
   const Vec3 displacement = began_ ? Vec3(pose.position - position_) : Vec3::Zero();
@@ -167,12 +199,15 @@ void CorePassage::check_core(const ToolPose& pose, double deepest_contact, doubl
 /// surface [m].
 double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double front) noexcept {
   segments_.clear();
+  std::swap(axis_points_, last_axis_points_);
+  axis_points_.clear();
+  next_axis_point_ = 0;
   SolidSide before = SolidSide::unknown;
   double s = front, nearest = std::numeric_limits<double>::infinity();
   Vec3 last = position + s * axis;
   for (;;) {
     const Vec3 point = position + s * axis;
-    const SurfaceDistance phi = solid_->at(point);
+    const SurfaceDistance phi = distance_at(point, s);
     const SolidSide side = side_of(phi);
     nearest = std::min(nearest, std::abs(phi.value));
     // Begin, extend or end a segment.
@@ -197,7 +232,7 @@ double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double
     // Move along the axis by the distance to the surface.
     s = std::max(far_end_, s - std::max(std::abs(phi.value), kCoreStep * width_));
   }
-  return 0.5 * nearest;  // between two evaluated points the surface may be half as far
+  return 0.5 * nearest;  // between two evaluated points the surface may be at half the evaluated distance
 }
 
 /// Detects a passage. Matches each segment that is inside now with a segment of the last check, from which it
@@ -309,7 +344,8 @@ void InsideObserver::on_step(const StepRecord& record) noexcept {
 
 void InsideObserver::check_tip(const StepRecord& record) noexcept {
   const Vec3& tip = record.tool.pose.position;
-  tip_phi_ = solid_->at(tip);
+  const KnownDistance last{tip_checked_, tip_phi_.value};
+  tip_phi_ = solid_->at(tip, began_ ? &last : nullptr);
   tip_checked_ = tip;
   passage_.last_depth = tip_phi_.known ? -tip_phi_.value : 0.0;
   const double width = tool_->half_width(), size = std::abs(tip_phi_.value);
@@ -333,7 +369,8 @@ void InsideObserver::march(const Vec3& point, double length, double time) noexce
   double done = std::min(free_distance_, length);
   for (;;) {
     const Vec3 here = length > 0.0 ? Vec3(from + done / length * displacement) : point;
-    const SurfaceDistance phi = solid_->at(here);
+    const SurfaceDistance phi = solid_->at(here, core_distance_ ? &*core_distance_ : nullptr);
+    core_distance_ = {here, phi.value};
     update_side(here, phi, time);
     began_ = true;
     if (done >= length || !std::isfinite(done)) {
@@ -399,7 +436,7 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
   // Search the most promising pose first.
   search(std::ranges::max_element(parts, {}, &PoseSamples::Sample::key)->pose, 0.0);
   InsideBound bound(*tool_, *solid_);
-  // Bounds the depth of the poses of a range of blocks.
+  // Bounds the depth of the tool over all poses in the blocks `first` to `end` - 1.
   const auto bounded = [&](std::size_t first, std::size_t end) {
     const ToolPose& pose = parts[(first + end) / 2].pose;
     Segment s{first, end, 0.0, 0.0};

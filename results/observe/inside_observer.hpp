@@ -81,8 +81,8 @@ class CorePassage {
 
   CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> solid);
 
-  /// Adds a step. `deepest_contact`: depth of its deepest contact [m]. `moved`: distance that the tip centre or a
-  /// point near it moved since the step before [m].
+  /// Adds a step. `deepest_contact`: depth of the deepest contact in this step [m]. `moved`: distance that the tip
+  /// centre, or a point near the tip centre, has moved since the previous step [m].
   void add(const ToolPose& pose, double deepest_contact, double moved, double time) noexcept {
     if (event_) return;
     if (deepest_contact >= check_depth_ || moved > check_displacement_) {
@@ -105,29 +105,40 @@ class CorePassage {
     std::optional<Vec3> face_low, face_high;  ///< outward normals at the ends that lie at the surface
     double deepest;                           ///< smallest signed distance phi [m], negative inside
     Vec3 deepest_position;
-    /// Normal of the face by which the segment entered, position of the entry, and the part [m] that entered there.
+    /// Normal of the face by which the segment entered, position of the entry, and the interval of the axis [m] that
+    /// entered at this position.
     Vec3 normal = Vec3::Zero(), entered = Vec3::Zero();
     double entered_low = 0.0, entered_high = 0.0;
     bool continued = false;  ///< true if a segment of the next check overlaps this segment
   };
 
+  /// A point of the axis whose distance was evaluated: its coordinate on the axis [m], and the distance.
+  struct AxisPoint {
+    double s;
+    KnownDistance distance;
+    bool known;
+  };
+  SurfaceDistance distance_at(const Vec3& point, double s) noexcept;
   void check_core(const ToolPose& pose, double deepest_contact, double time) noexcept;
   double find_segments(const Vec3& position, const Vec3& axis, double front) noexcept;
   void compare(const Vec3& position, const Vec3& axis, double time) noexcept;
   Vec3 normal_at(const Vec3& point) const noexcept;
 
   std::shared_ptr<const Solid> solid_;
-  double width_;                             ///< half width of the tool [m]
-  double far_end_;                           ///< coordinate of the core's far end on the axis [m]
-  double shallow_start_;                     ///< coordinate at which the core begins while no contact is deep [m]
+  double width_;          ///< half width of the tool [m]
+  double far_end_;        ///< coordinate on the axis of the end of the core that is farthest from the tip [m]
+  double shallow_start_;  ///< coordinate at which the core begins while no contact is deep [m]
   double check_depth_, check_displacement_;  ///< a step is checked if it has a contact of this depth [m], or if the
                                              ///< tool moves farther than this [m]
 
-  Vec3 position_ = Vec3::Zero(), axis_ = Vec3::Zero();  ///< tip centre and axis in the step before
-  bool began_ = false, continues_ = false;         ///< true if there was a step before; true if the step before was
+  Vec3 position_ = Vec3::Zero(), axis_ = Vec3::Zero();  ///< tip centre and axis in the previous step
+  bool began_ = false, continues_ = false;         ///< true if there was a previous step; true if the previous step was
                                                    ///< checked
   double free_distance_ = 0.0;                     ///< distance that the core can move without meeting the surface [m]
   std::vector<Segment> segments_, last_segments_;  ///< segments of this check and of the last check
+  /// Evaluated points of this check and of the last check, from the tip on, and the next point of the last check.
+  std::vector<AxisPoint> axis_points_, last_axis_points_;
+  std::size_t next_axis_point_ = 0;
   std::optional<Event> event_;
 };
 
@@ -177,8 +188,8 @@ class PoseSamples {
 /// each `every`-th step. Does not allocate during the run.
 class InsideObserver final : public Observer {
  public:
-  /// `metrics`: if not null, must observe before this observer; it knows which steps are in settled contact. `every`:
-  /// see the class; 0: no search during the run. `steps`: number of steps of the run.
+  /// `metrics`: if not null, must observe before this observer; it determines which steps are in settled contact.
+  /// `every`: see the class; 0: no search during the run. `steps`: number of steps of the run.
   InsideObserver(std::shared_ptr<const ToolShape> tool, std::shared_ptr<const Solid> solid,
                  const MetricsObserver* metrics = nullptr, std::uint64_t every = 0, std::uint64_t steps = 0);
 
@@ -217,7 +228,8 @@ class InsideObserver final : public Observer {
   /// outside (tip_free2_), and while it is inside (tip_free2_inside_).
   double tip_free2_ = 0.0, tip_free2_inside_ = 0.0;
   SurfaceDistance tip_phi_;
-  Vec3 core_ = Vec3::Zero();    ///< front point of the core in the step before [m]
+  std::optional<KnownDistance> core_distance_;  ///< last evaluated position of the front point
+  Vec3 core_ = Vec3::Zero();                    ///< front point of the core in the previous step [m]
   double free_distance_ = 0.0;  ///< distance that the front point can move without meeting the surface [m]
   SolidSide side_ = SolidSide::unknown;
   Vec3 outside_ = Vec3::Zero();       ///< last position of the front point outside [m]

@@ -38,15 +38,16 @@ class ReductionJumps {
   /// `settled`: the step is in settled contact.
   void add(const ContactBuffer& kept, double step_squared, bool settled) noexcept;
 
-  /// Number of steps whose set of kept points differs from the set of the step before.
+  /// Number of steps whose set of kept points differs from the set of the previous step.
   std::uint64_t changes() const noexcept { return changes_; }
-  /// Largest force step [N] among the steps in settled contact that changes() counts; nothing if there are none.
+  /// Largest force step [N] among the steps in settled contact that changes() counts; nothing if changes() counts no
+  /// such step.
   std::optional<double> step_max() const noexcept {
     return step_max_squared_ ? std::optional(std::sqrt(*step_max_squared_)) : std::nullopt;
   }
 
  private:
-  std::vector<std::uint32_t> last_;                      ///< point indices of the step before, in its order
+  std::vector<std::uint32_t> last_;                      ///< point indices of the previous step, in its order
   std::vector<std::uint32_t> sorted_last_, sorted_now_;  ///< scratch memory of `add`
   std::uint64_t changes_ = 0;
   std::optional<double> step_max_squared_;  ///< [N^2]
@@ -72,8 +73,8 @@ struct MetricsConfig {
   std::uint64_t steps = 0;  ///< number of counted steps; 0: unknown, so that the vibration of the last quarter is not
                             ///< measured
   std::optional<std::size_t> reduction_capacity = {};  ///< largest number of contacts in a step; empty: no reduction
-  std::uint64_t stride = 1;                            ///< only every `stride`-th step counts; the others are ignored
-  std::uint64_t first = 0;                             ///< first step that counts; < stride
+  std::uint64_t stride = 1;  ///< only every `stride`-th step counts; all other steps are ignored
+  std::uint64_t first = 0;   ///< first step that counts; < stride
 };
 
 /// Measures the metrics that every run has. Constant memory; about 20 ns a step, 24 ns with a reduction, for which
@@ -87,7 +88,7 @@ class MetricsObserver final : public MetricObserver {
   void begin() noexcept;
   bool wants_ratio() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
-  /// Reports all metrics except those of `report_end`.
+  /// Reports all metrics except the metrics of `report_end`.
   void report(Section& section) const override;
   /// Reports the remaining metrics, which come after the metrics of an InsideObserver in summary.json.
   void report_end(Section& section) const;
@@ -136,7 +137,8 @@ class MetricsObserver final : public MetricObserver {
   std::optional<double> friction_limit_;  ///< [N]; empty if friction cannot become unstable
   std::uint64_t rows_beyond_friction_ = 0;
   std::optional<std::uint64_t> first_beyond_friction_;  ///< number, within its trial, of the first step in which
-                                                        ///< |f_spring| exceeds friction_limit_; empty if there is none
+                                                        ///< |f_spring| exceeds friction_limit_; empty if |f_spring|
+                                                        ///< never exceeds it
   ContactForces contact_forces_;
   std::optional<ReductionJumps> reduction_;  ///< empty without a reduction
 };

@@ -8,8 +8,8 @@
 namespace hapbench {
 namespace {
 
-/// Number of empty steps timed to measure the time of a clock reading. They are so many that the first steps, with
-/// cold caches, do not affect the median.
+/// Number of empty steps timed to measure the time of a clock reading. The number is large enough that the first steps,
+/// with cold caches, do not affect the median.
 constexpr std::size_t kEmptySteps = 501;
 
 using Times = std::vector<std::uint64_t>;

@@ -23,7 +23,7 @@ class StepTimes {
   /// Starts a step. Call it before the first step and after a pause. `since`: when the step began, if earlier than
   /// now.
   void start(Clock::time_point since = Clock::now()) noexcept { last_ = since; }
-  /// Ends a step and starts the next. Precondition: fewer than `capacity` steps so far.
+  /// Ends a step and starts the next step. Precondition: fewer than `capacity` steps so far.
   void lap() noexcept;
 
   /// Time of each step in order [ns], without the time of the clock reading.
@@ -38,11 +38,11 @@ class StepTimes {
   Clock::time_point last_;
 };
 
-/// Samples the time of steps without observers: from after the last observer of one step to before the first
-/// observer of the next. This covers the integrator's part of one step, and hand, contact search, force law and
-/// device of the next. Attach it twice, before and after all other observers. Samples every step of a short run,
-/// and at most kMaxSamples evenly spread steps of a long run, which is enough for a 99th percentile. A sample
-/// takes two clock readings. Allocates only in the constructor.
+/// Samples the time of steps without observers: from after the last observer of one step to before the first observer
+/// of the next. This covers the integrator's part of one step, and hand, contact search, force law and device of the
+/// next step. Attach the sampler twice, before and after all other observers. Samples every step of a short run, and at
+/// most kMaxSamples evenly spread steps of a long run, which is enough for a 99th percentile. A sample takes two clock
+/// readings. Allocates only in the constructor.
 class StepSampler final : public Observer {
  public:
   static constexpr std::uint64_t kMaxSamples = 1 << 13;

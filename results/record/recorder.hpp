@@ -9,7 +9,7 @@
 #include "results/io/table_writer.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// The tables that a run writes step by step. All values are those before the integrator moves the tool.
+/// The tables that a run writes step by step. All values describe the state before the integrator moves the tool.
 namespace hapbench {
 
 class EnergyLedger;
@@ -44,7 +44,7 @@ std::span<const TrajectoryGroup> trajectory_groups();
 /// Makes the lines of a table from the steps of a run.
 struct RowSource {
   std::vector<Column> columns;
-  /// Writes the lines of one step, if it has any. Allocates nothing.
+  /// Writes the lines of one step; writes nothing if the step has no lines. Allocates nothing.
   std::function<void(const StepRecord& record, TableWriter& table)> write;
   /// See the functions of Observer with the same names.
   bool wants_ratio = false, wants_roll = false, wants_springs = false, wants_found = false;
@@ -94,10 +94,10 @@ struct ShapingOperations {
 };
 
 /// Returns the source of ratios.csv: how the stiffness ratios of the rendered contacts converge with the number of
-/// shaping updates (thesis 3.4, Fig. 5), whatever force law the run uses. For each recorded step with contact, one
-/// line per number m >= 0 of updates from equal weights 1. `iterations`: the numbers m in any order; duplicates are
-/// ignored. `capacity`: largest number of contacts in a step. Cost of a step: O(n) for each update, up to the
-/// largest m.
+/// shaping updates (thesis 3.4, Fig. 5), whatever force law the run uses. The table has, for each recorded step with
+/// contact, one line for each number m >= 0 of updates. The first update starts from equal weights of 1. `iterations`:
+/// the numbers m in any order; duplicates are ignored. `capacity`: largest number of contacts in a step. Cost of a
+/// step: O(n) for each update, up to the largest m.
 RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std::size_t capacity);
 
 /// Returns the source of energy.csv: the energy balance, one line per recorded step. Precondition: the recorder
@@ -115,7 +115,8 @@ RowSource force_reference_rows(const ForceFidelityObserver& observer);
 /// comparison of the recorded step. Precondition: the recorder observes after the observer that writes `row`.
 RowSource six_dof_rows(const SixDofRow& row);
 
-/// Writes targets.csv: the result of every target of every subject's trials, in this order. Throws IoError.
+/// Writes targets.csv: one line for each target in `rows`, in the same order. `rows` are the results of all subjects
+/// and trials. Throws IoError.
 void write_target_table(const TableTarget& target, const std::vector<TargetRow>& rows, FileSet* together = nullptr);
 
 /// Documentation of the tables above, with all columns.

@@ -7,6 +7,10 @@
 namespace hapbench {
 namespace {
 
+constexpr const char* kLeftForGood =
+    "in the first step in which a freely moving tool is that far away and moves on, if the hand is none or pushes with a "
+    "constant force that does not point back; any other hand may bring the tool back";
+
 constexpr OutcomeInfo kOutcomes[] = {
     {"completes", "all steps were computed, or the hand finished its task"},
     {"leaves_hole", "stop condition: the tip centre rose above height 0"},
@@ -22,12 +26,12 @@ constexpr OutcomeInfo kOutcomes[] = {
      "hand of type drag ended behind the path's end by more than a tenth of the path and more than its half width "
      "(unless it was already half as far behind at half of the path, as friction causes)",
      true},
-    {"no_contact", "all steps were computed, and the tool never touched the environment", true},
+    {"no_contact", "all steps were computed, and the tool never touched the environment", true, kLeftForGood},
     {"lost_contact",
      "all steps were computed, but at the end a freely moving tool was further from the environment's bounding box "
      "than the sum of the box's width and the tool's extent. Or: a hand of type drag pressed its tool into empty "
      "space, past an edge or a hole, without contact for at least the last 0.05 s",
-     true},
+     true, kLeftForGood},
     {"went_through",
      "all steps were computed, but the tool passed through the surface (freely moving or scripted). One of these "
      "holds: the tip centre was deeper than the tool's half width; the core (the axis from the tip centre to the far "
@@ -35,10 +39,12 @@ constexpr OutcomeInfo kOutcomes[] = {
      "crossed the environment from face to face, or left it on a different side than it had entered, also where the "
      "environment is thinner than the tool; the point half a width behind the tip ended inside; another part of the "
      "tool, such as its shank, was deeper than its half width",
-     true},
+     true,
+     "in the first step in which the tip centre is deeper than the half width, or the core has crossed the environment "
+     "or left it on another side"},
     {"diverges",
      "a value became infinite or not a number, or left its bound (position, speed or force; hapbench describe bounds)",
-     true}};
+     true, "in the first such step"}};
 static_assert(static_cast<std::size_t>(Outcome::diverges) == std::size(kOutcomes) - 1);
 
 }  // namespace

@@ -23,7 +23,7 @@ enum class Outcome {
   diverges          ///< a value was not finite or exceeded its bound
 };
 
-/// Returns the outcome that follows from the reason why stepping ended, without a look at the recorded rows.
+/// Returns the outcome that follows from the reason why stepping ended, without reading the recorded rows.
 Outcome outcome_of(Ending ending) noexcept;
 
 /// Name and description of an outcome.
@@ -31,12 +31,14 @@ struct OutcomeInfo {
   std::string_view name;    ///< name in files, such as "completes"
   const char* meaning;      ///< one sentence without a full stop
   bool is_failure = false;  ///< true if the metrics of such a run do not characterise the algorithm
+  /// Condition under which compare and sweep end a run with this outcome before its last step; null if they never do.
+  const char* ends_early = nullptr;
 };
 
 /// Returns all outcomes, in the order of the enumeration.
 std::span<const OutcomeInfo> outcome_infos() noexcept;
 std::string_view outcome_name(Outcome outcome) noexcept;
-/// Returns the outcome with this name; nothing if there is none.
+/// Returns the outcome with this name; nothing if no outcome has this name.
 std::optional<Outcome> outcome_named(std::string_view name) noexcept;
 
 }  // namespace hapbench

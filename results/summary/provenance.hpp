@@ -27,7 +27,8 @@ struct Provenance {
 
 /// Returns the provenance of the running program. Reads /proc/cpuinfo.
 Provenance provenance();
-/// Returns the CPU's model name from a text in the format of /proc/cpuinfo; "unknown" if there is none.
+/// Returns the CPU's model name from a text in the format of /proc/cpuinfo; "unknown" if the text contains no model
+/// name.
 std::string cpu_model(std::istream& cpuinfo);
 
 }  // namespace hapbench

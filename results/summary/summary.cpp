@@ -15,7 +15,8 @@ ordered_json number_or_null(std::optional<double> value) {
 }
 
 double seconds(std::uint64_t nanoseconds) {
-  return static_cast<double>(nanoseconds) / 1e9;  // the double nearest to the decimal, unlike multiplication by 1e-9
+  return static_cast<double>(nanoseconds) / 1e9;  // division returns the double nearest to the exact quotient;
+                                                  // multiplication by 1e-9 does not
 }
 
 ordered_json divergence_json(const RunEnd& result) {
@@ -112,6 +113,7 @@ ordered_json summary_json(const Result& run) {
                        {"expected", run.expected},
                        {"steps", run.end.rows},
                        {"duration_s", number_or_null(run.duration)},
+                       {"ended_at_s", number_or_null(run.end.ended_at)},
                        {"divergence", divergence_json(run.end)},
                        {"warnings", warnings}};
   if (run.diagnosis) {

@@ -67,6 +67,9 @@ struct RunEnd {
   Outcome outcome = Outcome::completes;
   std::uint64_t rows = 0;  ///< number of observed steps
   Divergence divergence;   ///< valid if the outcome is `diverges`
+  /// Time at which a run of a batch failed for good [s] (FinalFailure in scenarios/run/outcome.hpp). No metric of such
+  /// a run has a value. Empty if all steps were observed.
+  std::optional<double> ended_at = {};
 };
 
 /// The result of a run, or of all trials of a tracking hand.

@@ -30,14 +30,35 @@ double linear_value(double a, double b, double i, double last) {
   return std::clamp((a * (last - i) + b * i) / last, std::min(a, b), std::max(a, b));
 }
 
+/// Returns the forms of a range.
+std::string range_forms(bool sampled) {
+  if (sampled) return "a:b, or a:b:log for equal ratios; --sample gives the number of points";
+  return fmt::format("a:b:n, or a:b:n:log for equal ratios, with an integer n of 2 ... {} values", kMaxRuns);
+}
+
+/// Throws InputError about the part of a range that gives the number of values or the scale. Suggests the range that
+/// was probably meant if these parts hold a number and "log", such as "5log" or "log:5".
+[[noreturn]] void refuse_range(const Words& parts, const std::string& problem, bool sampled) {
+  std::string count;
+  for (std::size_t i = 2; i < parts.size(); ++i) count += parts[i];
+  const std::size_t log = count.find("log");
+  const bool has_log = log != std::string::npos;
+  if (has_log) count.erase(log, 3);
+  const std::uint64_t n = whole_number(count).value_or(0);
+  const bool is_count = n >= 2 && n <= kMaxRuns;
+  std::string hint;
+  if (parts.size() >= 2 && (sampled ? count.empty() || is_count : is_count))
+    hint = fmt::format("; nearest valid form: \"{}:{}{}{}\"", parts[0], parts[1], sampled ? "" : ":" + count,
+                       has_log ? ":log" : "");
+  throw InputError(fmt::format("{}{}; allowed: {}", problem, hint, range_forms(sampled)));
+}
+
 /// Parses "a:b" for a sample or "a:b:n" for a grid, optionally followed by ":log".
 void read_range(std::string_view text, bool sampled, Axis& axis) {
   const Words parts = parts_of(text, ':');
   const std::size_t min_parts = sampled ? 2 : 3;
-  if (parts.size() != min_parts && parts.size() != min_parts + 1) {
-    refuse_axis(fmt::format("got {} parts between colons", parts.size()),
-                sampled ? "a:b or a:b:log" : "a:b:n or a:b:n:log; a:b and a:b:log with --sample");
-  }
+  if (parts.size() != min_parts && parts.size() != min_parts + 1)
+    refuse_range(parts, fmt::format("got {} parts between colons", parts.size()), sampled);
   // Parse the ends and the scale.
   const auto end = [](std::string_view number_text) {
     const auto number = finite_number(number_text);
@@ -46,8 +67,7 @@ void read_range(std::string_view text, bool sampled, Axis& axis) {
   };
   axis.range = {end(parts[0]), end(parts[1]), parts.size() > min_parts};
   if (axis.range->logarithmic && parts.back() != "log")
-    refuse_axis(fmt::format("got \"{}\"", parts.back()),
-                sampled ? "\"log\" or nothing, as --sample says how many" : "\"log\" or nothing");
+    refuse_range(parts, fmt::format("got \"{}\" for \"log\"", parts.back()), sampled);
   const auto [from, to, logarithmic] = *axis.range;
   if (logarithmic && !(from > 0.0 && to > 0.0))
     refuse_axis(fmt::format("got ends {} and {} of a logarithmic range", from, to), "numbers > 0");
@@ -55,7 +75,7 @@ void read_range(std::string_view text, bool sampled, Axis& axis) {
   // Parse the number of values of a grid.
   axis.steps = whole_number(parts[2]).value_or(0);
   if (axis.steps < 2 || axis.steps > kMaxRuns)
-    refuse_axis(fmt::format("got \"{}\" values", parts[2]), fmt::format("an integer 2 ... {}", kMaxRuns));
+    refuse_range(parts, fmt::format("got \"{}\" for the number of values n", parts[2]), sampled);
 }
 
 bool begins_json(std::string_view text) {
@@ -85,8 +105,8 @@ Axis read_axis(const std::string& text, bool sampled) {
   constexpr const char* kPathCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.$";
   if (equals == std::string::npos || axis.path.empty() ||
       axis.path.find_first_not_of(kPathCharacters) != std::string::npos) {
-    refuse_axis("has no path", sampled ? "path=a:b, path=a:b:log or path=v,w, as in time.step_s=0.0001:0.001"
-                                       : "path=a:b:n, path=a:b:n:log or path=v,w, as in time.step_s=0.0001:0.001:10");
+    refuse_axis("has no path", sampled ? "path=a:b, path=a:b:log or path=v,w, such as time.step_s=0.0001:0.001"
+                                       : "path=a:b:n, path=a:b:n:log or path=v,w, such as time.step_s=0.0001:0.001:10");
   }
   // The values are a range or a list.
   const std::string_view values = std::string_view(text).substr(equals + 1);
@@ -127,16 +147,17 @@ std::string axis_value(std::string_view text) {
   return begins_json(text) ? parse_json(std::string(text)).dump() : std::string(text);
 }
 
-Axis parse_axis(const std::string& text, bool sampled) {
+Axis parse_axis(const std::string& text, bool sampled, const std::string& option) {
   Axis axis;
   try {
     axis = read_axis(text, sampled);
   } catch (const InputError& error) {
     constexpr std::size_t kMaxShownLength = 200;
     const std::string shown = text.size() > kMaxShownLength ? text.substr(0, kMaxShownLength) + "..." : text;
-    fail_in({.about_options = {"--vary"}}, fmt::format("--vary \"{}\": {}", shown, error.problem()));
+    fail_in({.about_options = {option}}, fmt::format("{} \"{}\": {}", option, shown, error.problem()));
   }
-  // The schema of the field tells whether its values are integers, and which names "all" stands for.
+  axis.option = option;
+  // The schema of the field states whether its values are integers, and which names "all" stands for.
   const std::vector<ScenarioField> fields = scenario_fields();
   const auto field = std::ranges::find(fields, axis.path, &ScenarioField::path);
   if (field == fields.end()) return axis;

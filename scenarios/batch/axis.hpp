@@ -40,6 +40,7 @@ struct Axis {
     std::int64_t stride = 1;
   };
   std::vector<Along> along = {};  ///< one entry for each listed value; empty: no further changes
+  std::string option = "--vary";  ///< option that gave the axis, for messages
 
   /// Returns the number of values; 0 for a range of a sample.
   std::size_t size() const { return range ? steps : values.size(); }
@@ -53,7 +54,7 @@ struct Axis {
   std::string value_at(double coordinate) const;
 };
 
-/// Parses the argument of --vary:
+/// Parses the argument of --vary, or of the option that messages name:
 /// - "path=a:b:n": n numbers from a to b in equal steps, including both ends;
 /// - "path=a:b:n:log": n numbers in equal ratios;
 /// - "path=v,w,…": listed numbers, names, JSON objects or lists;
@@ -61,7 +62,7 @@ struct Axis {
 /// With `sampled`, "path=a:b" and "path=a:b:log" replace the first two forms. A range of an integer field gives
 /// integers, except for entries of lists. Throws InputError. Does not check whether the scenario has the field
 /// or accepts the values.
-Axis parse_axis(const std::string& text, bool sampled = false);
+Axis parse_axis(const std::string& text, bool sampled = false, const std::string& option = "--vary");
 
 /// Path of the special axis whose values are names of scenes.
 inline constexpr const char* kSceneAxis = "scenario";

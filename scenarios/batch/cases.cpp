@@ -24,7 +24,7 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, st
   std::set<std::string> paths;
   for (const Axis& axis : axes_)
     if (!paths.insert(axis.path).second)
-      fail_in_option("--vary", fmt::format("got \"{}\" twice; allowed: each field once", axis.path));
+      fail_in_option(axis.option, fmt::format("got \"{}\" twice; allowed: each field once", axis.path));
   // Draw the sample, or count the combinations of the grid.
   strides_.resize(axes_.size());
   if (sampling_) {

@@ -33,12 +33,20 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
     throw InputError(fmt::format("{}: /seed: got {}; allowed: at most {} with {} seeds", loaded.file.string(),
                                  scenario.seed, max_seed, question.seeds));
   }
-  if (question.jitter != 0.0 && !position_is_free(scenario.motion)) {
+  if (question.jitter == 0.0) return;
+  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     fail_in(
         {.about_options = {"--jitter"}},
-        fmt::format(
-            "{}: /motion/position: prescribes the tool's place, which --jitter cannot shift; allowed with it: \"free\"",
-            loaded.file.string()));
+        fmt::format("{}: /motion/position/type: got \"file\", a recorded path, which --jitter cannot shift; allowed "
+                    "with it: \"free\" or \"prescribed\"",
+                    loaded.file.string()));
+  }
+  if (scenario.reference_force && std::holds_alternative<GivenForceFields>(*scenario.reference_force)) {
+    fail_in(
+        {.about_options = {"--jitter"}},
+        fmt::format("{}: /reference_force: gives the forces of the path as it is, and --jitter would shift the path; "
+                    "allowed with it: a reference_force of type \"rigid_contact\"",
+                    loaded.file.string()));
   }
 }
 
@@ -98,7 +106,7 @@ std::vector<fs::path> Comparison::run_folders(const fs::path& out) const {
 
 Comparison planned(const ComparisonQuestion& question) {
   const auto names = names_of_scenarios(question.scenarios);
-  Comparison comparison{{}, names, question.algorithms, question.seeds};
+  Comparison comparison{{}, names, question.algorithms, question.seeds, {}, question.length};
   const std::size_t scenes = question.scenarios.size(), size = scenes * comparison.each();
   if (size > kMaxRuns) {
     throw InputError(fmt::format("got {} scenarios x {} algorithms x {} seeds = {} runs; allowed: at most {}", scenes,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenarios/batch/cases.hpp"
+#include "scenarios/run/outcome.hpp"
 
 /// Comparisons: several scenes, each run with the same force laws and the same number of seeds.
 namespace hapbench {
@@ -18,6 +19,7 @@ struct ComparisonQuestion {
   std::vector<std::string> overrides = {};  ///< overrides for all runs, as in --set
   std::uint64_t seeds = 1;                  ///< number of repetitions; repetition k has the scenario's seed + k
   double jitter = 0.0;                      ///< length of a random displacement of the starting position [m]
+  RunLength length = RunLength::until_failure;
 };
 
 /// A comparison whose scenarios were checked before the first run. Runs are numbered by scene, then by
@@ -29,6 +31,7 @@ struct Comparison {
   std::vector<std::string> algorithms;
   std::size_t seeds = 1;
   std::vector<std::string> warnings = {};  ///< warnings about the scenes, without duplicates
+  RunLength length = RunLength::until_failure;
 
   /// Number of runs of each scene.
   std::size_t each() const { return algorithms.size() * seeds; }

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the number n of shards in a folder's tables ("sweep.I_of_n.csv"); 0 if there are none. Throws
+/// Returns the number n of shards in a folder's tables ("sweep.I_of_n.csv"); 0 if there are no such tables. Throws
 /// InputError if tables have different n.
 std::size_t shards_in(const fs::path& folder) {
   std::size_t count = 0;

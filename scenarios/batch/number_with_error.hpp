@@ -13,6 +13,8 @@ inline constexpr double kRankResolution = 1e-3;
 struct NumberWithError {
   std::optional<double> value = {}, error = {};
 };
+/// Returns true if the error is above 0 and not smaller than the number, so that only a bound of the number is known.
+bool is_only_bounded(const NumberWithError& number);
 /// Returns true if `a` is smaller than `b` by more than the sum of both errors, and by more than kRankResolution
 /// times the larger magnitude. Precondition: both have a value and an error.
 bool is_less(const NumberWithError& a, const NumberWithError& b);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/run/expectations.hpp"
@@ -70,13 +71,31 @@ bool is_better(const RankingEntry& a, const RankingEntry& b) {
 /// Returns RankingEntry::rank of algorithm a in scenario s for metric m. Precondition: the entries of all
 /// algorithms exist.
 std::optional<std::uint64_t> rank_of(const Ranking& ranking, std::size_t s, std::size_t a, std::size_t m) {
+  if (ranking.shares_reference(s, a, m)) return std::nullopt;
   std::uint64_t rank = 1;
   bool has_mean = false;
   for (std::size_t other = 0; other < ranking.algorithms.size(); ++other) {
+    if (ranking.shares_reference(s, other, m)) continue;
     if (is_better(ranking.at(s, other, m), ranking.at(s, a, m))) ++rank;
     has_mean |= ranking.at(s, other, m).mean.has_value();
   }
   return has_mean && ranking.better[m] != Better::none ? std::optional(rank) : std::nullopt;
+}
+
+/// Removes the ranks in scenario s for metric m that the errors do not allow: the rank of an algorithm whose mean is
+/// only bounded, and all ranks if they are equal.
+void remove_unfounded_ranks(Ranking& ranking, std::size_t s, std::size_t m) {
+  std::set<std::uint64_t> ranks;
+  const std::size_t first = s * ranking.algorithms.size();
+  const auto entry = [&](std::size_t a) -> RankingEntry& {
+    return ranking.standings[(first + a) * ranking.metrics.size() + m];
+  };
+  for (std::size_t a = 0; a < ranking.algorithms.size(); ++a) {
+    RankingEntry& own = entry(a);
+    if (own.failed == 0 && is_only_bounded({own.mean, own.tolerance})) own.rank.reset();
+    if (own.rank) ranks.insert(*own.rank);
+  }
+  for (std::size_t a = 0; a < ranking.algorithms.size() && ranks.size() < 2; ++a) entry(a).rank.reset();
 }
 
 /// Returns the result of algorithm a over all scenarios and metrics.
@@ -99,14 +118,23 @@ std::size_t Ranking::failures(std::size_t scenario, std::size_t algorithm) const
   return static_cast<std::size_t>(std::count(first, first + static_cast<std::ptrdiff_t>(seeds), true));
 }
 
+bool Ranking::shares_reference(std::size_t scenario, std::size_t algorithm, std::size_t metric) const {
+  return !is_rigid_reference.empty() && is_rigid_reference[scenario] && algorithms[algorithm] == kSharesReference &&
+         metrics[metric].starts_with("fidelity.");
+}
+
+bool Ranking::seeds_matter(std::size_t scenario) const {
+  for (std::size_t a = 0; a < algorithms.size(); ++a) {
+    const auto same = runs.subspan(first_run(scenario, a), seeds);
+    if (std::ranges::any_of(same, [&](const Result& run) { return run.state_hash != same.front().state_hash; }))
+      return true;
+  }
+  return false;
+}
+
 void Ranking::rank() {
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
-    // Find out whether the seed changes any run.
-    bool matter = false;
-    for (std::size_t a = 0; a < algorithms.size(); ++a)
-      for (const Result& run : runs.subspan(first_run(s, a), seeds))
-        matter |= run.state_hash != runs[first_run(s, a)].state_hash;
-    depends_on_seed.push_back(matter);
+    depends_on_seed.push_back(seeds_matter(s));
     // Choose the seeds over which means are computed.
     common.push_back(seeds_without_failure(*this, s, seeds - 1));
     if (common.back().empty()) common.back() = seeds_without_failure(*this, s, 0);
@@ -117,6 +145,7 @@ void Ranking::rank() {
     for (std::size_t a = 0; a < algorithms.size(); ++a)
       for (std::size_t m = 0; m < metrics.size(); ++m)
         standings[first + a * metrics.size() + m].rank = rank_of(*this, s, a, m);
+    for (std::size_t m = 0; m < metrics.size(); ++m) remove_unfounded_ranks(*this, s, m);
   }
   // Rank the algorithms over all scenarios.
   for (std::size_t a = 0; a < algorithms.size(); ++a) laws.push_back(law_ranking_entry(*this, a));
@@ -144,6 +173,10 @@ Ranking rank_comparison(const Comparison& comparison, std::span<const Result> re
   for (const std::string& name : ranking.metrics) {
     const Metric* metric = find_metric(all_metrics(), name);
     ranking.better.push_back(metric == nullptr ? Better::none : metric->better);
+  }
+  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
+    const auto& reference = comparison.load(s * comparison.each()).scenario.reference_force;
+    ranking.is_rigid_reference.push_back(reference && std::holds_alternative<RigidContactFields>(*reference));
   }
   // Find the runs that failed.
   for (const Result& summary : reports) {

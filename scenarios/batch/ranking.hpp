@@ -15,6 +15,9 @@
 /// Ranks the force laws of a comparison by their metrics, in each scene and over all scenes.
 namespace hapbench {
 
+/// The algorithm whose constraints are the constraints of rigid contact.
+inline constexpr std::string_view kSharesReference = "proxy";
+
 /// Result of one algorithm in one scenario for one metric, over the scenario's common seeds (Ranking::common).
 struct RankingEntry {
   std::string scenario, algorithm, metric;
@@ -29,7 +32,8 @@ struct RankingEntry {
   /// 1 + the number of better algorithms. Algorithms without failures come first, in the order of their means
   /// (is_less()). Algorithms without failures and without a mean come after them: for example, a tool that is thrown
   /// out at once has no settled force. Algorithms with failures follow, in the order of their number of failed seeds.
-  /// Empty if no algorithm has the metric, or if neither smaller nor larger values are better.
+  /// Empty if no algorithm has the metric, if neither smaller nor larger values are better, if only a bound of the mean
+  /// is known (is_only_bounded()), or if all algorithms would have the same rank.
   std::optional<std::uint64_t> rank = {};
   std::uint64_t common_seeds = 1;
   Better better = Better::less;
@@ -51,6 +55,9 @@ struct Ranking {
   std::size_t seeds = 1;
   std::span<const Result> runs;  ///< ordered by scenario, then algorithm, then seed; must outlive this object
   std::vector<bool> failed;      ///< for each run: true if it failed, so that its metrics do not count
+  /// For each scenario: true if the reference force is the force of rigid contact. The algorithm kSharesReference
+  /// renders by the same constraints, so that its fidelity metrics get no rank.
+  std::vector<bool> is_rigid_reference = {};
 
   std::vector<bool> depends_on_seed = {};  ///< for each scenario: true if runs with different seeds differ
   /// For each scenario, the seeds over which means are computed. These are the seeds for which all algorithms
@@ -70,6 +77,10 @@ struct Ranking {
   const RankingEntry& at(std::size_t scenario, std::size_t algorithm, std::size_t metric) const {
     return standings[(scenario * algorithms.size() + algorithm) * metrics.size() + metric];
   }
+  /// Returns true if the seed changes any run of a scenario.
+  bool seeds_matter(std::size_t scenario) const;
+  /// Returns true if a metric compares an algorithm with a reference force by the algorithm's own constraints.
+  bool shares_reference(std::size_t scenario, std::size_t algorithm, std::size_t metric) const;
   /// Returns the number of seeds for which an algorithm failed in a scenario.
   std::size_t failures(std::size_t scenario, std::size_t algorithm) const;
 };

@@ -28,7 +28,7 @@ RowCondition parse_row_condition(const std::string& text, const std::vector<std:
     fail_in_option(
         "--where",
         fmt::format("got \"{}\"; allowed: a column of sweep.csv, one of < <= > >= = !=, and a number (a text with "
-                    "= and !=), as inside_max_m<3e-4 or outcome=completes",
+                    "= and !=), such as inside_max_m<3e-4 or outcome=completes",
                     text));
   }
   require_valid_option("--where", name, columns, "hapbench describe sweep.csv");

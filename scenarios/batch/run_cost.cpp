@@ -18,7 +18,7 @@ constexpr double kMaxTimes = 1000.0;
 struct Measured {
   std::unique_ptr<BareRun> run;
   std::uint64_t times = 1;           ///< runs of one measurement
-  std::vector<double> seconds = {};  ///< of one run, by round
+  std::vector<double> seconds = {};  ///< time of one run [s], for each round
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ struct Sampling {
   std::uint64_t seed = 1;                         ///< seed of the random points
   std::vector<std::vector<double>> of_file = {};  ///< coordinates of points from a file, by axis, then by point
   std::filesystem::path file = {};                ///< the file of --points
-  std::vector<std::size_t> lines = {};            ///< its line of each point, from 1
+  std::vector<std::size_t> lines = {};            ///< line of each point in this file, from 1
 };
 
 /// Parses "lhs:N" or "random:N" with 1 <= N <= kMaxRuns. Throws InputError.
@@ -37,10 +37,10 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed);
 /// numbers, so that an additional axis does not change the others.
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis);
 
-/// Reads the table of --points. Its header contains paths of fields, and each further row the values of one
-/// point. Appends an axis for each field, which lists each value once. Commas, semicolons, tabs or white space separate
-/// cells; lines that begin with '#' or '%' are comments, or the header if the first other line has no paths. Throws
-/// InputError with the number of the line.
+/// Reads the table of --points. Its header contains paths of fields, and each further row the values of one point.
+/// Appends an axis for each field, which lists each value once. Commas, semicolons, tabs or white space separate cells;
+/// lines that begin with '#' or '%' are comments; such a line is the header if the first other line has no paths.
+/// Throws InputError with the number of the line.
 Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes);
 
 }  // namespace hapbench

@@ -34,8 +34,13 @@ Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter) {
   for (std::size_t k = 0; k < seeds; ++k, ++repetition.seed) {
     axis.values.push_back(std::to_string(repetition.seed));
     if (jitter == 0.0) continue;
-    const Vec3 start = repetition.initial.position + start_shift(repetition, jitter);
-    axis.along.push_back({{fmt::format("initial.position_m=[{},{},{}]", start.x(), start.y(), start.z())}});
+    const Vec3 shift = start_shift(repetition, jitter);
+    // A prescribed path is shifted as a whole.
+    const auto* path = std::get_if<PrescribedPosition>(&repetition.motion.position);
+    const Vec3 place = shift + (path != nullptr ? path->shift.value_or(Vec3::Zero()) : repetition.initial.position);
+    axis.along.push_back(
+        {{fmt::format("{}=[{},{},{}]", path != nullptr ? "motion.position.shift_m" : "initial.position_m", place.x(),
+                      place.y(), place.z())}});
   }
   return axis;
 }

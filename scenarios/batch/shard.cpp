@@ -12,7 +12,8 @@ Shard parse_shard(const std::string& text) {
   const Words parts = parts_of(text, '/');
   const auto index = whole_number(parts[0]), count = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
   if (!index || !count || *index >= *count || *count > kMaxRuns) {
-    fail_in_option("--shard", fmt::format("got \"{}\"; allowed: i/n with 0 <= i < n <= {}, as in 0/4", text, kMaxRuns));
+    fail_in_option("--shard",
+                   fmt::format("got \"{}\"; allowed: i/n with 0 <= i < n <= {}, such as 0/4", text, kMaxRuns));
   }
   return {*index, *count};
 }

@@ -26,7 +26,7 @@ std::string line_of(const SweepPlan& plan, std::size_t run, const std::vector<st
 std::vector<std::string> sweep_columns(const SweepPlan& plan) {
   std::vector<std::string> columns = {"index"};
   for (const Axis& axis : plan.cases.axes()) columns.push_back(axis.path);
-  columns.insert(columns.end(), {"outcome", "expected", "steps"});
+  columns.insert(columns.end(), {"outcome", "expected", "steps", std::string(kEndedAt)});
   columns.insert(columns.end(), plan.metrics.begin(), plan.metrics.end());
   for (const std::string& metric : plan.bounded) columns.push_back(std::string(kToleranceOf) + metric);
   columns.emplace_back("state_hash");
@@ -41,7 +41,7 @@ std::string error_row(const SweepPlan& plan, std::size_t run) {
 
 std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& summary) {
   std::vector<std::string> cells = {std::string(outcome_name(summary.end.outcome)), summary.expected ? "true" : "false",
-                                    std::to_string(summary.end.rows)};
+                                    std::to_string(summary.end.rows), cell_text(cell_of(summary.end.ended_at))};
   const MetricList& metrics = summary.metrics;
   for (const Metric& metric : metrics) {
     if (std::ranges::find(plan.metrics, metric.name) != plan.metrics.end()) continue;

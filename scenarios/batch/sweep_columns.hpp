@@ -14,7 +14,14 @@ namespace hapbench {
 /// Prefix of the heading of a metric's tolerance, as in summary.json.
 inline constexpr std::string_view kToleranceOf = "tolerances.";
 
-/// Returns the names of the columns: index, varied fields, outcome, expected, steps, metrics, tolerances, state_hash.
+/// Heading and meaning of the column of RunEnd::ended_at.
+inline constexpr std::string_view kEndedAt = "ended_at_s";
+inline constexpr const char* kEndedAtMeaning =
+    "time at which the run failed for good and ended; its metrics are then empty (hapbench describe \"early end\"); "
+    "empty for all other runs";
+
+/// Returns the names of the columns: index, varied fields, outcome, expected, steps, ended_at_s, metrics, tolerances,
+/// state_hash.
 std::vector<std::string> sweep_columns(const SweepPlan& plan);
 
 /// Returns the row of a run that ended with an exception, without a newline. The cells after "expected" are

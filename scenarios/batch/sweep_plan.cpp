@@ -17,6 +17,7 @@
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/overrides.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "sim/core/hash.hpp"
 
@@ -117,6 +118,7 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
   if (from_file) content["sample"]["hash"] = hash_of_points(plan.cases);
   if (sampling && !from_file) content["sample"]["seed"] = sampling->seed;
   content["files"] = files;
+  if (plan.length == RunLength::until_failure) content["runs_end"] = "when they fail for good";
   if (!plugins.empty()) content["plugins"] = plugins;
   content["program"] = {{"hapbench_version", program.version},
                         {"commit", program.commit},
@@ -127,6 +129,16 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 }
 
 }  // namespace
+
+bool states_expectations(const Cases& cases, std::size_t run) {
+  const std::vector<std::string> overrides = cases.overrides(run);
+  const auto sets_expect = [](const std::string& override) {
+    const std::string_view path = overridden_path(override);
+    return path.substr(0, path.find('.')) == "expect";
+  };
+  if (std::ranges::any_of(overrides, sets_expect)) return true;
+  return std::ranges::all_of(overrides, keeps_run_unchanged) && cases.scene(run).json.contains("expect");
+}
 
 std::vector<std::size_t> runs_to_check(const Cases& cases) {
   // Check all runs of a small batch, and the first runs of a sample.
@@ -150,8 +162,8 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
   return {runs.begin(), runs.end()};
 }
 
-SweepPlan plan_sweep(Cases cases, const JobOptions& jobs) {
-  SweepPlan plan{std::move(cases)};
+SweepPlan plan_sweep(Cases cases, const JobOptions& jobs, RunLength length) {
+  SweepPlan plan{std::move(cases), length};
   // Load the scenarios of the runs to check.
   const std::vector<std::size_t> runs = runs_to_check(plan.cases);
   std::vector<CheckedRun> checked_runs(runs.size());

@@ -6,6 +6,7 @@
 
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/batch/jobs.hpp"
+#include "scenarios/run/outcome.hpp"
 
 /// Checks a sweep before its first run: its scenarios, the files that they name, and its columns.
 namespace hapbench {
@@ -13,6 +14,7 @@ namespace hapbench {
 /// Cases to run, checked before the first run.
 struct SweepPlan {
   Cases cases;
+  RunLength length = RunLength::full;      ///< of all runs
   std::vector<std::string> warnings = {};  ///< warnings of the checked runs, without duplicates
   std::vector<std::string> metrics = {};   ///< metrics that at least one checked run has
   std::vector<std::string> bounded = {};   ///< metrics that have an error bound (tolerance)
@@ -25,15 +27,20 @@ struct SweepPlan {
 /// Maximum number of runs of a sample, and of values of a field of a grid, that are checked before the first run.
 inline constexpr std::size_t kMaxChecked = 1000;
 
-/// Returns the runs to check before the first run, in increasing order. If there are at most kMaxChecked runs,
-/// these are all runs. Of a larger sample, they are the first kMaxChecked. Of a larger grid, they are the runs
-/// on the lines through the first and the last run along which a single field varies; each line contributes at
-/// most kMaxChecked runs, including both ends.
+/// Returns the runs to check before the first run, in increasing order. If there are at most kMaxChecked runs, these
+/// are all runs. Of a larger sample, they are the first kMaxChecked runs. Of a larger grid, they are the runs on the
+/// lines through the first and the last run along which a single field varies; each line contributes at most
+/// kMaxChecked runs, including both ends.
 std::vector<std::size_t> runs_to_check(const Cases& cases);
 
 /// Loads the scenarios of the runs to check and reads the files that they name, so that errors are found before
 /// anything is run or written. Cost: about 0.1 ms a run, divided by the number of threads. Throws the
 /// InputError of the run with the lowest number, and Stopped.
-SweepPlan plan_sweep(Cases cases, const JobOptions& jobs);
+SweepPlan plan_sweep(Cases cases, const JobOptions& jobs, RunLength length = RunLength::full);
+
+/// Returns true if the field "expect" makes demands on a run of a batch: the scenario has the field and no override
+/// changes the run, or an override sets the field. The overrides of all other runs make their outcome a result of the
+/// batch (load_scenario()).
+bool states_expectations(const Cases& cases, std::size_t run);
 
 }  // namespace hapbench

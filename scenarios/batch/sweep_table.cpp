@@ -54,11 +54,13 @@ void SweepCounts::add(std::size_t run, const std::string& outcome, bool is_expec
   count.expected += is_expected;
   failed += is_failure;
   if (is_failure || is_expected) return;
-  if (unexpected++ == 0) first_unexpected = run;
+  unexpected.push_back(run);
 }
 
 std::vector<std::string> SweepTable::metrics() const {
-  const auto first = columns.begin() + static_cast<std::ptrdiff_t>(place("steps")) + 1;
+  // Tables of earlier versions have no column kEndedAt.
+  auto first = columns.begin() + static_cast<std::ptrdiff_t>(place("steps")) + 1;
+  first += *first == kEndedAt;
   return {first,
           std::find_if(first, columns.end() - 1, [](const auto& name) { return name.starts_with(kToleranceOf); })};
 }

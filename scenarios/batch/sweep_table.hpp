@@ -27,15 +27,15 @@ struct SweepCounts {
   };
   std::map<std::string, Count> outcomes;
   std::size_t runs = 0;
-  std::size_t failed = 0;      ///< runs that ended with an exception
-  std::size_t unexpected = 0;  ///< runs whose outcome their scenario does not expect; failed runs are not included
-  /// Number of the first unexpected run; empty if there is none.
-  std::optional<std::size_t> first_unexpected;
+  std::size_t failed = 0;  ///< runs that ended with an exception
+  /// Numbers of the runs whose outcome their scenario does not expect, in the order of the table; failed runs are not
+  /// included.
+  std::vector<std::size_t> unexpected;
 
   void add(std::size_t run, const std::string& outcome, bool is_expected);
 };
 
-/// The table of a sweep. Columns: number of the run, varied fields, outcome, expected, steps, all metrics,
+/// The table of a sweep. Columns: number of the run, varied fields, outcome, expected, steps, ended_at_s, all metrics,
 /// tolerances of metrics with an error bound, state_hash.
 struct SweepTable {
   static constexpr std::size_t kMaxRows = 10'000;  ///< maximum number of rows that are kept in memory

@@ -45,8 +45,8 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
   // Start a new .part file, or append to it.
   const bool is_new = !keep || !fs::exists(part_, error) || fs::file_size(part_, error) == 0;
   if (is_new) {
-    // Remove the old rows before the description is replaced: if the process is killed between the two, old rows must
-    // not remain next to a new description.
+    // Remove the old rows before the description is replaced: if the process is killed between these two operations,
+    // old rows must not remain next to a new description.
     fs::remove(part_, error);
     write_file_atomically(about_part_, json_text(title_.about));
   }

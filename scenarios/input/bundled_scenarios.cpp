@@ -33,10 +33,10 @@ std::vector<BundledScenario> bundled_scenarios() {
 fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   // An existing file.
   std::error_code error;
-  const fs::path file = directory / argument;
+  fs::path file = directory / argument;
   if (fs::exists(file, error)) {
     if (is_mesh_name(file) && !fs::is_directory(file, error))
-      throw InputError(fmt::format("{}: is a mesh; allowed: a scenario, as \"hapbench new mesh --from {}\" writes one",
+      throw InputError(fmt::format("{}: is a mesh; allowed: a scenario; \"hapbench new mesh --from {}\" writes one",
                                    argument, shell_file(argument)));
     return file;
   }

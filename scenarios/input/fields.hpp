@@ -287,8 +287,8 @@ class Fields {
   }
 
  private:
-  /// Describes the value of the optional. If it is empty, describes a default-constructed value, and stores that
-  /// value if it was read without error.
+  /// Describes the value of the optional. If the optional is empty, describes a default-constructed value, and stores
+  /// that value if it was read without error.
   template <class T, class Each>
   static void describe_held(Fields& f, std::optional<T>& value, Each& each) {
     if (value) return each(f, *value);

@@ -22,7 +22,7 @@ constexpr double kReportedUnevenness = 0.05;
   fail_in_file(file, problem);
 }
 
-/// Returns the place of a face as a warning names it.
+/// Returns the text by which a warning names a face: its line, or its number in a binary file.
 std::string place_of_face(const MeshFaces& faces, std::size_t f) {
   return f < faces.face_lines.size() ? fmt::format("in line {}", faces.face_lines[f])
                                      : fmt::format("{} {}", faces.face_name, f);

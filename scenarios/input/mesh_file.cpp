@@ -108,7 +108,7 @@ CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const Mes
   const auto* format = std::ranges::find(kMeshFormats, mesh_extension(file), &MeshFormat::extension);
   if (bytes.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
   MeshFaces faces = format->read(bytes, file);
-  // Check and scale them, and divide them into triangles.
+  // Check and scale the faces, and divide them into triangles.
   check_indices(faces, file);
   scale_and_check(faces, sampling.scale, file);
   TriangleSoup soup;
@@ -132,7 +132,7 @@ CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const Mes
   return surface;
 }
 
-/// Returns the size and the place of a component, as a message shows them.
+/// Returns the size and the position of a component, as a message shows them.
 std::string component_text(const MeshComponent& component) {
   const Vec3 size = 1e3 * component.box.size(), middle = 5e2 * (component.box.min + component.box.max);
   return fmt::format("{} triangles, {:.3g} x {:.3g} x {:.3g} mm at ({:.3g}, {:.3g}, {:.3g}) mm", component.triangles,

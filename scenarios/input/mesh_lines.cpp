@@ -50,7 +50,8 @@ Vec3 MeshLines::position(std::size_t first) const {
 std::size_t MeshLines::count(std::size_t word, const char* what) const {
   const auto number = word < words_.size() ? whole_number(words_[word]) : std::nullopt;
   if (number && *number <= std::numeric_limits<std::int32_t>::max()) return *number;
-  fail(fmt::format("got {} {}; allowed: an integer from 0", word < words_.size() ? quoted_token(words_[word]) : "no",
+  const char* nothing = std::string_view(what).starts_with("as ") ? "nothing" : "no";
+  fail(fmt::format("got {} {}; allowed: an integer from 0", word < words_.size() ? quoted_token(words_[word]) : nothing,
                    what));
 }
 

@@ -12,7 +12,7 @@
 /// with the actual content of a file, never with a count that the file declares.
 namespace hapbench {
 
-/// Whether a backslash at the end of a line continues the line, as in OBJ.
+/// Selects whether a backslash at the end of a line continues the line, as in OBJ.
 enum class Continuation { none, backslash };
 
 /// Reads a mesh file in text form line by line and splits each line into tokens at white space. Skips comments

@@ -221,7 +221,7 @@ struct TakenColumns {
   std::vector<std::optional<std::size_t>> chosen;
 };
 
-/// Returns the columns that a file may have, as a message lists them.
+/// Returns the text of an error message about the columns that a file may have.
 std::string allowed_columns(std::span<const TableQuantity> quantities) {
   std::vector<std::string> texts;
   for (const TableQuantity& quantity : quantities) {
@@ -251,7 +251,8 @@ std::vector<std::string_view> missing_names(const std::vector<std::string_view>&
   return missing;
 }
 
-/// Chooses the alternative of a quantity that the file has. Appends the missing names to `missing` if there is none.
+/// Chooses the alternative of a quantity that the file has. Appends the missing names to `missing` if the file has no
+/// alternative.
 std::optional<std::size_t> chosen_alternative(const TableQuantity& quantity, const CsvReader& csv,
                                               const std::filesystem::path& file, std::vector<std::string>& missing) {
   std::optional<std::size_t> chosen;
@@ -331,7 +332,7 @@ std::string cell_problem(const CsvReader& csv, std::size_t cell) {
                      quoted_token(text), cause);
 }
 
-/// Converts a cell that std::from_chars does not: a number with a leading '+', or with a decimal comma.
+/// Converts a cell that std::from_chars does not accept: a number with a leading '+', or with a decimal comma.
 std::optional<double> unusual_number(std::string_view cell, bool decimal_comma) {
   if (cell.starts_with('+') && !cell.starts_with("+-")) cell.remove_prefix(1);
   if (!decimal_comma) return finite_number(cell);
@@ -350,7 +351,7 @@ class RowParser {
   /// Appends the rows to the table. Returns the line of the first decimal comma, and stops there, if no decimal comma
   /// is expected.
   std::optional<std::size_t> read(NumberTable& table, const std::filesystem::path& file, std::size_t max_rows) {
-    std::size_t row = 0, line = 0;  // index of the row, and line of the row before
+    std::size_t row = 0, line = 0;  // index of the row, and line of the previous row
     while (csv_.advance()) {
       if (!csv_.has_all_cells()) {
         if (!is_blank_row()) faults_.add(csv_.line(), csv_.cell_count_problem());

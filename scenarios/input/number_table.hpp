@@ -68,7 +68,7 @@ class CsvReader {
   /// Advances to the next row and returns true, or returns false at the end of the text.
   /// Throws InputError if the number of cells differs from the number of columns.
   bool next();
-  /// Same as next(), but does not throw: has_all_cells() is false for such a row.
+  /// Like next(), but does not throw: has_all_cells() is false for such a row.
   bool advance();
   bool has_all_cells() const { return cells_.size() == columns_.size(); }
   /// Returns what is wrong with a row that does not have all cells.
@@ -111,7 +111,7 @@ struct NumberTable {
   std::vector<std::optional<std::size_t>> chosen;
   /// One sentence for each thing that the reader ignored or assumed, beginning with the line: "line 1: …".
   std::vector<std::string> notes;
-  /// Rows whose line does not follow the line of the row before, with their lines.
+  /// Rows whose line does not follow the line of the previous row, with their lines.
   std::vector<std::pair<std::size_t, std::size_t>> line_jumps;
 
   std::size_t rows() const { return columns == 0 ? 0 : values.size() / columns; }

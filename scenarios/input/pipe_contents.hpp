@@ -20,7 +20,7 @@ class PipeContents {
 
  private:
   mutable std::mutex mutex_;
-  std::map<std::string, std::string> contents_;  ///< by device, inode and time of the last write
+  std::map<std::string, std::string> contents_;  ///< contents by device, inode and time of the last write
 };
 
 /// Returns the contents of the pipes of this process.

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 8> kKinds = {"STCNOFF", "STCOFF", "STNOFF", "STOFF",
                                                     "CNOFF",   "COFF",   "NOFF",   "OFF"};
 
-/// Returns the keyword at the start of the first token, in capitals; empty if there is none. The count of vertices may
-/// follow without a blank, as in "OFF8 6 12".
+/// Returns the keyword at the start of the first token, in capitals; empty if the token has no keyword. The count of
+/// vertices may follow without a blank, as in "OFF8 6 12".
 std::string_view keyword_of(std::string_view word) {
   const auto is_start = [word](std::string_view kind) {
     return lower_case(word.substr(0, kind.size())) == lower_case(kind) &&

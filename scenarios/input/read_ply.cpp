@@ -42,7 +42,7 @@ constexpr PlyType kPlyTypes[] = {
     type_named<std::int32_t>("int", "int32"),   type_named<std::uint32_t>("uint", "uint32"),
     type_named<float>("float", "float32"),      type_named<double>("double", "float64")};
 
-/// Returns the type with this name, or null if there is none.
+/// Returns the type with this name; null if no type has this name.
 const PlyType* ply_type(std::string_view name) {
   const auto is_named = [name](const PlyType& type) { return name == type.name || name == type.alias; };
   const auto* found = std::find_if(std::begin(kPlyTypes), std::end(kPlyTypes), is_named);

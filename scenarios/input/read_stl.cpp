@@ -82,9 +82,11 @@ MeshFaces read_stl_binary(ByteReader reader, std::size_t triangles, const fs::pa
     reader.skip(2);  // attributes
     faces.end_face(0);
   }
-  if (reader.left() > 0) {
+  if (const std::size_t left = reader.left(); left > 0) {
+    const bool are_triangles = left % kTriangle == 0;
     faces.warnings.push_back(fmt::format(
-        "bytes after the {} triangles that the header declares, which were ignored: {}", triangles, reader.left()));
+        "bytes after the {} triangles that the header declares, which were ignored: {}{}", triangles, left,
+        are_triangles ? fmt::format(", the size of {} more triangles; is the header wrong?", left / kTriangle) : ""));
   }
   return faces;
 }

@@ -39,6 +39,21 @@ inline constexpr RenamedName kRenamedNames[] = {
     {"taken_J", "removed_J"},
     {"least_press_N", "min_press_N"},
     {"--anew", "--rerun"},
+    {"--choices", "--assumptions"},
+    {"choice", "assumption"},
+    {"choices", "assumptions"},
+    {"choices.json", "assumptions.json"},
+    {"choices_schema", "assumptions_schema"},
+    {"reading", "assumption set"},
+    {"robustness.json", "sensitivity.json"},
+    {"sureness", "robustness"},
+    {"steady", "robust"},
+    {"fragile", "sensitive to"},
+    {"reproduced", "replicated"},
+    {"reproduced in kind", "qualitatively replicated"},
+    {"not reproduced", "not replicated"},
+    {"refuted", "contradicted"},
+    {"not reproducible", "not testable"},
 };
 
 /// Returns the new name of a name that was renamed, else an empty text.

@@ -90,13 +90,14 @@ class LineReader {
   std::optional<std::string_view> next();
   std::size_t line() const { return line_; }  ///< number of the last returned line, from 1; 0 before the first line
   std::string_view rest() const { return rest_; }  ///< the text after the last returned line
-  /// Returns true if the last returned line has a line end. A text that was cut within a line has none.
+  /// Returns true if the last returned line has a line end. A text that was cut within its last line has no line end
+  /// after this line.
   bool has_line_end() const { return has_line_end_; }
 
  private:
   std::string_view rest_;
   std::size_t line_ = 0;
-  const char* newline_;  ///< next LF; the end of the text if there is none
+  const char* newline_;  ///< next LF; the end of the text if there is no further LF
   bool ends_with_cr_;    ///< the first line ends with CR alone
   bool has_line_end_ = false;
 };

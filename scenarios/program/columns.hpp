@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -26,6 +27,7 @@ struct Shown {
   bool wide = false;         ///< true if the column is printed only with --wide
   std::string heading = {};  ///< heading of the printed column, at most two lines; empty: the name of the column
   int digits = 4;            ///< significant digits of a number without a tolerance
+  bool varied = false;       ///< true: values of a varied field, printed with digits that distinguish the rows
 };
 inline const Shown kOnlyJson = {.csv = false}, kOnlyCsv = {.json = false};
 /// Returns `where` with the column also printed under a heading. With an empty heading the column is not
@@ -37,9 +39,18 @@ Shown only_printed(bool wide = false);
 /// Returns `where` if `has_it` is true, otherwise no output at all.
 Shown when(bool has_it, Shown where = {});
 
-/// Returns a cell as text. A number has the digits that are significant at its tolerance, or `shown.digits`
-/// without a tolerance; an empty cell is "-".
-std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance);
+/// Returns `where` for values of a varied field (Shown::varied).
+Shown varied(Shown where);
+
+/// Returns a value of an axis as a cell: a number if the text is a finite number, else the text.
+Cell axis_cell(const std::string& value);
+
+/// Returns the cells of a column as text. A number has the digits that are significant at its tolerance, or
+/// `shown.digits` without a tolerance; an empty cell is "-". Of a varied field, whole numbers and numbers of at most
+/// six digits are printed exactly; other numbers have four to six digits, as few as keep different numbers different.
+/// `tolerances` has an entry for each cell.
+std::vector<std::string> printed(std::span<const Cell> cells, const Shown& shown,
+                                 std::span<const std::optional<double>> tolerances);
 
 /// A table that `describe` explains. `file` is empty for a table that is only printed; `holds` describes its
 /// rows.
@@ -107,19 +118,29 @@ class Columns {
     return list;
   }
 
-  /// Returns the printed table in the width of the layout. `rows` has rows or references to rows.
+  /// Returns the printed table. `rows` has rows or references to rows. `in_full` includes the columns for --wide.
+  template <class Rows>
+  Table table(const Rows& rows, std::string caption, bool in_full) const {
+    Table table{headings(in_full), {}, std::move(caption)};
+    table.rows.resize(std::size(rows));
+    for (const Entry& entry : entries_) {
+      if (!entry.is_printed(in_full)) continue;
+      std::vector<Cell> cells;
+      std::vector<std::optional<double>> tolerances;
+      for (const Row& row : rows) {
+        cells.push_back(entry.cell(row));
+        tolerances.push_back(entry.tolerance ? entry.tolerance(row) : std::nullopt);
+      }
+      const std::vector<std::string> texts = printed(cells, entry.shown, tolerances);
+      for (std::size_t i = 0; i < texts.size(); ++i) table.rows[i].push_back(texts[i]);
+    }
+    return table;
+  }
+
+  /// Returns the printed table as text in the width of the layout.
   template <class Rows>
   std::string text(const Rows& rows, const Layout& layout) const {
-    Table table{headings(layout.in_full())};
-    for (const Row& row : rows) {
-      std::vector<std::string> cells;
-      for (const Entry& entry : entries_) {
-        if (!entry.is_printed(layout.in_full())) continue;
-        cells.push_back(printed(entry.cell(row), entry.shown, entry.tolerance ? entry.tolerance(row) : std::nullopt));
-      }
-      table.rows.push_back(std::move(cells));
-    }
-    return table.text(layout.width());
+    return table(rows, "", layout.in_full()).text(layout.width());
   }
 
   /// Returns the columns of the printed table; `in_full` includes the columns for --wide.
@@ -127,7 +148,8 @@ class Columns {
     std::vector<Table::Column> headings;
     for (const Entry& entry : entries_)
       if (entry.is_printed(in_full))
-        headings.push_back({entry.title(), !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning});
+        headings.push_back({entry.title(), !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning,
+                            entry.unit.starts_with("unit of") ? "" : entry.unit});
     return headings;
   }
 

@@ -42,7 +42,7 @@ int status_with_faults(int status, ProgramContext& context) {
   return status == kSuccess ? kUnexpectedOutcome : status;
 }
 
-/// Returns the command of this name; null if there is none.
+/// Returns the command with this name; null if no command has this name.
 const CLI::App* command_named(const CLI::App& program, const std::string& name) {
   const std::vector<const CLI::App*> found =
       program.get_subcommands([&name](const CLI::App* command) { return command->get_name() == name; });
@@ -74,7 +74,8 @@ CommandLine::CommandLine(ProgramContext& context)
   // The shared output options come after the options that each command has added.
   for (const auto& [app, output] : outputs_) {
     app->add_flag("--quiet", output->quiet, shared_option_help("--quiet"));
-    app->add_flag("--json", output->json, shared_option_help("--json"));
+    CLI::Option* as_json = app->add_flag("--json", output->json, shared_option_help("--json"));
+    if (CLI::Option* table = app->get_option_no_throw("--table")) as_json->excludes(table);
     app->add_flag("--wide", context_.in_full, shared_option_help("--wide"));
   }
 }

@@ -32,7 +32,8 @@ constexpr CommandGuide kCommands[] = {
     {"run", "run", "run scenarios and diagnose the results", add_run,
      "run drag_molar\n"
      "run drag_molar --set rendering.algorithm=proxy --out results/proxy\n"
-     "run mine.json --latency",
+     "run mine.json --latency\n"
+     "run mine.json --replay loop.csv",
      "results/README.md, section \"Files of a run\""},
     {"run", "compare", "compare force laws, rank them over scenarios and seeds", add_compare,
      "compare drag_molar\n"
@@ -57,7 +58,8 @@ constexpr CommandGuide kCommands[] = {
     {"decide", "converge", "estimate the discretization error of a metric", add_converge,
      "converge drag_molar --metric force_max_N\n"
      "converge mine.json --levels 5 --metric inside_max_m\n"
-     "converge drag_molar --vary environment.spacing_m",
+     "converge drag_molar --vary environment.spacing_m\n"
+     "converge drag_molar --over integrator.type=all --to 1e-6",
      "scenarios/README.md, section \"How accurate a number is\""},
     {"decide", "stress", "test every force law on degenerate contacts", add_stress,
      "stress\n"
@@ -67,7 +69,7 @@ constexpr CommandGuide kCommands[] = {
     {"decide", "reproduce", "test the claims of the thesis", add_reproduce,
      "reproduce\n"
      "reproduce --only T2,R1b\n"
-     "reproduce --choices results/reference/readings.csv",
+     "reproduce --only J1 --assumptions other.csv",
      "scenarios/thesis/README.md, section \"The command reproduce\""},
     {"look", "describe", "explain a name, or list what exists", add_describe,
      "describe\n"

@@ -20,6 +20,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
+#include "scenarios/program/describe/fields.hpp"
 #include "scenarios/program/digits.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
@@ -90,11 +91,16 @@ ConvergeStudy convergence_study(const LevelSweep& levels, const std::vector<Leve
   return study;
 }
 
+/// Returns a result with the digits that are significant at its error, six if the error is 0.
+std::string result_text(double value, const std::optional<double>& error) {
+  return error && *error == 0.0 ? significant(value, 6) : deserved(value, error);
+}
+
 /// Returns the columns of the levels. `study` provides the field and metric for the printed headings.
 Columns<LevelRow> level_columns(const ConvergeStudy& study) {
   using Row = LevelRow;
   const auto value = [](const Row& r) { return finite_number(r.value); };
-  const auto result = [](const Row& r) { return r.result ? number_text(*r.result, r.error) : "-"; };
+  const auto result = [](const Row& r) { return r.result ? result_text(*r.result, r.error) : "-"; };
   const auto order = [has_order = study.order.has_value()](const Row& r) {
     return has_order && r.order ? fmt::format("{:.2f}", *r.order) : "-";
   };
@@ -102,13 +108,14 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
   return {
       {"metric", "", "name of the metric", &Row::metric, kOnlyCsv},
       {"value", "unit of the field", "value of the refined field at this level", value},
-      {study.field, "1", "", &Row::value, only_printed()},
+      {study.field, field_unit(study.field), "", [](const Row& r) { return axis_cell(r.value); },
+       varied(only_printed())},
       {"outcome", "", "outcome of the run", &Row::outcome, under("outcome")},
       {"result", "unit of the metric",
        "value of the metric, sampled at the times of the coarsest level's steps; empty if the run has no value or "
        "diverges",
        &Row::result},
-      {study.metric, "1", "", result, only_printed()},
+      {study.metric, metric_unit(study.metric), "", result, only_printed()},
       {"observed_order", "1",
        "observed order p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level (f_3) and the two coarser levels, with "
        "the refinement ratio r; empty without these",
@@ -210,7 +217,8 @@ std::string sufficient_level_text(const ConvergeStudy& study, double max_error) 
     const LevelRow& sufficient = levels[first];
     const std::string cost = fmt::format(", {:.2g} s per run, {:.2g} times the time of the first level",
                                          sufficient.seconds, sufficient.seconds / levels.front().seconds);
-    return below + fmt::format("{} = {} ({:.2g} %{}){}", study.field, sufficient.value, 100.0 * *sufficient.share,
+    return below + fmt::format("{} = {} ({:.2g} %{}){}", study.field, rounded_text(*finite_number(sufficient.value), 6),
+                               100.0 * *sufficient.share,
                                study.order ? "" : ", estimated from the differences of the levels",
                                first == 0 ? ", already at the coarsest level" : cost);
   }
@@ -229,7 +237,7 @@ double parse_relative_error(const std::string& text) {
   const auto number = finite_number(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
   const double share = number.value_or(0.0) * (percent ? 0.01 : 1.0);
   if (!(share > 0.0 && share < 1.0))
-    fail_in_option("--to", fmt::format("got \"{}\"; allowed: a relative error, as 1% or 0.01", text));
+    fail_in_option("--to", fmt::format("got \"{}\"; allowed: a relative error, such as 1% or 0.01", text));
   return share;
 }
 
@@ -241,7 +249,7 @@ LevelRun run_of(const CheckedScenario& scene) {
   return {std::move(result), processor_seconds() - before};
 }
 
-/// Returns the levels for refining the field. Throws InputError if the scene has no such number.
+/// Returns the levels for refining the field. Throws InputError if the scene has no such numeric field.
 LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenario) {
   // Warnings of this scenario are returned by plan_sweep().
   const CheckedScenario scene = checked(load_scenario(scenario, options.overrides));
@@ -262,9 +270,10 @@ double parse_position_error(const std::string& text) {
   if (text.empty()) return kErrorAskedFor;
   const auto number = finite_number(text);
   if (!number || *number <= 0.0)
-    fail_in_option("--to", fmt::format("got \"{}\"; allowed with --over: an error of the tip's position in metres, as "
-                                       "1e-6",
-                                       text));
+    fail_in_option("--to",
+                   fmt::format("got \"{}\"; allowed with --over: an error of the tip's position in metres, such "
+                               "as 1e-6",
+                               text));
   return *number;
 }
 
@@ -277,10 +286,24 @@ int study_settings(const ConvergeOptions& options, ProgramContext& context) {
   const double max_error = parse_position_error(options.to);
   const std::filesystem::path file = find_scenario(options.scenario);
   WorkPrecisionQuestion question{read_scenario_text(file), options.overrides};
-  for (const std::string& axis : options.over) question.over.push_back(parse_axis(axis));
+  for (const std::string& axis : options.over) question.over.push_back(parse_axis(axis, false, "--over"));
   question.levels = static_cast<std::size_t>(options.levels > 0 ? options.levels : kLevelsOfSettings);
   question.ratio = options.ratio;
   question.max_error = max_error;
+  // Along a prescribed path nothing is integrated: laws are compared with the reference force.
+  const LoadedScenario loaded = load_scenario(question.scenario, options.overrides);
+  if (loaded.scenario.reference_force) {
+    if (std::ranges::count(question.over, "integrator.type", &Axis::path) > 0)
+      fail_in_option("--over",
+                     "got integrator.type for a scene with a reference_force, whose path is prescribed; "
+                     "allowed: rendering.algorithm and other fields of rendering");
+    const Cases cases({question.scenario}, options.overrides, question.over);
+    Report report(options, "converge", "converge_" + file.stem().string(), context);
+    report_model_errors(cases, job_options(options, "converge", context), context.layout(), report);
+    report.say(fmt::format("\nresults in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
+                           shell_file(report.folder())));
+    return report.finish();
+  }
   Report report(options, "converge", "converge_" + file.stem().string(), context);
   const auto problems = work_precision(question, job_options(options, "converge", context));
   report.json() = Json::array();
@@ -311,14 +334,15 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(checked(plan.cases.load(i))); });
   report.say(fmt::format("{}: {} refined from {} by a factor of {:g} per level, formal order {:g}\n\n",
-                         runs.front().result.name, levels.axis.path, levels.axis.values.front(), levels.ratio,
+                         runs.front().result.name, levels.axis.path, level_text(levels, 0), levels.ratio,
                          levels.formal_order));
   std::vector<ConvergeStudy> studies;
   std::vector<LevelRow> rows;
   for (const std::string& metric : metrics) {
     const ConvergeStudy& study = studies.emplace_back(convergence_study(levels, runs, metric));
     rows.insert(rows.end(), study.levels.begin(), study.levels.end());
-    report.say(level_columns(study).text(study.levels, layout) + "\n" + layout.wrapped(verdict_text(study), 0));
+    report.show(level_columns(study).table(study.levels, fmt::format("convergence of {}", metric), layout.in_full()));
+    report.say("\n" + layout.wrapped(verdict_text(study), 0));
     if (max_error) report.say(layout.wrapped(sufficient_level_text(study, *max_error), 0));
     report.say("\n");
     report.json().push_back(study_json(study));
@@ -358,8 +382,8 @@ void add_converge(CommandLine& line) {
               "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
               "environment.grid_m or tool.grid_m; any positive number whose error falls with it");
   command.add("--over <field=values>", options.over,
-              "run time against error of settings: fields to compare, such as integrator.type=all and "
-              "rendering.algorithm=a,b; may be repeated",
+              "print run time against error for each value of these fields, such as integrator.type=all or "
+              "rendering.algorithm=mean,proxy, at each time step; repeatable",
               {.several = true});
   command.add("--levels <n>", options.levels,
               "number of levels; the coarsest has the scenario's value (default: 5; with --over: 4)",
@@ -369,18 +393,23 @@ void add_converge(CommandLine& line) {
   command.add(
       "--to <error>", options.to,
       "also print the coarsest level with a relative error below this, such as 1%, and its run time; with --over: "
-      "the error of the tip's position [m] that is asked for (default: 1e-6)");
+      "print the cheapest setting whose error of the tip's position is below this [m] (default: 1e-6)");
   add_common(command, options, "converge_NAME");
+  add_table(command, options.output);
   command.footer(
       "Result: one row per level with its error; the first row is your scenario's own setting. Below: observed order, "
       "extrapolated value, and grid convergence index (Roache), the relative error of the finest level.\n\n"
       "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names the "
-      "reason. Take the range of the finest levels as the answer, printed as \"last levels A ... B\".\n\n"
+      "reason. Take the range of the finest levels as the answer, printed as \"the last levels give A ... B\".\n\n"
       "Files: converge.csv (one row per metric: order, extrapolated value, range), converge_levels.csv (one row per "
       "metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier files."
       "\n\n"
-      "Run time against error: --over compares integrators and time steps with the converged solution of the same "
-      "problem. Every law is a problem of its own. Files: convergence.csv (errors) and convergence_timing.csv.\n\n"
+      "Run time against error: --over compares each setting with the converged solution, which another integrator "
+      "computes with a step at least 16 times smaller. Errors are rms differences of the tip's position and of the "
+      "force over the run. Each law has a solution of its own. Files: convergence.csv (errors) and "
+      "convergence_timing.csv. In a scene with a reference_force (hapbench new fidelity), it compares the laws with this "
+      "force instead: direction and size of the error, and median and 99.9th percentile of the time of a step. Files: "
+      "convergence_model.csv and convergence_model_timing.csv.\n\n"
       "Time: with the default levels of the time step, about 31 times one run.");
 }
 

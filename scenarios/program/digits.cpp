@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
+#include "results/io/columns.hpp"
+#include "scenarios/batch/number_with_error.hpp"
+#include "scenarios/input/rounding.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
@@ -13,20 +17,63 @@ std::string significant(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
 }
 
+std::string rounded_text(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const double rounded = rounded_to_digits(value, digits), size = std::abs(rounded);
+  if (size >= 1e-4 && size < 1.0) return fmt::format("{}", rounded);
+  return std::string(std::string_view(NumberText(rounded)));
+}
+
 int deserved_digits(double value, const std::optional<double>& tolerance, int max_digits) {
   if (!tolerance || !(*tolerance > 0.0) || value == 0.0 || !std::isfinite(value)) return max_digits;
   const double digits = std::floor(math::log10(std::abs(value))) - std::floor(math::log10(*tolerance)) + 1.0;
   return static_cast<int>(std::clamp(digits, 1.0, static_cast<double>(max_digits)));
 }
 
-std::string deserved(double value, const std::optional<double>& tolerance, int digits) {
-  const double size = std::abs(value);
-  if (!tolerance || !(*tolerance > 0.0 && *tolerance < size) || !std::isfinite(size)) return significant(value, digits);
-  const int last = static_cast<int>(std::floor(math::log10(*tolerance)));
-  if (size < 1e-4 || last < -12) return significant(value, deserved_digits(value, tolerance, 12));
-  // Round to the decimal place of the tolerance's leading digit.
+namespace {
+
+/// Returns a number rounded to the decimal place 10^last, without an exponent.
+std::string to_place(double value, int last) {
   const double unit = math::pow(10.0, last);
   return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
+}
+
+/// Returns the decimal exponent of the leading digit.
+int leading_place(double value) {
+  return static_cast<int>(std::floor(math::log10(value)));
+}
+
+constexpr double kSmallest = 1e-4;  ///< smaller numbers have an exponent
+constexpr int kLastPlace = -12;     ///< last decimal place of a number without an exponent
+
+}  // namespace
+
+std::string bound_text(double value, double tolerance) {
+  const double bound = std::abs(value) + tolerance, unit = math::pow(10.0, leading_place(bound));
+  // The factor keeps the rounding error of a bound such as 0.3 from giving 0.4.
+  const double rounded_up = std::ceil(bound / unit * (1.0 - 1e-12)) * unit;
+  return (value < 0.0 ? "0 +- " : "<= ") + significant(rounded_up, 1);
+}
+
+std::string deserved(double value, const std::optional<double>& tolerance, int digits) {
+  if (is_only_bounded({value, tolerance})) return bound_text(value, *tolerance);
+  if (!tolerance || !(*tolerance > 0.0) || !std::isfinite(value)) return significant(value, digits);
+  const int last = leading_place(*tolerance);
+  if (std::abs(value) < kSmallest || last < kLastPlace)
+    return significant(value, deserved_digits(value, tolerance, -kLastPlace));
+  return to_place(value, last);
+}
+
+std::string with_spread(double mean, const std::optional<double>& spread, const std::optional<double>& tolerance,
+                        int digits) {
+  if (!spread || is_only_bounded({mean, tolerance})) return deserved(mean, tolerance, digits);
+  const double error = std::max(*spread, tolerance.value_or(0.0));
+  if (!(error > 0.0)) return significant(mean, digits) + " +- " + significant(*spread, 2);
+  const int last = leading_place(error) - 1;
+  if (std::max(std::abs(mean), error) >= kSmallest && last >= kLastPlace)
+    return fmt::format("{} +- {}", to_place(mean, last), to_place(*spread, last));
+  const int places = std::max(0, leading_place(std::max(std::abs(mean), error)) - last);
+  return fmt::format("{:.{}e} +- {}", mean, places, significant(*spread, 2));
 }
 
 }  // namespace hapbench

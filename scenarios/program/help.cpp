@@ -30,7 +30,7 @@ std::string kind_of_value(const CLI::Option& option) {
 
 /// Returns the name of an argument in the help: its placeholder.
 std::string argument_name(const CLI::Option& option) {
-  const std::string kind = kind_of_value(option);
+  std::string kind = kind_of_value(option);
   if (kind.starts_with('<')) return kind;
   return name_of(option) + (kind.ends_with("...") ? "..." : "");
 }

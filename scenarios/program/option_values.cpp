@@ -40,7 +40,7 @@ void add_bound(const std::string& text, std::map<std::string, MetricBound>& boun
     }
   }
   fail_in_option("--bound",
-                 fmt::format("got \"{}\"; allowed: metric=most or metric=least:most, as inside_settled_m=3e-4", text));
+                 fmt::format("got \"{}\"; allowed: METRIC=MAX or METRIC=MIN:MAX, such as inside_settled_m=3e-4", text));
 }
 
 }  // namespace hapbench

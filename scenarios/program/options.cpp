@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "scenarios/program/table_format.hpp"
+
 namespace hapbench {
 
 namespace {
@@ -17,6 +19,8 @@ constexpr SharedOption kSharedOptions[] = {
      "load a compiled force law or source of contacts; HAPBENCH_MODULE_PATH names folders of such files"},
     {"--allow-modules", "", "load every library that a scenario names; its code can do anything that you can"},
     {"--json", "", "print JSON instead of tables, for scripts"},
+    {"--table", "<format>",
+     "print only the tables, without other text: markdown, latex (packages booktabs and siunitx), or csv"},
     {"--quiet", "", "print nothing on standard output, and no progress"},
     {"--wide", "", "print all columns, also beyond the width of the terminal"},
     {"--help", "", "explain the command, with examples"}};
@@ -39,6 +43,10 @@ std::string shared_option_help(const std::string& name) {
 bool is_listed_briefly(const std::string& name) {
   return std::ranges::find(kSharedOptions, name, &SharedOption::name) != std::end(kSharedOptions) &&
          std::ranges::find(kExplained, name) == std::end(kExplained);
+}
+
+void add_table(Command& command, OutputOptions& output) {
+  command.add("--table <format>", output.table, shared_option_help("--table"), {.one_of = table_format_names()});
 }
 
 void add_overrides(Command& command, std::vector<std::string>& overrides) {

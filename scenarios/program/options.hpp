@@ -12,10 +12,12 @@
 
 namespace hapbench {
 
-/// The options --quiet and --json, which every command has. --wide is in ProgramContext::in_full.
+/// The options --quiet and --json, which every command has, and --table, which commands with tables have. --wide is in
+/// ProgramContext::in_full.
 struct OutputOptions {
   bool quiet = false;  ///< true: prints nothing on standard output and shows no progress bar
   bool json = false;   ///< true: prints JSON instead of tables on standard output
+  std::string table;   ///< format of --table, which prints only the tables; empty: the text of the terminal
 };
 
 /// An option with one meaning in every command that has it.
@@ -27,8 +29,12 @@ std::span<const SharedOption> shared_options();
 /// Returns the help text of a shared option; empty for other options.
 std::string shared_option_help(const std::string& name);
 
-/// Returns true for a shared option that the help of a command only names. Other options are explained there.
+/// Returns true for a shared option that the help of a command only lists by name. The help of the program explains
+/// such an option.
 bool is_listed_briefly(const std::string& name);
+
+/// Adds --table to a command that prints tables by Report::show().
+void add_table(Command& command, OutputOptions& output);
 
 /// Options that most commands have.
 struct CommonOptions {

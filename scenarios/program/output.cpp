@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "scenarios/input/writer.hpp"
+#include "scenarios/program/table_format.hpp"
 #include "scenarios/program/text.hpp"
 #include "scenarios/scene/field_files.hpp"
 
@@ -31,16 +32,28 @@ void report(const ProgramContext& context, std::vector<std::string> CapturedOutp
   write_line(head, text);
 }
 
-}  // namespace
-
-void print(const ProgramContext& context, const OutputOptions& options, const std::string& text, const Json& json) {
-  if (options.quiet) return;
-  const std::string output = options.json ? json_text(json) : fitted(text, context.layout().width());
+/// Prints text on standard output, or appends it to the captured text of a host.
+void print_as_is(const ProgramContext& context, const std::string& output) {
   if (context.captured != nullptr) {
     context.captured->text += output;
     return;
   }
   std::fwrite(output.data(), 1, output.size(), stdout);
+}
+
+}  // namespace
+
+void print(const ProgramContext& context, const OutputOptions& options, const std::string& text, const Json& json) {
+  if (options.quiet) return;
+  print_as_is(context, options.json ? json_text(json) : fitted(text, context.layout().width()));
+}
+
+void print_tables(const ProgramContext& context, const OutputOptions& options, std::span<const Table> tables) {
+  if (options.quiet) return;
+  if (tables.empty()) fail_in_option("--table", "there is no table to print; without --table, the text says why");
+  print_as_is(context, formatted_tables(tables, options.table));
+  if (options.table == "csv" && tables.size() > 1)
+    print_note(context, fmt::format("printed {} CSV tables with an empty line between them", tables.size()));
 }
 
 void print_warnings(const ProgramContext& context, const std::vector<std::string>& warnings) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/options.hpp"
 #include "scenarios/program/program_context.hpp"
+#include "scenarios/program/table.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 
 /// Prints results and messages on standard output and standard error, or stores them in
@@ -17,6 +19,10 @@ namespace hapbench {
 /// Prints `text`, wrapped to the width of the output. Prints `json` instead under --json, and nothing under
 /// --quiet.
 void print(const ProgramContext& context, const OutputOptions& options, const std::string& text, const Json& json);
+/// Prints the tables in the format of --table, and nothing else, on standard output. Prints a note if there are several
+/// CSV tables, because readers of CSV files expect one. Throws InputError if there is no table.
+/// Precondition: options.table is not empty.
+void print_tables(const ProgramContext& context, const OutputOptions& options, std::span<const Table> tables);
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const ProgramContext& context, const std::vector<std::string>& warnings);
 /// Prints the warnings about a scenario, each with its file in front: first the warnings about fields, then the

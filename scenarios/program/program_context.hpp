@@ -28,7 +28,7 @@ struct ProgramContext {
   bool in_full = false;                ///< true if the option --wide was given
   const ProgressListener* progress = nullptr;  ///< receives progress instead of the terminal; null: draws bars
   LoadingGuard guard_loading = {};             ///< called before a module is loaded, for a host with threads of its own
-  NewDirectories directories = {};  ///< created result folders; the destructor removes those that are still empty
+  NewDirectories directories = {};  ///< created result folders; the destructor removes the folders that are still empty
 
   /// Returns the layout of standard output at its current width.
   Layout layout() const;

@@ -16,6 +16,7 @@
 
 #include "device_model/handle_motion.hpp"
 #include "results/io/atomic_file.hpp"
+#include "scenarios/analysis/work_precision/pareto_front.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
@@ -87,10 +88,11 @@ int run_captured(CapturedOutput& host, const std::string& line) {
   return status;
 }
 
-/// Internal argument of "hapbench import device" that simulates a device log for the Python package, thousands
-/// of times through pipes of doubles. Standard input has the number of rows, their times, their forces, and
-/// then requests. A request is a number of rows (0 ends the requests) and the fields of a LoggedHandle. The
-/// answer to a request on standard output is the positions at these rows.
+/// Internal argument of "hapbench import device". The Python package starts one process with this argument and requests
+/// thousands of simulations of a device log from it. Both pipes carry doubles. The input is, in this order: the number
+/// of rows, the times of the rows, the forces of the rows, and the requests. A request is a number of rows (0 ends the
+/// requests) and the fields of a LoggedHandle. The answer to a request on standard output is the positions at these
+/// rows.
 constexpr const char* kSimulateLog = "--simulate-log";
 
 int simulate_log_for_pipe() {
@@ -113,10 +115,28 @@ int simulate_log_for_pipe() {
   return kSuccess;
 }
 
-/// Makes "hapbench plot" evaluate the conditions of --where for its own Python. The arguments after it are the folder
-/// of a sweep and the conditions. Prints the number of each run whose row in sweep.csv meets all conditions, one number
-/// per line.
+/// Internal argument of "hapbench plot" by which its Python package evaluates the conditions of --where. The arguments
+/// after it are the folder of a sweep and the conditions. Prints the number of each run whose row in sweep.csv meets
+/// all conditions, one number per line.
 constexpr const char* kRunsWhere = "--runs-where";
+
+constexpr const char* kKnee = "--knee";
+
+/// Prints the index of the knee of the front of points, for a picture; an empty line if there is none. `given`: the
+/// option, then a text COST:ERROR for each point.
+int print_knee(const ProgramArguments& given, ProgramContext& context) {
+  std::vector<CostAndError> points;
+  for (std::size_t i = 1; i < given.size(); ++i) {
+    const auto parts = parts_of(given[i], ':');
+    const auto cost = finite_number(parts[0]), error = parts.size() == 2 ? finite_number(parts[1]) : std::nullopt;
+    if (!cost || !error || !(*cost > 0.0) || !(*error > 0.0))
+      throw InputError(fmt::format("plot: --knee: got \"{}\"; allowed: COST:ERROR, both above 0", given[i]));
+    points.push_back({*cost, *error});
+  }
+  const auto found = knee(points, pareto_front(points));
+  print(context, {}, found ? fmt::format("{}\n", *found) : "\n", {});
+  return kSuccess;
+}
 
 int print_runs_where(const ProgramArguments& given, ProgramContext& context) {
   if (given.size() < 2) throw InputError("plot: --runs-where: got no folder; allowed: the folder of a sweep");
@@ -190,6 +210,7 @@ int run_python_command(const ProgramArguments& arguments, ProgramContext& contex
   const ProgramArguments given(arguments.begin() + 1, arguments.end());
   if (arguments[0] == "import") return run_import(given, context);
   if (arguments[0] == "plot" && !given.empty() && given[0] == kRunsWhere) return print_runs_where(given, context);
+  if (arguments[0] == "plot" && !given.empty() && given[0] == kKnee) return print_knee(given, context);
   if (arguments[0] == "audit" && !given.empty() && given[0] == kLinearLoop) return print_linear_loop(given, context);
   if (arguments[0] == "audit") return run({"hapbench_audit"}, given, context);
   return run({"hapbench_pictures", arguments[0]}, given, context);

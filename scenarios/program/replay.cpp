@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 /// One rendering of a log.
 struct ReplayRow {
   std::string algorithm;
-  ReplayComparison compared;    ///< with the recorded outputs
+  ReplayComparison compared;    ///< comparison with the recorded outputs
   double largest_force = 0.0;   ///< [N]
   double rms_force = 0.0;       ///< [N]
-  double largest_change = 0.0;  ///< of the force between two calls [N]
+  double largest_change = 0.0;  ///< largest change of the force between two calls [N]
   std::size_t faults = 0, stale = 0, clamped = 0;
 };
 
@@ -116,7 +116,8 @@ int replay_loop(const std::string& given, const std::string& log_file, const Com
   const ReplayRow row = replay_row(scenario.scenario().rendering.algorithm, outputs, log);
   const std::string other = other_scenario_note(scenario, log);
   const Layout layout = context.layout();
-  report.say(summary_text(row, log, log_file) + "\n" + replay_columns().text(std::vector{row}, layout));
+  report.say(summary_text(row, log, log_file) + "\n");
+  report.show(replay_columns().table(std::vector{row}, "forces along the log " + log_file, layout.in_full()));
   if (!other.empty()) report.say("\n" + layout.wrapped(other, 0));
   report.say(fmt::format("\nresults in {}\n", report.folder().string()));
   report.json() = replay_columns().json(row);
@@ -149,7 +150,8 @@ int compare_replays(const std::string& given, const std::string& log_file, const
   report.say(
       layout.wrapped(
           fmt::format("forces of each law along the motion in {}, recorded with {}", log_file, log.scenario.name), 0) +
-      "\n" + replay_columns().text(rows, layout));
+      "\n");
+  report.show(replay_columns().table(rows, "forces of each law along the log " + log_file, layout.in_full()));
   report.say(fmt::format("\nresults in {}\n", report.folder().string()));
   report.json() = replay_columns().json_list(rows);
   return report.finish();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,8 +34,18 @@ class Report {
   }
 
   const std::filesystem::path& folder() const { return folder_; }
-  /// Appends printed text.
+  /// Appends printed text. It is not printed with --table.
   void say(std::string_view text) { text_ += text; }
+  /// Appends a table to the printed text and to the tables of --table. `max_width`: largest width in the text
+  /// [characters], if the output is wider.
+  void show(Table table, std::size_t max_width = std::string::npos) {
+    text_ += table.text(std::min(max_width, context_.layout().width()));
+    tables_.push_back(std::move(table));
+  }
+  /// Appends a table that is printed only with --table, because the text has its numbers in another form.
+  void show_only_as_table(Table table) { tables_.push_back(std::move(table)); }
+  /// True if --table is given.
+  bool prints_tables() const { return !output_.table.empty(); }
   template <class Row>
   void write(const std::filesystem::path& file, const Columns<Row>& columns, const std::vector<Row>& rows) {
     columns.write(folder_ / file, rows, files_);
@@ -50,7 +62,11 @@ class Report {
   int finish() {
     files_.commit();
     for (const std::string& fault : faults_) print_error(context_, fault);
-    print(context_, output_, text_, json_);
+    if (prints_tables()) {
+      print_tables(context_, output_, tables_);
+    } else {
+      print(context_, output_, text_, json_);
+    }
     return status_;
   }
 
@@ -61,6 +77,7 @@ class Report {
   std::optional<FolderLock> lock_;
   FileSet files_;
   std::string text_;
+  std::vector<Table> tables_;
   Json json_;
   std::vector<std::string> faults_;
   int status_ = kSuccess;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
 
 #include "results/io/atomic_file.hpp"
@@ -11,20 +13,21 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/assumption_runs.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/thesis/choices.hpp"
+#include "scenarios/thesis/assumptions.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/evidence.hpp"
 #include "scenarios/thesis/judging.hpp"
 #include "scenarios/thesis/ledger.hpp"
 #include "scenarios/thesis/measurements.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
-#include "scenarios/thesis/robustness.hpp"
+#include "scenarios/thesis/sensitivity.hpp"
 
 namespace hapbench {
 namespace {
@@ -35,7 +38,7 @@ struct ReproduceOptions : CommonOptions {
   std::vector<std::string> only;
   std::string ledger;
   bool rerun = false;
-  std::string readings;  ///< file of --choices; empty for none
+  std::string assumptions, sensitivity;  ///< files; empty for none
 
   fs::path folder() const { return results_directory(out, "reproduce"); }
   fs::path runs() const { return folder() / "thesis"; }
@@ -102,57 +105,36 @@ void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
 
 /// Judges the claims by the runs of the thesis's scenarios, and makes the missing runs first.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
-                               const Choices& choices, std::vector<ThesisRun>& runs, const ReproduceOptions& options,
-                               const ProgramContext& context) {
+                               const Assumptions& assumptions, std::vector<ThesisRun>& runs,
+                               const ReproduceOptions& options, const ProgramContext& context) {
   std::vector<JudgedClaim> judged;
+  Measurements measurements;
+  std::map<Measure, double> measuring;  // time of each measurement without the runs of scenarios [s]
   ProgressBar bar(options.output.quiet ? "" : "claims", claims.size(), context.progress);
   for (const Claim& claim : claims) {
     bar.show(judged.size());
-    std::set<std::string> used, provided;   // scenarios
-    double providing = 0.0, running = 0.0;  // [s]: providing: time for runs that claims share; running: time for the
-                                            // runs of this claim
-    const auto note = [&](const std::string& scenario) { used.insert(scenario); };
+    std::set<std::string> used;  // scenarios
+    double providing = 0.0;      // [s]
+    const auto run_of = [&](const std::string& scenario) {
+      return std::ranges::find(runs, scenario, &ThesisRun::name);
+    };
     const auto provide_run = [&](const std::string& scenario) {
-      note(scenario);
-      const auto run = std::ranges::find(runs, scenario, &ThesisRun::name);
-      if (run == runs.end()) return;  // a scenario of another group
-      providing += seconds_of(1, [&] { provide(*run, options.runs(), options.rerun); });
-      if (provided.insert(scenario).second) running += *run->seconds;
+      used.insert(scenario);
+      if (const auto run = run_of(scenario); run != runs.end())
+        providing += seconds_of(1, [&] { provide(*run, options.runs(), options.rerun); });
     };
     Finding finding;
-    const Evidence evidence{published, options.runs(), provide_run, {}, note};
-    const double measuring = seconds_of(1, [&] { finding = claim.finding(evidence); }) - providing;
+    const Evidence evidence{
+        published, options.runs(), provide_run, {}, [&](const std::string& scenario) { used.insert(scenario); }};
+    const double took = seconds_of(1, [&] { finding = measurements.finding(claim, evidence); });
+    // The time of a claim includes the runs of its scenarios, and the measurement that it shares with other claims.
+    double seconds = measuring.try_emplace(claim.measure, took - providing).first->second;
+    for (const std::string& scenario : used)
+      if (const auto run = run_of(scenario); run != runs.end()) seconds += run->seconds.value_or(0.0);
     const std::vector<std::string> scenarios(used.begin(), used.end());
-    judged.push_back({claim, std::move(finding), scenarios, choices.reach(scenarios, claim.rule), running + measuring});
+    judged.push_back({claim, std::move(finding), scenarios, assumptions.reach(scenarios, claim.rule), seconds});
   }
   return judged;
-}
-
-/// Judges the claims again under each reading. A reading is a set of values for the choices that the thesis leaves
-/// open. Writes robustness.csv and robustness.json next to the ledger, if there is one. Returns the content of
-/// robustness.json.
-Json judge_readings(const ReproduceOptions& options, const Readings& readings, const fs::path& ledger, FileSet& files,
-                    ProgramContext& context) {
-  const fs::path scratch = options.folder() / "robustness";
-  // Judge the claims under each reading.
-  std::vector<ReadingVerdicts> judged(readings.values.size());
-  for_each_job(judged.size(), job_options(options, "robustness", context),
-               [&](std::size_t i) { judged[i] = judge_reading(readings, i, scratch / std::to_string(i)); });
-  std::error_code ignored;
-  fs::remove(scratch, ignored);
-  // Report the claims that could not be measured.
-  std::vector<std::string> problems;
-  for (const ReadingVerdicts& reading : judged)
-    for (const std::string& problem : reading.problems) problems.push_back("not measured: " + one_line(problem));
-  for (const std::string& problem : first_few(problems, 10)) print_error(context, problem);
-  // With --only, keep the entries of robustness.json for the other claims.
-  const fs::path file = ledger.parent_path() / "robustness.json";
-  const bool some = !ledger.empty() && !options.only.empty() && fs::exists(file);
-  const Json record = robustness_json(readings, judged, some ? read_json(file) : Json::object());
-  if (ledger.empty()) return record;
-  if (!some) files.write(ledger.parent_path() / "robustness.csv", robustness_table(readings, judged));
-  files.write(file, json_text(record));
-  return record;
 }
 
 std::string claims_text(const std::vector<JudgedClaim>& judged, const Layout& layout) {
@@ -172,21 +154,39 @@ Columns<Json> claim_columns() {
   };
   add("id", "id of a claim, which describe explains");
   add("verdict", "on the claim");
-  add("sureness",
-      "steady: more than half of the samples of the choices on record have the verdict; else fragile, or not sampled");
-  add("measured", "what the claim's verdict is about");
+  add("robustness", "which assumption changes the verdict");
+  add("number", "the measured number that decides");
   return columns;
+}
+
+/// Judges claims under other assumptions, for --assumptions or --sensitivity. Writes no ledger.
+int reproduce_otherwise(const ReproduceOptions& options, const std::vector<Claim>& claims, ProgramContext& context) {
+  if (!options.ledger.empty())
+    fail_in_option("--ledger",
+                   "the ledger has the recorded assumptions; allowed: without --assumptions and "
+                   "--sensitivity");
+  if (!options.assumptions.empty() && !options.sensitivity.empty())
+    fail_in_option("--sensitivity", "allowed: without --assumptions");
+  Report report(options, kReproduceFiles, "reproduce", context);
+  const fs::path scratch = options.folder() / "assumption_runs";
+  if (options.sensitivity.empty()) {
+    report_assumption_sets(claims, options.assumptions, scratch, options, report, context);
+  } else {
+    const auto lock = locked_ledger(options.sensitivity, context);
+    record_sensitivity(claims, all_claims(), options.sensitivity, scratch, options, report, context);
+  }
+  return report.finish();
 }
 
 int reproduce(const ReproduceOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
   const fs::path reference = installed_folder("results/reference");
   const std::vector<Claim> claims = chosen_claims(options.only);
-  const Choices choices(reference / "choices.json");
+  if (!options.assumptions.empty() || !options.sensitivity.empty())
+    return reproduce_otherwise(options, claims, context);
+  const Assumptions assumptions(reference / "assumptions.json");
   const PublishedNumbers published =
-      choices.with_numbers(PublishedNumbers(reference / "published.json"), choices.values_on_record());
-  Readings readings{choices, published, {}, {}};
-  if (!options.readings.empty()) readings.values = read_readings(options.readings, choices);
+      assumptions.with_numbers(PublishedNumbers(reference / "published.json"), assumptions.recorded_values());
   Report report(options, kReproduceFiles, "reproduce", context);
   std::vector<ThesisRun> runs;
   for (const BundledScenario& bundled : bundled_scenarios())
@@ -201,24 +201,16 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
     for_each_job(runs.size(), job_options(options, "thesis", context),
                  [&](std::size_t i) { provide(runs[i], options.runs(), options.rerun); });
 
-  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, options, context);
-  // Use the stored robustness, or sample it anew with --choices.
-  const fs::path on_record = reference / "robustness.json";
-  Json robustness = fs::exists(on_record) ? read_json(on_record) : Json{{"claims", Json::array()}};
-  if (!readings.values.empty()) {
-    readings.claims = judged;
-    std::erase_if(readings.claims, [](const JudgedClaim& j) { return !j.can_be_sampled(); });
-    robustness = judge_readings(options, readings, ledger, report.files(), context);
-  }
-
-  report.json() = ledger_json(judged, published, robustness);
+  const std::vector<JudgedClaim> judged = judge(claims, published, assumptions, runs, options, context);
+  report.json() = ledger_json(judged, published, SensitivityRecord(reference / "sensitivity.json"));
   const Json& json = report.json();
   if (options.only.empty()) report.say(layout.wrapped(json.at("headline").get<std::string>()) + "\n\n");
-  report.say(claim_columns().text(json.at("claims").get<std::vector<Json>>(), layout));
+  report.show(claim_columns().table(json.at("claims").get<std::vector<Json>>(), "claims", layout.in_full()));
   if (!options.only.empty()) report.say(claims_text(judged, layout));
   if (!ledger.empty()) {
     report.files().write(ledger, json_text(json));
     report.files().write(fs::path(ledger).replace_extension(".md"), ledger_markdown(json));
+    report.files().write(ledger.parent_path() / "claim_pages.md", claim_pages(json));
     report.say(fmt::format("\nledger in {}\n", ledger.string()));
   } else {
     report.say("\nno ledger is written of single claims without --ledger FILE\n");
@@ -232,7 +224,9 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
 }  // namespace
 
 std::vector<DescribedTable> claim_tables() {
-  return {claim_columns().described()};
+  std::vector<DescribedTable> tables = {claim_columns().described()};
+  std::ranges::move(assumption_tables(), std::back_inserter(tables));
+  return tables;
 }
 
 void add_reproduce(CommandLine& line) {
@@ -247,15 +241,20 @@ void add_reproduce(CommandLine& line) {
       "file of the ledger, with a Markdown table next to it (default: OUT/claims.json; with --only, no ledger)");
   command.flag("--rerun", options.rerun, "repeat all runs, also those whose results are current");
   add_jobs(command, options.jobs);
-  command.add("--choices <file.csv>", options.readings,
-              "judge all claims again under other assumptions: one set of assumptions per row, one column per changed "
-              "assumption, such as results/reference/readings.csv");
+  add_table(command, options.output);
+  command.add("--assumptions <file.csv>", options.assumptions,
+              "judge claims under other assumptions instead: one set per row, one column per assumption");
+  command.add("--sensitivity <file.json>", options.sensitivity,
+              "judge claims with one assumption at a time at another value, and add the verdicts to this record");
   command.footer(
       "Files: claims.json and claims.md (the ledger: claim, published and measured value, verdict) and the runs in "
-      "OUT/thesis. With --choices and a ledger also robustness.csv and robustness.json next to it.\n\n"
+      "OUT/thesis.\n\n"
+      "Assumptions: the thesis leaves them open; \"hapbench describe assumptions\" lists them. --assumptions prints, "
+      "for each set, the verdicts and numbers of the claims that it can change, and what moved. --sensitivity "
+      "continues an interrupted record; results/reference/sensitivity.json is the record of the ledger.\n\n"
       "Earlier results: runs of the same scenario by the same build are used again; a ledger is replaced.\n\n"
-      "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. With --choices much longer: "
-      "each row repeats the experiments.\n\n"
+      "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. An assumption set that "
+      "changes all claims takes as long; a whole record takes about an hour of one processor.\n\n"
       "Exit status: 0 whatever the verdicts are; 3 if a run did not end as its scenario expects; 130 stopped by "
       "Ctrl-C.");
 }

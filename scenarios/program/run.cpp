@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
@@ -49,8 +50,7 @@ Columns<PlaceMetrics> target_columns() {
     return [=](const PlaceMetrics& p) {
       const SubjectMean& m = p.*of;
       if (m.subjects == 0) return std::string("-");
-      return fmt::format("{} +- {}", deserved(factor * m.mean, 0.1 * factor * m.standard_error, 3),
-                         significant(factor * m.standard_error, 2));
+      return with_spread(factor * m.mean, factor * m.standard_error, std::nullopt, 3);
     };
   };
   return {
@@ -66,7 +66,7 @@ Columns<Result> latency_columns() {
   const auto time = [](std::uint64_t StepLatency::*of) {
     return [of](const Result& r) {
       const StepLatency& latency = *r.timing.latency;
-      return latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(latency.*of) / 1e3) : "-";
+      return latency.steps > 0 ? short_text(static_cast<double>(latency.*of), std::nullopt, 1e-3) : "-";
     };
   };
   Columns<Result> columns = {
@@ -91,31 +91,52 @@ Columns<Result> latency_columns() {
   return columns;
 }
 
-/// Returns the diagnosis of runs. For a single run it includes advice. For several runs it has one line for each,
+/// Returns the diagnosis of runs. For a single run it includes advice. For several runs it has one line for each run,
 /// with the names of the rules. Empty if no rule applies.
 std::string diagnosis_text(std::span<const Result> reports, const Layout& layout) {
   std::string text;
+  const bool several = reports.size() > 1;
   for (const Result& report : reports) {
-    std::string rules;
+    std::vector<std::string> rules;
     // Explain each rule for a single run; only name the rules for several runs.
     for (const Diagnosed& found : *report.diagnosis) {
-      rules += fmt::format("{}{} ({:.3g})", rules.empty() ? "" : ", ", found.rule, found.value);
-      if (reports.size() > 1) continue;
+      rules.push_back(finding_text(found));
+      if (several) continue;
       const std::string unit = found.unit == "1" ? "" : " " + found.unit;
       text += layout.wrapped(
           fmt::format("{} (rule {}: {:.3g} > {:g}{})", found.says, found.rule, found.value, found.threshold, unit), 0);
       text += layout.wrapped("try: " + found.attempt, 2);
     }
-    if (reports.size() > 1 && !rules.empty())
-      text += layout.wrapped(fmt::format("diagnosis of {}: {}", report.name, rules), 0);
+    if (several && !rules.empty())
+      text += layout.wrapped(fmt::format("diagnosis of {}: {}", report.name, fmt::join(rules, ", ")), 0);
   }
-  return text.empty() ? "" : "\n" + text;
+  if (text.empty()) return "";
+  if (several) text += "run one scenario alone to get advice; \"hapbench describe diagnosis\" explains the rules\n";
+  return "\n" + text;
 }
 
 /// Returns where an expectation comes from: the scenario's field or its default.
 const char* expectation_source(const Scenario& scenario) {
   const bool is_default = scenario.expect.outcomes == ExpectFields{}.outcomes && scenario.expect.metrics.empty();
   return is_default ? "by default, without the field expect" : "field expect";
+}
+
+/// Reports the tables and the diagnosis of the runs.
+void report_results(const std::vector<Result>& results, bool latency, const Layout& layout, Report& report) {
+  report.show(run_table(results, true, layout));
+  report_fidelity(results, layout, report);
+  report.say(step_time_text(results, layout));
+  for (const Result& result : results) {
+    if (!result.sections.contains("targets")) continue;
+    const std::string caption = fmt::format("{}: targets, mean +- standard error over subjects", result.name);
+    report.say(fmt::format("\n{}\n\n", caption));
+    report.show(target_columns().table(place_metrics(result.targets), caption, layout.in_full()));
+  }
+  if (latency) {
+    report.say("\n");
+    report.show(latency_columns().table(results, "wall time of the time steps", layout.in_full()));
+  }
+  report.say(diagnosis_text(results, layout));
 }
 
 /// Throws InputError for options that have no meaning with --replay.
@@ -150,7 +171,6 @@ int run(const RunOptions& options, ProgramContext& context) {
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   Report report(options.output, where, context);
   std::vector<Result> results;
-  std::string targets;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const Result& result =
         results.emplace_back(run_scenario(scenarios[i], RunOutput(directories[i], /*has_lock=*/true),
@@ -160,9 +180,6 @@ int run(const RunOptions& options, ProgramContext& context) {
       print_note(context,
                  fmt::format("replaced the results of a run with other fields in {}; --out DIRECTORY keeps both",
                              directories[i].string()));
-    if (result.sections.contains("targets"))
-      targets += fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", result.name,
-                             target_columns().text(place_metrics(result.targets), layout));
     print_warnings(context, run_warnings({&result, 1}));
     Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
@@ -173,10 +190,8 @@ int run(const RunOptions& options, ProgramContext& context) {
                    kUnexpectedOutcome);
     }
   }
-  const std::string latency_text = options.latency ? "\n" + latency_columns().text(results, layout) : "";
-  report.say(run_table(results, true, layout) + fidelity_text(results, layout) + step_time_text(results, layout) +
-             targets + latency_text + diagnosis_text(results, layout) +
-             fmt::format("\nresults in {}\n", where.string()));
+  report_results(results, options.latency, layout, report);
+  report.say(fmt::format("\nresults in {}\n", where.string()));
   return report.finish();
 }
 
@@ -196,9 +211,13 @@ void add_run(CommandLine& line) {
               "folder of the results (default: results/out/NAME); several scenarios get a subfolder each");
   add_overrides(command, options.overrides);
   command.add("--replay <log.csv>", options.replay,
-              "render the log of a haptic loop instead of the scenario's motion, and compare every force "
-              "(scenarios/LOOP.md)");
-  command.flag("--latency", options.latency, "measure the time of every step; print percentiles and missed deadlines");
+              "render the log of a haptic loop (scenarios/LOOP.md) instead of the scenario's motion, and compare every "
+              "output with the recorded output");
+  command.flag(
+      "--latency", options.latency,
+      "measure the time of every step; print percentiles, and the numbers of steps longer than 0.5 ms and than "
+      "1/2048 s");
+  add_table(command, options.output);
   command.flag("--no-skip", options.no_skip,
                "disable all shortcuts of the computation; results are the same, only slower: for checks");
   command.footer(
@@ -206,7 +225,10 @@ void add_run(CommandLine& line) {
       "diagnosis), scenario.effective.json (all fields; repeats the run), columns.json (units and meanings). "
       "\"hapbench plot FOLDER\" draws them.\n\n"
       "Earlier results: a run in the same folder is replaced; other files stay. Use --out to keep both.\n\n"
-      "Exit status: 3 if a run does not end as its scenario expects; its results are written all the same.");
+      "Replay: give the scenario with which the log was recorded. With another scenario the forces may differ, which a "
+      "note says. replay.csv is the log with the new outputs, in results/out/NAME_replay.\n\n"
+      "Exit status: 3 if a run does not end as its scenario expects, or if a replay with the recorded scenario gives "
+      "other outputs; the results are written all the same.");
 }
 
 }  // namespace hapbench

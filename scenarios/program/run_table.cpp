@@ -10,6 +10,7 @@
 #include "scenarios/batch/number_with_error.hpp"
 #include "scenarios/input/rounding.hpp"
 #include "scenarios/program/digits.hpp"
+#include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {
 namespace {
@@ -31,6 +32,8 @@ std::string Result::*distinct_name(std::span<const Result> reports) {
 std::string ending_text(const Result& report) {
   const std::string name(outcome_name(report.end.outcome));
   const auto last = number_of(report.metrics, "last_contact_s");
+  if (report.end.ended_at && report.end.outcome != Outcome::diverges)
+    return fmt::format("{} at {:.3g} s", name, *report.end.ended_at);
   switch (report.end.outcome) {
     case Outcome::leaves_hole:
     case Outcome::tool_horizontal:
@@ -89,24 +92,33 @@ constexpr RunHeading kFidelityHeadings[] = {
 
 }  // namespace
 
+std::string metric_unit(const std::string& metric) {
+  const Metric* known = find_metric(all_metrics(), metric);
+  return known == nullptr ? "1" : known->unit;
+}
+
 std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor) {
-  return value ? cell(factor * *value, deserved_digits(*value, tolerance, 3)) : "-";
+  if (!value) return "-";
+  if (is_only_bounded({value, tolerance})) return bound_text(factor * *value, factor * *tolerance);
+  return cell(factor * *value, deserved_digits(*value, tolerance, 3));
 }
 
-std::string run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout) {
-  return run_columns(of_scenes).text(reports, layout);
+Table run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout) {
+  const std::string caption = of_scenes ? "runs" : fmt::format("runs of {}", reports.front().name);
+  return run_columns(of_scenes).table(reports, caption, layout.in_full());
 }
 
-std::string fidelity_text(std::span<const Result> reports, const Layout& layout) {
+void report_fidelity(std::span<const Result> reports, const Layout& layout, Report& report) {
   std::vector<std::reference_wrapper<const Result>> with_reference;
-  for (const Result& report : reports)
-    if (report.sections.contains("fidelity")) with_reference.emplace_back(report);
-  if (with_reference.empty()) return "";
+  for (const Result& run : reports)
+    if (run.sections.contains("fidelity")) with_reference.emplace_back(run);
+  if (with_reference.empty()) return;
   const auto name = distinct_name(reports);
   Columns<Result> columns = {{name == &Result::algorithm ? "algorithm" : "scenario", "", "", name, only_printed()}};
   add_metrics(columns, kFidelityHeadings);
-  return fmt::format("\nrendered force compared with the reference force (measured, or given by reference_force)\n\n{}",
-                     columns.text(with_reference, layout));
+  const char* caption = "rendered force compared with the reference force (measured, or given by reference_force)";
+  report.say(fmt::format("\n{}\n\n", caption));
+  report.show(columns.table(with_reference, caption, layout.in_full()));
 }
 
 std::vector<std::string> run_warnings(std::span<const Result> reports) {
@@ -168,6 +180,11 @@ std::string step_time_text(std::span<const Result> reports, const Layout& layout
   else if (has_table)
     return "";
   return "\n" + layout.wrapped(text, 0);
+}
+
+std::string finding_text(const Diagnosed& found) {
+  return fmt::format("{} ({:.3g} > {:g}{})", found.rule, found.value, found.threshold,
+                     found.unit == "1" ? "" : " " + found.unit);
 }
 
 std::string number_text(double value, const std::optional<double>& error) {

@@ -8,6 +8,7 @@
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/program/columns.hpp"
 #include "scenarios/program/layout.hpp"
+#include "scenarios/program/report.hpp"
 
 /// Tables with a row for each run, which `run`, `compare` and `sweep` print.
 namespace hapbench {
@@ -26,8 +27,11 @@ inline constexpr RunHeading kRunHeadings[] = {
     {"force step\n(99 %) [N]", "force_step_p99_N"},    {"vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0, false},
     {"reversals\n[1/s]", "force_reversals_per_s"},     {"max depth\ninside [mm]", "inside_max_m", 1e3, false}};
 
-/// Returns `factor` times the value with the digits that are significant at its tolerance, three at most; "-"
-/// without a value. `tolerance` is in the unit of `value`.
+/// Returns the unit of a metric; "1" for an unknown one.
+std::string metric_unit(const std::string& metric);
+
+/// Returns `factor` times the value with the digits that are significant at its tolerance, three at most; the bound of
+/// a value that is not larger than its tolerance; "-" without a value. `tolerance` is in the unit of `value`.
 std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor);
 
 /// Adds a column for each heading. figure_of(row, metric name) returns the row's value of the metric as
@@ -47,27 +51,30 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
 /// `wide`. With --wide the table has all columns of kRunHeadings, the range of stiffness ratios and the median
 /// time of a step. `of_scenes`: true if the first column has the scenario. If false, all runs belong to one scenario.
 /// The table then also has the vibration of the tool, which is defined for runs without settled contact too.
-std::string run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
+Table run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
 
 /// Metric whose square root is the vibration of the tool.
 inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
 
-/// Returns a sentence with the 99th percentile of the time of a step in the slowest run. Returns an empty text
-/// if all runs are too short for it, and after --latency, whose table has the percentiles, unless a step is too slow.
-/// Precondition: there is at least one run.
+/// Returns a sentence with the 99th percentile of the time of a step in the slowest run. Returns an empty text if all
+/// runs are too short for this percentile. After --latency, whose table has the percentiles, returns the sentence only
+/// if a step is too slow. Precondition: there is at least one run.
 std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
-/// Returns a table that compares the rendered force with the reference force, for the runs with a reference.
-/// Returns an empty text if there are none.
-std::string fidelity_text(std::span<const Result> reports, const Layout& layout);
+/// Reports a table that compares the rendered force with the reference force, for the runs with a reference.
+/// Reports nothing if there are none.
+void report_fidelity(std::span<const Result> reports, const Layout& layout, Report& report);
 
 /// Returns the warnings about the runs of one scenario, without the warnings that were printed before the runs. Equal
 /// texts of several algorithms are merged into one line with the names of the algorithms. If the runs of one algorithm
 /// differ in their numbers, its line quotes the first run and counts the others.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
-/// Returns a number with the digits that are significant at its error: one digit if the error is not smaller
-/// than the number, six digits if the error is 0, four if it is unknown.
+/// Returns a rule of the diagnosis that applies, with its value, its threshold and their unit: "buzz (0.289 > 0.1)".
+std::string finding_text(const Diagnosed& found);
+
+/// Returns a number that its error follows, with the digits that are significant at the error: one digit if the error
+/// is not smaller than the number, six digits if the error is 0, four if it is unknown.
 std::string number_text(double value, const std::optional<double>& error);
 /// Returns number_text() followed by the error: "1.234 +- 0.005".
 std::string with_error_text(double value, const std::optional<double>& error);

@@ -37,7 +37,8 @@ int stress(const StressOptions& options, ProgramContext& context) {
       stress_laws(options.count, options.seed, job_options(options, "stress", context));
   const Columns<StressCounts> columns = stress_columns();
   report.write("stress.csv", columns, all);
-  report.say(columns.text(all, layout) + "\n");
+  report.show(columns.table(all, "forces in degenerate contact sets", layout.in_full()));
+  report.say("\n");
   report.say(layout.wrapped(
       "every force must be finite and within the bound that its algorithm guarantees: non-finite and out of bound "
       "must be 0. points dropped: contacts beyond the largest number of points of the reduction",
@@ -69,6 +70,7 @@ void add_stress(CommandLine& line) {
               {.range = {{0, std::int64_t{1} << 53}}});
   add_jobs(command, options.jobs);
   add_out(command, options.out, "stress");
+  add_table(command, options.output);
   command.footer(
       "Invalid: a force that is infinite or not a number, or a force larger than the proven bound of the law. Contact "
       "sets include zero normals, coincident points and opposite gradients.\n\n"

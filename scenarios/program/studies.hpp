@@ -18,11 +18,11 @@
 ///    "between": [1e2, 1e5], "stable": "bounded",
 ///    "over": {"rendering.damping_N_s_per_m": {"from": 0.1, "to": 150, "count": 17, "log": true}}}
 ///
-/// Numbers, texts and true stand for themselves. A list of two numbers for "between" is a range. Other lists
-/// are values separated by commas; in "bound", each entry becomes an option of its own. The objects "set",
-/// "over" and "vary" map paths of fields to a value, a list, or a range with "from", "to", "count" and "log". A
-/// scenario file is searched next to the study first. "alone" is for scripts/reproduce: it runs nothing else at
-/// the same time as a study that measures time.
+/// Numbers, texts and true stand for themselves. A list of two numbers for "between" is a range. Other lists are values
+/// separated by commas; in "bound", each entry becomes an option of its own. The objects "set", "over" and "vary" map
+/// paths of fields to a value, a list, or a range with "from", "to", "count" and "log". A scenario file is searched
+/// next to the study first. "alone" is for scripts/reproduce: the script runs nothing else at the same time as a study
+/// that measures time.
 namespace hapbench {
 
 /// A study in the folder scenarios/library/studies; `ask` is the command.
@@ -42,7 +42,7 @@ struct StudyArguments {
   /// which may name a study. Returns empty without a study. Throws InputError for a study of another command.
   static std::optional<StudyArguments> in(const ProgramArguments& arguments, std::span<const std::size_t> positions);
 
-  /// Returns the error with the study's file and line in front. The line is that of the first option in
+  /// Returns the error with the study's file and line in front. The line is the line of the first option in
   /// ErrorLocation::about_options that the study gives. Returns the error unchanged if the study has none of these
   /// options.
   InputError located(const InputError& error) const;

@@ -11,6 +11,7 @@
 #include "scenarios/batch/join_shards.hpp"
 #include "scenarios/batch/number_with_error.hpp"
 #include "scenarios/batch/ranking.hpp"
+#include "scenarios/batch/run_cost.hpp"
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/batch/sampling.hpp"
 #include "scenarios/batch/shard.hpp"
@@ -32,6 +33,7 @@
 #include "scenarios/program/program_context.hpp"
 #include "scenarios/program/results_folder.hpp"
 #include "scenarios/program/run_table.hpp"
+#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
@@ -41,20 +43,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kTimesFile = "sweep_timing.csv";
+
 /// Returns the printed columns of a run: the varied fields, the outcome and the columns of `run`. Adds a column
-/// for the metric if none of them has it.
-Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric) {
+/// for the metric if no other column has the metric, and the time of a step if `costs` has the cost of each run.
+Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric, const std::vector<RunCost>& costs) {
   Columns<SweepRow> columns;
-  // Begin with the varied fields. If several fields vary, add the index of the run. Round sampled numbers.
-  const bool single = table.fields() == 1, sampled = table.about.contains("sample");
+  // Begin with the varied fields. If several fields vary, add the index of the run.
+  const bool single = table.fields() == 1;
   for (std::size_t c = single ? 1 : 0; c <= table.fields(); ++c) {
     std::string title = table.columns[c];
     if (const std::size_t dot = title.rfind('.'); !single && dot != std::string::npos) title.insert(dot + 1, "\n");
-    const auto value = [c, rounds = sampled && c > 0](const SweepRow& row) {
-      const auto number = rounds ? finite_number(row[c]) : std::nullopt;
-      return number ? significant(*number, 6) : row[c];
-    };
-    columns.add({{title, "unit of the metric", table.columns[c], value, only_printed()}});
+    const auto value = [c](const SweepRow& row) { return axis_cell(row[c]); };
+    columns.add({{title, "unit of the field", table.columns[c], value, varied(only_printed())}});
   }
   const auto outcome = [&table](const SweepRow& row) { return table.outcome(row); };
   columns.add({{"outcome", "", "outcome", outcome, only_printed()}});
@@ -69,6 +70,11 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
   add_metrics(columns, headings, [&table](const SweepRow& row, const char* name) {
     return NumberWithError{table.number(row, name), table.tolerance(row, name)};
   });
+  if (costs.empty()) return columns;
+  const auto microseconds = [&costs](const SweepRow& row) {
+    return significant(1e6 * costs[*whole_number(row[0])].step_s, 3);
+  };
+  columns.add({{"us per\nstep", "1", "seconds_per_step in microseconds", microseconds, only_printed()}});
   return columns;
 }
 
@@ -84,7 +90,8 @@ Columns<OutcomeCount> count_columns() {
 
 /// Returns the table of the runs, followed by the counts of outcomes. With several fields, the runs are in
 /// ascending order of the metric, failures last.
-std::string summary_text(const SweepTable& table, const std::string& metric, const Layout& layout) {
+std::string summary_text(const SweepTable& table, const std::string& metric, const std::vector<RunCost>& costs,
+                         const Layout& layout) {
   constexpr std::size_t kMaxShown = 100, kMaxListed = 20;
   std::vector<SweepRow> rows = table.rows;
   const bool single = table.fields() == 1;
@@ -99,7 +106,7 @@ std::string summary_text(const SweepTable& table, const std::string& metric, con
   }
   if (shown < rows.size() && single) text = fmt::format("the first {} of {} runs\n\n", shown, rows.size());
   rows.resize(shown);
-  if (shown > 0) text += run_columns(table, metric).text(rows, layout) + "\n";
+  if (shown > 0) text += run_columns(table, metric, costs).text(rows, layout) + "\n";
   return text + count_columns().text(table.kept.outcomes, layout);
 }
 
@@ -114,7 +121,7 @@ Json summary_json(const SweepTable& table) {
   Json outcomes = Json::object();
   for (const auto& [outcome, count] : counts.outcomes) outcomes[outcome] = count.runs;
   Json json = {{"definition", table.about["definition"]}, {"runs", counts.runs},     {"outcomes", std::move(outcomes)},
-               {"unexpected", counts.unexpected},         {"failed", counts.failed}, {"file", table.file.string()}};
+               {"unexpected", counts.unexpected.size()},  {"failed", counts.failed}, {"file", table.file.string()}};
   if (counts.runs > SweepTable::kMaxRows) return json;
   Json& rows = json["rows"] = Json::array();
   for (const SweepRow& row : table.rows) {
@@ -132,17 +139,29 @@ struct SweepCommand : CommonOptions {
   std::string scenario, sample, points, metric, shard;
   std::vector<std::string> vary, where;
   std::uint64_t seed = 1, row = 0;
-  bool resume = false, keep_runs = false, print = false;
+  bool resume = false, keep_runs = false, print = false, full = false, time = false;
 };
 
-constexpr const char* kNothingToSweep =
-    "sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep";
+constexpr std::size_t kMaxTimed = 1000;
+
+constexpr const char* kNoScene =
+    "sweep: no scenario is given; allowed: a scenario and --vary, or the folder of a "
+    "finished sweep";
+
+/// Throws InputError about a scenario without --vary and --points.
+[[noreturn]] void fail_without_axes(const std::string& scenario) {
+  if (scenario.empty()) throw InputError(kNoScene);
+  throw InputError(
+      fmt::format("sweep: got {} without --vary, and it is no folder of a finished sweep; allowed: with "
+                  "--vary or --points, such as --vary rendering.stiffness_N_per_m=1e3:1e5:9:log",
+                  shell_word(scenario)));
+}
 
 /// Returns the scenes that an axis names, or the scene of the command line. Throws InputError.
 std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vector<Axis>& axes) {
   const auto axis = std::ranges::find(axes, kSceneAxis, &Axis::path);
   if (axis == axes.end()) {
-    if (command.scenario.empty()) throw InputError(kNothingToSweep);
+    if (command.scenario.empty()) throw InputError(kNoScene);
     return {read_scenario_text(find_scenario(command.scenario))};
   }
   if (!command.scenario.empty() || axis->range)
@@ -167,6 +186,14 @@ Cases cases_of(const SweepCommand& command) {
   return {std::move(scenes), command.overrides, std::move(axes), std::move(sampling)};
 }
 
+/// Returns the outcomes that are failures, with their numbers of runs: "went_through 12, diverges 3".
+std::string failures_text(const SweepCounts& counts) {
+  std::vector<std::string> texts;
+  for (const auto& [outcome, count] : counts.outcomes)
+    if (is_failure(outcome)) texts.push_back(fmt::format("{} {}", outcome, count.runs - count.expected));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 /// Reports the number and the first of the runs that failed or ended unexpectedly, and returns the exit status.
 int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& counts, ProgramContext& context) {
   const std::string scene = cases.scenes().front().file.string();
@@ -178,9 +205,16 @@ int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& co
                                      run_text(*report.failed), one_line(report.problem)));
     return kInternalFault;
   }
-  if (counts.unexpected == 0) return kSuccess;
+  // Runs that fail by their physics are results. Only an unmet "expect" of the user is an error.
+  std::vector<std::size_t> unmet, failures;
+  for (const std::size_t run : counts.unexpected) (states_expectations(cases, run) ? unmet : failures).push_back(run);
+  if (!failures.empty()) {
+    print_note(context, fmt::format("{}: {} of {} runs failed ({}), the first: {}", scene, failures.size(), counts.runs,
+                                    failures_text(counts), run_text(failures.front())));
+  }
+  if (unmet.empty()) return kSuccess;
   print_note(context, fmt::format("{}: {} of {} runs did not meet the scenario's expect, the first: {}", scene,
-                                  counts.unexpected, counts.runs, run_text(*counts.first_unexpected)));
+                                  unmet.size(), counts.runs, run_text(unmet.front())));
   return kUnexpectedOutcome;
 }
 
@@ -202,14 +236,20 @@ int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& c
 
 /// Prints the rows of a finished sweep that satisfy the conditions of --where. `resumed`: number of runs that
 /// an earlier call had computed.
-void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramContext& context,
-                 std::size_t resumed = 0) {
+void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramContext& context, std::size_t resumed = 0,
+                 const std::vector<RunCost>& costs = {}) {
   const Layout layout = context.layout();
   const std::string metric = chosen_metric(table.metrics(), command.metric);
   if (command.output.json) return print(context, command.output, "", summary_json(table));
-  std::string text = summary_text(table, metric, layout);
+  std::string text = summary_text(table, metric, costs, layout);
   if (resumed > 0) text += fmt::format("\n{} of the runs were taken from the interrupted sweep\n", resumed);
   text += fmt::format("\nresults in {}\n", table.file.string());
+  if (!costs.empty())
+    text += layout.wrapped(
+        fmt::format(
+            "processor times in {}: runs without observers and files, one at a time, smallest of {} repetitions",
+            kTimesFile, kTimingRepetitions),
+        0);
   if (!command.where.empty())
     text += fmt::format("{} of {} runs satisfy {}\n", table.kept.runs, table.counts.runs,
                         fmt::join(command.where, " and "));
@@ -219,14 +259,64 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramCo
   print(context, command.output, text, {});
 }
 
+/// Cost of a run of a sweep.
+struct TimedRun {
+  std::size_t index;
+  std::vector<std::string> values;  ///< of the varied fields
+  RunCost cost;
+};
+
+/// Returns the columns of sweep_timing.csv. `fields`: paths of the varied fields.
+Columns<TimedRun> timing_columns(const std::vector<std::string>& fields) {
+  Columns<TimedRun> columns = {{"index", "1", "index of the run, as in sweep.csv", &TimedRun::index}};
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    columns.add(
+        {{fields[i], "unit of the field", "value of the field", [i](const TimedRun& r) { return r.values[i]; }}});
+  columns.add(
+      {{"seconds_per_step", "s", "processor time of a step in a run without observers: smallest of five repetitions",
+        [](const TimedRun& r) { return r.cost.step_s; }},
+       {"spread_s", "s", "median of the repetitions minus the smallest repetition, of one step",
+        [](const TimedRun& r) { return r.cost.spread_s; }},
+       {"seconds_per_simulated_second", "s/s", "processor time per simulated second",
+        [](const TimedRun& r) { return r.cost.per_simulated_second(); }},
+       {"deadline_share", "1", "processor time of a step divided by 0.5 ms",
+        [](const TimedRun& r) { return r.cost.deadline_share(); }},
+       {"steps", "1", "steps of the measured run; fewer than the scenario's if it diverges or its task ends",
+        [](const TimedRun& r) { return r.cost.steps; }}});
+  return columns;
+}
+
+/// Measures the cost of each run of a sweep and writes sweep_timing.csv. A block of runs is measured together, because
+/// each run keeps its simulation until the end of the measurement.
+std::vector<RunCost> timed_runs(const Cases& cases, const fs::path& directory, const JobOptions& jobs) {
+  constexpr std::size_t kTogether = 32;
+  std::vector<TimedRun> rows;
+  std::vector<RunCost> costs;
+  for (std::size_t first = 0; first < cases.size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, cases.size() - first);
+    for (const RunCost& cost : measure_cost(
+             count, [&](std::size_t i) { return checked(cases.load(first + i)); }, jobs)) {
+      rows.push_back({costs.size(), cases.values(costs.size()), cost});
+      costs.push_back(cost);
+    }
+  }
+  std::vector<std::string> fields;
+  for (const Axis& axis : cases.axes()) fields.push_back(axis.path);
+  FileSet files;
+  timing_columns(fields).write(directory / kTimesFile, rows, files);
+  files.commit();
+  return costs;
+}
+
 /// Prints a finished sweep again. Throws InputError for options that would run something.
 int reprint(const SweepCommand& command, ProgramContext& context) {
   const bool runs = !command.vary.empty() || !command.overrides.empty() || !command.sample.empty() ||
                     !command.points.empty() || !command.out.empty() || !command.shard.empty() || command.resume ||
-                    command.keep_runs || command.print;
+                    command.keep_runs || command.print || command.full || command.time;
   if (runs) {
     throw InputError(fmt::format(
-        "{}: holds a finished sweep, which is printed again; allowed with it: --where, --metric, --json, --quiet",
+        "{}: holds a finished sweep, which is printed again; allowed with it: --where, --metric, --json, --quiet; "
+        "--row and --print need the scenario and the options of the sweep instead",
         command.scenario));
   }
   print_sweep(command, read_sweep(fs::path(command.scenario) / "sweep.csv", command.where), context);
@@ -234,17 +324,23 @@ int reprint(const SweepCommand& command, ProgramContext& context) {
 }
 
 int sweep(const SweepCommand& command, ProgramContext& context) {
-  // A folder with results is printed; complete shards are joined first.
+  // If the argument is a folder with results, print the results. If it has all shards of a sweep, join them first.
   std::error_code ignored;
   if (fs::is_directory(command.scenario, ignored))
     if (join_shards(command.scenario) || fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored))
       return reprint(command, context);
-  if (command.vary.empty() && command.points.empty()) throw InputError(kNothingToSweep);
+  if (command.vary.empty() && command.points.empty()) fail_without_axes(command.scenario);
   if (!command.where.empty() && !command.shard.empty())
     fail_in_option("--where",
                    "got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");
+  if (command.time && !command.shard.empty())
+    fail_in_option("--time", "got it for a shard; allowed: for a whole sweep");
   // Check all input before anything runs or is written.
   Cases cases = cases_of(command);
+  if (command.time && cases.size() > kMaxTimed)
+    fail_in_option("--time",
+                   fmt::format("got {} runs; allowed: at most {}, each of which is repeated for 0.1 s or more",
+                               cases.size(), kMaxTimed));
   if (command.print) return print_row(command, cases, context);
   SweepOptions options{
       .directory = results_directory(command.out, "sweep_" + cases.scenes().front().file.stem().string()),
@@ -252,7 +348,8 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
       .resume = command.resume,
       .keep_runs = command.keep_runs};
   if (!command.shard.empty()) options.shard = parse_shard(command.shard);
-  const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking", context));
+  const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking", context),
+                                    command.full ? RunLength::full : RunLength::until_failure);
   chosen_metric(plan.metrics, command.metric);            // throws if the metric does not exist
   print_warnings(context, first_few(plan.warnings, 20));  // there may be a warning for each run
   const FolderLock lock = locked_results(context, options.directory, options.table().filename().string(), "sweep");
@@ -260,7 +357,13 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
   // Run the sweep, then print its table.
   const SweepReport report = run_sweep(plan, options);
   const SweepTable table = read_sweep(options.table(), command.where);
-  print_sweep(command, table, context, report.resumed);
+  std::error_code ignored_error;
+  fs::remove(options.directory / kTimesFile, ignored_error);  // of an earlier sweep
+  const bool is_timed = command.time && !report.failed;
+  const std::vector<RunCost> costs =
+      is_timed ? timed_runs(plan.cases, options.directory, job_options(command, "timing", context))
+               : std::vector<RunCost>();
+  print_sweep(command, table, context, report.resumed, costs);
   return verdict(plan.cases, report, table.counts, context);
 }
 
@@ -272,7 +375,8 @@ std::vector<DescribedTable> sweep_tables() {
       {"index", "1", "index of the run, from 0; one column per varied field follows, named by the field's path"},
       {"outcome", "", "outcome of the run; \"error\" if the run could not be computed"},
       {"expected", "", "true if the run meets the scenario's expect"},
-      {"steps", "1", "number of time steps of the run"}};
+      {"steps", "1", "number of time steps of the run"},
+      {std::string(kEndedAt), "s", kEndedAtMeaning}};
   for (const Metric& metric : all_metrics()) table.columns.push_back({metric.name, metric.unit, metric.meaning});
   for (const Metric& metric : all_metrics())
     if (metric.bounded)
@@ -281,7 +385,9 @@ std::vector<DescribedTable> sweep_tables() {
   table.columns.push_back(
       {"state_hash", "",
        "hash over the bits of position, velocity and force of every time step: equal for identical runs"});
-  return {table};
+  return {table, timing_columns({}).described(kTimesFile,
+                                              "written by sweep --time: one line per run; after index, one "
+                                              "column per varied field")};
 }
 
 void add_sweep(CommandLine& line) {
@@ -312,23 +418,33 @@ void add_sweep(CommandLine& line) {
   command.flag("--resume", options.resume,
                "continue an interrupted sweep with the same options, and repeat runs that could not be computed");
   command.flag("--keep-runs", options.keep_runs, "also write the files of each run into OUT/runs/INDEX");
+  command.flag(
+      "--full", options.full,
+      "make all steps of runs that fail; otherwise such a run ends when it has failed for good, and its metrics "
+      "are empty");
+  command.flag("--time", options.time,
+               "also measure the processor time of each run, without observers and one run at a time; writes "
+               "sweep_timing.csv");
   command.add("--row <index>", options.row, "row of sweep.csv for --print, from 0");
   command.flag("--print", options.print,
-               "print the \"hapbench run\" line that repeats one row; add it to the options of the sweep");
+               "run nothing, but print the \"hapbench run\" command that repeats one row; give the scenario and the "
+               "options of the sweep too");
   command.needs("--row", "--print");
   command.needs("--print", "--row");
   command.add(
       "--shard <i/n>", options.shard,
       "run only rows i, i+n, i+2n, ... (i from 0), for several machines; \"hapbench sweep FOLDER\" joins the shards");
   command.footer(
-      "Files: sweep.csv has one row per run: index, the varied fields, outcome, expected, steps, all metrics, "
-      "state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in "
+      "Files: sweep.csv has one row per run: index, the varied fields, outcome, expected, steps, ended_at_s, all "
+      "metrics, state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in "
       "sweep.csv.part until the sweep ends.\n\n"
       "Fields: rendering.algorithm=all tries every law; scenario=v,w,... varies the scenario, without <scenario>.\n\n"
       "Earlier results: a finished sweep in the folder is replaced. An interrupted one is not: use --resume or "
       "another --out.\n\n"
-      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not end as its scenario "
-      "expects, 130 stopped by Ctrl-C; running runs are finished first.");
+      "Failed runs: a run that goes through the surface, diverges or leaves for good ends at this moment "
+      "(hapbench describe \"early end\"). Such runs are counted; the exit status is still 0.\n\n"
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not meet the field expect of its "
+      "scenario (an override that changes the run lifts it), 130 stopped by Ctrl-C; running runs are finished first.");
 }
 
 }  // namespace hapbench

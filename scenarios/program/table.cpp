@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <sstream>
 
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/text.hpp"
 
 namespace hapbench {
@@ -15,18 +15,11 @@ namespace {
 
 constexpr std::size_t kGap = 2;  ///< spaces between columns
 
-/// Returns the upper and lower line of a title. A title of one line is the lower line.
-std::array<std::string, 2> title_lines(const std::string& title) {
-  const std::size_t end = title.find('\n');
-  if (end == std::string::npos) return {"", title};
-  return {title.substr(0, end), title.substr(end + 1)};
-}
-
 /// Returns the width of each column: the width of its title or of its widest cell, whichever is larger.
 std::vector<std::size_t> widths_of(const Table& table) {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const auto [upper, lower] = title_lines(table.columns[c].title);
+    const auto [upper, lower] = table.columns[c].lines();
     std::size_t width = std::max(upper.size(), lower.size());
     for (const auto& row : table.rows) width = std::max(width, row[c].size());
     widths.push_back(width);
@@ -48,9 +41,9 @@ std::string block_text(const Table& table, const std::vector<std::size_t>& width
     text.erase(text.find_last_not_of(' ') + 1);
     return text + "\n";
   };
-  std::string text = line([&](std::size_t c) { return title_lines(table.columns[c].title)[0]; });
+  std::string text = line([&](std::size_t c) { return table.columns[c].lines()[0]; });
   if (text == "\n") text.clear();
-  text += line([&](std::size_t c) { return title_lines(table.columns[c].title)[1]; });
+  text += line([&](std::size_t c) { return table.columns[c].lines()[1]; });
   text += line([&](std::size_t c) { return std::string(widths[c], '-'); });
   // Write the rows, each with as many lines as its wrapped last cell.
   for (const auto& row : table.rows) {
@@ -68,6 +61,27 @@ std::string block_text(const Table& table, const std::vector<std::size_t>& width
 }
 
 }  // namespace
+
+std::array<std::string, 2> Table::Column::lines() const {
+  const std::size_t end = title.find('\n');
+  if (end == std::string::npos) return {"", title};
+  return {title.substr(0, end), title.substr(end + 1)};
+}
+
+std::array<std::string, 2> Table::Column::head_lines() const {
+  auto [upper, lower] = lines();
+  const std::string line = upper + " " + lower;
+  const auto words = words_of(line);
+  const bool has_unit = unit.empty() || unit == "1" || title.find('[') != std::string::npos ||
+                        std::ranges::find(words, unit) != words.end();
+  if (!has_unit) lower += fmt::format(" [{}]", unit);
+  return {upper, lower};
+}
+
+std::string Table::Column::head() const {
+  const auto [upper, lower] = head_lines();
+  return upper.empty() || upper.ends_with('-') ? upper + lower : upper + " " + lower;
+}
 
 std::string Table::text(std::size_t max_width) const {
   constexpr std::size_t kMinProseWidth = 24;

@@ -69,7 +69,7 @@ InputError usage_error(const CLI::ParseError& error, const CLI::App& program) {
   const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
   const std::string name = command ? command->get_name() + ": " : "", prefix = command ? command->get_name() + " " : "";
   const std::string help = fmt::format("; \"hapbench {}--help\" explains", prefix);
-  // An extra argument is the mistake, if there is one; otherwise CLI11's text explains it.
+  // If there is an extra argument, it is the mistake. Otherwise CLI11's text explains the mistake.
   ProgramArguments extra = program.remaining(true);
   std::erase(extra, "--");
   // An unknown option leaves its value as an extra argument. Report the option, which is the mistake.

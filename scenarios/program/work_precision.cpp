@@ -2,9 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "scenarios/batch/ranking.hpp"
 #include "scenarios/program/digits.hpp"
+#include "scenarios/run/bare_run.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 namespace {
@@ -26,8 +35,8 @@ std::string error_text(const Setting& s, double error, double of_reference, doub
   return fmt::format("{}{}", error < kResolvedError * of_reference ? "< " : "", significant(shown, 2));
 }
 
-/// Returns the columns of convergence.csv, which are the same in every run of the command.
-/// `max_error` [m]: the error that is asked for.
+/// Returns the columns of convergence.csv, which are the same in every run of the command. `max_error` [m]: the
+/// requested error.
 Columns<Setting> error_columns(double max_error) {
   const auto reference_position = [](const Setting& s) { return s.reference_error.position; };
   const auto reference_force = [](const Setting& s) { return s.reference_error.force; };
@@ -43,7 +52,7 @@ Columns<Setting> error_columns(double max_error) {
   return {
       {"problem", "", "values of the fields of --over that define the problem, such as the law", &Setting::problem},
       {"integrator", "", "integrator of the curve", &Setting::integrator, under("integrator")},
-      {"step_s", "s", "time step", &Setting::step_s, under("step\ns")},
+      {"step_s", "s", "time step", &Setting::step_s, varied(under("step\ns"))},
       {"position_error_m", "m",
        "rms distance of the tip's positions from the reference solution, at the times of the largest time step; empty "
        "if the trajectory cannot be predicted, or if one of the runs ended early",
@@ -87,7 +96,8 @@ Columns<Setting> timing_columns() {
            &Setting::is_knee}};
 }
 
-/// Returns what a user wants to know of a problem.
+/// Returns a sentence with the cheapest setting of a problem below `max_error` [m], or the reason why no setting is
+/// named.
 std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
   if (!problem.is_predictable) {
     return fmt::format(
@@ -111,8 +121,9 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
   std::vector<Setting> all;
   for (const WorkPrecisionProblem& problem : problems) {
     all.insert(all.end(), problem.settings.begin(), problem.settings.end());
-    report.say(fmt::format("{}\n\n{}\n{}", problem.name, error_columns(max_error).text(problem.settings, layout),
-                           layout.wrapped(answer_text(problem, max_error), 0)));
+    report.say(problem.name + "\n\n");
+    report.show(error_columns(max_error).table(problem.settings, problem.name, layout.in_full()));
+    report.say("\n" + layout.wrapped(answer_text(problem, max_error), 0));
     const auto& first = problem.settings.front();
     report.say(layout.wrapped(fmt::format("reference: {}; its error is about {} m and {} N", problem.reference,
                                           significant(first.reference_error.position, 1),
@@ -131,8 +142,126 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
   report.write(kTimes, timing_columns(), all);
 }
 
+namespace {
+
+constexpr const char *kModelErrors = "convergence_model.csv", *kModelTimes = "convergence_model_timing.csv";
+
+/// A law, or another setting, in a scene with a reference force.
+struct ModelError {
+  std::string problem;  ///< values of the fields of --over
+  std::string outcome;
+  std::optional<double> direction = {}, force = {}, relative = {};  ///< [rad], [N], [1]
+  double reference_error = 0.0;                                     ///< of the reference force [N]
+  bool shares_reference = false;  ///< renders by the constraints of the reference force
+  StepLatency steps = {};         ///< of the fastest repetition
+};
+
+double seconds(std::uint64_t nanoseconds) {
+  return 1e-9 * static_cast<double>(nanoseconds);
+}
+
+Columns<ModelError> model_columns() {
+  using Row = ModelError;
+  const auto degrees = [](const Row& r) {
+    return r.direction ? significant(*r.direction * 180.0 / std::numbers::pi, 3) : "-";
+  };
+  const auto microseconds = [](std::uint64_t nanoseconds) { return significant(1e6 * seconds(nanoseconds), 3); };
+  const auto share = [](const Row& r) { return significant(100.0 * seconds(r.steps.p99_9) / kStepDeadlines[0], 2); };
+  return {
+      {"problem", "", "values of the fields of --over, such as the law", &Row::problem, under("problem")},
+      {"outcome", "", "outcome of the run", &Row::outcome},
+      {"force_direction_error_rad", "rad",
+       "mean angle between rendered force and reference force, where both exceed 0.1 N", &Row::direction},
+      {"direction\ndeg", "1", "force_direction_error_rad in degrees", degrees, only_printed()},
+      {"force_error_rms_N", "N", "root mean square of the rendered force minus the reference force", &Row::force,
+       under("force error\nN rms", 3)},
+      {"force_error_relative", "1", "force_error_rms_N / rms of the reference force", &Row::relative},
+      {"reference_error_N", "N", "error of the reference force; 0 if it is given or measured", &Row::reference_error},
+      {"shares_reference", "",
+       "true if the law renders by the constraints of the reference force, so that its error says nothing",
+       &Row::shares_reference},
+      {"median us", "1", "median time of a step in microseconds",
+       [microseconds](const Row& r) { return microseconds(r.steps.p50); }, only_printed()},
+      {"99.9 % us", "1", "99.9th percentile of the time of a step in microseconds",
+       [microseconds](const Row& r) { return microseconds(r.steps.p99_9); }, only_printed()},
+      {"99.9 % of\n0.5 ms [%]", "1", "99.9th percentile as a percentage of 0.5 ms", share, only_printed()}};
+}
+
+Columns<ModelError> model_timing_columns() {
+  using Row = ModelError;
+  return {{"problem", "", "problem of convergence_model.csv", &Row::problem},
+          {"step_median_s", "s", "median time of a step in a run without observers: smallest of five repetitions",
+           [](const Row& r) { return seconds(r.steps.p50); }},
+          {"step_p99_9_s", "s", "99.9th percentile of the time of a step: smallest of five repetitions",
+           [](const Row& r) { return seconds(r.steps.p99_9); }},
+          {"deadline_s", "s", "time that a step may take", [](const Row&) { return kStepDeadlines[0]; }},
+          {"deadline_share", "1", "step_p99_9_s / deadline_s",
+           [](const Row& r) { return seconds(r.steps.p99_9) / kStepDeadlines[0]; }}};
+}
+
+/// Runs a case and returns its errors, without times.
+ModelError model_error(const CheckedScenario& scene, std::string problem) {
+  const Result run = run_scenario(scene, std::nullopt, false);
+  const auto metric = [&run](const char* name) { return number_of(run.metrics, name); };
+  const bool is_rigid = std::holds_alternative<RigidContactFields>(*scene.scenario().reference_force);
+  ModelError error{.problem = std::move(problem),
+                   .outcome = std::string(outcome_name(run.end.outcome)),
+                   .direction = metric("fidelity.force_direction_error_rad"),
+                   .force = metric("fidelity.force_error_rms_N"),
+                   .relative = metric("fidelity.force_error_relative"),
+                   .shares_reference = is_rigid && run.algorithm == kSharesReference};
+  if (run.sections["fidelity"].contains("reference_error_N"))
+    error.reference_error = run.sections["fidelity"]["reference_error_N"].get<double>();
+  return error;
+}
+
+}  // namespace
+
+void report_model_errors(const Cases& cases, const JobOptions& jobs, const Layout& layout, Report& report) {
+  std::vector<ModelError> all(cases.size());
+  std::vector<std::unique_ptr<BareRun>> bare(cases.size());
+  JobOptions one_by_one = jobs;
+  one_by_one.threads = 1;
+  // The first round computes the errors. Every further round times each case once; the first of them warms the caches.
+  for_each_job(cases.size() * (kTimingRepetitions + 2), one_by_one, [&](std::size_t job) {
+    const std::size_t i = job % cases.size(), round = job / cases.size();
+    if (round == 0) {
+      const CheckedScenario scene = checked(cases.load(i));
+      all[i] = model_error(scene, fmt::format("{}", fmt::join(cases.values(i), ", ")));
+      bare[i] = std::make_unique<BareRun>(scene, make_shell(scene.scenario(), scene.files()));
+      return;
+    }
+    StepLatency latency = bare[i]->latency();
+    StepLatency& smallest = all[i].steps;
+    if (round == 1) return;
+    if (round > 2) {
+      latency.p50 = std::min(latency.p50, smallest.p50);
+      latency.p99_9 = std::min(latency.p99_9, smallest.p99_9);
+    }
+    smallest = std::move(latency);
+  });
+  const auto error = [](const ModelError& e) { return e.force.value_or(std::numeric_limits<double>::infinity()); };
+  std::ranges::stable_sort(all, {}, error);
+  report.say("force compared with the reference force, and the time of a step\n\n" + model_columns().text(all, layout));
+  if (std::ranges::count(all, true, &ModelError::shares_reference) > 0)
+    report.say(layout.wrapped(
+        fmt::format("{}: renders by the constraints of the reference force; its error says nothing", kSharesReference),
+        0));
+  report.json() = Json::array();
+  for (const ModelError& row : all) {
+    report.json().push_back(model_columns().json(row));
+    report.json().back().update(model_timing_columns().json(row));
+  }
+  report.write(kModelErrors, model_columns(), all);
+  report.write(kModelTimes, model_timing_columns(), all);
+}
+
 std::vector<DescribedTable> work_precision_tables() {
-  return {error_columns(0.0).described(kErrors,
+  return {model_columns().described(kModelErrors,
+                                    "written by converge --over for a scene with a reference force: one line per law"),
+          model_timing_columns().described(
+              kModelTimes, "written by converge --over for a scene with a reference force: time of a step"),
+          error_columns(0.0).described(kErrors,
                                        "written by converge --over: one line per problem, integrator and time step"),
           timing_columns().described(
               kTimes,

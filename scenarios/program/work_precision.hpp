@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "scenarios/analysis/work_precision/work_precision.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/program/columns.hpp"
 #include "scenarios/program/report.hpp"
 
@@ -14,7 +15,12 @@ namespace hapbench {
 void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, double max_error, const Layout& layout,
                            Report& report);
 
-/// Returns the descriptions of both tables.
+/// Reports how close each case of a scene with a reference force is to this force, and what a step costs: the files
+/// convergence_model.csv and convergence_model_timing.csv, the JSON, and the text. `cases` vary the law and any other
+/// fields. Runs one case after the other, because times are measured. Throws InputError and Stopped.
+void report_model_errors(const Cases& cases, const JobOptions& jobs, const Layout& layout, Report& report);
+
+/// Returns the descriptions of all tables.
 std::vector<DescribedTable> work_precision_tables();
 
 }  // namespace hapbench

@@ -86,7 +86,7 @@ LiveRendererConfig live_config(const Scenario& scenario, const RendererSetup& se
   return config;
 }
 
-/// Returns the fields of the scenario's device that the renderer uses, or those that it ignores.
+/// Returns the fields of the scenario's device that the renderer uses, or the fields that it ignores.
 std::string device_fields(const Json& device, std::uint32_t mode, bool used) {
   std::string text;
   for (const auto& [name, value] : device.items()) {

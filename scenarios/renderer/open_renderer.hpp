@@ -7,7 +7,7 @@
 #include "device_model/live/live_renderer.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 
-/// What a HapbenchRenderer is behind the C interface.
+/// The renderer and its texts behind the C interface, in which this type is opaque.
 struct HapbenchRenderer {
   hapbench::LiveRenderer live;
   std::string inspection;  ///< text of hapbench_renderer_inspect
@@ -16,7 +16,7 @@ struct HapbenchRenderer {
 
 namespace hapbench {
 
-/// What the caller decides about a renderer, besides the scenario.
+/// Settings that the caller gives for a renderer, besides the scenario.
 struct RendererSetup {
   std::uint32_t mode = HAPBENCH_IMPEDANCE;
   std::uint32_t flags = 0;

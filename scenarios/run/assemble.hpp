@@ -19,7 +19,7 @@ SimulationConfig simulation_config(const Scenario& scenario);
 /// be used. With Skips::off (RenderingConfig), every step compares every point with the tool.
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
                          Trial trial);
-/// As assemble(), but without hand, motion and device, which stay null: the parts that compute a force from a pose.
+/// Like assemble(), but without hand, motion and device, which stay null: the parts that compute a force from a pose.
 SimulationParts assemble_rendering(const Scenario& scenario, const NamedFiles& files,
                                    std::shared_ptr<const PointShell> shell, Trial trial = {});
 /// Builds the parts of the first trial and its point shell. For scenarios that are built in code: this overload

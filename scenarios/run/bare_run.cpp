@@ -28,4 +28,17 @@ double BareRun::seconds(std::uint64_t times) {
   return (processor_seconds() - before) / static_cast<double>(times);
 }
 
+StepLatency BareRun::latency() {
+  StepTimes times(static_cast<std::size_t>(checked_.scenario().time.steps));
+  simulation_.reset();
+  times.start();
+  run_to_end(simulation_, [&] {
+    bool more = true;
+    for (std::uint64_t i = 0; i < kStepsPerStopCheck && (more = simulation_.step()); ++i) times.lap();
+    times.start();  // the check for a signal is no part of a step
+    return more;
+  });
+  return step_latency(times.nanoseconds(), times.overhead());
+}
+
 }  // namespace hapbench

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "results/observe/step_times.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/simulation.hpp"
@@ -23,6 +24,8 @@ class BareRun {
   /// Takes all steps from t = 0 on, `times` times, and returns the processor time [s] of one repetition. Throws Stopped
   /// after a signal.
   double seconds(std::uint64_t times);
+  /// Takes all steps once and returns the distribution of their wall times, without the time of the clock readings.
+  StepLatency latency();
   /// Returns the number of steps of the last repetition. It is smaller than TimeFields::steps if the run diverged or
   /// its task ended.
   std::uint64_t steps() const { return simulation_.next_row(); }

@@ -59,7 +59,7 @@ bool is_unlikely_interval(double interval, const RunTimes& run) {
   return interval > kUnlikelyRatio * run.step || interval * kUnlikelyRatio < run.step;
 }
 
-/// Returns the unit that gives the stroke the duration of the run, or a likely rate; null if there is none.
+/// Returns the unit that gives the stroke the duration of the run, or a likely rate; null if no unit does.
 const ClockUnit* unit_of_stroke(Samples samples, const RunTimes& run) {
   const double interval = interval_of(samples), span = samples.back().time - samples.front().time;
   const auto fits = [&](const ClockUnit& unit, double factor) {
@@ -91,9 +91,9 @@ bool sees_few_samples(Samples samples, const RunTimes& run) {
 
 /// Coverage of a run by a trace.
 struct TraceCoverage {
-  std::uint64_t queries = 0;  ///< steps that look for contacts
-  std::uint64_t covered = 0;  ///< of them, steps that find a time of the trace
-  std::uint64_t times = 0;    ///< times of the trace within the run
+  std::uint64_t queries = 0;  ///< number of steps that look for contacts
+  std::uint64_t covered = 0;  ///< number of these steps that find a time of the trace
+  std::uint64_t times = 0;    ///< number of times of the trace within the run
 };
 
 /// Counts the steps that find a time of the trace within half a step. The trace's times are divided by `per_second`.
@@ -112,7 +112,7 @@ TraceCoverage coverage_of(const ContactTrace& trace, const RunTimes& run, std::i
   return coverage;
 }
 
-/// Returns the median time between successive times of the trace [s]; 0 for fewer than two times.
+/// Returns the median of the first 1000 intervals between the times of the trace [s]; 0 for fewer than two times.
 double median_interval(const ContactTrace& trace) {
   constexpr std::size_t kMaxIntervals = 1000;
   std::vector<double> intervals;
@@ -124,7 +124,7 @@ double median_interval(const ContactTrace& trace) {
   return *middle;
 }
 
-/// Returns the unit with which the trace covers much more of the run; null if there is none.
+/// Returns the unit with which the trace covers much more of the run; null if no unit does.
 const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                                const TraceCoverage& coverage) {
   for (const ClockUnit& unit : kClockUnits) {
@@ -135,8 +135,8 @@ const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, s
   return nullptr;
 }
 
-/// Returns the unit in which the trace has the interval of the steps that look for contacts, `query` [s]; null for
-/// seconds, or if there is none. For a clock that does not begin at 0.
+/// Returns the unit in which the trace has the interval of the steps that look for contacts, `query` [s]; null if the
+/// unit is the second, or if no unit fits. Used for a clock that does not begin at 0.
 const ClockUnit* unit_of_interval(double interval, double query) {
   constexpr double kFactor = 10.0;  // a trace may be slower or faster than the run
   const auto fits = [&](double per_second) {
@@ -147,7 +147,7 @@ const ClockUnit* unit_of_interval(double interval, double query) {
   return interval <= 0.0 || fits(1.0) || unit == std::end(kClockUnits) ? nullptr : unit;
 }
 
-/// Returns what is wrong with the trace's clock; empty if nothing is.
+/// Returns what is wrong with the trace's clock; empty if the clock is right.
 std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                           const TraceCoverage& coverage) {
   const double first = trace.times.front().time, last = trace.times.back().time;
@@ -210,7 +210,7 @@ std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFiel
     return warning(fmt::format("{}: are the stroke's times in seconds, and is time.step_s right?", both));
   // The start or the end is missing.
   if (!is_short && !is_late) return std::nullopt;
-  constexpr double kRounding = 1e-6;  // of a step
+  constexpr double kRounding = 1e-6;  // tolerance as a fraction of a step
   const double last_step = std::floor(stop / run.step + kRounding);
   const double covered = std::min(last_step + 1.0, run.steps) - std::max(0.0, std::ceil(start / run.step));
   std::string text = fmt::format("{}: the stroke covers {:.3g} % of the steps", both, 100.0 * covered / run.steps);

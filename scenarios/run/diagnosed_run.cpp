@@ -9,10 +9,12 @@
 #include "device_model/impedance_device.hpp"
 #include "scenarios/input/rounding.hpp"
 #include "scenarios/run/expectations.hpp"
+#include "scenarios/run/linear_contact.hpp"
 #include "scenarios/run/scene_distances.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/run/scripted_motion.hpp"
 #include "scenarios/run/vibration_limit.hpp"
+#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 namespace {
@@ -23,21 +25,36 @@ constexpr std::uint64_t kMinQuarterSteps = 10;
 /// any stiffness.
 constexpr double kSmallestStiffness = 1e-9;
 
-/// Returns K divided by the largest stable K of the linear loop in contact. The loop uses the stiffest contact
-/// of the run (largest stiffness ratio lambda). Empty without contact or without a loop. Rounded to six digits,
-/// so that the result does not depend on how a build rounds.
-Number ratio_to_stability_limit(const DiagnosedRun& run) {
+/// Returns the largest stable K of the loop on springs in permanent contact [N/m], with the stiffest direction of the
+/// run (largest stiffness ratio lambda). Empty without a loop.
+Number springs_limit(const DiagnosedRun& run) {
   const Number lambda = run.metric("ratio_max");
   const double K = run.scenario().rendering.stiffness;
-  if (!lambda || !(*lambda > 0.0) || !(K > 0.0) || !run.is_free()) return std::nullopt;
-  if (contact_step_matrix(run.scenario(), *lambda).size() == 0) return std::nullopt;
+  if (!lambda || !(*lambda > 0.0) || contact_step_matrix(run.scenario(), *lambda).size() == 0) return std::nullopt;
   constexpr double kMax = 2.0;  // search range, in units of K; above it, K is far below the limit
   Scenario at = run.scenario();
-  const double limit = first_stability_limit(kSmallestStiffness * K, kMax * K, [&](double stiffness) {
+  return first_stability_limit(kSmallestStiffness * K, kMax * K, [&](double stiffness) {
     at.rendering.stiffness = stiffness;
     return contact_step_matrix(at, *lambda);
   });
-  return rounded_to_digits(K / std::max(kSmallestStiffness * K, limit), 6);
+}
+
+/// Returns the largest stable K of the loop in the last contact of the run [N/m]. Empty without contact or loop.
+Number surface_limit(const DiagnosedRun& run) {
+  if (!run.observations.last_contact || has_multi_rate_contacts(run.scenario())) return std::nullopt;
+  const CheckedScenario scenario = checked(run.loaded);
+  return linear_stiffness_limit(scenario, make_shell(scenario.scenario(), scenario.files()),
+                                *run.observations.last_contact);
+}
+
+/// Returns K divided by the largest stable K of the linear loop in contact. Empty without contact or without a loop.
+/// Rounded to six digits, so that the result does not depend on how a build rounds.
+Number ratio_to_stability_limit(const DiagnosedRun& run) {
+  const double K = run.scenario().rendering.stiffness;
+  if (!(K > 0.0) || !run.is_free()) return std::nullopt;
+  const Number limit = run.has_springs() ? springs_limit(run) : surface_limit(run);
+  if (!limit) return std::nullopt;
+  return rounded_to_digits(K / std::max(kSmallestStiffness * K, *limit), 6);
 }
 
 /// Returns true if a run vibrates, diverges or loses contact, as it does with an unstable loop. Divergence that a law
@@ -56,7 +73,7 @@ Number ratio_in_vibration(const DiagnosedRun& run) {
 }
 
 bool is_unstable_at_any_stiffness(double ratio) {
-  constexpr double kRounding = 1e-3;  // of six digits
+  constexpr double kRounding = 1e-3;  // larger than the relative rounding error of a number with six digits
   return ratio >= (1.0 - kRounding) / kSmallestStiffness;
 }
 

@@ -229,7 +229,7 @@ std::string against_saturation(const DiagnosedRun& run) {
   const bool device_binds = device != nullptr && device->force_max && (!rendered || *device->force_max <= *rendered);
   const std::string limit = device_binds ? "a stronger device" : "a larger rendering.limits.max_force_N";
   if (!run.is_free()) return either({"a smaller K", "a motion.position that is less deep", limit});
-  // In equilibrium the force is the hand's at any K; only a vibration gets weaker with K.
+  // In equilibrium the force balances the hand's force at any K. A smaller K only weakens a vibration.
   return is_too_stiff(run) || run.vibrates() ? either({"a smaller K", "a smaller hand force", limit})
                                              : either({"a smaller hand force", limit});
 }

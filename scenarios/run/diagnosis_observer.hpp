@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "results/observe/contact_forces.hpp"
+#include "scenarios/run/linear_contact.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "sim/core/types.hpp"
@@ -18,13 +19,15 @@ namespace hapbench {
 /// exception: it covers only the quarter of the planned duration in which the last trial ended.
 struct RunObservations {
   std::uint64_t in_contact = 0;  ///< number of steps in contact
-  /// Steps in contact whose rendered force reaches the force limit of device or rendering
+  /// Number of steps in contact whose rendered force reaches the force limit of device or rendering.
   std::uint64_t at_force_limit = 0;
-  std::uint64_t at_input_limit = 0;  ///< steps in contact whose hand force reaches the input limit of the device
+  std::uint64_t at_input_limit = 0;  ///< number of steps in contact whose hand force reaches the input limit of the
+                                     ///< device
   double path_in_contact = 0.0;      ///< path length of the tip in contact [m]
   double longest_step = 0.0;         ///< longest displacement of the tip in a step, as defined at
                                      ///< OutcomeObserver::longest_step() [m]
   Vec3 last_force = Vec3::Zero();    ///< rendered force in the last step [N]
+  std::optional<ContactState> last_contact;  ///< at the last step in contact of any trial
   struct Quarter {
     std::uint64_t rows = 0;
     bool always_in_contact = true;                     ///< true if every step of the quarter is in contact
@@ -34,7 +37,7 @@ struct RunObservations {
     std::array<std::uint64_t, 3> high_sign_changes{};  ///< number of sign changes of the force above 30 Hz, per axis
   } last_quarter;
   Vec3 tip = Vec3::Zero();  ///< tip position in the last step [m]
-  OutcomeFacts facts;       ///< of the first trial that has any
+  OutcomeFacts facts;       ///< facts of the first trial that has facts
 };
 
 /// Accumulates the quantities for the diagnosis rules. Cost: about 20 ns a step; constant memory.

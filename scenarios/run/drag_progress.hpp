@@ -19,9 +19,9 @@ class DragProgress {
   /// Adds a step at `time` [s] with the tool at `position` [m].
   void add(double time, const Vec3& position) noexcept;
 
-  /// Returns the interval in which the tool stood still until the end of the run; empty if it did not. The tool
-  /// stands still if, while the target point advances by one tool width, the tool advances by less than a tenth of
-  /// this width.
+  /// Returns the interval in which the tool stood still until the end of the run; empty if the tool moved at the end.
+  /// The tool stands still if, while the target point advances by one tool width, the tool advances by less than a
+  /// tenth of this width.
   std::optional<Stuck> stuck() const;
   double progress() const { return now_.tool; }           ///< largest progress of the tool along the path [m]
   double target_progress() const { return now_.target; }  ///< progress of the target point along the path [m]
@@ -34,12 +34,12 @@ class DragProgress {
   /// Progress of target point and tool along the path at one time.
   struct Sample {
     double time = 0.0, target = 0.0, tool = 0.0;
-    Vec3 position = Vec3::Zero();  ///< of the tool [m]
+    Vec3 position = Vec3::Zero();  ///< position of the tool [m]
   };
   static constexpr std::size_t kSamples = 4;
   const DragHand& hand_;
   double width_, half_path_;  ///< width of the tool; half the length of the target's path [m]
-  /// lag of the tool behind the target point: now; at half of the path [m]
+  /// Lag of the tool behind the target point [m]: in the last step, and at half of the path.
   double lag_ = 0.0, lag_at_half_path_ = 0.0;
   Sample now_;
   /// Ring buffer of samples, taken whenever the target point has advanced by a quarter of the tool's width.

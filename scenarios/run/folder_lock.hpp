@@ -29,7 +29,7 @@ class FolderLock {
   FolderLock& operator=(FolderLock&&) = delete;
 
   /// Returns why the file system has not locked the set, such as "No locks available" on some network file systems;
-  /// empty if it has. Without the lock, nothing excludes another writer.
+  /// empty if it has locked the set. Without the lock, nothing excludes another writer.
   const std::string& problem() const { return problem_; }
 
   /// Returns true if another lock for this folder and set exists. Takes no lock and creates no file.

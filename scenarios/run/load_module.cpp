@@ -38,7 +38,7 @@ constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #endif
 
 // State of this process; load_module.hpp explains why it is not per context.
-std::vector<LoadedModule> modules;  ///< in the order of loading
+std::vector<LoadedModule> modules;  ///< loaded modules, in the order of loading
 std::atomic<int> allowing = 0;      ///< number of existing ModulePermission objects that allow all modules
 
 /// Tables of the libraries of contacts by file. The mutex protects the map.
@@ -135,7 +135,7 @@ const HapbenchModule& contacts_table(const fs::path& file) {
 std::string registered_law(const HapbenchModule& table, const fs::path& file, std::string hash) {
   try {
     AlgorithmEntry entry = law_entry(module_of(table, file), std::move(hash));
-    const std::string name = entry.info->name;
+    std::string name = entry.info->name;
     if (const auto other = std::ranges::find(modules, name, &LoadedModule::algorithm); other != modules.end())
       throw std::invalid_argument(fmt::format("\"{}\" is the name of the law in {}", name, other->file.string()));
     add_algorithm(std::move(entry));

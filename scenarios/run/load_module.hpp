@@ -29,7 +29,7 @@ struct LoadedModule {
 /// or allow all libraries.
 class ModulePermission {
  public:
-  /// With `all`, allows all libraries; without, has no effect.
+  /// If `all` is true, allows all libraries; otherwise has no effect.
   explicit ModulePermission(bool all);
   ~ModulePermission();
   ModulePermission(const ModulePermission&) = delete;
@@ -63,7 +63,8 @@ void load_modules_in(const std::string& what, const std::string& folders, const 
 /// Returns the modules that load_module() has loaded in this process, in the order of loading.
 const std::vector<LoadedModule>& loaded_modules();
 
-/// Throws InputError, with the option that gives permission, unless the user has named this library or allowed all.
+/// Throws InputError, with the option that gives permission, unless the user has named this library or has allowed all
+/// libraries.
 void require_module_permission(const std::filesystem::path& file);
 
 /// Checks that a library may be loaded and is an ELF file, without loading it. Throws InputError.

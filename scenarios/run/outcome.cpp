@@ -12,6 +12,7 @@
 
 #include "scenarios/run/approach.hpp"
 #include "scenarios/run/drag_progress.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_distances.hpp"
@@ -30,13 +31,20 @@ std::string millimetres(const Vec3& position) {
 class OutcomeObserverImpl final : public OutcomeObserver {
  public:
   OutcomeObserverImpl(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
-                      const MetricsObserver* metrics)
+                      const MetricsObserver* metrics, RunLength length)
       : scenario_(scenario),
         metrics_(metrics),
         tool_(parts.tool),
         drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
+    const auto is_unexpected = [&scenario](Outcome outcome) { return !outcome_is_expected(scenario.expect, outcome); };
+    const bool may_end = length == RunLength::until_failure && can_fail_early(scenario);
+    // After a passage, the run may still diverge.
+    passage_ends_ = may_end && is_unexpected(Outcome::went_through) && is_unexpected(Outcome::diverges);
+    // A tool that has left may have gone through before.
+    leaving_ends_ = may_end && never_returns(scenario) && is_unexpected(Outcome::went_through) &&
+                    is_unexpected(Outcome::lost_contact) && is_unexpected(Outcome::no_contact);
     const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
-    // Observe the depth inside the solid, if the environment has one.
+    // Observe the depth inside the environment's solid, if the environment has a solid.
     if (auto solid = make_solid(scenario, files)) {
       const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
       inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
@@ -53,6 +61,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   }
 
   void on_step(const StepRecord& record) noexcept override {
+    if (failure_) return;
     time_ = record.time;
     position_ = record.tool.pose.position;
     force_ = record.force.rendered;
@@ -63,7 +72,13 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     if (approach_) approach_->add(record, !last_contact_);
     if (progress_) progress_->add(record.time, record.tool.pose.position);
     if (standstill_) standstill_->add(record);
+    if (passage_ends_ && has_passed()) {
+      failure_ = FinalFailure{Outcome::went_through, record.time, record.step};
+    } else if (leaving_ends_ && has_left_for_good(record)) {
+      failure_ = FinalFailure{last_contact_ ? Outcome::lost_contact : Outcome::no_contact, record.time, record.step};
+    }
   }
+  const std::optional<FinalFailure>& final_failure() const noexcept override { return failure_; }
 
   Outcome outcome(Ending ending) override {
     if (!approach_ || ending != Ending::completed) return outcome_of(ending);
@@ -172,9 +187,51 @@ class OutcomeObserverImpl final : public OutcomeObserver {
                : "are initial.position_m and the hand's direction right?";
   }
 
+  /// Returns true if the run can end before its last step with RunLength::until_failure.
+  static bool can_fail_early(const Scenario& scenario) {
+    return position_is_free(scenario.motion) && scenario.time.stop_when.empty() &&
+           !std::holds_alternative<TrackingHandFields>(scenario.hand);
+  }
+  /// Returns true if nothing but a constant force acts on a tool without contact. Late contacts, force stages and
+  /// passivity controllers have a memory.
+  static bool never_returns(const Scenario& scenario) {
+    const RenderingConfig& rendering = scenario.rendering;
+    const bool remembers =
+        (rendering.late && rendering.late->any()) || rendering.force_stage || rendering.passivity_controller;
+    if (!std::holds_alternative<IdealDeviceFields>(scenario.device) || has_external_contacts(scenario) || remembers)
+      return false;
+    if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand))
+      return std::ranges::all_of(force->force, &Profile::is_constant);
+    if (const auto* push = std::get_if<PushHandFields>(&scenario.hand)) return push->force.is_constant();
+    return std::holds_alternative<NoHandFields>(scenario.hand);
+  }
+
+  /// Returns true if the tool has gone through the surface, by the conditions that no later step can undo.
+  bool has_passed() const noexcept {
+    return inside_ && (inside_->passage().deep || inside_->passage().left || inside_->core_passage().event());
+  }
+  /// Returns true if a tool that never_returns() has left the environment: a plane separates the tool from the box, and
+  /// neither its velocity nor the force on it points towards the plane. Position and speed must stay far from the
+  /// bounds at which the run would diverge.
+  bool has_left_for_good(const StepRecord& record) const noexcept {
+    if (!approach_ || !is_far() || record.colliding > 0 || !record.force.rendered.isZero(0.0)) return false;
+    const Box& box = approach_->environment();
+    const Vec3 outward = position_ - position_.cwiseMax(box.min).cwiseMin(box.max);
+    const Vec3 &velocity = record.tool.velocity, &force = record.hand.input;
+    if (velocity.dot(outward) < 0.0 || force.dot(outward) < 0.0) return false;
+    constexpr double kFarFromBounds = 0.5;
+    const DivergenceBounds& bounds = scenario_.bounds;
+    const double rest = scenario_.time.step * static_cast<double>(scenario_.time.steps) - time_;
+    const double last_speed = velocity.norm() + force.norm() / scenario_.rendering.mass * rest;
+    return last_speed < kFarFromBounds * bounds.speed &&
+           position_.norm() + last_speed * rest < kFarFromBounds * bounds.position;
+  }
+  /// Returns true if the tip centre is further from the environment's box than the box's width plus the tool's extent.
+  bool is_far() const noexcept { return approach_->distance() > diagonal(approach_->environment()) + tool_->reach(); }
+
   bool went_through() {
-    return inside_ &&
-           (inside_->passage().went_through() || inside_->core_passage().event() || inside_max() > tool_->half_width());
+    if (has_passed()) return true;
+    return inside_ && (inside_->passage().ends_inside || inside_max() > tool_->half_width());
   }
   std::string went_through_text() {
     const bool is_scan = std::holds_alternative<MeshEnvironment>(scenario_.environment) ||
@@ -191,7 +248,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     const Passage& p = inside_->passage();
     const double half_width = tool_->half_width();
     const std::string end =
-        p.left ? fmt::format("left it on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->place))
+        failure_ ? fmt::format("the run ended there (--full continues it)")
+        : p.left ? fmt::format("left it on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->place))
         : p.last_depth > 0.0 ? fmt::format("at the end it was {} below the surface", length_text(p.last_depth))
                              : std::string("at the end it was not below the surface");
     if (p.deep) {
@@ -204,7 +262,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     if (p.left) return fmt::format("it entered the environment at {} and {}", millimetres(p.entered), end);
     if (p.ends_inside)
       return fmt::format("the core of the tool ended inside the environment; for the tip centre: {}", end);
-    if (const auto& core = inside_->core_passage().event(); core && inside_max() <= half_width) {
+    if (const auto& core = inside_->core_passage().event(); core && (failure_ || inside_max() <= half_width)) {
       return fmt::format("its axis {} at {:.4g} s, from {} to {}",
                          core->at_once ? "crossed it from face to face" : "entered it and left on another side",
                          core->time, millimetres(core->entered), millimetres(core->left));
@@ -225,10 +283,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
 
   /// Returns true for a tool that was thrown out or pushed past the environment, and for a dragged tool that
   /// left the surface.
-  bool lost_contact() {
-    const bool is_far = approach_->distance() > diagonal(approach_->environment()) + tool_->reach();
-    return (is_far && position_is_free(scenario_.motion)) || drag_lost();
-  }
+  bool lost_contact() { return (is_far() && position_is_free(scenario_.motion)) || drag_lost(); }
   std::string lost_contact_text() {
     if (drag_lost()) {
       const SurfacePoint foot = drag_->path().at(drag_->nearest());
@@ -289,6 +344,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   double time_ = 0.0;
   Vec3 position_ = Vec3::Zero(), force_ = Vec3::Zero();              ///< tip position [m]; rendered force [N]
   Vec3 hand_force_ = Vec3::Zero(), handle_velocity_ = Vec3::Zero();  ///< [N], [m/s]
+  bool passage_ends_ = false, leaving_ends_ = false;  ///< true if this kind of FinalFailure is looked for
+  std::optional<FinalFailure> failure_;
   std::optional<double> last_contact_;  ///< time of the last step in contact [s]; empty before the first contact
 };
 
@@ -302,8 +359,9 @@ constinit const OutcomeObserverImpl::Condition OutcomeObserverImpl::kConditions[
 }  // namespace
 
 std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
-                                                  const SimulationParts& parts, const MetricsObserver* metrics) {
-  return std::make_unique<OutcomeObserverImpl>(scenario, files, parts, metrics);
+                                                  const SimulationParts& parts, const MetricsObserver* metrics,
+                                                  RunLength length) {
+  return std::make_unique<OutcomeObserverImpl>(scenario, files, parts, metrics, length);
 }
 
 }  // namespace hapbench

@@ -24,9 +24,36 @@ struct OutcomeFacts {
   std::optional<double> holding_friction;
 };
 
+/// How long a run goes on.
+enum class RunLength {
+  /// All steps are made.
+  full,
+  /// Batches: a run ends at the first moment at which it has failed for good (FinalFailure), if a hand or the force
+  /// moves the tool, the hand is not of type tracking, and the scenario neither has a stop condition nor expects the
+  /// outcome (or, for a passage, diverges). The outcome is always the outcome of the full run.
+  until_failure
+};
+
+/// A failure that no later step can undo.
+/// - went_through: the tip centre is deeper than the tool's half width, or the core of the tool has passed through the
+///   surface (Passage::deep and left, CorePassage::event). The outcome of the full run is then went_through, or
+///   diverges if a value leaves its bound later.
+/// - lost_contact, or no_contact if the tool never touched: a freely moving tool is further from the environment's
+///   bounding box than the sum of the box's width and the tool's extent, moves away from it, feels no rendered force,
+///   and the hand (none, or of type force or push with a constant force, on an ideal device) does not pull it back.
+///   With any other hand the tool may come back, so that only the end of the run decides.
+struct FinalFailure {
+  Outcome outcome;
+  double time;         ///< [s]
+  std::uint64_t step;  ///< number of the step
+};
+
 /// Observes all quantities of a trial that determine its outcome. Cost: about 40 ns a step, no allocation.
 class OutcomeObserver : public Observer {
  public:
+  /// Failure of the tool; always empty with RunLength::full. Once the tool has gone through, this observer ignores all
+  /// further steps.
+  virtual const std::optional<FinalFailure>& final_failure() const noexcept = 0;
   /// Returns the outcome of a run whose simulation ended with `ending`. For a completed run with a point shell,
   /// this is the first outcome whose condition holds (kConditions in outcome.cpp; outcome_infos() describes the
   /// conditions).
@@ -34,9 +61,9 @@ class OutcomeObserver : public Observer {
   /// Returns warnings that explain the outcome, and a warning if the path of a drag was too short. Called after
   /// the run. Precondition: the observer was created with `metrics`.
   virtual std::vector<Warning> warnings(Outcome outcome) = 0;
-  /// Returns the longest displacement of the tip in a single step near the surface [m]. Only steps count that
-  /// began no further from the environment's bounding box than the step is long: such a step may have reached
-  /// the surface or jumped over it. 0 without a point shell.
+  /// Returns the longest displacement of the tip in a single step near the surface [m]. Counts only steps whose length
+  /// is at least the distance from the environment's bounding box at the start of the step: such a step may have
+  /// reached the surface or jumped over it. 0 without a point shell.
   virtual double longest_step() const = 0;
   /// Returns the facts that explain the outcome. Called after the run; default facts without a point shell.
   virtual OutcomeFacts facts() const = 0;
@@ -48,9 +75,10 @@ class OutcomeObserver : public Observer {
 };
 
 /// Creates the observer of a trial. `scenario` and `parts` must outlive it. `metrics` must be notified before
-/// this observer in each step; null if warnings() is never called.
+/// this observer in each step; null if warnings() is never called. `length`: whether to look for a final failure.
 std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
                                                   const SimulationParts& parts,
-                                                  const MetricsObserver* metrics = nullptr);
+                                                  const MetricsObserver* metrics = nullptr,
+                                                  RunLength length = RunLength::full);
 
 }  // namespace hapbench

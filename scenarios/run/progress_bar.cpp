@@ -84,7 +84,7 @@ void ProgressBar::show(std::uint64_t done, bool counts) {
   const auto to = fmt::appender(line);
   fmt::format_to(to, "{}: {:3.0f} %", label_, 100.0 * static_cast<double>(done) / static_cast<double>(total_));
   if (counts) fmt::format_to(to, ", {}/{}", done, total_);
-  // Estimate the remaining time from the mean time an item.
+  // Estimate the remaining time from the mean time per item.
   if (counts && done > 0) {
     const double each = std::chrono::duration<double>(now - start_).count() / static_cast<double>(done);
     const double seconds = each * static_cast<double>(total_ - done);

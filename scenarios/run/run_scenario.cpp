@@ -19,6 +19,7 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/result_folder.hpp"
+#include "scenarios/run/rigid_contact_force.hpp"
 #include "scenarios/run/scene_warnings.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/scene/environments.hpp"
@@ -47,7 +48,11 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
 /// Returns the force with which the rendered force is compared: an ideal force, or the force that was measured
 /// with a stroke. Null if there is no reference.
 std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, const NamedFiles& files) {
-  if (scenario.reference_force) return std::make_shared<const ReferenceForce>(scenario.reference_force->force);
+  if (scenario.reference_force) {
+    if (const auto* given = std::get_if<GivenForceFields>(&*scenario.reference_force))
+      return std::make_shared<const ReferenceForce>(given->force);
+    return rigid_contact_force(scenario, files);
+  }
   if (!std::holds_alternative<RecordedPosition>(scenario.motion.position)) return nullptr;
   const auto stroke = files.at(kMotionFile).stroke();
   if (stroke->force) return {stroke, &*stroke->force};
@@ -75,10 +80,12 @@ RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
 /// State of a run: the observers that continue from trial to trial, and the results so far.
 class Run {
  public:
-  Run(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose)
+  Run(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose,
+      RunLength length)
       : checked_(checked),
         scenario_(checked.scenario()),
         shell_(shell),
+        length_(length),
         reference_(reference_force(scenario_, checked.files())),
         sections_(scenario_, reference_ != nullptr) {
     if (scenario_.record.timing) times_.emplace(static_cast<std::size_t>(scenario_.time.steps) * trials);
@@ -89,7 +96,7 @@ class Run {
   /// progress bar; empty: no bar.
   void run_trial(Trial trial, const std::optional<RecordTarget>& target, const std::string& label,
                  const ProgressListener* listener) {
-    // Build the parts, and tell the observers that a trial begins.
+    // Build the parts, and notify the observers that a trial begins.
     SimulationParts parts = assemble(scenario_, checked_.files(), shell_, trial);
     const SimulationConfig config = simulation_config(scenario_);
     const TrialParts trial_parts{config, parts, reference_.get(), trial.subject, trial.number};
@@ -108,7 +115,7 @@ class Run {
     // Collect the observers, in the order in which they are notified. The sampler is notified first and last, so that
     // it can leave out the time of the observers between.
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
-    const auto outcome = outcome_observer(scenario_, checked_.files(), parts, &*metrics_);
+    const auto outcome = outcome_observer(scenario_, checked_.files(), parts, &*metrics_, length_);
     ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), listener);
     std::vector<Observer*> observers = {&sampler, &*metrics_};
     for (MetricsObserver& observer : sampling_->observers()) observers.push_back(&observer);
@@ -126,7 +133,7 @@ class Run {
 
     // Run the trial and evaluate it.
     Simulation simulation(config, std::move(parts), std::move(observers));
-    const SimulationResult result = step_to_end(simulation, bar);
+    const SimulationResult result = step_to_end(simulation, *outcome, bar);
     step_nanoseconds_.insert(step_nanoseconds_.end(), sampler.nanoseconds().begin(), sampler.nanoseconds().end());
     end_trial(*outcome, result);
   }
@@ -139,6 +146,7 @@ class Run {
     result.duration = static_cast<double>(result.end.rows) * scenario_.time.step;
     sections_.report(*metrics_, inside_ ? &*inside_ : nullptr, result);
     sampling_->write(result.metrics);
+    if (result.end.ended_at) remove_values(result);
     result.state_hash = metrics_->state_hash();
     result.warnings = checked_.file_warnings();
     // With several trials, name the first trial that has warnings.
@@ -166,19 +174,32 @@ class Run {
   const Recorders& recorders() const { return recorders_; }
 
  private:
-  SimulationResult step_to_end(Simulation& simulation, ProgressBar& bar) {
+  /// Makes all steps. Ends at a final failure that leaves only one outcome. After any other final failure, continues
+  /// without observers.
+  SimulationResult step_to_end(Simulation& simulation, const OutcomeObserver& outcome, ProgressBar& bar) {
     // Measure allocations, preemptions and time of the step loop.
     const AllocationCount allocations;
     const std::uint64_t preemptions_before = involuntary_context_switches();
     const auto start = Clock::now();
     if (times_) times_->start();
+    const std::optional<FinalFailure>& failure = outcome.final_failure();
+    std::optional<std::uint64_t> observed;  // number of observed steps, if the run fails for good
     SimulationResult result = run_to_end(simulation, [&] {
       bar.show(simulation.next_row());
-      if (!times_) return simulation.advance(kStepsPerStopCheck);
       bool more = true;
-      for (std::uint64_t i = 0; i < kStepsPerStopCheck && (more = simulation.step()); ++i) times_->lap();
+      for (std::uint64_t i = 0; i < kStepsPerStopCheck && (more = simulation.step()); ++i) {
+        if (times_) times_->lap();
+        if (!failure || observed) continue;
+        observed = simulation.result().rows;
+        simulation.drop_observers();
+        if (failure->outcome != Outcome::went_through) return false;
+      }
       return more;
     });
+    if (failure) {
+      result_.end.ended_at = failure->time;
+      result.rows = *observed;
+    }
     result_.timing.loop += std::chrono::duration<double>(Clock::now() - start).count();
     result_.timing.preemptions += involuntary_context_switches() - preemptions_before;
     result_.work += work_of(simulation, allocations.value());
@@ -187,14 +208,18 @@ class Run {
 
   void end_trial(OutcomeObserver& observer, const SimulationResult& result) {
     const Outcome outcome = observer.outcome(result.ending);
-    // Keep the warnings of the first trial that has any.
+    // Keep the warnings of the first trial that has warnings.
     std::vector<Warning> warnings = observer.warnings(outcome);
     ++trials_;
     if (!warnings.empty() && with_warnings_++ == 0) {
       first_with_warnings_ = trials_;
       warnings_ = std::move(warnings);
     }
-    if (const InsideDepths* depths = observer.depths()) {
+    const bool diverges = outcome == Outcome::diverges && !outcome_is_expected(scenario_.expect, outcome);
+    const bool single = !std::holds_alternative<TrackingHandFields>(scenario_.hand);
+    if (length_ == RunLength::until_failure && diverges && single && !result_.end.ended_at)
+      result_.end.ended_at = result.divergence.time;
+    if (const InsideDepths* depths = result_.end.ended_at ? nullptr : observer.depths()) {
       if (inside_)
         inside_->add(*depths);
       else
@@ -210,13 +235,23 @@ class Run {
     }
     // The run gets the worst outcome of its trials (the order of Outcome) and the total number of rows.
     const std::uint64_t rows = result.rows + result_.end.rows;
-    if (trials_ == 1 || outcome > result_.end.outcome) result_.end = {outcome, rows, result.divergence};
+    if (trials_ == 1 || outcome > result_.end.outcome)
+      result_.end = {outcome, rows, result.divergence, result_.end.ended_at};
     result_.end.rows = rows;
+  }
+
+  /// Removes all numbers from the result of a run that ended at its failure: they would be of a part of the run.
+  static void remove_values(Result& result) {
+    for (Metric& metric : result.metrics) metric.value = {};
+    for (auto& section : result.sections) {
+      for (auto& member : section) member = member.is_array() ? Json::array() : Json();
+    }
   }
 
   const CheckedScenario& checked_;
   const Scenario& scenario_;
   const std::shared_ptr<const PointShell>& shell_;
+  RunLength length_;
   std::shared_ptr<const ReferenceForce> reference_;
   std::shared_ptr<const ToolShape> tool_;
   std::optional<MetricsObserver> metrics_;  ///< created with the parts of the first trial, like `sampling_`
@@ -226,7 +261,7 @@ class Run {
   std::optional<InsideDepths> inside_;
   std::optional<StepTimes> times_;               ///< times of all steps; empty unless requested
   std::vector<std::uint64_t> step_nanoseconds_;  ///< sampled durations of single steps [ns] (StepSampler)
-  std::vector<Warning> warnings_;                ///< warnings of the first trial that has any
+  std::vector<Warning> warnings_;                ///< warnings of the first trial that has warnings
   std::size_t trials_ = 0, with_warnings_ = 0, first_with_warnings_ = 0;
   Result result_;  ///< result so far: end, work, and times of the step loop
   Recorders recorders_;
@@ -246,10 +281,10 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
 }  // namespace
 
 Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutput>& output, Progress progress,
-                    RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell) {
+                    RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell, RunLength length) {
   const Scenario& scenario = checked.scenario();
   const auto start = Clock::now();
-  // Build the point shell, unless the caller has one.
+  // Build the point shell, unless the caller gives a point shell.
   if (!shell) {
     const WaitNotice notice(scenario.name + ": computing the point shell", progress.is_shown);
     shell = make_shell(scenario, checked.files());
@@ -262,7 +297,7 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutpu
   if (output) tables = nullptr;
   // Reserve memory for all elements, because the recorders keep pointers to them.
   if (tables != nullptr) tables->trials.reserve(trials.size());
-  Run run(checked, shell, trials.size(), diagnose);
+  Run run(checked, shell, trials.size(), diagnose, length);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     std::optional<RecordTarget> target;
     if (folder && records_rows(scenario.record)) target = folder->trial_directory(trials[i], trials.size());
@@ -274,7 +309,9 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutpu
   // Evaluate the run and compare it with the scenario's expectations.
   Result result = run.result();
   result.timing.shell = shell_time.count();
-  result.unmet = unmet_expectations(scenario.expect, result);
+  // A run that ended at its failure has no metrics to compare.
+  const ExpectFields outcomes{scenario.expect.outcomes, {}};
+  result.unmet = unmet_expectations(result.end.ended_at ? outcomes : scenario.expect, result);
   result.expected = result.unmet.empty();
   if (!folder && tables == nullptr) return result;
   // Describe where the results come from, and write them.

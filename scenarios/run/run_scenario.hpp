@@ -11,6 +11,7 @@
 
 #include "results/summary/summary.hpp"
 #include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/run/outcome.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/run_tables.hpp"
@@ -30,11 +31,16 @@ namespace hapbench {
 ///   ns a step.
 /// - `shell`: make_shell() of the scenario, if it already exists. Several runs may share it, also at the same
 ///   time.
+/// - `length`: with RunLength::until_failure, a run that fails for good, or diverges unexpectedly, ends at that moment:
+///   it has RunEnd::ended_at, no metric has a value, and observers and recorded tables get no further step. The outcome
+///   is the outcome of the full run. Therefore, if the tool went through, the remaining steps are simulated without
+///   observers, because they may diverge.
 /// Throws InputError before anything is written if the point shell or tool cannot be built from the files.
 /// Throws IoError if writing fails, and Stopped if a signal ends the run. No partial results remain after an
 /// error.
 Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutput>& output, Progress progress,
-                    RunTables* tables = nullptr, bool diagnose = false, std::shared_ptr<const PointShell> shell = {});
+                    RunTables* tables = nullptr, bool diagnose = false, std::shared_ptr<const PointShell> shell = {},
+                    RunLength length = RunLength::full);
 
 /// Runs a scenario with an existing point shell and returns its result. Writes no files and shows no progress.
 inline Result run_with_shell(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell) {

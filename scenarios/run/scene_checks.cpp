@@ -58,7 +58,8 @@ std::optional<Warning> spacing_warning(const LoadedScenario& loaded, const ToolS
                              length_text(width), distance.path, kSmoothSpacing * width)};
 }
 
-/// Returns a warning if the tool starts much further from the environment than tool or environment are large.
+/// Returns a warning if the tool starts at a distance from the environment that is more than kUnitFactor times the size
+/// of the tool or of the environment, whichever is smaller.
 std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
   const double smaller = std::min(diagonal(surface.box), tool.reach());
   const double gap = surface.start.distance;

@@ -18,7 +18,7 @@ struct Gap {
   std::size_t touching = 0;  ///< number of points inside or on the tool
 };
 
-/// Returns the distance between the tool and all points of the shell. Precondition: the shell has points.
+/// Returns the smallest distance between the tool and a point of the shell. Precondition: the shell has points.
 /// O(points).
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell);
 

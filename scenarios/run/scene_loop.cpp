@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <functional>
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "scenarios/input/writer.hpp"
@@ -121,8 +122,8 @@ bool has_permanent_springs(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
   const RenderingConfig& r = scenario.rendering;
   return springs != nullptr && springs->bilateral && springs->signed_depths && !r.has_friction() && !r.hunt_crossley &&
-         !(r.late && r.late->any()) && !r.max_damping && !r.max_force && !r.force_stage && !r.passivity_controller &&
-         position_is_free(scenario.motion);
+         !has_multi_rate_contacts(scenario) && !r.max_damping && !r.max_force && !r.force_stage &&
+         !r.passivity_controller && position_is_free(scenario.motion);
 }
 
 Vec3 stiffness_eigenvalues(Scenario scenario) {
@@ -201,11 +202,8 @@ static std::vector<Eigen::MatrixXd> loop_with(const Scenario& scenario, const Li
                     device_loop(scenario, 1.0).loop);
 }
 
-std::vector<Eigen::MatrixXd> contact_loop(const Scenario& scenario, const LinearContact& contact) {
-  if (!has_linear_loop(scenario)) return {};
-  std::vector<Eigen::MatrixXd> loop = loop_with(scenario, contact);
-  if (loop.empty() || !scenario.rendering.dry_friction) return loop;
-  // Add the loop across the stiffest direction, along the surface, while dry friction holds the tool there.
+/// Returns the loop across the stiffest direction, along the surface, while dry friction holds the tool there.
+static std::vector<Eigen::MatrixXd> loop_held_by_friction(const Scenario& scenario, const LinearContact& contact) {
   const Scenario stuck = stuck_scene(scenario);
   const Mat3& K = contact.rendered.stiffness;
   const Vec3 normal = Eigen::SelfAdjointEigenSolver<Mat3>(K * K.transpose()).eigenvectors().col(2);
@@ -214,9 +212,14 @@ std::vector<Eigen::MatrixXd> contact_loop(const Scenario& scenario, const Linear
   held.rendered.stiffness = stuck.rendering.stiffness * along;
   held.rendered.damping = stuck.rendering.damping.value_or(0.0) * along;
   held.rendered.assumed = {held.rendered.stiffness, held.rendered.damping};
-  const std::vector<Eigen::MatrixXd> more = loop_with(stuck, held);
-  loop.insert(loop.end(), more.begin(), more.end());
-  return loop;
+  return loop_with(stuck, held);
+}
+
+std::vector<Eigen::MatrixXd> contact_loop(const Scenario& scenario, const LinearContact& contact) {
+  std::vector<Eigen::MatrixXd> all;
+  for (const NamedLoop& loop : contact_loops(scenario, contact, false))
+    all.insert(all.end(), loop.matrices.begin(), loop.matrices.end());
+  return all;
 }
 
 std::string unstable_without_wall(const Scenario& scenario) {
@@ -229,24 +232,46 @@ std::string unstable_without_wall(const Scenario& scenario) {
   return is_stable_loop({contact_step_matrix(alone, 1.0)}) ? "hand and device" : "the device's servo";
 }
 
-std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_step_matrices(const Scenario& scenario, double lambda,
-                                                                           bool over_hands) {
-  std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step_matrix(scenario, lambda)}};
-  if (all[0].second.size() == 0) return {};
-  // Add the tool that friction holds.
-  if (scenario.rendering.dry_friction)
-    all.emplace_back("the tool held by friction", contact_step_matrix(stuck_scene(scenario), 1.0));
-  // Add the loops with other hands.
+/// Calls `add` with the name and the loop of each hand of typical_hands(), if a hand holds an impedance device.
+/// `lambda`: stiffness of the wall in the loop, in units of K.
+static void for_typical_hands(const Scenario& scenario, double lambda,
+                              const std::function<void(std::string name, const SampledLoop& loop)>& add) {
   const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
-  if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
+  if (!held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return;
   SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);
   loop.sampled_stiffness = loop.sampled_damping = 0.0;
   for (const AttachedHand& hand : typical_hands()) {
     loop.hand = hand;
-    all.emplace_back(
-        hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness),
-        loop.state_matrix());
+    add(hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness), loop);
   }
+}
+
+std::vector<NamedLoop> contact_loops(const Scenario& scenario, const LinearContact& contact, bool over_hands) {
+  if (!has_linear_loop(scenario)) return {};
+  std::vector<NamedLoop> all;
+  const auto add = [&all](std::string name, std::vector<Eigen::MatrixXd> matrices) {
+    if (!matrices.empty()) all.push_back({std::move(name), std::move(matrices)});
+  };
+  add("", loop_with(scenario, contact));
+  if (all.empty()) return all;
+  if (scenario.rendering.dry_friction) add("the tool held by friction", loop_held_by_friction(scenario, contact));
+  if (!over_hands) return all;
+  LinearContact without_hand = contact;
+  without_hand.hand = {};
+  for_typical_hands(scenario, 1.0, [&](std::string name, const SampledLoop& loop) {
+    add(std::move(name), contact_loop(loop, without_hand));
+  });
+  return all;
+}
+
+std::vector<NamedLoop> wall_loops(const Scenario& scenario, double lambda, bool over_hands) {
+  const Eigen::MatrixXd own = contact_step_matrix(scenario, lambda);
+  if (own.size() == 0) return {};
+  std::vector<NamedLoop> all = {{"", {own}}};
+  if (over_hands)
+    for_typical_hands(scenario, lambda, [&](std::string name, const SampledLoop& loop) {
+      all.push_back({std::move(name), {loop.state_matrix()}});
+    });
   return all;
 }
 

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "device_model/theory/linear_loops.hpp"
@@ -21,6 +20,11 @@ namespace hapbench {
 /// contacts, on a tool that is free to move.
 bool has_permanent_springs(const Scenario& scenario);
 
+/// Returns true if a slower loop finds the contacts, so that the contact is not part of a loop at the period of a step.
+inline bool has_multi_rate_contacts(const Scenario& scenario) {
+  return scenario.rendering.late && scenario.rendering.late->any();
+}
+
 /// Returns true if the scenario has a device other than the ideal device. Only such a device is part of the
 /// loop.
 inline bool has_device(const Scenario& scenario) {
@@ -38,8 +42,8 @@ SpringDamper tool_on_spring(const Scenario& scenario, double lambda);
 /// has_device(scenario).
 DeviceLoop device_loop(const Scenario& scenario, double lambda);
 
-/// Returns the paths of the device fields that differ from their defaults and that the linear model does not
-/// include, such as "device.viscous_N_s_per_m", separated by commas. Empty if there are none. Precondition:
+/// Returns the paths of the device fields that differ from their defaults and that the linear model does not include,
+/// such as "device.viscous_N_s_per_m", separated by commas. Empty if there are no such fields. Precondition:
 /// has_device(scenario).
 std::string unmodelled_fields(const Scenario& scenario);
 
@@ -60,8 +64,25 @@ Eigen::Matrix2d step_matrix_with_hand(const Scenario& scenario, double lambda);
 bool has_linear_loop(const Scenario& scenario);
 
 /// Returns the matrices of the scenario's loop of hand, device and contact in three dimensions (contact_loop() in
-/// linear_loops.hpp). Empty without has_linear_loop(), or if the loop is too large to solve.
+/// linear_loops.hpp), and with dry friction also those of the tool that friction holds. Empty without
+/// has_linear_loop(), or if the loop is too large to solve.
 std::vector<Eigen::MatrixXd> contact_loop(const Scenario& scenario, const LinearContact& contact);
+
+/// The matrices of one variant of a loop in contact.
+struct NamedLoop {
+  std::string name;  ///< empty for the scenario's own loop
+  std::vector<Eigen::MatrixXd> matrices;
+};
+
+/// Returns the variants of the scenario's loop in contact:
+/// - the scenario's own loop, with an empty name;
+/// - with dry friction: the loop along the surface while friction holds the tool;
+/// - with `over_hands`, if a hand holds an impedance device: the loop with each hand of typical_hands().
+/// Omits variants without matrices.
+std::vector<NamedLoop> contact_loops(const Scenario& scenario, const LinearContact& contact, bool over_hands);
+/// contact_loops() of a wall with stiffness lambda K and damping lambda B along one axis, for springs in permanent
+/// contact.
+std::vector<NamedLoop> wall_loops(const Scenario& scenario, double lambda, bool over_hands);
 
 /// Returns the name of the part of the loop that is unstable without contact, by the eigenvalues: "the device's servo"
 /// if the device is unstable also without a hand, otherwise "hand and device". Empty if the loop is stable, or without
@@ -72,14 +93,5 @@ std::string unstable_without_wall(const Scenario& scenario);
 /// lambda B. With an ideal device, this is step_matrix_with_hand(); with another device, the matrix of
 /// device_loop(). Empty without has_linear_loop().
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda);
-
-/// Returns the state matrices (contact_step_matrix()) of several variants of the scenario's loop at a wall of
-/// stiffness lambda K, each with its name:
-/// - the scenario's own loop, with an empty name;
-/// - if the scenario has dry friction: the loop with a tool that friction holds;
-/// - with `over_hands`, if a hand holds an impedance device: the loop with each hand of typical_hands().
-/// Returns an empty list if contact_step_matrix() is empty.
-std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_step_matrices(const Scenario& scenario, double lambda,
-                                                                           bool over_hands);
 
 }  // namespace hapbench

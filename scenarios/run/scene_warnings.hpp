@@ -37,8 +37,8 @@ const char* size_question(const Environment& environment);
 /// proportion; otherwise an empty text.
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
-/// Returns what is unusual about a tool whose bounding box in its own frame is `tool`, such as "lies across its
-/// axis"; empty if nothing is. In this frame, the tip centre is the origin and the tip points along -z.
+/// Returns what is unusual about a tool whose bounding box in its own frame is `tool`, such as "lies across its axis";
+/// empty if nothing is unusual. In this frame, the tip centre is the origin and the tip points along -z.
 std::string frame_problem(const Box& tool);
 
 /// Returns warnings about a tool. The proxy algorithm keeps points out of convex tools only, and a mesh may

@@ -30,7 +30,7 @@ class Standstill {
   double width_;
   Vec3 mean_force_ = Vec3::Zero();  ///< spring force of the contacts, averaged over about the last 32 steps [N]
   Box tool_box_, target_box_;  ///< bounding boxes of the positions of tool and target since the standstill began [m]
-  /// largest distance between target and tool perpendicular to the contact force since then [m]
+  /// Largest distance between target and tool perpendicular to the contact force since the standstill began [m].
   double across_ = 0.0;
   bool began_ = false;
   Stuck stuck_;

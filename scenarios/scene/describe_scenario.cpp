@@ -159,7 +159,7 @@ static void describe(Fields& f, MetricBound& bound) {
   fail_at(f.at(), fmt::format("got min {} above max {}; allowed: min <= max", *bound.min, *bound.max));
 }
 
-static void describe(Fields& f, ReferenceForceFields& reference) {
+static void describe(Fields& f, GivenForceFields& reference) {
   profiles(f, {"x_N", "y_N", "z_N"}, reference.force, "N",
            "component of the reference force on the tool, as a function of time");
 }
@@ -250,10 +250,18 @@ void describe(Fields& f, Scenario& scenario) {
   f.object("integrator", scenario.integrator, "how the motion is computed from forces");
   // Limits, output and expectations.
   f.object("bounds", scenario.bounds, "bounds beyond which a run counts as diverged");
-  f.object_if_any(
+  f.if_any(
       "reference_force", scenario.reference_force,
       "force that an ideal rendering would give on the prescribed motion; the metrics of group fidelity compare the "
-      "rendered force with it");
+      "rendered force with it. Without a type, it is given as functions of time",
+      [](Fields& value, ReferenceForceFields& reference) {
+        value.variant(reference, "reference force",
+                      {{"given", "given as functions of time"},
+                       {"rigid_contact",
+                        "K (x' - x), where x' is the free position of the tool nearest to its prescribed position "
+                        "x: frictionless contact with the rigid triangles of the mesh"}},
+                      Untyped::first);
+      });
   f.object_if_any(
       "six_dof", scenario.six_dof,
       "compare the law on a 3-DOF device with a 6-DOF device, both quasi-static and in the hand that this object "

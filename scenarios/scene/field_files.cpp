@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 /// Beginning of the reader's message about a field that does not exist.
 constexpr std::string_view kUnknownField = "unknown field";
 
-/// Returns a hint for an unknown field whose name resembles no field of its object: the paths of the fields with
-/// the nearest name in other objects. Empty if there are none.
+/// Returns a hint for an unknown field whose name resembles no field of its object: the paths of the fields with the
+/// nearest name in other objects. Empty if there are no such fields.
 std::string hint_from_other_objects(const std::string& pointer) {
   const std::vector<std::string> paths = scenario_field_paths();
   const auto own_name = [](const std::string& path) { return parts_of(path, '.').back(); };

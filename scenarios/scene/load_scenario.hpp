@@ -33,9 +33,9 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
 /// Reads a scenario file and the scenarios that it extends, applies the overrides and checks the result. An
 /// override is `path=value`: a dotted path, and a value that is parsed as JSON, or taken as text if it is not
 /// JSON. Later overrides win.
-/// The field "expect" describes the run without overrides. If an override changes the run, its bounds on metrics are
-/// dropped. The outcomes that are expected without the field "expect" (ExpectFields) are then allowed in addition to
-/// the listed outcomes.
+/// The field "expect" describes the run without overrides. If an override changes the run, the bounds of "expect" on
+/// metrics are dropped, and the run may also end with an outcome that would be expected without the field "expect"
+/// (ExpectFields).
 /// Throws InputError whose message begins with the faulty file.
 inline LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {}) {
   return load_scenario(read_scenario_text(file), overrides);

@@ -75,8 +75,8 @@ void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* i
   metrics.report_end(section);
 }
 
-/// Returns the common metrics and the metrics of the sections, without values. `parts(kind)` returns a number like
-/// SectionKind::parts; a section for which it returns 0 is skipped.
+/// Returns the common metrics and the metrics of the sections, without values. `parts(kind)` returns the number of
+/// parts of a section with the meaning of SectionKind::parts. A section with 0 parts is skipped.
 template <class Parts>
 MetricList list_without_values(const Parts& parts) {
   MetricList metrics;

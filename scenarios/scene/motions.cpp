@@ -29,6 +29,21 @@ static void describe(Fields& f, OrientationFields& orientation) {
 static void describe(Fields& f, PrescribedPosition& position) {
   profiles(f, {"x_m", "y_m", "z_m"}, position.coordinates, "m", "coordinate of the tip centre, as a function of time",
            Presence::required);
+  f.if_any("shift_m", position.shift, "shifts the whole path [m]; compare --jitter sets it",
+           [](Fields& value, Vec3& shift) {
+             value.vector3(shift, {-1e3, 1e3, "m"});
+           });
+}
+
+/// Returns the profile with `shift` added to its values.
+static Profile shifted(const Profile& profile, double shift) {
+  Profile::Shape shape = profile.shape();
+  if (auto* constant = std::get_if<Profile::Constant>(&shape)) constant->value += shift;
+  if (auto* ramp = std::get_if<Profile::Ramp>(&shape)) ramp->start += shift;
+  if (auto* sine = std::get_if<Profile::Sine>(&shape)) sine->mean += shift;
+  if (auto* waypoints = std::get_if<Profile::Waypoints>(&shape))
+    for (auto& point : waypoints->points) point.second += shift;
+  return shape;
 }
 
 static void describe(Fields& f, RecordedPosition& position) {
@@ -72,6 +87,10 @@ std::unique_ptr<Motion> make_motion(const Scenario& scenario, const NamedFiles& 
   std::optional<std::array<Profile, 3>> position;
   if (const auto* prescribed = std::get_if<PrescribedPosition>(&scenario.motion.position))
     position = prescribed->coordinates;
+  if (const auto* prescribed = std::get_if<PrescribedPosition>(&scenario.motion.position);
+      prescribed != nullptr && prescribed->shift)
+    for (std::size_t k = 0; k < 3; ++k)
+      (*position)[k] = shifted((*position)[k], (*prescribed->shift)[static_cast<Eigen::Index>(k)]);
   return std::make_unique<ScriptedMotion>(make_orientation(*scenario.motion.orientation), std::move(position));
 }
 

@@ -30,7 +30,7 @@ void apply_override(Json& json, const std::string& text) {
   // Split and check the override.
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos)
-    fail_in_option("--set", "got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+    fail_in_option("--set", "got \"" + text + "\"; allowed: path=value, such as rendering.stiffness_N_per_m=40000");
   const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
   const Words keys = parts_of(path, '.');
   constexpr std::size_t kMaxPathDepth = 64;  // functions that walk through JSON recurse once per level

@@ -49,14 +49,14 @@ class EntryFaults {
   RowFaults faults_;
 };
 
-/// Returns what is wrong with an axis: it is too short or too long to be normalised. Empty if nothing is.
+/// Returns what is wrong with an axis: it is too short or too long to be normalised. Empty if the axis is valid.
 std::string axis_problem(const Vec3& axis) {
   const double length = axis.norm();
   if (length > 1e-12 && length < 1e12) return "";
   return fmt::format("got an axis of length {}; allowed: 1e-12 ... 1e12", length);
 }
 
-/// Returns what is wrong with a quaternion: its norm is not 1. Empty if nothing is.
+/// Returns what is wrong with a quaternion: its norm is not 1. Empty if the quaternion is valid.
 std::string quaternion_problem(const Eigen::Quaterniond& q) {
   const double norm = q.norm();
   if (std::abs(norm - 1.0) <= kMaxNormError) return "";
@@ -77,7 +77,7 @@ const std::vector<TableQuantity> kTraceColumns = {{.alternatives = {{"time_s"}}}
 }  // namespace
 
 Stroke parse_stroke(std::string_view text, const std::filesystem::path& file, std::vector<std::string>* notes) {
-  // Parse the table. The header says whether the pose has an axis or a quaternion, and whether there is a force.
+  // Parse the table. The header shows whether the pose has an axis or a quaternion, and whether there is a force.
   const NumberTable table = parse_number_table(text, file, kStrokeColumns, kMaxSamples);
   if (notes != nullptr) *notes = table.notes;
   EntryFaults faults(file, table, "sample");

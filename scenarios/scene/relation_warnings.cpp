@@ -82,8 +82,8 @@ void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warning
            hand)});
 }
 
-/// Warns about numbers of a device that no haptic device has: probably their unit is wrong. The limits are those by
-/// which "hapbench import device" judges a log.
+/// Warns about numbers of a device that no haptic device has: probably their unit is wrong. "hapbench import device"
+/// judges a log by the same limits.
 void warn_of_unlikely_device(const Scenario& scenario, std::vector<Warning>& warnings) {
   constexpr std::pair kHandles{1e-3, 20.0}, kCarriages{1e-3, 100.0};      // smallest and largest mass [kg]
   constexpr double kCoarsestEncoder = 1e-3, kLargestNoise = 1e-3;         // [m]

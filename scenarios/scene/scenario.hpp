@@ -125,6 +125,7 @@ struct OrientationFields {
 struct FreePosition {};
 struct PrescribedPosition {
   std::array<Profile, 3> coordinates;  ///< [m]
+  std::optional<Vec3> shift;           ///< shifts the whole path [m]; empty: no shift
 };
 struct RecordedPosition {
   std::string file;  ///< CSV, relative to the scenario file
@@ -229,9 +230,13 @@ struct RecordFields : TrajectoryExtras {
 bool records_rows(const RecordFields& record);
 
 /// Force that an ideal rendering would give on a prescribed path.
-struct ReferenceForceFields {
+/// A force that is known.
+struct GivenForceFields {
   std::array<Profile, 3> force;  ///< [N]
 };
+/// K (x' - x) of frictionless contact with the rigid triangles of the mesh (sim/contact/rigid_contact.hpp).
+struct RigidContactFields {};
+using ReferenceForceFields = std::variant<GivenForceFields, RigidContactFields>;
 
 /// Value of SixDofFields::law for the proxy with the rotational stiffness that renders the force of a 6-DOF device.
 inline constexpr const char* kMatchedProxy = "matched_proxy";

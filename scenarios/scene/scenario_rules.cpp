@@ -59,6 +59,9 @@ bool is_zero(const Profile& profile) {
 }
 
 constexpr const char* kTurningProxy = "/rendering/parameters/proxy/rotational_stiffness_N_m_per_rad";
+bool is_rigid_contact(const Scenario& s) {
+  return s.reference_force && std::holds_alternative<RigidContactFields>(*s.reference_force);
+}
 
 /// A combination of fields that is rejected.
 struct Rule {
@@ -89,6 +92,16 @@ constexpr Rule kRules[] = {
      [](const Scenario& s) { return s.integrator.type != &kEvent && s.integrator.tolerance != kEventTolerance; }},
     {"/reference_force", "contradicts motion.position of type \"free\"; allowed with a way that is known beforehand",
      [](const Scenario& s) { return s.reference_force && is<FreePosition>(s.motion.position); }},
+    {"/reference_force/type",
+     "got \"rigid_contact\"; allowed with environment.type \"mesh\", whose triangles it touches",
+     [](const Scenario& s) { return is_rigid_contact(s) && !is<MeshEnvironment>(s.environment); }},
+    {"/reference_force/type",
+     "got \"rigid_contact\"; allowed with a tool of type cylinder with tip \"round\": for flat tips, and tools of the "
+     "types revolved, bur and mesh, this reference does not exist",
+     [](const Scenario& s) {
+       const auto* cylinder = std::get_if<CylinderFields>(&s.tool);
+       return is_rigid_contact(s) && (cylinder == nullptr || cylinder->tip != Tip::round);
+     }},
     {"/record/force_reference",
      "got true; allowed: false, unless there is a reference_force or motion.position is of type \"file\"",
      [](const Scenario& s) {

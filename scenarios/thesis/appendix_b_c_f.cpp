@@ -67,15 +67,19 @@ Measured measure_groove(const Evidence& e) {
 }
 
 Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
-  const auto under_damped = std::count_if(measured.begin(), measured.end(), [&](const MeasuredCase& m) {
-    return m["groove_friction_original_averaging"] <= threshold(p, "under_damped") * m["given"];
-  });
+  const auto under_damped = [&](const char* scene) {
+    return std::count_if(measured.begin(), measured.end(), [&](const MeasuredCase& m) {
+      return m[fmt::format("{}_original_averaging", scene)] <= threshold(p, "under_damped") * m["given"];
+    });
+  };
+  const auto with = under_damped("groove_friction"), without = under_damped("groove_swing");
+  const double most = threshold(p, "most") * static_cast<double>(measured.size());
   return {
-      decide(static_cast<double>(under_damped) > threshold(p, "most") * static_cast<double>(measured.size()),
-             under_damped > 0),
-      fmt::format("the original algorithm damps along the merged direction only; across it friction does, and it is "
-                  "under-damped at {} of {} angles",
-                  under_damped, measured.size())};
+      decide(static_cast<double>(with) > most, static_cast<double>(without) > most),
+      fmt::format("true of the normal damping, which acts along the merged direction only; the friction of Table B.1 "
+                  "{} it across that direction",
+                  static_cast<double>(with) > most ? "does not hide" : "hides"),
+      "", fmt::format("under-damped at {} of {} angles, with friction at {}", without, measured.size(), with)};
 }
 
 // ---- B3: the merged depth before and after adding two points, in units of the depth of each point. There are 2 n + 1
@@ -204,11 +208,32 @@ Measured measure_density(const Evidence& e) {
 Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
   const double all = measured.front()["x40"], reduced = measured.front()["x40_reduced"], limit = measured.back()["x40"],
                small = threshold(p, "negligible");
-  return {
-      decide(all <= small, std::min(reduced, limit) <= small),
-      fmt::format("{} updates of stiffness shaping {}; its limit {}; the reduction {}", measured.front()["updates"],
-                  all <= small ? "decouple the force from density" : "are too few to decouple the force from density",
-                  limit <= small ? "decouples" : "does not", reduced <= small ? "does" : "does not")};
+  return {decide(reduced <= small, std::min(all, limit) <= small),
+          fmt::format(
+              "without the reduction {} updates of stiffness shaping {}; its limit {}; the reduction, which removes "
+              "points with similar gradients, {} under any law",
+              measured.front()["updates"],
+              all <= small ? "decouple the force from density" : "are too few to decouple the force from density",
+              limit <= small ? "decouples" : "does not", reduced <= small ? "does" : "does not")};
+}
+
+// ---- T6: change of the spring force in task 2 by the reduction: rms of the difference over the rms of the force of
+// all points, with the thesis's three updates and without the local average.
+
+MeasuredValues measure_information(const Evidence& e) {
+  const LoadedScenario loaded = e.load("task2_rotate_signed_distance", {"rendering.local_average=false"});
+  const std::vector<ContactBuffer> sets = contact_sets(loaded.scenario, 64);
+  Scene scene;
+  scene.capacity = largest_size(sets);
+  RenderingConfig config = loaded.scenario.rendering;
+  const std::vector<Vec3> reduced = forces_of(config, scene, sets);
+  config.reduction.reset();
+  return {{"change", {change_of_force(forces_of(config, scene, sets), reduced)}}};
+}
+
+Finding judge_information(const MeasuredCase& m, const PublishedNumbers& p) {
+  const bool most = m["change"] <= threshold(p, "over_reduced"), half = m["change"] <= threshold(p, "most");
+  return {decide(most, half), "three updates weigh all points otherwise than the points that are kept"};
 }
 
 // ---- C6: the damping ratio of 1, 2, 4 and 8 springs in parallel. The stiffness ratio is the number of springs.
@@ -332,6 +357,40 @@ Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
                   m["summation"], m["shaped_stiffness"])};
 }
 
+// ---- F4: depth of the drill of task 2 in the hole [m], turned by hands of constant force, with tandpasta and with the
+// plain sum, whose elastic energy tandpasta keeps. All points, no local average. One case for each force.
+
+constexpr double kTurningHands[] = {0.5, 1.0, 2.0};  ///< [N]
+
+Measured measure_quick_penetration(const Evidence& e) {
+  Measured measured;
+  for (const double force : kTurningHands) {
+    MeasuredCase& m = measured.emplace_back(MeasuredCase{fmt::format("{} N", force), {}});
+    for (const std::string law : {"tandpasta", "summation"}) {
+      const Result run = e.run("task2_held", {fmt::format("hand.force_N={}", force), "rendering.algorithm=" + law,
+                                              "rendering.local_average=false", "rendering.reduction=null"});
+      double depth = 0.0;
+      for (const char* hands : {"gentle", "firm"}) {
+        const auto deepest = number_of(run.metrics, fmt::format("ideal_trajectory.{}.interpenetration_max_m", hands));
+        depth = std::max(depth, deepest.value_or(0.0));
+      }
+      m.values[law] = {depth};
+    }
+  }
+  return measured;
+}
+
+Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers&) {
+  const auto less =
+      std::ranges::count_if(measured, [](const MeasuredCase& m) { return m["tandpasta"] < m["summation"]; });
+  const auto all = static_cast<std::ptrdiff_t>(measured.size());
+  return {decide(less == all, less > 0),
+          fmt::format(
+              "the drill sinks in less than with the plain sum under {} of {} hands; n points are up to n K stiff, so "
+              "that it hardly sinks in with either",
+              less, all)};
+}
+
 }  // namespace
 
 std::vector<ClaimRule> appendix_b_c_f() {
@@ -339,6 +398,8 @@ std::vector<ClaimRule> appendix_b_c_f() {
           {"B2", measure_groove, judge_groove},
           single_case<measure_added_points, judge_added_points>("B3"),
           {"P1", measure_density, judge_density},
+          single_case<measure_information, judge_information>("T6"),
+          {"F4", measure_quick_penetration, judge_quick_penetration},
           {"C6", measure_relative_damping, judge_relative_damping},
           single_case<measure_normal_projection, judge_normal_projection>("F1"),
           single_case<measure_tandpasta, judge_tandpasta>("F2")};

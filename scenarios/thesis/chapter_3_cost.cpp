@@ -1,15 +1,20 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
+#include "scenarios/run/bare_run.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
 /// Claims of 1.2, 2.8, 3.4 and F.2: the computing time of contact points. Times differ between machines and runs, so
-/// that the numbers in two ledgers are not equal.
+/// that the numbers in two ledgers are not equal. They are medians of repetitions, and a verdict needs a difference of
+/// a factor rule.margin.
 namespace hapbench {
 namespace {
 
@@ -66,17 +71,17 @@ MeasuredValues measure_deadline(const Evidence& e) {
 }
 
 Finding judge_dense_deadline(const MeasuredCase& m, const PublishedNumbers& published) {
-  const double deadline = published["T4.step"].mean;
-  const bool missed = m["matrix"] > deadline, met = m["reduced"] < deadline;
+  const double deadline = published["T4.step"].mean, margin = threshold(published, "margin");
+  const bool missed = m["matrix"] >= margin * deadline, met = margin * m["reduced"] <= deadline;
   return {decide(missed && met, met),
           missed ? fmt::format("in the dense form the thesis uses, {}",
                                met ? "the reduction is needed and suffices" : "even the reduction does not suffice")
-                 : "this machine is fast enough for the dense form"};
+                 : "on this machine the dense form does not clearly miss the deadline"};
 }
 
 Finding judge_tensor_deadline(const MeasuredCase& m, const PublishedNumbers& published) {
   const double deadline = published["T4.step"].mean;
-  const bool met = m["tensor"] < deadline;
+  const bool met = threshold(published, "margin") * m["tensor"] <= deadline;
   return {found(met), met ? "through the 3 × 3 stiffness tensor all points are shaped in time without a reduction"
                           : "without the reduction the tensor form misses the deadline, too"};
 }
@@ -106,26 +111,34 @@ MeasuredValues measure_loop_load(const Evidence& e) {
 }
 
 Finding judge_loop_load(const MeasuredCase& m, const PublishedNumbers& p) {
+  const double margin = threshold(p, "margin");
   const bool small = m["reduced_3"] - m["reduced_0"] <= threshold(p, "small_load");
-  const bool falls = m["reduced_3"] < m["unreduced_3"];
+  const bool falls = margin * m["reduced_3"] <= m["unreduced_3"];
   return {
       decide(small && falls, small || falls),
       fmt::format("the iterations cost {}; the reduction {} the load of the dense form and {} that of the tensor form",
-                  small ? "next to nothing" : "more than that", falls ? "lowers" : "raises",
-                  m["tensor_reduced_3"] < m["tensor_unreduced_3"] ? "lowers" : "raises")};
+                  small ? "next to nothing" : "more than that", falls ? "lowers" : "does not lower",
+                  margin * m["tensor_reduced_3"] <= m["tensor_unreduced_3"] ? "lowers" : "does not lower")};
 }
 
 // ---- P2, F3: computing time of one step over the time step [1], of another algorithm and of stiffness shaping: the
 // proxy in task 2 (P2); tandpasta for the largest number of contacts of task 2 (F3).
 
 MeasuredValues measure_proxy_cost(const Evidence& e) {
-  MeasuredValues values;
-  for (const std::string law : {"proxy", kProposedLaw}) {
-    const Result run = e.run("task2_held", {"rendering.algorithm=" + law, "record.ideal_trajectory=false"});
-    const double step = run.duration / static_cast<double>(run.end.rows);
-    values[law == kProposedLaw ? "shaped" : "other"] = {run.timing.step_p50.value_or(std::nan("")) / step};
+  // Run both in turn, so that a change of the machine's speed affects both.
+  constexpr int kRuns = 3;
+  std::map<std::string, std::vector<double>> shares;
+  for (int i = 0; i < kRuns; ++i) {
+    for (const std::string law : {"proxy", kProposedLaw}) {
+      const CheckedScenario scene =
+          checked(e.load("task2_held", {"rendering.algorithm=" + law, "record.ideal_trajectory=false"}));
+      BareRun run(scene, make_shell(scene.scenario(), scene.files()));
+      const double seconds = run.seconds(1);
+      shares[law].push_back(seconds / static_cast<double>(run.steps()) / scene.scenario().time.step);
+    }
   }
-  return values;
+  for (auto& [law, all] : shares) std::ranges::sort(all);
+  return {{"other", {shares.at("proxy").at(kRuns / 2)}}, {"shaped", {shares.at(kProposedLaw).at(kRuns / 2)}}};
 }
 
 MeasuredValues measure_tandpasta_cost(const Evidence& e) {
@@ -142,7 +155,7 @@ MeasuredValues measure_tandpasta_cost(const Evidence& e) {
 }
 
 Finding judge_other_cost(const MeasuredCase& m, const PublishedNumbers& p) {
-  return {decide(m["other"] >= threshold(p, "considerable"), m["other"] > m["shaped"]),
+  return {decide(m["other"] >= threshold(p, "considerable"), m["other"] >= threshold(p, "margin") * m["shaped"]),
           fmt::format("{:.2g} times what stiffness shaping takes", m["other"] / m["shaped"])};
 }
 

@@ -21,7 +21,8 @@ std::vector<Claim> all_claims() {
   // Collect the rules of all chapters by id.
   std::map<std::string, ClaimRule> rules;
   for (const auto chapter :
-       {chapters_1_and_4, chapter_3, chapter_3_cost, appendix_a, appendix_b_c_f, appendix_d_experiments})
+       {chapters_1_and_4, chapter_3_counts, chapter_3_stiffness, chapter_3_force_limit, chapter_3_trajectory,
+        chapter_3_cost, whole_tasks, appendix_a, appendix_b_c_f, appendix_d_experiments})
     for (const ClaimRule& rule : chapter()) rules[rule.id] = rule;
   const std::filesystem::path file = installed_folder("results/reference") / "rules.json";
   const auto text = [](const Json& row, const char* key) { return row.at(key).get<std::string>(); };
@@ -41,9 +42,12 @@ std::vector<Claim> all_claims() {
                                                .timing = row.value("timing", false),
                                                .ours = row.value("ours", false),
                                                .costly = row.value("costly", false),
-                                               .drawn = row.value("drawn", false)});
-      if (const Json main = row.value("main", Json()); !main.is_null())
-        claim.main = {text(main, "claim"), text(main, "published"), text(main, "ours")};
+                                               .drawn = row.value("drawn", false),
+                                               .number = row.value("number", ""),
+                                               .published_short = row.value("published_short", ""),
+                                               .added = row.value("added", false)});
+      if (const Json revised = row.value("revised", Json()); !revised.is_null())
+        claim.revised = {text(revised, "rule"), text(revised, "verdict"), text(revised, "reason")};
       if (!claim.why.empty()) continue;  // no simulation can test this claim
       claim.measure = rules.at(claim.id).measure;
       claim.judge = rules.at(claim.id).judge;
@@ -52,6 +56,19 @@ std::vector<Claim> all_claims() {
     fail_in_file(file, fmt::format("is no file of claims, after {} of them: {}", claims.size(), problem.what()));
   }
   return claims;
+}
+
+std::vector<AbstractSentence> abstract_sentences() {
+  const std::filesystem::path file = installed_folder("results/reference") / "rules.json";
+  std::vector<AbstractSentence> sentences;
+  try {
+    const Json json = read_json(file);
+    for (const Json& row : json.at("abstract"))
+      sentences.push_back({row.at("sentence").get<std::string>(), row.at("claims").get<std::vector<std::string>>()});
+  } catch (const Json::exception& problem) {
+    fail_in_file(file, fmt::format("/abstract: {}", problem.what()));
+  }
+  return sentences;
 }
 
 }  // namespace hapbench

@@ -25,6 +25,8 @@ struct Evidence {
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
   /// Called with the name of each bundled scenario that a claim loads directly. May be empty.
   std::function<void(const std::string& scenario)> used = {};
+  /// True: experiments with subjects have fewer targets (assumption_sets.hpp).
+  bool reduced = false;
 
   // All functions throw InputError, also if a result file is missing or has another format.
 

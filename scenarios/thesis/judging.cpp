@@ -1,6 +1,8 @@
 #include "scenarios/thesis/judging.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/statistics.hpp"
@@ -8,12 +10,14 @@
 namespace hapbench {
 
 Finding Claim::finding(const Evidence& evidence) const {
-  if (judge == nullptr) return {Verdict::not_reproducible, why};
-  // Measure and judge.
-  const Measured cases = measure(evidence);
-  Finding finding = judge(cases, evidence.published);
+  if (judge == nullptr) return {Verdict::not_testable, why};
+  return judged(measure(evidence), evidence.published);
+}
+
+Finding Claim::judged(const Measured& cases, const PublishedNumbers& numbers_of_thesis) const {
+  Finding finding = judge(cases, numbers_of_thesis);
   // Insert the measured numbers into the texts. NAME refers to the latest case so far, CASE.NAME to the given case.
-  PublishedNumbers numbers = evidence.published;
+  PublishedNumbers numbers = numbers_of_thesis;
   std::string of_cases;
   for (const MeasuredCase& m : cases) {
     for (const auto& [name, values] : m.values)
@@ -23,9 +27,27 @@ Finding Claim::finding(const Evidence& evidence) const {
     if (!each.empty()) append_item(of_cases, numbers.fill(text));
   }
   if (finding.measured.empty()) finding.measured = numbers.fill(measured) + of_cases;
-  finding.brief = numbers.fill(main.ours);
+  if (finding.number.empty()) finding.number = numbers.fill(number);
   finding.cases = cases;
   return finding;
+}
+
+Finding Measurements::finding(const Claim& claim, const Evidence& evidence) {
+  if (claim.judge == nullptr) return claim.finding(evidence);
+  auto found = made_.find(claim.measure);
+  if (found == made_.end()) {
+    Made made;
+    Evidence noting = evidence;
+    noting.used = [&made](const std::string& scenario) { made.scenarios.push_back(scenario); };
+    noting.provide = [&](const std::string& scenario) {
+      made.scenarios.push_back(scenario);
+      evidence.provide(scenario);
+    };
+    made.cases = claim.measure(noting);
+    found = made_.emplace(claim.measure, std::move(made)).first;
+  }
+  if (evidence.used) std::ranges::for_each(found->second.scenarios, evidence.used);
+  return claim.judged(found->second.cases, evidence.published);
 }
 
 }  // namespace hapbench

@@ -12,36 +12,59 @@
 /// A claim of the thesis, the numbers measured for it, and the verdict on it.
 namespace hapbench {
 
-/// The outcome of testing a claim. `holds` and `does_not_hold` are for findings of this project; the other verdicts are
-/// for claims of the thesis.
-enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible, holds, does_not_hold };
+/// The outcome of testing a claim. `consistent` and `not_consistent` are for experiments with people, which simulated
+/// subjects cannot replicate; `holds` and `does_not_hold` for findings of this project; the others for all other
+/// claims.
+enum class Verdict {
+  replicated,
+  qualitatively,
+  not_replicated,
+  contradicted,
+  not_testable,
+  consistent,
+  not_consistent,
+  not_judged,
+  holds,
+  does_not_hold
+};
 
 /// Name and description of a verdict.
 struct VerdictText {
   std::string_view name;
   const char* meaning;
-  const char* mark;  ///< symbol in the bars of claims.md
+  const char* mark;  ///< symbol in claims.md
 };
 /// The texts of all verdicts, in the order of Verdict.
 inline constexpr VerdictText kVerdicts[] = {
-    {"reproduced",
-     "another implementation, by other authors and from the text alone, meets the claim's rule with the published "
-     "numbers (ACM calls that replicated)",
+    {"replicated",
+     "this implementation, by other authors and from the text alone, meets the claim's rule with the published numbers "
+     "(as in the ACM badge \"Results Replicated\", version 1.1)",
      "✓"},
-    {"reproduced in kind", "direction or mechanism are the published ones, the numbers are not", "≈"},
-    {"not reproduced", "neither, in this model of the device and the hand", "✗"},
-    {"refuted", "it contradicts an exact result", "⊘"},
-    {"not reproducible", "no simulation can show it: people or the trainer are needed", "–"},
-    {"holds", "a finding of ours that the measurement shows", "✓"},
-    {"does not hold", "a finding of ours that the measurement does not show", "✗"}};
+    {"qualitatively replicated", "the direction or the mechanism is the published one; the numbers are not", "≈"},
+    {"not replicated", "neither the numbers nor the direction, in this model of the device and the hand", "✗"},
+    {"contradicted", "an exact result contradicts the claim", "⊘"},
+    {"not testable", "no simulation can test the claim: people or the trainer are needed", "–"},
+    {"consistent in simulation",
+     "simulated subjects show the published differences between the algorithms; they replicate no experiment with "
+     "people",
+     "✓"},
+    {"not consistent in simulation", "simulated subjects do not show the published differences", "✗"},
+    {"not judged", "an input that is calibrated to a published number misses this number, so nothing is predicted",
+     "?"},
+    {"holds", "a finding of this project that the measurement shows", "✓"},
+    {"does not hold", "a finding of this project that the measurement does not show", "✗"}};
 inline constexpr std::string_view verdict_name(Verdict verdict) {
   return kVerdicts[static_cast<std::size_t>(verdict)].name;
 }
 
-/// Returns `reproduced` if its condition is true, otherwise `in_kind` if the weaker condition is true, otherwise
-/// `not_reproduced`.
-inline Verdict decide(bool reproduced, bool in_kind) {
-  return reproduced ? Verdict::reproduced : in_kind ? Verdict::in_kind : Verdict::not_reproduced;
+/// Returns `replicated` if its condition is true, otherwise `qualitatively` if the weaker condition is true, otherwise
+/// `not_replicated`.
+inline Verdict decide(bool replicated, bool qualitatively) {
+  return replicated ? Verdict::replicated : qualitatively ? Verdict::qualitatively : Verdict::not_replicated;
+}
+/// Returns the verdict on an experiment with people.
+inline Verdict in_simulation(bool consistent) {
+  return consistent ? Verdict::consistent : Verdict::not_consistent;
 }
 /// Returns the verdict on a finding of this project.
 inline Verdict found(bool holds) {
@@ -66,10 +89,10 @@ using Measured = std::vector<MeasuredCase>;
 
 /// The result of judging a claim, computed from measured numbers.
 struct Finding {
-  Verdict verdict = Verdict::not_reproducible;
+  Verdict verdict = Verdict::not_testable;
   std::string why = {};       ///< one sentence that names the condition of the rule that decided
   std::string measured = {};  ///< the numbers as text; a judge leaves it empty if rules.json has the text
-  std::string brief = {};     ///< the number that decides, as text; only for main results
+  std::string number = {};    ///< the number that decides, as a short text
   Measured cases = {};        ///< the measured numbers
 };
 
@@ -85,9 +108,9 @@ inline void append_item(std::string& list, std::string_view item, std::string_vi
 }
 
 /// An entry of rules.json, with the functions of its rule. Texts contain ids of published numbers, such as <T2.raw>,
-/// which PublishedNumbers::fill replaces by the numbers. A threshold of this project is a choice without fields, such
-/// as rule.easily. The rule's text names it as <rule.easily>, from which Choices::reach finds that it influences the
-/// claim.
+/// which PublishedNumbers::fill replaces by the numbers. A threshold of this project is an assumption without
+/// fields, such as rule.easily. The rule's text names it as <rule.easily>, from which Assumptions::reach finds that it
+/// influences the claim.
 struct Claim {
   std::string id = {};
   std::string place = {};      ///< section of the thesis
@@ -102,14 +125,21 @@ struct Claim {
   Judge judge = nullptr;
   bool timing = false;  ///< true: the finding contains run times, which differ between runs
   bool ours = false;    ///< true: a finding of this project, not counted as a claim of the thesis
-  bool costly = false;  ///< true: slow to measure, so it is judged for a quarter of the readings only (robustness.hpp)
+  bool costly = false;  ///< true: slow to measure, so the record of sensitivity.hpp has it with fewer targets
   bool drawn = false;   ///< true: a figure plots the numbers of its cases, so the ledger stores them
 
-  /// Short texts of a main result: the claim, the published numbers and the measured numbers. Empty for other claims.
-  struct Main {
-    std::string claim = {}, published = {}, ours = {};
-  } main = {};
+  std::string number = {};           ///< short text with the measured number that decides, like `measured`
+  std::string published_short = {};  ///< the published number beside `number`; empty: `published`
 
+  /// A rule that was changed after its verdict was known. Empty for other claims.
+  struct Revision {
+    std::string rule = {}, verdict = {},
+                reason = {};  ///< the rule and the verdict before, and why the rule was changed
+  } revised = {};
+  bool added = false;  ///< true: the rule was committed before the claim was measured for the first time
+
+  /// Judges the measured numbers and inserts them into the texts.
+  Finding judged(const Measured& cases, const PublishedNumbers& numbers_of_thesis) const;
   /// Measures the claim and returns the verdict on it. Throws InputError.
   Finding finding(const Evidence& evidence) const;
 };
@@ -119,13 +149,23 @@ struct JudgedClaim {
   Claim claim;
   Finding finding;
   std::vector<std::string> scenarios = {};  ///< names of the bundled scenarios used, sorted
-  std::string reach = {};                   ///< Choices::reach(); empty if no choice influences the claim
+  std::string reach = {};                   ///< Assumptions::reach(); empty if no assumption influences the claim
   double seconds = 0.0;                     ///< time to run its scenarios and to measure it [s]
+};
 
-  /// Returns true if other values of the choices can change the verdict.
-  bool can_be_sampled() const {
-    return !claim.timing && finding.verdict != Verdict::not_reproducible && !reach.empty();
-  }
+/// Measurements of claims, so that claims with the same measurement share it. Holds for one set of assumptions.
+class Measurements {
+ public:
+  /// Measures a claim and returns the verdict on it. Calls evidence.used with the name of each scenario that the
+  /// measurement needs, also if an earlier claim has made it. Throws InputError.
+  Finding finding(const Claim& claim, const Evidence& evidence);
+
+ private:
+  struct Made {
+    Measured cases = {};
+    std::vector<std::string> scenarios = {};  ///< names of the scenarios that the measurement needs
+  };
+  std::map<Measure, Made> made_;
 };
 
 }  // namespace hapbench

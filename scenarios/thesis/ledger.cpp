@@ -4,33 +4,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <regex>
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/thesis/claims.hpp"
 
 namespace hapbench {
 
 namespace {
 
-constexpr const char *kSteady = "steady", *kFragile = "fragile", *kNotSampled = "not sampled";
-
-std::string text_at(const Json& claim, const char* key) {
-  return claim.at(key).get<std::string>();
-}
-
-bool is_ours(const Json& claim) {
-  return claim.at("ours").get<bool>();
-}
-
-/// Returns the robustness of a verdict: "steady" if more than half of the judged samples of the choices give the
-/// recorded verdict, otherwise "fragile"; "not sampled" without samples.
-const char* sureness(const Json& robustness) {
-  if (robustness.is_null()) return kNotSampled;
-  const auto judged = robustness.at("judged").get<std::size_t>(), holds = robustness.at("holds").get<std::size_t>();
-  return 2 * holds > judged ? kSteady : kFragile;
+bool is(const Json& claim, const char* key) {
+  return claim.at(key).get<bool>();
 }
 
 /// Returns the verdict of a claim in claims.json.
@@ -39,15 +27,17 @@ Verdict verdict_of(const Json& claim) {
   return static_cast<Verdict>(found - std::begin(kVerdicts));
 }
 
-/// Returns the text, cut at a word boundary to at most `most` characters and an ellipsis if it is longer.
-std::string shortened(const std::string& text, std::size_t most) {
-  if (count_characters(text) <= most) return text;
-  std::size_t end = 0;
-  for (std::size_t i = 0, seen = 0; i < text.size() && seen < most; ++i) {
-    if (starts_character(text[i])) ++seen;
-    if (text[i] == ' ') end = i;
-  }
-  return text.substr(0, text.find_last_not_of(" ,;:", end) + 1) + " …";
+bool failed(const Json& claim) {
+  const Verdict verdict = verdict_of(claim);
+  return verdict == Verdict::not_replicated || verdict == Verdict::contradicted || verdict == Verdict::not_consistent ||
+         verdict == Verdict::not_judged;
+}
+
+/// Returns the first figure that a place names, such as "Fig. A.2"; empty if it names none.
+std::string figure_of(const std::string& place) {
+  static const std::regex kFigure(R"(Fig\. ((?:[A-F]\.)?\d+))");
+  std::smatch found;
+  return std::regex_search(place, found, kFigure) ? found[0].str() : "";
 }
 
 /// Returns the chapter or appendix of a claim's first numbered section, such as "C" for "abstract, C.2".
@@ -58,54 +48,126 @@ std::string chapter_of(const Json& claim) {
   return std::string(1, place.at(appendix ? number - 2 : number));
 }
 
-/// Returns a line for each chapter, with a symbol for each of its claims.
-std::string chapter_bars(const Json& claims) {
-  std::map<std::string, std::array<std::string, std::size(kVerdicts)>> chapters;
+std::string link_to(const Json& claim) {
+  const std::string id = text_at(claim, "id");
+  return fmt::format("[{}](claim_pages.md#{})", id, lower_case(id));
+}
+
+/// Returns the robustness of a claim with its assumptions as code: "sensitive to `local.average`".
+std::string decided_by(const Json& claim) {
+  const auto deciders = claim.at("deciders").get<std::vector<std::string>>();
+  if (deciders.empty()) return text_at(claim, "robustness");
+  return fmt::format("{} `{}`", deciders.size() == 1 ? kSensitiveVerdict : std::string(kSeveralVerdict) + ":",
+                     fmt::join(deciders, "`, `"));
+}
+
+std::string seconds_text(const Json& claim) {
+  const double seconds = claim.at("seconds").get<double>();
+  return seconds < 1.0 ? "< 1 s" : fmt::format("{:.0f} s", seconds);
+}
+
+/// Returns the number of a claim for a table; the reason for a claim without a number.
+std::string ours(const Json& claim) {
+  const std::string number = text_at(claim, "number");
+  return number.empty() ? "–" : number;
+}
+
+constexpr const char* kHeading =
+    "| id | claim | published | ours | verdict | decided by |\n|---|---|---|---|---|---|\n";
+
+std::string row_of(const Json& claim) {
+  return fmt::format("| {} | {} | {} | {} | {} | {} |\n", link_to(claim), text_at(claim, "claim"),
+                     text_at(claim, "published"), ours(claim), text_at(claim, "verdict"), decided_by(claim));
+}
+
+/// Returns the cell of an abstract's row: the text of each claim, after its id if there are several.
+std::string joined(const std::vector<const Json*>& claims, const std::function<std::string(const Json&)>& text) {
+  std::string cell;
+  for (const Json* claim : claims)
+    append_item(cell, (claims.size() > 1 ? text_at(*claim, "id") + ": " : "") + text(*claim), "<br>");
+  return cell;
+}
+
+/// Returns the table of the abstract's sentences.
+std::string abstract_table(const Json& ledger) {
+  std::string text =
+      "| the abstract claims | published | ours | verdict | decided by | figure | command |\n"
+      "|---|---|---|---|---|---|---|\n";
+  for (const Json& sentence : ledger.at("abstract")) {
+    std::vector<const Json*> claims;
+    std::string ids, figure;
+    double seconds = 0.0;
+    for (const Json& id : sentence.at("claims"))
+      for (const Json& claim : ledger.at("claims"))
+        if (claim.at("id") == id) {
+          claims.push_back(&claim);
+          append_item(ids, id.get<std::string>(), ",");
+          if (figure.empty()) figure = text_at(claim, "figure");
+          seconds += claim.at("seconds").get<double>();
+        }
+    if (claims.empty()) continue;  // --only
+    const auto member = [](const char* key) { return [key](const Json& claim) { return text_at(claim, key); }; };
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | `hapbench reproduce --only {}` ({:.0f} s) |\n",
+                        text_at(sentence, "sentence"), joined(claims, member("published_short")), joined(claims, ours),
+                        joined(claims, member("verdict")), joined(claims, decided_by), figure, ids, std::ceil(seconds));
+  }
+  return text;
+}
+
+/// Returns the claims that failed, with the reason and the assumption that carries the verdict.
+std::string failures(const Json& claims) {
+  std::string text;
   for (const Json& claim : claims) {
-    const auto verdict = static_cast<std::size_t>(verdict_of(claim));
-    if (!is_ours(claim)) chapters[chapter_of(claim)][verdict] += kVerdicts[verdict].mark;
+    if (is(claim, "ours") || is(claim, "timing") || !failed(claim)) continue;
+    text += fmt::format("- {}, {} ({}): *{}*, {}; {}. Why: {}.\n", link_to(claim), text_at(claim, "claim"),
+                        text_at(claim, "place"), text_at(claim, "verdict"), ours(claim), decided_by(claim),
+                        text_at(claim, "why"));
+  }
+  return text;
+}
+
+/// Returns a table of claims for each chapter.
+std::string chapters(const Json& claims) {
+  std::map<std::string, std::string> tables;
+  for (const Json& claim : claims)
+    if (!is(claim, "ours") && !is(claim, "timing") && verdict_of(claim) != Verdict::not_testable)
+      tables[chapter_of(claim)] += row_of(claim);
+  std::string text;
+  for (const auto& [chapter, rows] : tables)
+    text += fmt::format("\n### {} {}\n\n{}{}",
+                        std::isdigit(static_cast<unsigned char>(chapter[0])) ? "Chapter" : "Appendix", chapter,
+                        kHeading, rows);
+  return text;
+}
+
+/// Returns a table of the claims that fulfil a condition; empty without such claims.
+std::string table_of(const Json& claims, const std::string& title, bool (*belongs)(const Json&)) {
+  std::string rows;
+  for (const Json& claim : claims)
+    if (belongs(claim)) rows += row_of(claim);
+  return rows.empty() ? "" : fmt::format("\n### {}\n\n{}{}", title, kHeading, rows);
+}
+
+/// Returns the list of revised rules, with the verdict before.
+std::string revisions(const Json& claims) {
+  std::string rows, added;
+  for (const Json& claim : claims) {
+    if (claim.contains("revised")) {
+      const Json& before = claim.at("revised");
+      rows += fmt::format("| {} | {} | {} | {} | {} |\n", link_to(claim), text_at(before, "rule"),
+                          text_at(before, "verdict"), text_at(claim, "verdict"), text_at(before, "reason"));
+    }
+    if (is(claim, "added")) append_item(added, link_to(claim), ", ");
   }
   std::string text;
-  for (const auto& [chapter, marks] : chapters) text += fmt::format("    {}  {}\n", chapter, fmt::join(marks, ""));
+  if (!rows.empty())
+    text +=
+        "\n### Rules revised after their verdicts were known\n\n| id | rule before | verdict before | verdict now | "
+        "reason |\n|---|---|---|---|---|\n" +
+        rows;
+  if (!added.empty())
+    text += fmt::format("\nThe rules of {} were committed before these claims were measured.\n", added);
   return text;
-}
-
-/// Returns the heading of a table. `columns`: names of its first two columns.
-std::string heading(const char* columns) {
-  return fmt::format(
-      "| {} | published | ours | verdict | sureness | command | seconds |\n|---|---|---|---|---|---|---|---|\n",
-      columns);
-}
-
-/// Returns the last cells of a table row: verdict, sureness, command and seconds.
-std::string last_cells(const Json& claim) {
-  const double seconds = claim.at("seconds").get<double>();
-  return fmt::format(" | {} | {} | `{}` | {} |", text_at(claim, "verdict"), text_at(claim, "sureness"),
-                     text_at(claim, "command"), seconds < 1.0 ? "< 1" : fmt::format("{:.0f}", seconds));
-}
-
-/// Returns the table of the main results.
-std::string main_results(const Json& claims) {
-  std::string text = heading("claim | place");
-  for (const Json& claim : claims) {
-    if (!claim.contains("main")) continue;
-    const Json& main = claim.at("main");
-    text += fmt::format("| {} | {} | {} | {}{}\n", text_at(main, "claim"), text_at(claim, "place"),
-                        text_at(main, "published"), text_at(main, "ours"), last_cells(claim));
-  }
-  return text;
-}
-
-/// Returns the table row of a claim, with texts shortened to at most 300 characters in total.
-std::string row_of(const Json& claim) {
-  constexpr std::size_t kClaim = 90, kPublished = 50,
-                        kLongestRow = 300;  // [characters]; `describe ID` prints the full texts
-  const std::string before =
-      fmt::format("| {} | {} | {} | ", text_at(claim, "id"), shortened(text_at(claim, "claim"), kClaim),
-                  shortened(text_at(claim, "published"), kPublished));
-  const std::string after = last_cells(claim);
-  const std::size_t ellipsis = 2, room = kLongestRow - count_characters(before + after) - ellipsis;
-  return before + shortened(text_at(claim, "measured"), room) + after + "\n";
 }
 
 /// Returns the numbers of each case; a list if a name has several numbers.
@@ -118,23 +180,21 @@ Json cases_json(const Measured& cases) {
   return json;
 }
 
-/// Returns the entry of a claim in robustness.json; null if there is none for this verdict and these choices. Throws
-/// InputError if the file has another format.
-Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
-  try {
-    for (const Json& claim : record.at("claims")) {
-      if (claim.at("id") != judged.claim.id) continue;
-      const bool same = judged.can_be_sampled() && claim.at("choices") == judged.reach &&
-                        claim.at("on_record") == verdict_name(judged.finding.verdict);
-      if (!same) break;
-      Json counts = claim;
-      for (const char* key : {"id", "on_record", "choices"}) counts.erase(key);
-      return counts;
-    }
-    return nullptr;
-  } catch (const Json::exception& problem) {
-    throw InputError(fmt::format("robustness.json: is no record of robustness: {}", problem.what()));
+/// Adds what the record of sensitivity has about a claim: the number of cases, and the cases with another verdict.
+void add_sensitivity(Json& claim, const JudgedClaim& judged, const SensitivityRecord& record) {
+  const Json entry = record.entry(judged.claim.id, judged.reach);
+  const Robustness robustness = robustness_of(judged, entry);
+  claim["robustness"] = robustness.text();
+  claim["deciders"] = robustness.deciders;
+  Json moved = Json::array();
+  std::size_t tried = 0;
+  if (!entry.is_null() && robustness.word != kNotSampledVerdict) {
+    tried = entry.at("cases").size();
+    for (const Json& one : entry.at("cases"))
+      if (one.at("verdict") != entry.at("verdict")) moved.push_back(one);
   }
+  claim["cases_tried"] = tried;
+  claim["cases_moved"] = std::move(moved);
 }
 
 }  // namespace
@@ -143,75 +203,133 @@ std::string headline_of(const Json& claims) {
   // Count the verdicts, and the robustness of the verdicts, over the claims of the thesis.
   std::map<Verdict, std::size_t> verdicts;
   std::map<std::string, std::size_t> sure;
-  std::size_t all = 0;
+  std::size_t all = 0, timing = 0;
   for (const Json& claim : claims) {
-    if (is_ours(claim)) continue;
+    if (is(claim, "ours")) continue;
+    if (is(claim, "timing")) {
+      ++timing;
+      continue;
+    }
     ++all;
     ++verdicts[verdict_of(claim)];
-    ++sure[text_at(claim, "sureness")];
+    const std::size_t deciders = claim.at("deciders").size();
+    ++sure[deciders == 0 ? text_at(claim, "robustness") : deciders == 1 ? kSensitiveVerdict : kSeveralVerdict];
   }
   std::string counts;
   for (const auto& [verdict, count] : verdicts)
     append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
-  return fmt::format(
-      "{} claims of the thesis: {}. {} of the verdicts are steady (more than half of the samples of the choices on "
-      "record have them), {} fragile, {} not sampled.",
-      all, counts, sure[kSteady], sure[kFragile], sure[kNotSampled]);
+  std::string text = fmt::format(
+      "{} claims of the thesis: {}. Of these verdicts, {} are exact, {} robust (no single assumption changes them), {} "
+      "sensitive to one assumption, {} depend on several",
+      all, counts, sure[kExactVerdict], sure[kRobustVerdict], sure[kSensitiveVerdict], sure[kSeveralVerdict]);
+  const std::size_t others = sure[kNotSampledVerdict];
+  if (others > 0) text += fmt::format(", {} without a sample", others);
+  text += ".";
+  if (timing > 0) text += fmt::format(" {} claims about computing time stand apart, because machines differ.", timing);
+  return text;
 }
 
-Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness) {
+Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
+                 const SensitivityRecord& record) {
   Json claims = Json::array();
   for (const JudgedClaim& j : judged) {
-    Json counts = robustness_on_record(robustness, j);
-    const char* sure = sureness(counts);
-    Json& claim = claims.emplace_back(Json{{"id", j.claim.id},
-                                           {"place", j.claim.place},
-                                           {"claim", j.claim.claim},
-                                           {"published", published.fill(j.claim.published)},
-                                           {"measured", j.finding.measured},
-                                           {"rule", published.fill(j.claim.rule)},
-                                           {"verdict", verdict_name(j.finding.verdict)},
-                                           {"sureness", sure},
-                                           {"robustness", std::move(counts)},
-                                           {"choices_reach_it", !j.reach.empty()},
-                                           {"why", j.finding.why},
-                                           {"scenarios", j.scenarios},
-                                           {"command", "hapbench reproduce --only " + j.claim.id},
-                                           {"seconds", std::round(10.0 * j.seconds) / 10.0},
-                                           {"timing", j.claim.timing},
-                                           {"ours", j.claim.ours}});
+    const std::string full = published.fill(j.claim.published);
+    Json& claim = claims.emplace_back(
+        Json{{"id", j.claim.id},
+             {"place", j.claim.place},
+             {"claim", j.claim.claim},
+             {"published", full},
+             {"published_short", j.claim.published_short.empty() ? full : published.fill(j.claim.published_short)},
+             {"number", j.finding.number},
+             {"measured", j.finding.measured},
+             {"rule", published.fill(j.claim.rule)},
+             {"verdict", verdict_name(j.finding.verdict)},
+             {"why", j.finding.why},
+             {"figure", figure_of(j.claim.place)},
+             {"scenarios", j.scenarios},
+             {"command", "hapbench reproduce --only " + j.claim.id},
+             {"seconds", std::round(10.0 * j.seconds) / 10.0},
+             {"timing", j.claim.timing},
+             {"ours", j.claim.ours},
+             {"added", j.claim.added}});
+    add_sensitivity(claim, j, record);
+    if (!j.claim.revised.rule.empty())
+      claim["revised"] = {{"rule", published.fill(j.claim.revised.rule)},
+                          {"verdict", j.claim.revised.verdict},
+                          {"reason", j.claim.revised.reason}};
     if (j.claim.drawn) claim["cases"] = cases_json(j.finding.cases);
-    if (!j.claim.main.claim.empty()) {
-      claim["main"] = {{"claim", j.claim.main.claim},
-                       {"published", published.fill(j.claim.main.published)},
-                       {"ours", j.finding.brief}};
-    }
   }
-  return {{"headline", headline_of(claims)}, {"claims", std::move(claims)}};
+  Json abstract = Json::array();
+  for (const AbstractSentence& sentence : abstract_sentences())
+    abstract.push_back({{"sentence", sentence.sentence}, {"claims", sentence.claims}});
+  return {{"headline", headline_of(claims)}, {"abstract", std::move(abstract)}, {"claims", std::move(claims)}};
 }
 
 std::string ledger_markdown(const Json& ledger) {
   const Json& claims = ledger.at("claims");
-  // Main results, headline, bars by chapter and the meanings of the verdicts.
+  std::string text = "# The thesis, claim by claim\n\n" + text_at(ledger, "headline") +
+                     "\n\n## 1. What the abstract claims\n\n" + abstract_table(ledger) + "\n";
+  for (const VerdictText& verdict : kVerdicts)
+    text += fmt::format("{} *{}*: {}.  \n", verdict.mark, verdict.name, verdict.meaning);
+  text +=
+      "\n*Decided by*: each assumption that the thesis leaves open was set to each of its plausible values, one at a "
+      "time, with calibrated hands calibrated anew. *exact*: no assumption enters; *robust*: none changes the verdict; "
+      "*sensitive to* one; *depends on several*. `hapbench describe NAME` explains an assumption and a claim.\n";
+  const std::string failing = failures(claims);
+  if (!failing.empty()) text += "\n## 2. What failed, and what carries it\n\n" + failing;
+  text += "\n## 3. By chapter\n" + chapters(claims);
+  text += "\n## 4. Times, claims that are not judged, rules and findings\n";
+  text += table_of(claims, "Computing time, on one machine (medians)",
+                   [](const Json& claim) { return is(claim, "timing") && !is(claim, "ours"); });
+  std::string untestable;
+  for (const Json& claim : claims)
+    if (verdict_of(claim) == Verdict::not_testable)
+      untestable += fmt::format("- {}, {} ({}): {}.\n", link_to(claim), text_at(claim, "claim"),
+                                text_at(claim, "place"), text_at(claim, "why"));
+  if (!untestable.empty()) text += "\n### Not testable\n\n" + untestable;
+  text += revisions(claims);
+  text += table_of(claims, "Findings of this project, which are no claims of the thesis",
+                   [](const Json& claim) { return is(claim, "ours"); });
+  return text +
+         "\n[ERRATA.md](ERRATA.md) lists what the thesis misprints; [figures.md](figures/figures.md) has the "
+         "figures.\n";
+}
+
+std::string claim_pages(const Json& ledger) {
   std::string text =
-      main_results(claims) + "\n" + text_at(ledger, "headline") + " By chapter:\n\n" + chapter_bars(claims) + "\n";
-  for (std::size_t v = 0; v <= static_cast<std::size_t>(Verdict::not_reproducible); ++v)
-    text += fmt::format("{} *{}*: {}.  \n", kVerdicts[v].mark, kVerdicts[v].name, kVerdicts[v].meaning);
-  // Table of all claims, contradicted claims first.
-  text += "\nMore of a row: `hapbench describe ID`.\n\n" + heading("id | claim");
-  for (const Verdict verdict : {Verdict::refuted, Verdict::not_reproduced, Verdict::in_kind, Verdict::reproduced})
-    for (const Json& claim : claims)
-      if (!is_ours(claim) && verdict_of(claim) == verdict) text += row_of(claim);
-  // List the claims that no simulation can test, and the findings of this project.
-  std::string unjudged, findings;
-  for (const Json& claim : claims) {
-    if (is_ours(claim)) findings += row_of(claim);
-    if (verdict_of(claim) != Verdict::not_reproducible) continue;
-    unjudged += fmt::format("- {}, {}: {}.\n", text_at(claim, "id"), text_at(claim, "claim"), text_at(claim, "why"));
+      "# Claims, one section each\n\nSee rule, cases and sensitivity of a claim of [the ledger](claims.md); `hapbench "
+      "describe ID` prints the same.\n";
+  for (const Json& claim : ledger.at("claims")) {
+    text +=
+        fmt::format("\n## {}\n\n{} ({}).\n\n", text_at(claim, "id"), text_at(claim, "claim"), text_at(claim, "place"));
+    const auto item = [&text](const char* title, const std::string& of) {
+      if (!of.empty()) text += fmt::format("- **{}**: {}\n", title, of);
+    };
+    item("Verdict", text_at(claim, "verdict"));
+    item("Why", text_at(claim, "why"));
+    item("Published", text_at(claim, "published"));
+    item("Number", text_at(claim, "number"));
+    item("Cases", text_at(claim, "measured"));
+    item("Rule", text_at(claim, "rule"));
+    if (claim.contains("revised")) {
+      const Json& before = claim.at("revised");
+      item("Rule before", fmt::format("{} ({}). Revised because {}", text_at(before, "rule"),
+                                      text_at(before, "verdict"), text_at(before, "reason")));
+    }
+    item("Decided by", decided_by(claim));
+    std::string moved;
+    for (const Json& one : claim.at("cases_moved"))
+      append_item(moved, fmt::format("`{}` = {}: {}{}{}", text_at(one, "assumption"), text_at(one, "value"),
+                                     text_at(one, "verdict"), text_at(one, "number").empty() ? "" : ", ",
+                                     text_at(one, "number")));
+    if (const auto tried = claim.at("cases_tried").get<std::size_t>(); tried > 0)
+      item("Sensitivity",
+           fmt::format("{} other values tried; {}", tried, moved.empty() ? "none moves the verdict" : moved));
+    item("Figure", text_at(claim, "figure"));
+    if (!claim.at("scenarios").empty())
+      item("Scenarios", fmt::format("`{}`", fmt::join(claim.at("scenarios").get<std::vector<std::string>>(), "`, `")));
+    item("Command", fmt::format("`{}` ({})", text_at(claim, "command"), seconds_text(claim)));
   }
-  if (!unjudged.empty()) text += "\nWhat cannot be judged:\n\n" + unjudged;
-  if (!findings.empty())
-    text += "\nFound on the way, and no claims of the thesis:\n\n" + heading("id | claim") + findings;
   return text;
 }
 

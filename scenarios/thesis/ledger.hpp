@@ -6,21 +6,26 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/thesis/judging.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
+#include "scenarios/thesis/sensitivity.hpp"
 
 /// The ledger: the verdicts on all claims, written as claims.json and claims.md.
 namespace hapbench {
 
-/// Returns the content of claims.json: the headline and the claims. Claims whose numbers a figure plots (Claim::drawn)
-/// include their cases. `robustness`: the content of robustness.json. Its entry for a claim is used only if its
-/// recorded verdict and its hash of the choices agree with `judged`. Throws InputError if `robustness` has another
-/// format.
-Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness);
-/// Returns a sentence with the number of claims for each verdict and for each robustness of a verdict: steady (most
-/// readings give the same verdict), fragile (most do not), or not sampled.
+/// Returns the content of claims.json: the headline, the sentences of the abstract and the claims. Claims whose numbers
+/// a figure plots (Claim::drawn) include their cases. Uses an entry of the record of sensitivity only if it is about
+/// the same assumptions.
+Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
+                 const SensitivityRecord& record);
+/// Returns a sentence with the number of claims for each verdict and for each robustness of a verdict. Claims about
+/// computing time, whose verdicts depend on the machine, are counted apart.
 std::string headline_of(const Json& claims);
 
-/// Returns the content of claims.md from the result of ledger_json: the main results, counts by chapter, the claims of
-/// the thesis (contradicted claims first), and the findings of this project.
+/// Returns the content of claims.md from the result of ledger_json, in four parts: the claims of the abstract; the
+/// claims that failed; all claims by chapter; claims about time, claims that are not testable, revised rules and
+/// findings of this project. No cell is shortened. Each id links to a section of claim_pages.md.
 std::string ledger_markdown(const Json& ledger);
+
+/// Returns the content of claim_pages.md: a section for each claim, with rule, cases, sensitivity, figure and command.
+std::string claim_pages(const Json& ledger);
 
 }  // namespace hapbench

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <chrono>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "results/summary/summary.hpp"
+#include "scenarios/run/bare_run.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "scenarios/thesis/judging.hpp"
@@ -23,6 +24,10 @@ namespace hapbench {
 
 /// The algorithm that the thesis proposes.
 inline constexpr const char* kProposedLaw = "shaped_stiffness";
+
+/// Names of the tasks of 3.2 and of the densities of the block; a scenario TASK_DENSITY has both.
+inline constexpr const char* kTasks[] = {"task1_flat", "task2_rotate", "task3_spin"};
+inline constexpr const char* kDensities[] = {"signed_distance", "binary"};
 
 /// Runs a scenario in memory and calls `row` for each time step. StepRecord::found has the contacts before the point
 /// stages. Throws InputError.
@@ -38,22 +43,23 @@ inline const ToolPose kUpright{Vec3::Zero(), {0.0, 0.0, -1.0}};
 ContactBuffer wall_point(double beyond, const char* depth_model);
 
 /// Number of repetitions of a timing measurement.
-inline constexpr int kRepetitions = 20;
+inline constexpr int kRepetitions = 21;
 
-/// Returns the smallest duration [s] of a call of `work` over up to `repetitions` calls. Stops after one second in
-/// total.
+/// Returns the median processor time [s] of a call of `work` over up to `repetitions` calls. Stops after one second in
+/// total. Processor time does not include waiting for other processes.
 template <class Work>
 double seconds_of(int repetitions, Work work) {
-  using Clock = std::chrono::steady_clock;
-  double smallest = 0.0, all = 0.0;
+  std::vector<double> durations;
+  double all = 0.0;
   for (int i = 0; i < repetitions && all < 1.0; ++i) {
-    const auto start = Clock::now();
+    const double start = processor_seconds();
     work();
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    if (i == 0 || seconds < smallest) smallest = seconds;
-    all += seconds;
+    durations.push_back(processor_seconds() - start);
+    all += durations.back();
   }
-  return smallest;
+  const auto middle = durations.begin() + static_cast<std::ptrdiff_t>(durations.size() / 2);
+  std::nth_element(durations.begin(), middle, durations.end());
+  return *middle;
 }
 
 /// Returns a scenario of a drill in the block's hole, prepared for measuring contacts: it has an ideal device, which
@@ -73,8 +79,8 @@ ContactBuffer largest_of(const std::vector<ContactBuffer>& sets);
 /// Returns the size of the largest set; 0 without sets.
 std::size_t largest_size(const std::vector<ContactBuffer>& sets);
 
-/// Returns the smallest duration [s], over the repetitions, of a pass that copies each set and calls `work` with the
-/// copy.
+/// Returns the median processor time [s], over the repetitions, of a pass that copies each set and calls `work` with
+/// the copy.
 template <class Work>
 double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Work work) {
   ContactBuffer copy(largest_size(sets));

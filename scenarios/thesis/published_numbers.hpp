@@ -31,7 +31,7 @@ class PublishedNumbers {
   /// format, such as <J1.depth.mean*1000:.2f>; without a format it is written by plain(), and NaN as "none". Throws
   /// InputError for an unknown id.
   std::string fill(const std::string& text) const;
-  /// Sets the mean of a number that the thesis does not publish, such as a threshold (choices.hpp) or a measured
+  /// Sets the mean of a number that the thesis does not publish, such as a threshold (assumptions.hpp) or a measured
   /// number.
   void set(const std::string& id, double value) { numbers_[id].mean = value; }
 
@@ -42,7 +42,7 @@ class PublishedNumbers {
 /// Returns a number as text with at most six digits, such as "0.1", "15", "1e-9".
 std::string plain(double number);
 
-/// Returns the threshold rule.NAME, a choice of this project. Throws InputError for an unknown name.
+/// Returns the threshold rule.NAME, a assumption of this project. Throws InputError for an unknown name.
 double threshold(const PublishedNumbers& numbers, const std::string& name);
 
 }  // namespace hapbench

@@ -1,73 +1,154 @@
 #include "scenarios/thesis/sensitivity.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "sim/core/random.hpp"
+#include <algorithm>
+#include <set>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/scene/field_files.hpp"
 
 namespace hapbench {
 namespace {
 
-/// Returns the input with the largest first-order index; empty if all indices are NaN.
-std::optional<DecidingInput> largest_index(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
-                                           std::span<const double> y) {
-  std::optional<DecidingInput> largest;
-  for (std::size_t i = 0; i < bins_of_inputs.size(); ++i) {
-    const double index = first_order_index(bins_of_inputs[i], y);
-    if (!std::isnan(index) && (!largest || index > largest->index)) largest = DecidingInput{i, index};
-  }
-  return largest;
+/// Returns true if a recorded verdict is one that the claim's rule has given.
+bool was_judged(const std::string& verdict) {
+  return verdict != kNotMeasured && verdict != verdict_name(Verdict::not_judged);
+}
+
+/// Returns the values of an assumption with which a claim is judged. Empty for an input, and for an assumption or a
+/// claim that other values cannot change. Costly claims have the ends of a range only.
+std::vector<std::string> values_to_try(const Assumption& assumption, const Claim& claim,
+                                       const std::vector<std::string>& scenarios) {
+  if (assumption.calibration || claim.timing || claim.judge == nullptr || !assumption.reaches(scenarios, claim.rule))
+    return {};
+  return assumption.other_values(!claim.costly);
 }
 
 }  // namespace
 
-std::vector<std::size_t> equal_count_bins(std::span<const double> values, std::size_t bins) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [values](std::size_t i) { return values[i]; });
-  std::vector<std::size_t> bin(values.size());
-  for (std::size_t rank = 0; rank < order.size(); ++rank) bin[order[rank]] = rank * bins / order.size();
-  return bin;
+SensitivityRecord::SensitivityRecord(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return;
+  const Json json = with_file(file, [&] { return read_json(file); });
+  try {
+    for (const Json& claim : json.at("claims")) {
+      for (const char* key : {"assumptions", "verdict", "number"}) text_at(claim, key);
+      claim.at("complete").get<std::size_t>();
+      for (const Json& one : claim.at("cases"))
+        for (const char* key : {"assumption", "value", "verdict", "number"}) text_at(one, key);
+      claims_[text_at(claim, "id")] = claim;
+    }
+  } catch (const Json::exception& problem) {
+    fail_in_file(file, fmt::format("is no record of sensitivity: {}", problem.what()));
+  }
 }
 
-double first_order_index(std::span<const std::size_t> bin, std::span<const double> y) {
-  if (y.empty()) return std::nan("");
-  const auto n = static_cast<double>(y.size());
-  const double mean = std::accumulate(y.begin(), y.end(), 0.0) / n;
-  std::vector<double> sums(*std::max_element(bin.begin(), bin.end()) + 1), counts(sums.size());
-  // Sum deviations from the mean: total sum of squares (SST), and sums by bin.
-  double total = 0.0;
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    total += (y[i] - mean) * (y[i] - mean);
-    sums[bin[i]] += y[i] - mean;
-    counts[bin[i]] += 1.0;
-  }
-  // Sum of squares between the bins (SSB), and the number of nonempty bins (B).
-  double between = 0.0, filled = 0.0;
-  for (std::size_t b = 0; b < sums.size(); ++b) {
-    if (counts[b] == 0.0) continue;
-    between += sums[b] * sums[b] / counts[b];
-    filled += 1.0;
-  }
-  if (total == 0.0 || n <= filled) return std::nan("");
-  return (between - (filled - 1.0) * (total - between) / (n - filled)) / total;
+Json SensitivityRecord::entry(const std::string& claim, const std::string& reach) const {
+  const Json entry = claims_.value(claim, Json());
+  return !entry.is_null() && entry.at("assumptions") == reach ? entry : Json();
 }
 
-std::optional<DecidingInput> deciding_input(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
-                                            std::vector<double> y, std::uint64_t seed, double level,
-                                            std::size_t permutations) {
-  const std::optional<DecidingInput> found = largest_index(bins_of_inputs, y);
-  if (!found) return std::nullopt;
-  Random random(seed);
-  std::size_t as_large = 0;
-  for (std::size_t i = 0; i < permutations; ++i) {
-    random.shuffle(y);
-    as_large += largest_index(bins_of_inputs, y)->index >= found->index ? 1U : 0U;
+void SensitivityRecord::begin(const std::string& claim, const std::string& reach, const SetFinding& recorded,
+                              std::size_t complete) {
+  Json made = {
+      {"id", claim},          {"assumptions", reach},  {"verdict", recorded.verdict}, {"number", recorded.number},
+      {"complete", complete}, {"cases", Json::array()}};
+  const Json before = entry(claim, reach);
+  if (!before.is_null() && before.at("verdict") == recorded.verdict && before.at("number") == recorded.number)
+    made["cases"] = before.at("cases");
+  claims_[claim] = std::move(made);
+}
+
+bool SensitivityRecord::has(const std::string& claim, const std::string& assumption, const std::string& value) const {
+  return std::ranges::any_of(claims_.at(claim).at("cases"), [&](const Json& one) {
+    return one.at("assumption") == assumption && one.at("value") == value;
+  });
+}
+
+void SensitivityRecord::add(const std::string& claim, const std::string& assumption, const std::string& value,
+                            const SetFinding& found) {
+  claims_.at(claim)["cases"].push_back(
+      {{"assumption", assumption}, {"value", value}, {"verdict", found.verdict}, {"number", found.number}});
+}
+
+void SensitivityRecord::keep_only(const std::vector<Claim>& claims) {
+  Json kept = Json::object();
+  for (const Claim& claim : claims)
+    if (claims_.contains(claim.id)) kept[claim.id] = claims_.at(claim.id);
+  claims_ = std::move(kept);
+}
+
+std::string SensitivityRecord::text() const {
+  // One line for each case, so that changes of the record can be read.
+  std::string text =
+      "{\n  \"about\": \"Verdicts with one assumption at a time at another plausible value; made by hapbench reproduce "
+      "--sensitivity.\",\n  \"claims\": [";
+  const char* separator = "\n";
+  for (const auto& [id, claim] : claims_.items()) {
+    Json head = claim;
+    head.erase("cases");
+    std::string opening = head.dump();
+    opening.pop_back();
+    text += fmt::format("{}    {}, \"cases\": [", separator, opening);
+    const char* comma = "\n";
+    for (const Json& one : claim.at("cases")) {
+      text += fmt::format("{}      {}", comma, one.dump());
+      comma = ",\n";
+    }
+    text += "]}";
+    separator = ",\n";
   }
-  // The observed order counts as one of the permutations (Phipson and Smyth 2010).
-  const double p = static_cast<double>(as_large + 1) / static_cast<double>(permutations + 1);
-  return p <= level ? found : std::nullopt;
+  return text + "\n  ]\n}\n";
+}
+
+std::string Robustness::text() const {
+  if (deciders.empty()) return word;
+  return fmt::format("{}{} {}", word, word == kSeveralVerdict ? ":" : "", fmt::join(deciders, ", "));
+}
+
+Robustness robustness_of(const JudgedClaim& judged, const Json& entry) {
+  if (judged.claim.timing || judged.finding.verdict == Verdict::not_testable) return {kNotSampledVerdict};
+  if (judged.reach.empty()) return {kExactVerdict};
+  if (entry.is_null()) return {kNotSampledVerdict};
+  std::vector<std::string> deciders;
+  for (const Json& one : entry.at("cases")) {
+    const std::string verdict = text_at(one, "verdict"), assumption = text_at(one, "assumption");
+    const bool changes = was_judged(verdict) && verdict != text_at(entry, "verdict");
+    if (changes && std::ranges::find(deciders, assumption) == deciders.end()) deciders.push_back(assumption);
+  }
+  const bool complete = entry.at("cases").size() >= entry.at("complete").get<std::size_t>();
+  if (!complete && deciders.size() < 2) return {kNotSampledVerdict};
+  const char* word = deciders.empty() ? kRobustVerdict : deciders.size() == 1 ? kSensitiveVerdict : kSeveralVerdict;
+  return {word, std::move(deciders)};
+}
+
+std::size_t case_count(const Assumptions& assumptions, const Claim& claim, const std::vector<std::string>& scenarios) {
+  std::size_t count = 0;
+  for (const Assumption& assumption : assumptions.all()) count += values_to_try(assumption, claim, scenarios).size();
+  return count;
+}
+
+std::vector<SensitivityCase> missing_cases(const SensitivityRecord& record, const Assumptions& assumptions,
+                                           const std::vector<Claim>& claims,
+                                           const std::vector<std::vector<std::string>>& reached) {
+  std::vector<SensitivityCase> cases;
+  for (const bool costly : {false, true}) {
+    for (std::size_t a = 0; a < assumptions.all().size(); ++a) {
+      const Assumption& assumption = assumptions.all()[a];
+      for (const std::string& value : assumption.other_values()) {
+        SensitivityCase one{a, value, {}};
+        for (std::size_t c = 0; c < claims.size(); ++c) {
+          const std::vector<std::string> values = values_to_try(assumption, claims[c], reached[c]);
+          if (claims[c].costly == costly && std::ranges::find(values, value) != values.end() &&
+              !record.has(claims[c].id, assumption.id, value))
+            one.claims.push_back(claims[c]);
+        }
+        if (!one.claims.empty()) cases.push_back(std::move(one));
+      }
+    }
+  }
+  return cases;
 }
 
 }  // namespace hapbench

@@ -1,42 +1,87 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
+#include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
-/// Sensitivity of a binary output (0 or 1) to the inputs of a sample: which input decides the output.
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/thesis/assumption_sets.hpp"
+#include "scenarios/thesis/assumptions.hpp"
+#include "scenarios/thesis/judging.hpp"
+
+/// Sensitivity of the verdicts, one assumption at a time: each claim is judged with each plausible value of each
+/// assumption that can change it, all other assumptions as recorded and calibrated inputs calibrated anew. The record
+/// is results/reference/sensitivity.json.
 namespace hapbench {
 
-/// Sorts the values and divides them into `bins` bins of equal count. Returns the bin of each value. Equal values keep
-/// their order.
-std::vector<std::size_t> equal_count_bins(std::span<const double> values, std::size_t bins);
+/// Returns a member that is a text. Throws Json::exception.
+inline std::string text_at(const Json& json, const char* key) {
+  return json.at(key).get<std::string>();
+}
 
-/// Returns an estimate of the first-order Sobol index of an input x, Var(E[y | x]) / Var(y), from given data. x is
-/// divided into bins (one for each value of a discrete input), and the mean of y in a bin estimates E[y | x]:
+/// The record of the verdicts, in memory and as a file.
 ///
-///   S = (SSB - (B - 1) SSW / (n - B)) / SST,  SSB = sum_b n_b (mean_b - mean)^2,  SSW = SST - SSB,
-///
-/// with n points, B nonempty bins, n_b points and the mean mean_b of y in bin b, the mean of all y, and the total sum
-/// of squares SST = sum (y - mean)^2. The term (B - 1) SSW / (n - B) is the expected SSB if x has no influence. Without
-/// this term, S is the estimator of Plischke, Borgonovo, Smith, "Global sensitivity measures from given data", EJOR 226
-/// (2013) 536-550; with it, S is Kelley's epsilon squared (1935). S can be slightly negative. NaN if y is constant or n
-/// <= B. `bin`: bin of each point. Precondition: `bin` and `y` have equal sizes.
-double first_order_index(std::span<const std::size_t> bin, std::span<const double> y);
+/// For each claim the file has the hash of the assumptions that can change it (Assumptions::reach), the verdict and the
+/// number under the recorded assumptions, and a list of cases: assumption, value, verdict and number.
+class SensitivityRecord {
+ public:
+  /// Creates an empty record.
+  SensitivityRecord() = default;
+  /// Reads the file; an empty record if there is no file. Throws InputError for another format.
+  explicit SensitivityRecord(const std::filesystem::path& file);
 
-/// The input that decides the output.
-struct DecidingInput {
-  std::size_t input = 0;  ///< number of the input
-  double index = 0.0;     ///< its first_order_index()
+  /// Returns the entry of a claim; null if there is none for these assumptions.
+  Json entry(const std::string& claim, const std::string& reach) const;
+  /// Begins the entry of a claim with the verdict under the recorded assumptions and the number of cases of a complete
+  /// entry. Keeps the cases of an entry with the same hash, verdict and number.
+  void begin(const std::string& claim, const std::string& reach, const SetFinding& recorded, std::size_t complete);
+  /// Returns true if the entry of the claim has this case. Precondition: begin().
+  bool has(const std::string& claim, const std::string& assumption, const std::string& value) const;
+  /// Adds a case. Precondition: begin().
+  void add(const std::string& claim, const std::string& assumption, const std::string& value, const SetFinding& found);
+  /// Removes entries of claims that are not in the list.
+  void keep_only(const std::vector<Claim>& claims);
+  /// Returns the content of the file.
+  std::string text() const;
+
+ private:
+  Json claims_ = Json::object();  ///< entry by claim
 };
 
-/// Returns the input with the largest first-order index if this index is significant at `level` by a permutation test:
-/// the p-value is the fraction of random permutations of y whose largest index over all inputs is at least as large.
-/// Using the largest index over all inputs corrects for the number of inputs. Empty if y is constant or the index is
-/// not significant. `bins_of_inputs`: for each input, the bin of each point.
-std::optional<DecidingInput> deciding_input(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
-                                            std::vector<double> y, std::uint64_t seed, double level = 0.01,
-                                            std::size_t permutations = 999);
+/// How a verdict depends on the assumptions.
+struct Robustness {
+  std::string word = {};  ///< kExactVerdict, kRobustVerdict, kSensitiveVerdict, kSeveralVerdict or kNotSampledVerdict
+  std::vector<std::string> deciders = {};  ///< assumptions of which another plausible value changes the verdict
+  /// Returns "exact", "sensitive to NAME" or "depends on several: NAME, NAME".
+  std::string text() const;
+};
+inline constexpr const char* kExactVerdict = "exact";             ///< no assumption can change the claim
+inline constexpr const char* kRobustVerdict = "robust";           ///< no single assumption changes the verdict
+inline constexpr const char* kSensitiveVerdict = "sensitive to";  ///< one assumption changes the verdict
+inline constexpr const char* kSeveralVerdict = "depends on several";
+inline constexpr const char* kNotSampledVerdict = "not sampled";  ///< the record has no complete entry for the claim
+
+/// Returns the robustness of a judged claim from its entry in the record; `entry` is null if there is none. A case
+/// without a verdict (not judged, not measured) changes nothing. Without all cases no claim is robust or sensitive to a
+/// single assumption.
+Robustness robustness_of(const JudgedClaim& judged, const Json& entry);
+
+/// Returns the number of cases of a claim that uses these scenarios.
+std::size_t case_count(const Assumptions& assumptions, const Claim& claim, const std::vector<std::string>& scenarios);
+
+/// A case of the record: the claims that one value of one assumption can change.
+struct SensitivityCase {
+  std::size_t assumption = 0;  ///< index
+  std::string value = {};
+  std::vector<Claim> claims = {};
+};
+
+/// Returns the cases that the record lacks, cheap claims first. Costly claims have the ends of a range only.
+/// `reached[i]` are the scenarios of claims[i].
+std::vector<SensitivityCase> missing_cases(const SensitivityRecord& record, const Assumptions& assumptions,
+                                           const std::vector<Claim>& claims,
+                                           const std::vector<std::vector<std::string>>& reached);
 
 }  // namespace hapbench

@@ -3,6 +3,7 @@ for curves that cannot show all of theirs, equal curves that show each other, an
 becomes the bytes of a file."""
 import io
 import re
+import sys
 from dataclasses import dataclass
 
 import matplotlib
@@ -15,7 +16,8 @@ from hapbench_looks import (
 )  # noqa: F401  (style.look is how figures name it)
 from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
 
-matplotlib.use("agg")
+if "matplotlib.pyplot" not in sys.modules:  # a notebook keeps its own backend
+    matplotlib.use("agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
 from matplotlib.text import Text  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402

@@ -21,9 +21,9 @@ constexpr std::size_t kMaxEvaluations = 20000;
 /// smaller than kCoarse are not searched beyond the border of an open surface.
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
-/// Lengths in half widths of the tool. A segment of the tool's axis shorter than kShort is not halved. A segment
-/// longer than kLong gets a single ball. kPolyline: largest distance between a round body and the polyline that
-/// represents its outline.
+/// Lengths in half widths of the tool. A segment of the tool's axis shorter than kShort is not halved. A segment longer
+/// than kLong has a single ball around it; a shorter segment has further balls. kPolyline: largest distance between a
+/// round body and the polyline that represents its outline.
 constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
 /// Offsets of further ball centres from the centre of the smallest ball, in half widths.
 constexpr double kCentreOffsets[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
@@ -46,11 +46,12 @@ std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, do
   best_ = known;
   evaluations_ += 8;  // about 8 evaluations: the tip centre and its improvement
   tolerance_ = tolerance;
-  const SurfaceDistance tip = solid_.at(pose.position);
+  const SurfaceDistance tip = solid_.at(pose.position, tip_ ? &*tip_ : nullptr);
   const KnownDistance known_distance{pose.position, tip.value};
+  tip_ = known_distance;
   beyond_border_ = !tip.known;
   cells_.clear();
-  improve(pose, pose.position);  // also finds depths smaller than the tolerance
+  improve(pose, pose.position, known_distance);  // also finds depths smaller than the tolerance
   // Start with the box in which tool and solid may overlap.
   const Box box = tool_.box_near(pose, 0.0, solid_.region());
   const Vec3 low = box.min.cwiseMax(solid_.region().min), high = box.max.cwiseMin(solid_.region().max);
@@ -92,37 +93,39 @@ void InsideSearch::halve(const ToolPose& pose, const Cell* parents, std::size_t 
   // Keep the halves that meet the tool and may hold a deeper point.
   tool_.surface_constraints(pose, Vec3::Zero(), 0.0, points_);
   const std::size_t first = cells_.size();
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    Cell cell = halves[i];
-    double radius = cell.half.norm();
-    const double outside = -points_.depth[i];  // distance outside the tool [m]
-    if (!(outside <= radius)) continue;
-    // Move the centre of the cell to the nearest point of the tool. For a convex body, this projection
-    // increases no distance between points, so the radius stays valid.
-    Vec3 point = cell.centre;
-    const Vec3 gradient = points_.gradient(i);
-    if (outside > 0.0) {
-      point -= outside * gradient;
-      if (!tool_.convex()) radius += outside;
-    }
-    // Skip the cell if the known distance alone proves that it is not deep enough.
-    const double distance = (point - cell.known_distance.place).norm();
-    if (!may_be_deepest(radius + distance - cell.known_distance.value)) continue;
-    ++evaluations_;
-    const SurfaceDistance phi = solid_.at(point, &cell.known_distance);
-    if (phi.value >= radius) continue;
-    cell.known_distance = {point, phi.value};
-    cell.bound = std::min(cell.bound, radius - phi.value);
-    if (!may_be_deepest(cell.bound)) continue;
-    if (phi.known) {
-      if (-phi.value > best_ && (outside <= 0.0 || into_tool(pose, point))) improve(pose, point);
-    } else if (radius < kCoarse * tool_.half_width()) {
-      beyond_border_ = beyond_border_ || phi.value < -best_;
-      continue;
-    }
-    if (cells_.size() < kMaxCells) cells_.push_back(cell);
-  }
+  for (std::size_t i = 0; i < points_.size(); ++i) examine(pose, halves[i], -points_.depth[i], points_.gradient(i));
   std::ranges::sort(cells_.begin() + static_cast<std::ptrdiff_t>(first), cells_.end(), {}, &Cell::bound);
+}
+
+/// Evaluates a cell, and keeps it if it meets the tool and may hold a deeper point. `outside`: distance of its centre
+/// outside the tool [m]; `gradient`: direction of this distance.
+void InsideSearch::examine(const ToolPose& pose, Cell cell, double outside, const Vec3& gradient) noexcept {
+  double radius = cell.half.norm();
+  if (!(outside <= radius)) return;
+  // Move the centre of the cell to the nearest point of the tool. For a convex body, this projection
+  // increases no distance between points, so the radius stays valid.
+  Vec3 point = cell.centre;
+  if (outside > 0.0) {
+    point -= outside * gradient;
+    if (!tool_.convex()) radius += outside;
+  }
+  // Skip the cell if the known distance alone proves that it is not deep enough.
+  const double distance = (point - cell.known_distance.place).norm();
+  if (!may_be_deepest(radius + distance - cell.known_distance.value)) return;
+  ++evaluations_;
+  const SurfaceDistance phi = solid_.at(point, &cell.known_distance);
+  if (phi.value >= radius) return;
+  cell.known_distance = {point, phi.value};
+  cell.bound = std::min(cell.bound, radius - phi.value);
+  if (!may_be_deepest(cell.bound)) return;
+  if (phi.known) {
+    const bool is_deeper = -phi.value > best_ && (outside <= 0.0 || into_tool(pose, point));
+    if (is_deeper) improve(pose, point, cell.known_distance);
+  } else if (radius < kCoarse * tool_.half_width()) {
+    beyond_border_ = beyond_border_ || phi.value < -best_;
+    return;
+  }
+  if (cells_.size() < kMaxCells) cells_.push_back(cell);
 }
 
 /// Moves a point near the tool into the tool, if the point is not inside. Repeats the move, because the distances of
@@ -138,11 +141,12 @@ bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
   return false;
 }
 
-/// Moves from a point of the tool to deeper points of the tool and updates the largest depth.
-void InsideSearch::improve(const ToolPose& pose, Vec3 point) noexcept {
+/// Moves from a point of the tool to deeper points of the tool and updates the largest depth. `near`: a distance known
+/// nearby.
+void InsideSearch::improve(const ToolPose& pose, Vec3 point, const KnownDistance& near) noexcept {
   constexpr int kMoves = 8, kHalvings = 6;
   const MutablePointArrays answer{x_.data(), y_.data(), z_.data()};
-  KnownDistance last{point, solid_.at(point).value};
+  KnownDistance last{point, solid_.at(point, &near).value};
   const auto try_point = [&](Vec3 q) {
     if (!into_tool(pose, q)) return false;
     const SurfaceDistance phi = solid_.at(q, &last);
@@ -156,7 +160,7 @@ void InsideSearch::improve(const ToolPose& pose, Vec3 point) noexcept {
   // Move towards the support point along -grad phi; halve the move until the depth increases.
   for (int move = 0; move < kMoves; ++move) {
     one_.clear();
-    one_.push(0, point, solid_.gradient(point, kGradientStep * tool_.half_width()));
+    one_.push(0, point, solid_.gradient(point, kGradientStep * tool_.half_width(), &last));
     tool_.support_points(pose, one_, answer);
     const Vec3 displacement = Vec3(x_[0], y_[0], z_[0]) - point;
     bool moved = false;
@@ -218,8 +222,8 @@ std::vector<InsideBound::Ball> InsideBound::balls_of(const Segment& segment) con
   return balls;
 }
 
-/// Returns the bound from one ball. Reuses the ball's last evaluation in two cases: its bound is sufficient; or only
-/// a sufficient bound is useful, and a new evaluation clearly cannot give one.
+/// Returns the bound from one ball. Reuses the ball's last evaluation in two cases: its bound is sufficient; or only a
+/// sufficient bound is useful, and a new evaluation clearly cannot give a sufficient bound.
 InsideBound::Evaluation InsideBound::evaluate(Ball& ball, const BoundRequest& q) {
   const Vec3 centre = q.pose.position + ball.position * q.pose.axis;
   const double beyond = ball.radius + q.moved + std::abs(ball.position) * q.turned;

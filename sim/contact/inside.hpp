@@ -51,11 +51,12 @@ class InsideSearch {
     KnownDistance known_distance;  ///< signed distance at a point of this cell, or of a cell that contains this cell
   };
   void halve(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept;
+  void examine(const ToolPose& pose, Cell cell, double outside, const Vec3& gradient) noexcept;
   bool may_be_deepest(double bound) const noexcept {
     return bound > best_ + tolerance_ * tool_.half_width() + kTolerance * best_;
   }
   bool into_tool(const ToolPose& pose, Vec3& point) noexcept;
-  void improve(const ToolPose& pose, Vec3 point) noexcept;
+  void improve(const ToolPose& pose, Vec3 point, const KnownDistance& near) noexcept;
 
   const ToolShape& tool_;
   const Solid& solid_;
@@ -67,7 +68,8 @@ class InsideSearch {
   /// Depth of the deepest point found so far [m], and the tolerance of the current search.
   double best_ = 0.0, tolerance_ = kTolerance;
   std::size_t evaluations_ = 0;
-  bool beyond_border_ = false;  ///< true if a point beyond the border may be deeper
+  std::optional<KnownDistance> tip_;  ///< tip centre of the last search
+  bool beyond_border_ = false;        ///< true if a point beyond the border may be deeper
 };
 
 /// Upper bound of the depth of a tool in a solid (InsideSearch), from a dozen distance evaluations instead of
@@ -119,7 +121,7 @@ class InsideBound {
   std::vector<Ball> balls_of(const Segment& segment) const;
   struct Evaluation {
     double bound;  ///< upper bound from one ball [m]
-    bool known;    ///< true if the solid knows whether the ball's centre is inside
+    bool known;    ///< true if the solid can determine whether the ball's centre is inside
   };
   Evaluation evaluate(Ball& ball, const BoundRequest& request);
   double bound_of_segment(std::size_t segment, const BoundRequest& request);

@@ -30,7 +30,7 @@ void MultiRateContacts::reset() noexcept {
 void MultiRateContacts::begin_step(std::uint64_t row, const ToolPose& pose) noexcept {
   const MultiRateSchedule& timing = schedule_.timing;
 
-  // Send a query if this step has one.
+  // Send a query if a query is scheduled in this step.
   if (row % static_cast<std::uint64_t>(timing.every) == 0) {
     const bool is_lost = schedule_.asked++ > 0 && timing.dropout > 0.0 && random_.uniform() < timing.dropout;
     if (is_lost)

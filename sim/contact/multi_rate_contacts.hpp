@@ -54,7 +54,7 @@ class MultiRateContacts final : public ContactSource {
   std::uint64_t seed_;
   Random random_;
   std::uint64_t calls_ = 0;                 ///< steps so far, if no Simulation steps the source
-  std::optional<std::uint64_t> last_step_;  ///< last step that has begun; empty before the first
+  std::optional<std::uint64_t> last_step_;  ///< last step that has begun; empty before the first step
 
   std::vector<ContactSchedule::Query> waiting_;  ///< ring buffer of pending queries
   std::size_t first_ = 0, count_ = 0;

@@ -28,7 +28,7 @@ void TraceSource::contacts_at(const ToolPose&, ContactBuffer& contacts) noexcept
   contacts.clear();
 
   // Find the recorded time nearest to the time of the step. It is the first recorded time that is not earlier, or the
-  // last that is earlier.
+  // last recorded time that is earlier.
   const auto& times = trace_->times;
   auto at = std::partition_point(times.begin(), times.end(), [now](const auto& t) { return t.time < now; });
   if (at != times.begin() && (at == times.end() || now - std::prev(at)->time < at->time - now)) --at;

@@ -18,7 +18,7 @@ namespace hapbench::math {
 double sin(double x) noexcept;
 double cos(double x) noexcept;
 double tan(double x) noexcept;
-/// Sine and cosine of x [rad], with the same bits as sin() and cos(), in little more time than one of them.
+/// Sine and cosine of x [rad], with the same bits as sin() and cos(), in little more time than sin() alone.
 struct SineCosine {
   double sine, cosine;
 };

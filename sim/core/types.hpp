@@ -67,13 +67,14 @@ struct ProfilePoint {
   bool operator==(const ProfilePoint&) const = default;
 };
 
-/// Whether a run may use optimizations that do not change its results. `off` computes everything by brute force,
-/// even values that nothing reads; it exists to test that the output is identical. It is therefore not a field of a
-/// scenario file, but a scenario in memory carries it (RenderingConfig).
+/// Selects whether a run may use optimizations that do not change its results. `off` computes everything by brute
+/// force, even values that nothing reads; it exists to test that the output is identical. It is therefore not a field
+/// of a scenario file, but a scenario in memory carries it (RenderingConfig).
 enum class Skips { on, off };
 
 /// Allowed values of a number that the user sets. Both bounds are allowed unless `above_min` is set. The unit is
-/// printed in messages: an SI unit, "1" for a dimensionless number, or empty if the unit is that of another number.
+/// printed in messages: an SI unit, "1" for a dimensionless number, or empty if the number has the same unit as another
+/// number.
 struct NumberRange {
   double min;
   double max;

@@ -73,9 +73,9 @@ class PointShell {
   std::vector<SurfacePoint> points() const;
 
   /// Returns the cell number of each point, 0 … cells - 1 in order of first appearance. If the shell was created with
-  /// cells, returns the cells given then. Otherwise the cells are the cubes between half-integer multiples of
-  /// cell_size, so that points at integer multiples of cell_size have one cell each. O(size log size): call it before
-  /// a run, not in a step.
+  /// cells, returns these cells. Otherwise the cells are the cubes between half-integer multiples of cell_size, so that
+  /// points at integer multiples of cell_size have one cell each. O(size log size): call it before a run, not in a
+  /// step.
   std::vector<std::uint32_t> cell_of_points() const;
 
  private:

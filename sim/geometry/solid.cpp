@@ -14,6 +14,13 @@ namespace {
 
 constexpr double kFar = 1e4;  ///< longer than any distance in a scene [m]
 
+/// Returns an upper bound of the distance of a point from the surface [m]. It exceeds the exact bound by more than
+/// rounding, also at a point of the surface.
+double largest_distance(const Vec3& q, const KnownDistance& near) {
+  constexpr double kRelative = 1e-9, kAbsolute = 1e-12;
+  return (1.0 + kRelative) * (std::abs(near.value) + (q - near.place).norm()) + kAbsolute;
+}
+
 /// Solid in closed form: one of the shapes of analytic_shells.hpp.
 template <class Shape>
 class ShapeSolid final : public Solid {
@@ -27,7 +34,7 @@ class ShapeSolid final : public Solid {
       return std::max(-box.min.x(), box.max.x()) - shape_.gap / 2;
     else if constexpr (std::is_same_v<Shape, ConicalHole>)
       return Solid::max_depth_in(box);
-    else  // below the flat top
+    else  // otherwise: the depth below the flat top
       return -(std::is_same_v<Shape, Hole2d> ? box.min.y() : box.min.z());
   }
 
@@ -60,8 +67,23 @@ class MeshSolid final : public Solid {
 
   SurfaceDistance at(const Vec3& q, const KnownDistance* near) const noexcept override {
     const auto nearest = nearest_triangle(q, near);
-    if (!nearest) return {kFar, false};  // only if q is not finite
-    const double distance = std::sqrt(nearest->distance2);
+    return nearest ? signed_distance(q, *nearest, near) : SurfaceDistance{kFar, false};  // only if q is not finite
+  }
+  Vec3 gradient(const Vec3& q, double step, const KnownDistance* near) const noexcept override {
+    const auto nearest = nearest_triangle(q, near);
+    if (!nearest) return Vec3::UnitZ();
+    const Vec3 away = q - nearest->position, n = normal(nearest->triangle);
+    // Closer to the surface, the direction from the closest point is dominated by rounding.
+    if (away.norm() < 1e-6 * step) return n;
+    return away.normalized() * (signed_distance(q, *nearest, near).value < 0.0 ? -1.0 : 1.0);
+  }
+  std::size_t bytes() const noexcept override { return 300 * surface_.triangles.size(); }
+
+ private:
+  /// Returns the signed distance of a point whose closest triangle is known.
+  SurfaceDistance signed_distance(const Vec3& q, const TriangleTree::Nearest& nearest,
+                                  const KnownDistance* near) const noexcept {
+    const double distance = std::sqrt(nearest.distance2);
     if (closed_) {
       // Closed mesh: the sign follows from a known distance nearby, or from the winding number.
       if (near != nullptr && (q - near->place).norm() < std::abs(near->value))
@@ -70,20 +92,9 @@ class MeshSolid final : public Solid {
       return {out ? distance : -distance};
     }
     // Open mesh: phi is positive on the side to which the normal at the closest point points.
-    const auto [n, is_border] = feature(*nearest);
-    return {std::copysign(distance, (q - nearest->position).dot(n)), !is_border};
+    const auto [n, is_border] = feature(nearest);
+    return {std::copysign(distance, (q - nearest.position).dot(n)), !is_border};
   }
-  Vec3 gradient(const Vec3& q, double step) const noexcept override {
-    const auto nearest = nearest_triangle(q, nullptr);
-    if (!nearest) return Vec3::UnitZ();
-    const Vec3 away = q - nearest->position, n = normal(nearest->triangle);
-    // Closer to the surface, the direction from the closest point is dominated by rounding.
-    if (away.norm() < 1e-6 * step) return n;
-    return away.normalized() * (at(q, nullptr).value < 0.0 ? -1.0 : 1.0);
-  }
-  std::size_t bytes() const noexcept override { return 300 * surface_.triangles.size(); }
-
- private:
   const Vec3& vertex(std::size_t triangle, std::size_t corner) const {
     return surface_.vertices[surface_.triangles[triangle][corner]];
   }
@@ -91,7 +102,7 @@ class MeshSolid final : public Solid {
     return (vertex(t, 1) - vertex(t, 0)).cross(vertex(t, 2) - vertex(t, 0)).stableNormalized();
   }
   std::optional<TriangleTree::Nearest> nearest_triangle(const Vec3& q, const KnownDistance* near) const {
-    return tree_.nearest(q, near == nullptr ? kFar : (1.0 + 1e-9) * (std::abs(near->value) + (q - near->place).norm()));
+    return tree_.nearest(q, near == nullptr ? kFar : largest_distance(q, *near));
   }
   bool beyond(const Vec3& q) const {
     return (q.array() < region().min.array()).any() || (q.array() > region().max.array()).any();
@@ -148,7 +159,7 @@ class MeshSolid final : public Solid {
   std::vector<Vec3> vertex_normals_;
   std::vector<bool> border_vertices_;
   std::vector<std::uint8_t> at_border_;            ///< bit k of a triangle: its edge from corner k is on the border
-  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< by triangle and corner: sum of the edge's normals
+  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< sums of the normals of each edge, by triangle and corner
 };
 
 /// Solid given by points with normals.
@@ -160,8 +171,9 @@ class PointSolid final : public Solid {
         tree_(tree_of(points)),
         spacing_(2.0 * median_spacing()) {}
 
-  SurfaceDistance at(const Vec3& q, const KnownDistance*) const noexcept override {
-    const auto nearest = tree_.nearest(q, kFar);
+  SurfaceDistance at(const Vec3& q, const KnownDistance* near) const noexcept override {
+    // |phi| is at most spacing_ smaller than the distance to the closest point.
+    const auto nearest = tree_.nearest(q, near == nullptr ? kFar : largest_distance(q, *near) + spacing_);
     if (!nearest) return {kFar, false};  // only if q is not finite
     // Split q - p into the height h along the normal and the tangential part.
     const auto& [p, n] = points_[nearest->triangle];
@@ -210,11 +222,11 @@ class PointSolid final : public Solid {
 
 }  // namespace
 
-Vec3 Solid::gradient(const Vec3& point, double step) const noexcept {
+Vec3 Solid::gradient(const Vec3& point, double step, const KnownDistance* near) const noexcept {
   Vec3 gradient;
   for (int k = 0; k < 3; ++k) {
     const Vec3 offset = step * Vec3::Unit(k);
-    gradient[k] = at(point + offset).value - at(point - offset).value;
+    gradient[k] = at(point + offset, near).value - at(point - offset, near).value;
   }
   return unit_or(gradient, Vec3::UnitZ());
 }

@@ -45,12 +45,13 @@ class Solid {
   virtual double error() const noexcept { return 0.0; }
   /// Approximate memory use in bytes.
   virtual std::size_t bytes() const noexcept { return 0; }
-  /// Upper bound of the depth of all points in the box [m], without evaluating the distance; infinity if none is
+  /// Upper bound of the depth of all points in the box [m], without evaluating the distance; infinity if no bound is
   /// known.
   virtual double max_depth_in(const Box&) const noexcept { return std::numeric_limits<double>::infinity(); }
   /// Returns the unit gradient of phi: it points away from the surface outside of the body and towards the surface
-  /// inside. The default computes it by central differences over `step` [m] and returns +z if they vanish.
-  virtual Vec3 gradient(const Vec3& point, double step) const noexcept;
+  /// inside. The default computes it by central differences over `step` [m] and returns +z if they vanish. `near`: as
+  /// in at().
+  virtual Vec3 gradient(const Vec3& point, double step, const KnownDistance* near = nullptr) const noexcept;
 
  protected:
   explicit Solid(const Box& region) : region_(region) {}

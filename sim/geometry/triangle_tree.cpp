@@ -13,6 +13,8 @@ namespace {
 constexpr std::uint32_t kMaxLeafTriangles = 4;  ///< maximum number of triangles in a leaf
 /// Size of the search stack. Halving 2^32 triangles takes 32 levels, and a search stores one box a level.
 constexpr std::size_t kStackSize = 64;
+/// A plane whose squared distance is larger than the squared distance of a known triangle by this factor is not closer.
+constexpr double kPlaneMargin = 1.0 + 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using simd::Mask, simd::Pack;
@@ -219,6 +221,9 @@ std::optional<TriangleTree::Nearest> TriangleTree::nearest(const Vec3& point, do
       },
       std::less(), [&](double distance2) { return !(distance2 >= best.distance2); },
       [&](const Triangle& t) {
+        // No point of the triangle is closer than its plane. The margin exceeds the rounding of both distances.
+        const double height = (point - t.a).dot(t.normal);
+        if (height * height > kPlaneMargin * best.distance2) return;
         const ClosestPoint closest = closest_point(point - t.a, t.ab, t.ac, t.ab2, t.abac, t.ac2);
         const double distance2 = (point - t.a - closest.from_a).squaredNorm();
         if (distance2 < best.distance2) best = {distance2, t.number, closest.corners, t.a + closest.from_a};

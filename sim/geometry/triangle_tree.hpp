@@ -39,9 +39,9 @@ struct Crossing {
   int step;
 };
 
-/// Returns the intersection of the vertical line through (x, y) with a triangle, if there is one. The test uses the
-/// signs of the three edges, computed identically for both triangles of an edge. A line through an edge counts as a
-/// line slightly beside it. The intersections with a closed surface are therefore consistent.
+/// Returns the intersection of the vertical line through (x, y) with a triangle; empty if they do not intersect. The
+/// test uses the signs of the three edges, computed identically for both triangles of an edge. A line through an edge
+/// counts as a line slightly beside it. The intersections with a closed surface are therefore consistent.
 std::optional<Crossing> vertical_crossing(const std::array<Vec3, 3>& corners, double x, double y);
 
 /// Tree of axis-aligned bounding boxes over triangles (AABB tree), for exact distances and rays. A query visits
@@ -73,8 +73,8 @@ class TriangleTree {
   /// close to the result shorten the search; infinity is allowed. Precondition: arrays of eight doubles, aligned to
   /// 64 bytes.
   void lower_to_squared_distances(const double* x, const double* y, const double* z, double* distances2) const noexcept;
-  /// Returns the distance along the ray to the first triangle at a distance greater than `from` [m]; infinity if
-  /// there is none. Precondition: `direction` is a unit vector.
+  /// Returns the distance along the ray to the first triangle at a distance greater than `from` [m]; infinity if the
+  /// ray hits no such triangle. Precondition: `direction` is a unit vector.
   double first_hit(const Vec3& origin, const Vec3& direction, double from) const noexcept;
 
  private:

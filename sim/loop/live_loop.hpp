@@ -6,9 +6,9 @@
 
 namespace hapbench {
 
-/// The step of a Simulation without its script: the caller gives the pose of the tool, step by step, as it is
-/// measured. For the same poses and velocities, the forces are those of a Simulation to the last bit. Allocates in
-/// the constructor only.
+/// The step of a Simulation without its script: the caller gives the pose of the tool, step by step, as it is measured.
+/// For the same poses and velocities, the forces are bitwise equal to the forces of a Simulation. Allocates in the
+/// constructor only.
 class LiveLoop {
  public:
   /// `parts`: hand, motion and device are not used. `has_virtual_mass`: forces move the tool (`move`); false: the
@@ -51,9 +51,9 @@ class LiveLoop {
   SimulationParts parts_;
   ContactBuffer contacts_;
   RenderedForce force_, within_step_;
-  std::uint64_t row_ = 0;       ///< of the current step, for source and algorithm
-  std::uint64_t next_row_ = 0;  ///< of the next step
-  Vec3 input_ = Vec3::Zero();   ///< of the current step [N]
+  std::uint64_t row_ = 0;       ///< number of the current step, for source and algorithm
+  std::uint64_t next_row_ = 0;  ///< number of the next step
+  Vec3 input_ = Vec3::Zero();   ///< input force of the current step [N]
   bool tool_rolls_;
   std::optional<double> angular_velocity_cutoff_;
   const char* fault_ = nullptr;

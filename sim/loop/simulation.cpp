@@ -199,6 +199,13 @@ SimulationResult Simulation::run() noexcept {
   return result_;
 }
 
+void Simulation::drop_observers() noexcept {
+  observers_.clear();
+  found_.reset();
+  record_.found = nullptr;
+  ratio_wanted_ = springs_wanted_ = energy_wanted_ = config_.skips == Skips::off;
+}
+
 bool Simulation::check_bounds() noexcept {
   const DivergenceBounds& bounds = config_.bounds;
   const auto all = [&](auto within, bool handle_too) {

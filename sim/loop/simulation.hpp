@@ -43,9 +43,9 @@ struct DivergenceBounds {
 
 /// Parameters of one run.
 struct SimulationConfig {
-  double dt = 0.0005;                              ///< time step [s]
-  std::uint64_t steps = 0;                         ///< the run has steps 0 … steps - 1
-  double mass = 0.2;                               ///< mass of the virtual tool, if there is one [kg]
+  double dt = 0.0005;       ///< time step [s]
+  std::uint64_t steps = 0;  ///< the run has steps 0 … steps - 1
+  double mass = 0.2;        ///< mass of the virtual tool [kg]; not used if there is no virtual tool
   const IntegratorEntry* integrator = &kLeapfrog;  ///< moves a virtual tool whose position is free; never null
   double event_tolerance = kEventTolerance;        ///< time tolerance of the integrator `event` [s]
   Vec3 position = Vec3::Zero();                    ///< tip centre at t = 0 [m]; ignored if the motion prescribes it
@@ -95,7 +95,7 @@ struct StepRecord {
   MeasuredForce hand;              ///< hand_force as measured by the device
   HandleState handle;
   bool handle_moves_tool = false;           ///< true if the tool follows the handle; there is then no virtual mass
-  const TargetTask* task = nullptr;         ///< target task of the hand; null if there is none
+  const TargetTask* task = nullptr;         ///< target task of the hand; null if the hand has no task
   std::size_t colliding = 0;                ///< number of colliding points before any point stage
   const ContactBuffer* rendered = nullptr;  ///< contacts that the law used; valid during on_step only
   const ContactBuffer* found = nullptr;     ///< contacts before any point stage; null unless an observer reads them
@@ -147,6 +147,8 @@ class Simulation {
   bool advance(std::uint64_t steps) noexcept;
   /// Takes all remaining steps and returns the result.
   SimulationResult run() noexcept;
+  /// Notifies no observer of further steps, and computes nothing that only observers read. The motion does not change.
+  void drop_observers() noexcept;
 
   const SimulationResult& result() const { return result_; }
   /// Number of the next step.

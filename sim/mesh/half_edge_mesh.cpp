@@ -71,7 +71,7 @@ std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triang
 struct Shape {
   Box box = Box::nothing();
   double volume = 0.0;  ///< enclosed volume [m^3]; negative if normals point inwards
-  double area = 0.0;    ///< of all triangles [m^2]
+  double area = 0.0;    ///< area of all triangles [m^2]
   std::size_t triangles = 0;
   bool is_reversed = false;  ///< the winding of the part was reversed, after the volume was computed
 
@@ -106,24 +106,13 @@ class MeshParts {
       while (!open.empty()) {
         const std::uint32_t t = open.back();
         open.pop_back();
-        for (const std::uint32_t h : at[t]) {
-          if (h == kNone) {
-            closed_[part] = false;
-            continue;
-          }
-          const Hinge& hinge = hinges[h];
-          const std::uint32_t neighbour = hinge.triangles[hinge.triangles[0] == t ? 1 : 0];
-          if (part_[neighbour] != kNone) continue;
-          part_[neighbour] = part;
-          reversed_[neighbour] = hinge.opposed ? reversed_[t] : !reversed_[t];
-          open.push_back(neighbour);
-        }
+        for (const std::uint32_t h : at[t]) visit_neighbour(t, h, part, open);
       }
     }
   }
 
-  /// Returns a hinge whose triangles cannot be wound consistently, if there is one; the surface then has only one
-  /// side.
+  /// Returns a hinge whose triangles cannot be wound consistently; the surface then has only one side. Empty if there
+  /// is no such hinge.
   std::optional<Hinge> contradiction() const {
     for (const Hinge& hinge : hinges_) {
       const bool same_winding = reversed_[hinge.triangles[0]] == reversed_[hinge.triangles[1]];
@@ -136,7 +125,8 @@ class MeshParts {
   /// original winding. Returns the number of triangles that are still reversed, without the triangles of
   /// `has_opposite`, which the file holds in both windings.
   std::size_t follow_majority(const std::vector<bool>& has_opposite) {
-    std::vector<std::int64_t> balance(count(), 0);  // per part: number of reversed minus number of other triangles
+    std::vector<std::int64_t> balance(count(), 0);  // number of reversed triangles minus number of other triangles, for
+                                                    // each part
     for (std::size_t t = 0; t < part_.size(); ++t) balance[part_[t]] += reversed_[t] ? 1 : -1;
     std::vector<bool> mostly_reversed(count());
     std::transform(balance.begin(), balance.end(), mostly_reversed.begin(), [](std::int64_t b) { return b > 0; });
@@ -207,6 +197,20 @@ class MeshParts {
 
  private:
   std::size_t count() const { return closed_.size(); }
+  /// Adds the triangle beyond hinge h of triangle t to a part and to the `open` triangles, unless it has a part
+  /// already.
+  void visit_neighbour(std::uint32_t t, std::uint32_t h, std::uint32_t part, std::vector<std::uint32_t>& open) {
+    if (h == kNone) {
+      closed_[part] = false;
+      return;
+    }
+    const Hinge& hinge = hinges_[h];
+    const std::uint32_t neighbour = hinge.triangles[hinge.triangles[0] == t ? 1 : 0];
+    if (part_[neighbour] != kNone) return;
+    part_[neighbour] = part;
+    reversed_[neighbour] = hinge.opposed ? reversed_[t] : !reversed_[t];
+    open.push_back(neighbour);
+  }
   void reverse(const std::vector<bool>& parts) {
     for (std::size_t t = 0; t < part_.size(); ++t) {
       if (parts[part_[t]]) reversed_[t] = !reversed_[t];
@@ -217,7 +221,7 @@ class MeshParts {
   std::vector<std::uint32_t> part_;  ///< part number of each triangle
   std::vector<bool> reversed_;
   std::vector<bool> closed_;   ///< for each part: true if every edge has two triangles
-  std::vector<Shape> shapes_;  ///< of the parts
+  std::vector<Shape> shapes_;  ///< properties of the parts
 };
 
 /// Maximum number of triangles at a vertex, larger than in any sensible mesh. The time to find an edge at a vertex is
@@ -405,7 +409,7 @@ void HalfEdgeMesh::split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middl
   const auto to_start = new_edge(middle, start), from_start = opposite_halfedge_handle(to_start);
   set_halfedge_handle(middle, forth);
   set_vertex_handle(back, middle);
-  // Divide the triangle on the left of the edge, if there is one.
+  // If there is a triangle on the left of the edge, divide it.
   if (is_boundary(forth)) {
     set_next_halfedge_handle(prev_halfedge_handle(forth), from_start);
     set_next_halfedge_handle(from_start, forth);
@@ -415,7 +419,7 @@ void HalfEdgeMesh::split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middl
     triangle(face_handle(forth), {forth, second, opposite_halfedge_handle(out)});
     triangle(new_face(), {third, from_start, out});
   }
-  // Divide the triangle on the right of the edge, if there is one.
+  // If there is a triangle on the right of the edge, divide it.
   if (is_boundary(back)) {
     set_next_halfedge_handle(to_start, next_halfedge_handle(back));
     set_next_halfedge_handle(back, to_start);

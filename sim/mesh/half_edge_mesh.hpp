@@ -34,21 +34,22 @@ void refine(HalfEdgeMesh& mesh, double longest_edge);
 double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double max_count);
 
 /// Returns a subsample of the points. Space is divided into cubes with edges of length `spacing` [m], bounded by
-/// half-integer multiples of it. Keeps one point for each cube and each of the six axis directions closest to the
-/// normals, so that both sides of a thin wall remain. The point kept is the closest to the cube's centre, the first
-/// if several are equally close. Preserves the order of the points. O(n log n).
+/// half-integer multiples of `spacing`. Keeps one point for each cube and each of the six axis directions closest to
+/// the normals, so that both sides of a thin wall remain. The kept point is the point closest to the cube's centre, or
+/// the first of several equally close points. Preserves the order of the points. O(n log n).
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing);
 
 /// Connected component of a surface: triangles that are connected across edges with two triangles.
 struct MeshComponent {
   std::size_t triangles = 0;
   Box box;  ///< bounding box [m]
-  /// Every edge has two triangles. False for an open component, and for a component that was cut along an edge with
-  /// more than two triangles.
+  /// True if every edge has two triangles. False if the component is open or was cut along an edge with more than two
+  /// triangles.
   bool is_closed = true;
-  bool is_cavity = false;    ///< closed, with normals towards its inside
-  bool is_reversed = false;  ///< closed, and was inside out
-  bool is_flat = false;      ///< closed, and encloses no volume: both sides of a sheet, divided in different ways
+  bool is_cavity = false;    ///< true if the component is closed, with normals towards its inside
+  bool is_reversed = false;  ///< true if the component is closed, and was inside out
+  bool is_flat = false;      ///< true if the component is closed, and encloses no volume: both sides of a sheet,
+                             ///< divided in different ways
 
   double diameter() const { return box.size().norm(); }
 };

@@ -139,7 +139,7 @@ class GridLayer {
   std::uint64_t starting(std::size_t w) const { return w + 1 < words_ ? ~std::uint64_t{0} : starting_in_last_; }
 
   Edges& edges(std::size_t w, std::size_t j) { return edges_[j * words_ + w]; }
-  /// Returns the number of the vertex on the crossed edge that starts at node (i, j) and runs along the axis.
+  /// Returns the number (index) of the vertex on the crossed edge that starts at node (i, j) and runs along the axis.
   std::uint32_t vertex(std::size_t i, std::size_t j, std::size_t axis) const {
     const Edges& edges = edges_[j * words_ + i / 64];
     const std::uint64_t below = (std::uint64_t{1} << i % 64) - 1;
@@ -276,7 +276,7 @@ class SlabBuilder {
     }
   }
 
-  /// Adds the cells between the two layers that the surface cuts.
+  /// Adds the cells that the surface cuts, between the two layers of nodes.
   void add_cells() {
     const std::vector<CutCase>& cases = cut_cases();
     for (std::size_t j = 0; j + 1 < grid_.count(1); ++j) {

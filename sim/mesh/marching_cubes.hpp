@@ -55,11 +55,11 @@ struct IsoSurfaceOptions {
 /// is closed and manifold. On an ambiguous face of a cell the inside corners are separated, identically for both
 /// cells of the face.
 ///
-/// Evaluates the field only near the surface: skips a square of nodes in a layer if the distance at its middle
-/// shows that all its nodes are inside or all are outside. Time and memory grow with the area of the surface, apart
-/// from a few layers of the grid and a few operations for every 64 nodes. A vertex takes 48 bytes in the result.
-/// While it is computed, it takes 48 bytes in the growing array of its slab of the grid. Runs on oneTBB's threads;
-/// the result does not depend on their number.
+/// Evaluates the field only near the surface: skips a square of nodes in a layer if the distance at its middle shows
+/// that all its nodes are inside or all are outside. Time and memory are proportional to the area of the surface. Two
+/// parts are not: the memory for a few layers of the grid, and the time for a few operations for every 64 nodes. A
+/// vertex takes 48 bytes in the result. During the computation, a vertex takes 48 bytes in the growing array of its
+/// slab of the grid. Runs on oneTBB's threads; the result does not depend on their number.
 IsoSurface marching_cubes(const DensityField& field, IsoSurfaceOptions options = {});
 
 /// Returns the density field of the block for marching_cubes(). `spacing` of the grid [m]. Precondition: spacing >

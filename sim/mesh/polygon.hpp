@@ -10,7 +10,7 @@
 
 namespace hapbench {
 
-/// Thrown if a polygon cannot be divided into triangles. The message states the reason, without the place.
+/// Thrown if a polygon cannot be divided into triangles. The message states the reason, without the position.
 class PolygonError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -80,7 +80,7 @@ class PolygonDivider {
   }
 
   std::vector<Point> points_;      ///< remaining corners
-  std::vector<double> qualities_;  ///< of the ears at the remaining corners; 0 if there is no ear
+  std::vector<double> qualities_;  ///< shape qualities of the ears at the remaining corners; 0 if there is no ear
   double rounding_ = 0.0;          ///< length that does not count, in units of the diameter
   DividedPolygon divided_;
 };

@@ -93,8 +93,8 @@ class TargetTask {
   /// Position of each target as an index in TargetRules::places, in the order in which the targets appear.
   const std::vector<std::size_t>& order() const noexcept { return order_; }
 
-  /// Returns the vector from the tip to the target in the displayed components; others are 0 [m]. Precondition:
-  /// not finished.
+  /// Returns the vector from the tip to the target in the displayed components; all other components are 0 [m].
+  /// Precondition: not finished.
   Vec3 error(const Vec3& tip) const noexcept;
   /// Returns true if force and speed are logged in this step. Precondition: not finished.
   bool logs(const Vec3& tip) const noexcept { return error(tip).norm() <= rules_.logged.value_or(rules_.tolerance); }

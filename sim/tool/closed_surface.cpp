@@ -115,6 +115,23 @@ void ClosedSurface::measure() {
     refuse("the mesh is inside out (volume ", volume, " m^3): turn its triangles counter-clockwise from outside");
 }
 
+/// Returns the crossings of each column of a layer (equal x) with the triangles, from below.
+static std::vector<std::vector<Crossing>> crossings_of_layer(const ClosedSurface& surface, const GridNodes& nodes,
+                                                             const std::vector<std::uint32_t>& triangles, double x) {
+  std::vector<std::vector<Crossing>> columns(nodes.count[1]);
+  for (const std::uint32_t t : triangles) {
+    const std::array<Vec3, 3> corners = surface.corners(surface.triangles()[t]);
+    const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
+    const auto [first, last] = nodes_within(nodes, 1, low, high);
+    for (std::size_t j = first; j < last; ++j) {
+      if (const auto met = vertical_crossing(corners, x, nodes.coordinate(1, j))) columns[j].push_back(*met);
+    }
+  }
+  for (std::vector<Crossing>& column : columns)
+    std::sort(column.begin(), column.end(), [](const Crossing& a, const Crossing& b) { return a.z < b.z; });
+  return columns;
+}
+
 std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const GridNodes& nodes) {
   // Sort the triangles into the layers of columns (equal x) that they touch.
   std::vector<std::vector<std::uint32_t>> layers(nodes.count[0]);
@@ -126,18 +143,8 @@ std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const Gri
   std::vector<std::int8_t> numbers(nodes.size());
   // Each layer: intersect its columns with the triangles, then sum the crossings from below.
   parallel_for(std::size_t{0}, nodes.count[0], [&](std::size_t i) {
-    std::vector<std::vector<Crossing>> columns(nodes.count[1]);
-    const double x = nodes.coordinate(0, i);
-    for (const std::uint32_t t : layers[i]) {
-      const std::array<Vec3, 3> corners = surface.corners(surface.triangles()[t]);
-      const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
-      const auto [first, last] = nodes_within(nodes, 1, low, high);
-      for (std::size_t j = first; j < last; ++j) {
-        if (const auto met = vertical_crossing(corners, x, nodes.coordinate(1, j))) columns[j].push_back(*met);
-      }
-    }
+    const auto columns = crossings_of_layer(surface, nodes, layers[i], nodes.coordinate(0, i));
     for (std::size_t j = 0; j < nodes.count[1]; ++j) {
-      std::sort(columns[j].begin(), columns[j].end(), [](const Crossing& a, const Crossing& b) { return a.z < b.z; });
       auto next = columns[j].cbegin();
       int number = 0;
       for (std::size_t k = 0; k < nodes.count[2]; ++k) {

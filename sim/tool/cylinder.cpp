@@ -86,9 +86,9 @@ double exit_distance(const Cylinder& tool, const ToolPose& pose, const Vec3& poi
   }
   if (slope < 0.0) d = std::min(d, if_positive(-(tool.length() + s) / slope));
   // No exit from the body is farther away than its longest chord. A larger value is an intersection with the infinite
-  // extension of a surface beyond the body, such as the side of an infinitely long cylinder. It occurs for a point on
-  // another surface whose ray is almost parallel to the extended surface. The depth is then 0; otherwise it would be
-  // unbounded.
+  // extension of a surface beyond the body, such as the side of an infinitely long cylinder. This happens if the point
+  // lies on another surface and its ray is almost parallel to the extended surface. The depth is then set to 0, because
+  // it would otherwise be unbounded.
   return d > tool.max_exit_distance() ? 0.0 : d;
 }
 

@@ -61,8 +61,9 @@ class Cylinder final : public ToolShape {
   double radius2_;  ///< largest_square_within(radius) [m^2]
 };
 
-/// Returns the largest double whose square root does not exceed r. The contact search compares squares with it,
-/// without a root, and still agrees with the depths, which take the root, about every point on the surface.
+/// Returns the largest double whose square root does not exceed r. The contact search compares squared distances with
+/// this number and needs no square roots. For every point on the surface, the comparison agrees with the depth
+/// functions, which use the square root.
 double largest_square_within(double r);
 
 }  // namespace hapbench

@@ -83,7 +83,7 @@ class Checker {
     if (points_.front().rho > 0.0) all.push_back({-1, 0});
     for (std::ptrdiff_t i = 0; i + 1 < n; ++i) all.push_back({i, i + 1});
     // The half ball of a round tip may be wider than the body behind it. The disc that closes the tip then begins
-    // at the corner before.
+    // at the previous corner.
     const bool overhangs = tip_ == Tip::round && points_[points_.size() - 2].s == 0.0 &&
                            points_[points_.size() - 2].rho < points_.back().rho;
     if (points_.back().rho > 0.0) all.push_back({overhangs ? n - 2 : n - 1, n});

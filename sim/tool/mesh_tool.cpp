@@ -208,10 +208,10 @@ Box turned(const Box& box, const Mat3& rotation, const Vec3& position) {
   return {centre - half, centre + half};
 }
 
-/// Smallest valid length of a gradient with respect to node coordinates, in spacings. A shorter gradient is
-/// rounding: the closest points of the surface lie on all sides.
+/// Smallest valid length of the field's gradient with respect to node coordinates, in grid spacings. A shorter gradient
+/// is only rounding: the closest points of the surface then surround the point, as at the centre of a ball.
 constexpr double kUndefinedBelow = 1e-9;
-/// Smallest step along a ray, in spacings.
+/// Smallest step along a ray, in grid spacings.
 constexpr double kMinStep = 0.125;
 /// Ten iterations of regula falsi usually shrink a bracket of some spacings to rounding.
 constexpr int kMaxIterations = 40;

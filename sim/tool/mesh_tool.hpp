@@ -49,9 +49,9 @@ class MeshTool final : public ToolShape {
   double displacement_bound(const ToolPose& from, const ToolPose& to) const noexcept override;
   void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
-  /// Marches along the ray and refines the last step by regula falsi. Steps are too short to cross the surface (the
-  /// field changes by at most sqrt(3) times the step), but at least an eighth of the grid spacing. Gaps that are
-  /// thinner than a step may therefore be missed.
+  /// Marches along the ray and refines the last step by regula falsi. A step is too short to cross the surface (the
+  /// field changes by at most sqrt(3) times the step), unless this length is below an eighth of the grid spacing: then
+  /// the step is an eighth. Such a step may miss a gap that is thinner than the step.
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
   /// For a concave body the constraints are the depths and gradients of the field.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,

@@ -32,9 +32,9 @@ struct ToolPose {
 struct ToolState {
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();  ///< velocity of the tip centre [m/s]
-  /// Angular velocity over the previous step [rad/s], low-pass filtered if the algorithm requests it. Zero unless
-  /// an algorithm reads it. Includes the rotation about the axis if the pose or the script (Motion::scripts_roll)
-  /// has one.
+  /// Angular velocity over the previous step [rad/s], low-pass filtered if the algorithm requests it. Zero unless an
+  /// algorithm reads it. Includes the rotation about the axis if the pose or the script (Motion::scripts_roll) has such
+  /// a rotation.
   Vec3 angular_velocity = Vec3::Zero();
 };
 
@@ -113,7 +113,7 @@ class Profile {
   Shape shape_{Constant{}};
 };
 
-/// Scripted part of the tool's motion: always the orientation, and also the position if that is prescribed.
+/// Scripted part of the tool's motion: always the orientation, and also the position if it is prescribed.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -121,8 +121,9 @@ class Motion {
   virtual Vec3 axis_at(double t) const noexcept = 0;
   /// Returns ToolPose::roll at time t [s], in rad. Called only if something reads the roll.
   virtual double roll_at(double /*t*/) const noexcept { return 0.0; }
-  /// Returns true if the script rotates the tool about its axis. The angular velocity of a solid of revolution then
-  /// includes this rotation; the angular velocity of any other tool always includes it.
+  /// Returns true if the script rotates the tool about its axis. If false, the angular velocity of a solid of
+  /// revolution leaves out the rotation about its axis. The angular velocity of any other tool contains it in both
+  /// cases.
   virtual bool scripts_roll() const noexcept { return false; }
   /// Returns true if the tip centre is integrated, false if position_at() prescribes it.
   virtual bool position_is_free() const noexcept { return true; }
@@ -135,10 +136,10 @@ class Motion {
 /// down. If all three angles are 0, the tool's own x axis points along `lean` and its z axis along `up`. `roll`
 /// rotates it about its axis.
 struct Orientation {
-  Vec3 up = {0.0, 0.0, 1.0};    ///< unit
-  Vec3 lean = {1.0, 0.0, 0.0};  ///< unit, perpendicular to up
+  Vec3 up = {0.0, 0.0, 1.0};    ///< unit vector
+  Vec3 lean = {1.0, 0.0, 0.0};  ///< unit vector, perpendicular to up
   Profile tilt;                 ///< [rad]
-  Profile azimuth;              ///< [rad], right-handed about up
+  Profile azimuth;              ///< [rad], right-handed about the vector `up`
   Profile roll = {};            ///< [rad], right-handed about the axis
 };
 

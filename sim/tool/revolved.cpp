@@ -164,8 +164,8 @@ double exit_of_convex(const HalfPlane& plane, const AxialRay& ray) {
 /// counts, so that no ray passes between two segments.
 constexpr double kAtStart = 1e-12, kAtEnd = 1e-9;
 
-/// Returns the distance to the first point where the ray leaves the body through the segment; kNever if there is
-/// none.
+/// Returns the distance to the first point where the ray leaves the body through the segment; kNever if there is no
+/// such point.
 double exit_through(const Meridian::Line& line, const AxialRay& ray, double reach) {
   const double at_start = kAtStart * reach, at_end = kAtEnd * reach;
   const auto on_line = [&](double d, double rho) {
@@ -193,8 +193,8 @@ double exit_through(const Meridian::Line& line, const AxialRay& ray, double reac
   return first;
 }
 
-/// Returns the distance to the point where the ray leaves through the half ball beyond the tip plane; kNever if
-/// there is none.
+/// Returns the distance to the point where the ray leaves through the half ball beyond the tip plane; kNever if there
+/// is no such point.
 double exit_through_ball(double radius, const Vec3& x, const Vec3& u, const AxialRay& ray, double reach) {
   const double b = x.dot(u), c = (radius - x.norm()) * (radius + x.norm());
   if (b * b + c < 0.0) return kNever;

@@ -121,7 +121,8 @@ Vec3 area_vector(const ClosedSurface& surface, const TriangleCorners& t) {
 /// Returns the vertices except those that have only coplanar triangles around them, because such a vertex is never
 /// the only extreme point along a direction.
 std::vector<Vec3> corners_of(const ClosedSurface& surface) {
-  // Sum the unit normals of the triangles at each vertex; they are parallel if the sum is as long as their number.
+  // Sum the unit normals of the triangles at each vertex. The normals are parallel if the length of the sum equals the
+  // number of the triangles.
   std::vector<Vec3> sums(surface.vertices().size(), Vec3::Zero());
   std::vector<double> counts(sums.size(), 0.0);
   for (const TriangleCorners& t : surface.triangles()) {
@@ -297,7 +298,7 @@ void SignedDistanceGrid::classify() {
   });
 }
 
-/// Determines whether the body is convex and, if it is, finds its largest flat faces.
+/// Determines whether the body is convex. Finds the largest flat faces of a convex body.
 void SignedDistanceGrid::find_faces(const ClosedSurface& surface) {
   const double tolerance = kConvexWithin * nodes_.spacing;
   // In a convex body, triangles with the same normal lie in the same plane.

@@ -41,8 +41,8 @@ struct PackRange {
 /// the edge of the face above the surface too early.
 inline constexpr double kFlush = 0.9945;
 
-/// Shape of the tool: the geometry that contact search, depth models, the proxy and metrics need. Code outside of
-/// the shapes uses only this interface and knows neither a radius nor a type of tip.
+/// Shape of the tool: the geometry that contact search, depth models, the proxy and metrics need. Code outside of the
+/// shapes uses only this interface and does not depend on a radius or a type of tip.
 ///
 /// Poses and points are in the world frame, lengths in m. The position of a pose is the tip centre. A shape that is
 /// not a solid of revolution uses the pose's rotation().
@@ -85,8 +85,8 @@ class ToolShape {
   /// Precondition: margin >= 0.
   virtual void mark_near(const ToolPose& pose, double margin, const PointArrays& points,
                          std::span<const PackRange> ranges, std::uint8_t* marks) const noexcept = 0;
-  /// Returns a box that contains every point of `bounds` within `margin` [m] of the body. Ideally the box encloses
-  /// only the part of the body near `bounds`. Empty if no part is near.
+  /// Returns a box that contains every point of `bounds` within `margin` [m] of the body. Ideally the box encloses only
+  /// the part of the body near `bounds`. The box is empty if no part of the body is near `bounds`.
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
   /// Number and radius [m] of balls whose union contains the body and everything that `mark_near` marks with this
   /// margin. Used to bound the number of points that the body can touch (max_points_in, grid_index.hpp); many
@@ -109,8 +109,8 @@ class ToolShape {
 
   // Depth models. Precondition: the contacts lie in the body or on its surface.
 
-  /// Writes the distance from each contact to the closest point of the body's surface as its depth [m]. This
-  /// function and the following ones may overwrite the whole last pack.
+  /// Writes the distance from each contact to the closest point of the body's surface as its depth [m]. This function
+  /// and the following functions may overwrite the whole last pack.
   virtual void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
   /// Writes the unit vector from each contact to the closest point of the surface as its gradient. Writes the
   /// contact's negative normal if the closest point is not unique, for example on the axis of a cylinder.
@@ -134,9 +134,9 @@ class ToolShape {
   /// for displacements of any length. If the closest point is not unique, any of the closest points has that
   /// property.
   ///
-  /// A flat face that slides along a surface would be stopped by the points ahead: they lie in the plane of the
-  /// face, and their closest point on the body is the edge of the face. A point that lies beyond both faces of an
-  /// edge, or within `slack` [m] of that, is kept out by the constraint of either face. Therefore, if the
+  /// A flat face that slides along a surface would be stopped by the points ahead: they lie in the plane of the face,
+  /// and their closest point on the body is the edge of the face. A point that lies beyond both faces of an edge, or at
+  /// most `slack` [m] inside one of the faces, is kept out by the constraint of either face. Therefore, if the
   /// displacement `wanted` [m] violates the constraint of the closest point, a face that is flush (kFlush) with the
   /// contact's normal replaces it.
   virtual void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
@@ -146,14 +146,14 @@ class ToolShape {
   virtual void support_points(const ToolPose& pose, const ContactBuffer& contacts,
                               const MutablePointArrays& places) const noexcept = 0;
 
-  /// Shape that encloses the body with a margin. Its tip centre lies `forward` [m] ahead of the body's along the
-  /// axis.
+  /// Shape that encloses the body with a margin. Its tip centre lies `forward` [m] ahead of the body's tip centre,
+  /// along the axis.
   struct Grown {
     std::unique_ptr<const ToolShape> shape;
     double forward;
   };
-  /// Returns a shape that contains every point within `margin` [m] of this one, and possibly slightly more.
-  /// Precondition: margin >= 0. Allocates.
+  /// Returns a shape that contains every point within `margin` [m] of this shape, and possibly some points slightly
+  /// farther away. Precondition: margin >= 0. Allocates.
   virtual Grown grown(double margin) const = 0;
 
  protected:

@@ -1,4 +1,4 @@
-// No heap allocation in a step, for every algorithm with every stage on springs and on a shell.
+// Tests that no step allocates heap memory: every algorithm with every stage, on springs and on a shell.
 
 #include <gtest/gtest.h>
 
@@ -107,7 +107,7 @@ std::vector<Instance> instances() {
   return all;
 }
 
-/// The thesis's springs, or its 2-D peg, wide enough to touch many points.
+/// Returns the thesis's springs, or the thesis's 2-D peg, wide enough to touch many points.
 test::Setting setting_of(const Instance& instance) {
   test::Setting setting;
   if (instance.springs) {
@@ -128,7 +128,7 @@ SimulationParts parts_of(const Instance& instance, const RenderingConfig& config
   const test::Setting setting = setting_of(instance);
   SimulationParts parts = test::free_run(setting, config);
   if (!instance.springs) {
-    // Led through the hole, because some laws would push the peg out.
+    // The motion is scripted, because some laws would push the peg out of the hole.
     parts.motion = std::make_unique<ScriptedMotion>(
         Orientation{{0, 1, 0}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 1.2}), {}},
         std::array<Profile, 3>{Profile::Shape(Profile::Sine{0.0, 0.0001, 0.05, 0.0}), -0.004, 0.0});
@@ -136,7 +136,7 @@ SimulationParts parts_of(const Instance& instance, const RenderingConfig& config
   return parts;
 }
 
-/// Counts rows with contact. Wants the ratio, so that it is computed in the step.
+/// Counts steps with contact. Requests the ratio, so that the step computes it.
 class ContactCounter final : public Observer {
  public:
   bool wants_ratio() const noexcept override { return true; }
@@ -144,7 +144,7 @@ class ContactCounter final : public Observer {
   int rows_with_contact = 0;
 };
 
-/// Allocations of a run, a reset and the same run again, from the first step on.
+/// Returns the number of allocations of a run, a reset and the same run again, from the first step on.
 std::uint64_t allocations_of_two_runs(Simulation& simulation) {
   const AllocationCount count;
   simulation.run();
@@ -179,7 +179,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   EXPECT_EQ(observer.rows_with_contact, 600 - (config.late ? 2 * config.late->delay : 0));
 }
 
-/// Some integrators search and render again within a step.
+/// Some integrators find contacts and render again within a step.
 class NoAllocationOf : public testing::TestWithParam<std::tuple<AlgorithmEntry, const IntegratorEntry*>> {};
 INSTANTIATE_TEST_SUITE_P(Every, NoAllocationOf,
                          testing::Combine(testing::ValuesIn(algorithms().begin(), algorithms().end()),

@@ -31,24 +31,24 @@ Contact evaluate(const Cylinder& tool, const ToolPose& pose, const Vec3& point, 
   return {contacts.depth[0], contacts.gradient(0)};
 }
 
-// Dyadic sizes and a pose along the axes: every distance below is exact, so ties are real ties.
+// Dyadic sizes and a pose along the axes: every distance below is exact, so equal distances are exactly equal.
 constexpr double kUnit = 0x1p-13;  // 0.12 mm
 const Vec3 kAxis(0, 0, -1);
 const ToolPose kPose{{0x1p-4, 0x1p-5, 0x1p-6}, kAxis}, kOrigin{Vec3::Zero(), kAxis};
 
-/// The point s along the axis from the tip and a along +x, in units.
+/// Returns the point at s along the axis from the tip and at a along +x, in units of kUnit.
 Vec3 at(double s, double a) {
   return kPose.position + kUnit * (s * kAxis + Vec3(a, 0, 0));
 }
 
 TEST(ShortestDistance, AnUndefinedDirectionFallsBackToTheInwardNormal) {
   const Vec3 normal = Vec3(3, 4, 0) / 5;
-  // On the median line the side is nearest, in an undefined direction.
+  // On the median line, the side is the nearest surface, but its direction is undefined.
   const Cylinder flat{kUnit, 16 * kUnit, Tip::flat};
   const auto on_axis = evaluate(flat, kPose, at(-8, 0), normal);
   EXPECT_EQ(on_axis.depth, kUnit);
   EXPECT_EQ(on_axis.gradient, Vec3(-normal));
-  // The same at the centre of the round tip, in the cylinder (s = 0) and just inside the ball.
+  // The same case at the centre of the round tip: in the cylinder (s = 0) and just inside the ball.
   const Cylinder round{kUnit, 16 * kUnit, Tip::round};
   EXPECT_EQ(evaluate(round, kPose, at(0, 0), normal).gradient, Vec3(-normal));
   EXPECT_EQ(evaluate(round, kOrigin, 1e-13 * kUnit * kAxis, normal).gradient, Vec3(-normal));
@@ -110,7 +110,7 @@ TEST(EveryDepthModel, NeverGivesACollidingPointANegativeDepth) {
         on_surface += contacts.depth[k] < 1e-15;
       }
     });
-    // There were points that the search and the model could round differently.
+    // Check that there were points that the search and the model could round differently.
     EXPECT_GT(on_surface, test::cases(4000));
   }
 }
@@ -123,7 +123,7 @@ double depth_at(const ToolShape& tool, const ToolPose& pose, const Vec3& point, 
   return contacts.depth[0];
 }
 
-/// Whether the search reports the point, as it does for every point a depth model sees.
+/// Returns true if the search reports the point. It reports every point that a depth model receives.
 bool collides(const ToolShape& tool, const ToolPose& pose, const Vec3& point) {
   const PointShell shell({{point, Vec3::UnitZ()}}, 0.0);
   const auto query = make_contact_query(shell, tool, Skips::off);
@@ -132,7 +132,7 @@ bool collides(const ToolShape& tool, const ToolPose& pose, const Vec3& point) {
   return !contacts.empty();
 }
 
-/// Flat and round.
+/// Returns the kinds of cylinders: with flat and with round tips.
 std::span<const test::ToolKind> cylinders() {
   return test::tool_kinds().first(2);
 }
@@ -141,8 +141,9 @@ class NormalProjectionDepthOf : public testing::TestWithParam<test::ToolKind> {}
 INSTANTIATE_TEST_SUITE_P(Both, NormalProjectionDepthOf, testing::ValuesIn(cylinders().begin(), cylinders().end()),
                          [](const auto& kind) { return kind.param.name; });
 
-/// Checks that the ray from the point against its normal leaves the tool after `depth`: there the slack is zero, and
-/// not yet before nor any more after. Slacks carry a few roundings of coordinates up to 1 m.
+/// Checks that the ray from the point against its normal leaves the tool at the distance `depth`: the slack is zero
+/// there, not negative before and not positive after. The rounding of a slack is a few roundings of coordinates up to 1
+/// m.
 void expect_exit(const test::DefinedTool& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal,
                  double depth) {
   constexpr long double rounding = 2e-15L;
@@ -150,13 +151,14 @@ void expect_exit(const test::DefinedTool& tool, const ToolPose& pose, const Vec3
   const auto slack_at = [&](long double d) { return tool.slack(pose, x + d * u); };
   ASSERT_GE(depth, 0.0);
   ASSERT_LE(std::abs(slack_at(depth)), rounding);
-  // The slack is concave along the ray: inside half-way, and if the ray went on inside it would show a little later.
+  // The slack is concave along the ray. Therefore check that the ray is inside half-way, and that it is outside a
+  // little after `depth`.
   ASSERT_GE(slack_at(0.5L * depth), -rounding);
   ASSERT_LE(slack_at(depth + 0.001L * tool.shape->half_width()), rounding);
 }
 
 TEST_P(NormalProjectionDepthOf, ARayInwardsFromTheSurfaceCrossesTheTool) {
-  // Independent of the side of the surface to which rounding has moved the point.
+  // The result must not depend on the side of the surface to which rounding has moved the point.
   Random random(2);
   std::size_t inwards = 0;
   for (std::size_t i = 0; i < test::cases(100000); ++i) {
@@ -192,20 +194,21 @@ TEST_P(NormalProjectionDepthOf, HandlesRaysAlongAndAcrossTheAxis) {
 }
 
 TEST(NormalProjectionDepth, OnlyPositiveExitsCount) {
-  // The minimal positive value, thesis F.1: a point exactly on a surface whose ray points outwards there has passed it
-  // already. It meets the next surface of (F.7), (F.9), (F.12) instead, beyond the body, or none.
+  // The thesis uses the minimal positive value (F.1). A ray that points outwards from a point exactly on a surface has
+  // already passed this surface. It meets the next surface of (F.7), (F.9), (F.12) beyond the body instead, or no
+  // surface.
   const Cylinder tool{4 * kUnit, 16 * kUnit, Tip::flat};
   EXPECT_EQ(depth_at(tool, kOrigin, {4 * kUnit, 0, 8 * kUnit}, {-1, 0, 0}), 0.0) << "side, straight out: none left";
   EXPECT_EQ(depth_at(tool, kOrigin, {kUnit, 0, 0}, {0, 0, 1}), 0.0) << "tip, straight out: none left";
-  // From the tip plane downwards along 3 : 4, the infinite side wall is met after 5 units sideways 3.
+  // A ray from the tip plane downwards with slope 3 : 4 meets the infinite side wall after 5 units, 3 units sideways.
   EXPECT_NEAR(depth_at(tool, kOrigin, {kUnit, 0, 0}, {-0.6, 0, 0.8}), 5 * kUnit, 4e-16 * kUnit * 16);
 }
 
 TEST(NormalProjectionDepth, IsNeverLongerThanTheTool) {
-  // Points in the tip plane with rays almost along the axis meet the infinite side wall r / sin(angle) away.
+  // Rays from points in the tip plane almost along the axis meet the infinite side wall at the distance r / sin(angle).
   for (const Tip tip : {Tip::flat, Tip::round}) {
     const Cylinder tool{4 * kUnit, 16 * kUnit, tip};
-    const double longest = tool.length() + 3.0 * tool.radius();  // beyond the longest way through the body
+    const double longest = tool.length() + 3.0 * tool.radius();  // longer than the longest path through the body
     for (double angle = 1.0; angle > 1e-18; angle *= 0.5) {
       for (const double down : {1.0, -1.0}) {
         const Vec3 normal(-std::sin(angle), 0, down * std::cos(angle));
@@ -233,7 +236,7 @@ struct Depths {
   double projected = 0.0;
 };
 
-/// A tool led through points, step by step.
+/// A tool that moves through points, step by step.
 class Stroke {
  public:
   explicit Stroke(const std::vector<SurfacePoint>& points,
@@ -277,7 +280,7 @@ ToolPose upright(double x, double z) {
 /// A random walk of a random tool among random points.
 class RandomStroke {
  public:
-  static constexpr double kMove = 1e-5, kTurn = 0.01;  ///< largest in a step [m, rad]
+  static constexpr double kMove = 1e-5, kTurn = 0.01;  ///< largest displacement [m] and rotation [rad] in a step
 
   explicit RandomStroke(std::uint64_t seed) : random_(seed) {}
 
@@ -326,12 +329,13 @@ TEST(ContinuousNormalProjectionDepth, FollowsItsFormulaFromStepToStep) {
       before = pose;
     }
   }
-  // All cases of the formula have occurred.
+  // Check that all cases of the formula have occurred.
   for (const std::size_t count : {at_the_least, at_the_most, between}) EXPECT_GT(count, test::cases(300));
 }
 
 TEST(ContinuousNormalProjectionDepth, AFlatTipPressedInIsAsDeepAsItsTip) {
-  // Up to twice the radius, far beyond the saturation of the shortest distance. Each step rounds lengths below 2 mm.
+  // Press up to twice the radius, far beyond the saturation of the shortest distance. Each step rounds lengths below 2
+  // mm.
   Stroke stroke(surface_points(Plane{0.002, 0.0001}));
   for (int step = 0; step <= 1000; ++step) {
     const double depth = 1e-6 * step;

@@ -27,8 +27,8 @@ namespace {
 
 using test::cases;
 
-// Every registered algorithm in every analytic scene: a new algorithm is covered by its row in the registry, a new
-// scene by its row in setting.cpp.
+// Tests every registered algorithm in every analytic scene. An entry in the registry adds an algorithm, and an entry in
+// setting.cpp adds a scene.
 
 struct AlgorithmOnScene {
   std::string_view algorithm;
@@ -41,7 +41,7 @@ void PrintTo(const AlgorithmOnScene& instance, std::ostream* out) {
   *out << instance.name();
 }
 
-/// The instances to which a claim applies.
+/// Returns the instances (algorithm and scene) for which `applies` is true.
 template <class Applies>
 std::vector<AlgorithmOnScene> algorithms_on_scenes(Applies applies) {
   std::vector<AlgorithmOnScene> instances;
@@ -58,24 +58,24 @@ bool always(const AlgorithmOnScene&) {
   return true;
 }
 
-/// The instance's setting and configuration, built once for each test.
+/// Holds the instance's setting and configuration, built once for each test.
 class AlgorithmOnSceneTest : public testing::TestWithParam<AlgorithmOnScene> {
  protected:
   const test::AnalyticScene& scene() const { return *GetParam().scene; }
 
   test::Setting setting = GetParam().scene->setting();
   RenderingConfig config = test::config_for(GetParam().algorithm, *GetParam().scene);
-  /// The scale of rounding errors of a force [N]: the sum of all penalty forces, plus a micrometre because coordinates
-  /// are rounded, not depths.
+  /// Scale of rounding errors of a force [N]: the sum of all penalty forces, plus the force of one micrometre, because
+  /// coordinates are rounded, not depths.
   double magnitude = config.stiffness * (test::total_depth(setting, config) + 1e-6);
 };
 
-/// Relative rounding of any law whose inputs are exact in another order or frame. Coordinates and normals change by a
-/// few 1e-16 of their size, 1e-12 of a depth of 0.1 mm. The worst conditioned law, exact_shaping, computes single
-/// weights to 2e-16 over its epsilon of 1e-6.
+/// Relative rounding error of any law if its inputs are exact but in another order or frame. Coordinates and normals
+/// change by a few 1e-16 of their size, which is 1e-12 of a depth of 0.1 mm. exact_shaping has the worst condition
+/// number: it computes single weights to 2e-16 divided by its epsilon of 1e-6.
 constexpr double kAnyLawsRounding = 1e-9;
 
-/// Instantiates a suite derived from AlgorithmOnSceneTest; names read `summation_on_single_spring`.
+/// Instantiates a suite derived from AlgorithmOnSceneTest. Its tests have names such as `summation_on_single_spring`.
 #define HAPBENCH_FOR_EVERY_ALGORITHM(suite, applies)                                       \
   INSTANTIATE_TEST_SUITE_P(Every, suite, testing::ValuesIn(algorithms_on_scenes(applies)), \
                            [](const auto& instance) { return instance.param.name(); })
@@ -86,7 +86,7 @@ HAPBENCH_FOR_EVERY_ALGORITHM(Answer, always);
 TEST_P(Answer, HasTheKnownDirectionAndIsBoundedByTheSumOfAllSprings) {
   test::Probe probe(setting, config);
   Vec3 force;
-  // A proxy that starts inside leaves slowly, hence the steps.
+  // Take 100 steps, because a proxy that starts inside leaves slowly.
   for (int step = 0; step < 100; ++step) force = probe.force_at(setting.pose).spring;
   ASSERT_TRUE(force.allFinite());
   const test::Answer answer = scene().answer();
@@ -107,8 +107,8 @@ TEST_P(Answer, HasTheKnownDirectionAndIsBoundedByTheSumOfAllSprings) {
   }
 }
 
-/// The scenes that give the force of the algorithm. In others (new algorithms, scenes of many points) it is bounded
-/// only.
+/// Scenes for which the force of the algorithm is known. In other scenes (new algorithms, scenes with many points) only
+/// a bound is known.
 class ExactAnswer : public AlgorithmOnSceneTest {};
 HAPBENCH_FOR_EVERY_ALGORITHM(ExactAnswer, [](const AlgorithmOnScene& instance) {
   return instance.scene->answer().spring_over_K.contains(instance.algorithm);
@@ -118,7 +118,7 @@ TEST_P(ExactAnswer, IsTheForceOfTheLaw) {
   const test::Answer answer = scene().answer();
   const Vec3 expected = config.stiffness * answer.spring_over_K.at(GetParam().algorithm) * answer.direction;
   const Vec3 force = test::Probe(setting, config).force_at(setting.pose).spring;
-  // A few springs: sums and solves of numbers of the size of the depths; the residual of exact_shaping is 1e-14.
+  // The laws sum and solve with a few numbers of the size of the depths; the residual of exact_shaping is 1e-14.
   EXPECT_LE((force - expected).norm(), 1e-13 * magnitude)
       << force.transpose() << " instead of " << expected.transpose();
 }
@@ -143,7 +143,7 @@ TEST_P(Answer, StiffnessTensorIsSymmetricAndPositiveSemidefinite) {
   const Mat3 S = test::Probe(setting, config).force_at(setting.pose).S;
   ASSERT_TRUE(S.allFinite());
   EXPECT_EQ(S, S.transpose());
-  // Sums of c u u^T with c >= 0, rounded.
+  // Sums of c u u^T with c >= 0 are positive semidefinite up to rounding.
   EXPECT_LE(lambda_max(-S), 1e-14 * (1.0 + S.norm()));
 }
 
@@ -153,7 +153,7 @@ TEST_P(Answer, DampingAndFrictionNeverDriveTheTool) {
   config.mu_f = 10.0;
   test::Probe probe(setting, config);
   const RenderedForce at_rest = probe.force_at(setting.pose);
-  // Friction acts on v - S v and brakes if S <= 1, which laws that sum springs do not guarantee.
+  // Friction acts on v - S v and dissipates energy if S <= 1, which laws that sum springs do not guarantee.
   if (lambda_max(at_rest.S) > 1.0 + 1e-12) config.mu_s = config.mu_f = 0.0;
   test::Probe braked(setting, config);
   for (int i = 0; i < 20; ++i) {
@@ -185,21 +185,22 @@ TEST_P(Answer, ATurnIsFeltWithAngularDampingOnly) {
   EXPECT_EQ(test::Probe(setting, config).force_at(setting.pose, velocity).rendered, without);
   test::Probe probe(setting, config);
   const Vec3 with = probe.force_at(setting.pose, velocity, turn).rendered;
-  // Springs are attached to the tip, which does not move when the tool turns; tandpasta may leave no weight.
+  // Springs are attached to the tip, which does not move when the tool rotates. tandpasta may give every contact weight
+  // zero.
   const auto& c = probe.contacts().weight;
   const bool feels_nothing =
       setting.springs || std::all_of(c.begin(), c.end(), [](double weight) { return weight == 0; });
   EXPECT_EQ(with == without, feels_nothing);
 }
 
-/// A single contact away from the tip.
+/// Uses a single contact away from the tip.
 TEST(AngularDamping, InOneContactATurnIsTheVelocityOfTheToolThere) {
   const Vec3 arm(0.0003, 0.0002, 0.004), turn(0.5, -1.0, 2.0), velocity(0.02, -0.03, 0.01);
   test::Setting setting;
   setting.points = {{arm, Vec3(1.0, 2.0, -2.0) / 3.0}};
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
-    // The proxy is held at another place of the tool; see the tests of the proxy.
+    // The proxy is held at another position than the tool; the tests of the proxy cover it.
     if (std::string_view(algorithm.info->name) == "proxy") continue;
     RenderingConfig config;
     config.algorithm = algorithm.info->name;
@@ -217,12 +218,13 @@ TEST(AngularDamping, InOneContactATurnIsTheVelocityOfTheToolThere) {
 class Invariance : public AlgorithmOnSceneTest {
  protected:
   void SetUp() override {
-    // All forces that can act on a moving tool.
+    // Enable all forces that can act on a moving tool.
     config.mu_s = 5.0;
     config.mu_f = 10.0;
   }
   double rounding() const { return kAnyLawsRounding * magnitude; }
-  /// Rounding of a rendered force. B S v and friction add to the springs, and S is as accurate as single weights.
+  /// Returns the rounding error of a rendered force. B S v and friction are added to the springs, and S is as accurate
+  /// as single weights.
   double rounding_in_motion(const RenderedForce& force) const {
     return 4 * rounding() + kAnyLawsRounding * (force.rendered - force.spring).norm();
   }
@@ -233,8 +235,8 @@ HAPBENCH_FOR_EVERY_ALGORITHM(Invariance, always);
 
 class RigidMotion : public Invariance {
  protected:
-  /// In a slot that is too narrow for the tool, the 3x3 system of the proxy's compromise has the condition
-  /// n / epsilon = 640 / 1e-6, times the rounding 2e-16 of its entries.
+  /// In a slot that is too narrow for the tool, the 3x3 system of the proxy's compromise has the condition number n /
+  /// epsilon = 640 / 1e-6; the rounding error is this number times the rounding 2e-16 of the entries.
   static constexpr double kCompromiseRounding = 640 / 1e-6 * 2e-16;
   bool is_proxy() const { return GetParam().algorithm == "proxy"; }
   double rounding() const {
@@ -245,9 +247,9 @@ class RigidMotion : public Invariance {
     return 4 * rounding() + rounding_of_S() * (force.rendered - force.spring).norm();
   }
 };
-/// Excluded: scenes in which the tool exactly touches; merged_shaping, which has preferred directions and its own test;
-/// a proxy whose peg is too wide for the hole of a planar scene, because rounding decides to which side it slips out of
-/// the plane.
+/// Excludes scenes in which the tool exactly touches, and merged_shaping, which has preferred directions and its own
+/// test. Also excludes a proxy whose peg is too wide for the hole of a planar scene, because rounding decides to which
+/// side the proxy slips out of the plane.
 HAPBENCH_FOR_EVERY_ALGORITHM(RigidMotion, [](const AlgorithmOnScene& instance) {
   const bool slips = instance.algorithm == "proxy" && instance.scene->name.starts_with("tilted_peg");
   return !instance.scene->touches && !slips && instance.algorithm != "merged_shaping";
@@ -267,12 +269,12 @@ TEST_P(RigidMotion, OfTheWholeSceneTurnsForceAndTorque) {
   Random random(1);
   for (int i = 0; i < 10; ++i) {
     const Mat3 R = test::random_rotation(random);
-    // Springs are attached to the origin and can only be turned with it.
+    // Springs are attached to the origin, so they can be rotated but not translated.
     const Vec3 t = setting.springs ? Vec3(0, 0, 0) : Vec3(0.1 * random.direction());
     const test::Setting there = test::moved(setting, R, t);
     test::Probe probe(there, config);
     const RenderedForce force = probe.force_at(there.pose, R * velocity);
-    // Rounding decides which of several equivalent points, as on a flat, hold the proxy.
+    // Rounding decides which of several equivalent points, such as points of a flat face, hold the proxy.
     if (!is_proxy()) {
       ASSERT_LE((torque_of(probe, there.pose) - R * torque).norm(), rounding() * there.tool.reach());
     }
@@ -282,7 +284,7 @@ TEST_P(RigidMotion, OfTheWholeSceneTurnsForceAndTorque) {
   }
 }
 
-/// Scales the algorithm's own parameters in newtons, such as a force at which it saturates.
+/// Returns the configuration with the algorithm's own parameters in newtons scaled, such as a saturation force.
 RenderingConfig with_forces_scaled(RenderingConfig config, double s) {
   for (const AlgorithmParameter& own : find_algorithm(config.algorithm)->algorithm_parameters) {
     if (std::string_view(own.range.unit) == "N")
@@ -292,7 +294,7 @@ RenderingConfig with_forces_scaled(RenderingConfig config, double s) {
 }
 
 TEST_P(Invariance, LengthsScaleTheSpringForce) {
-  // Powers of four scale products, sums and roots without rounding, so the scaled force is exact.
+  // Scaling by powers of four rounds no product, sum or root, so the scaled force is exact.
   const Vec3 original = test::Probe(setting, config).force_at(setting.pose).spring;
   for (const double s : {4.0, 0.25, 1024.0}) {
     const test::Setting scaled = test::scaled(setting, s);
@@ -323,7 +325,7 @@ TEST_P(Invariance, TheOrderOfThePointsDoesNotMatter) {
 
 TEST_P(FarPoints, DoNotMatter) {
   const RenderedForce original = test::Probe(setting, config).force_at(setting.pose, velocity);
-  // Appended, so that the order of summation of the other points does not change.
+  // Append the points, so that the order of summation of the other points does not change.
   for (int i = 0; i < 20; ++i) setting.points.push_back({{1.0, 0.1 * i, 0.0}, Vec3::UnitY()});
   const RenderedForce force = test::Probe(setting, config).force_at(setting.pose, velocity);
   EXPECT_EQ(force.spring, original.spring);
@@ -344,7 +346,7 @@ TEST_P(Run, StaysFinite) {
     ASSERT_TRUE(row.force.rendered.allFinite());
     ASSERT_TRUE(row.force.S.allFinite());
     ASSERT_TRUE(std::isfinite(row.ratio.min) && std::isfinite(row.ratio.max));
-    // No law adds contacts, but points that the tool does not touch may hold the proxy.
+    // No law adds contacts. The proxy is an exception: points that the tool does not touch may hold the proxy.
     if (GetParam().algorithm != "proxy") {
       ASSERT_LE(recorder.rendered[row.step], row.colliding);
     }
@@ -384,11 +386,11 @@ TEST_P(Run, WithEveryStageIsTheSameToTheBitAfterReset) {
   EXPECT_EQ(simulation.algorithm().work().steps_controlled, work.steps_controlled);
 }
 
-// Tools of a mesh, which are no solids of revolution, in depth models and algorithms.
+// Tests depth models and algorithms with mesh tools, which are not solids of revolution.
 
 constexpr double kSpacing = 0.0001;
 
-/// A drill of 32 sides, a sphere, a box and, concave, a cup, 1 mm wide.
+/// Returns a drill with 32 sides, a sphere, a box and a concave cup, each 1 mm wide.
 const std::vector<std::shared_ptr<const MeshTool>>& tools() {
   static const auto all = [] {
     std::vector<std::shared_ptr<const MeshTool>> made;
@@ -430,8 +432,8 @@ TEST_P(MeshToolInEveryAlgorithm, IsPushedOutOfAPlaneWithoutAllocating) {
         ASSERT_TRUE(force.spring.allFinite());
       }
       EXPECT_EQ(allocations.value(), 0u);
-      // The tools lean by 3 degrees and edges are near, so some springs point aside, but their sum points up. Half-way
-      // through the bottom of the cup, 75 um deep, the shortest way out would lead into the cup.
+      // The tools lean by 3 degrees and edges are near, so some springs push sideways, but their sum points up. For a
+      // point half-way through the bottom of the cup, which is 75 um deep, the shortest exit would lead into the cup.
       EXPECT_GT(force.spring.z(), 0.0) << model.info->name;
     }
   }
@@ -453,7 +455,7 @@ TEST(Proxy, KeepsEveryPointOutOfConvexMeshes) {
     const auto proxy = make_algorithm(config);
     proxy->prepare({source.capacity(), tool.get(), &shell});
     for (std::size_t run = 0; run < cases(20); ++run) {
-      // Lowered by 50 um in each step, with an axis that leans by at most half a radian.
+      // Lower the tool by 50 um in each step, with an axis that leans by at most half a radian.
       const Vec3 axis = (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
       ToolPose pose{{0.0, 0.0, 0.001}, axis, random.uniform(-3.0, 3.0)};
       proxy->reset();

@@ -14,7 +14,7 @@
 namespace hapbench::penalty_rendering_test {
 namespace {
 
-/// A flat tool 0.3 mm into a plane with a point every 0.1 mm.
+/// Returns a flat tool pressed 0.3 mm into a plane with a point spacing of 0.1 mm.
 test::Setting pressed_plane() {
   test::Setting setting;
   setting.points = surface_points(Plane{0.002, 0.0001});
@@ -31,7 +31,7 @@ test::Setting three_springs() {
 }
 
 TEST(PenaltyRendering, DepthMaxIsTheDeepestCollidingPointBeforeAnyStage) {
-  // The deepest point is merged with shallower ones of its cell, and the reduction keeps a single point.
+  // The deepest point is merged with shallower points of its cell, and the reduction keeps a single point.
   RenderingConfig config;
   test::Probe plain(pressed_plane(), config);
   const double depth = plain.force_at(pressed_plane().pose).depth_max;
@@ -70,8 +70,8 @@ TEST(PenaltyRendering, WantsTheAngularVelocityForAngularDampingOnly) {
 }
 
 TEST(PenaltyRendering, AngularDampingIsThatOfEveryContactAndFrictionThatOfTheirMean) {
-  // Turned about y at 2 rad/s: omega x (x, y, z) = (2 z, 0, -2 x), u = -z, c = 1 / n, and the points lie z = 0.3 mm
-  // above the tip. So v_n = -2 x_mean along z, and v_t = 2 z along x.
+  // The tool rotates about y at 2 rad/s: omega x (x, y, z) = (2 z, 0, -2 x), u = -z, c = 1 / n, and the points lie z =
+  // 0.3 mm above the tip. So v_n = -2 x_mean along z, and v_t = 2 z along x.
   RenderingConfig config;
   config.algorithm = "mean";
   config.damping = 10.0;
@@ -110,7 +110,7 @@ TEST(PenaltyRendering, LocalAverageNeedsAShellWithAGrid) {
   EXPECT_THROW(test::Probe(without_grid, config), std::invalid_argument);
 }
 
-// The velocity that a turning tool adds (ForceLaw::turning_velocity).
+// Tests the velocity that a rotating tool adds (ForceLaw::turning_velocity).
 
 constexpr const char* kWeighted[] = {"summation", "mean", "shaped_stiffness", "tandpasta", "exact_shaping"};
 
@@ -118,7 +118,7 @@ ToolState turning_tool(Random& random) {
   return {{random.direction(), Vec3::UnitZ()}, Vec3::Zero(), 3.0 * random.direction()};
 }
 
-/// Random gradients at random points within 1 cm of the tip, under the law `name`; calls f(law, S, contacts, tool).
+/// Draws random gradients at random points within 1 cm of the tip for the law `name`; calls f(law, S, contacts, tool).
 template <class F>
 void for_random_contacts(const char* name, F f) {
   Random random(1);
@@ -140,7 +140,7 @@ void for_random_contacts(const char* name, F f) {
   }
 }
 
-/// <omega x r_i, u_i> of all contacts.
+/// Returns <omega x r_i, u_i> for all contacts.
 Eigen::VectorXd normal_speeds(const ContactBuffer& contacts, const ToolState& tool) {
   Eigen::VectorXd speeds(static_cast<Eigen::Index>(contacts.size()));
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -150,7 +150,7 @@ Eigen::VectorXd normal_speeds(const ContactBuffer& contacts, const ToolState& to
   return speeds;
 }
 
-/// Sums of n <= 200 velocities of at most 3 cm/s times a weight, in another order.
+/// Returns the rounding error of a sum of n <= 200 weighted velocities of at most 3 cm/s, added in another order.
 double rounding(const Eigen::VectorXd& c) {
   return 200 * 8 * std::numeric_limits<double>::epsilon() * 0.03 * (1.0 + c.sum());
 }

@@ -18,7 +18,7 @@
 namespace hapbench::registry_test {
 namespace {
 
-/// As each is found by its name, no two have the same.
+/// Each algorithm is found by its name, so no two algorithms have the same name.
 TEST(Registry, EveryListedNameIsFoundAndBuilds) {
   for (const AlgorithmEntry& entry : algorithms()) {
     EXPECT_EQ(find_algorithm(entry.info->name), &entry);
@@ -70,42 +70,42 @@ TEST(Registry, EveryForceBoundHoldsForASingleSpring) {
   }
 }
 
-/// Stiffness in a wedge, in units of K; both directions are axes of the tensor. Two faces stand at the half angle w
-/// [rad], 0 < w < pi/2, from the middle plane of the wedge; the way out is +y, across is x. The contact gradients
+/// Stiffness in a wedge, in units of K, along two axes of the tensor. The half angle between each face and the middle
+/// plane of the wedge is w [rad], 0 < w < pi/2. +y points out of the wedge, x from face to face. The contact gradients
 /// (+-cos w, -sin w, 0) have the inner product -cos 2w.
 struct WedgeStiffness {
-  double along;   ///< along the way out
-  double across;  ///< from face to face
+  double along;   ///< stiffness along the direction out of the wedge
+  double across;  ///< stiffness from face to face
 };
 
-/// The wedge under weights that add up to `weight` on either face: S = weight (u1 u1^T + u2 u2^T).
+/// Returns the stiffness if the weights of each face sum to `weight`: S = weight (u1 u1^T + u2 u2^T).
 WedgeStiffness of_weight(double w, double weight) {
   return {2.0 * weight * std::pow(std::sin(w), 2), 2.0 * weight * std::pow(std::cos(w), 2)};
 }
 
-/// Along an axis where the summed stiffness is s: s / (added + s).
+/// Returns the stiffness along an axis with the summed stiffness s: s / (added + s).
 WedgeStiffness in_series(double w, double n, double added) {
   const auto [along, across] = of_weight(w, n);
   return {along / (added + along), across / (added + across)};
 }
 
-/// From the first update on; also the limit of the iteration, but for epsilon = 1e-6. Under merged_shaping each face is
-/// a group.
+/// Returns the stiffness after the first update, which is also the limit of the iteration up to epsilon = 1e-6. Under
+/// merged_shaping each face is a group.
 WedgeStiffness of_shaping(double w, double) {
   return of_weight(w, 1.0 / (1.0 + std::pow(std::cos(2.0 * w), 2)));
 }
 
-/// S = u_r u_r^T, and the mean gradient u_r points straight into the wedge.
+/// Returns the stiffness for S = u_r u_r^T; the mean gradient u_r points straight into the wedge.
 WedgeStiffness of_averaged_direction(double, double) {
   return {1.0, 0.0};
 }
 
-/// The projector onto the plane that the two gradients span.
+/// Returns the stiffness for the projector onto the plane that the two gradients span.
 WedgeStiffness of_plane(double, double) {
   return {1.0, 1.0};
 }
 
-/// Closed forms for the algorithms' defaults and a wedge with n points on either face, all equally deep.
+/// Closed forms for the algorithms' defaults in a wedge with n equally deep points on each face.
 const std::map<std::string, WedgeStiffness (*)(double w, double n)> kWedges = {
     {"original_averaging", of_averaged_direction},
     {"summation", of_weight},
@@ -128,14 +128,14 @@ TEST(Registry, EveryWedgeHasTheTensorOfItsClosedForm) {
     config.algorithm = name;
     for (const double w : {0.1, 0.2, 0.5, 0.25 * std::numbers::pi, 1.0, 1.4}) {
       for (const std::size_t points : {1u, 3u, 7u}) {
-        // Two faces at the half angle w from the plane x = 0, so that the way out is +y.
+        // Two faces at the half angle w from the plane x = 0; +y points out of the wedge.
         test::Setting setting;
         setting.springs = SpringSet{std::vector<Vec3>(points, Vec3(std::cos(w), -std::sin(w), 0.0)), false};
         setting.springs->gradients.resize(2 * points, Vec3(-std::cos(w), -std::sin(w), 0.0));
         const Mat3 S = test::Probe(setting, config).force_at({{0.0, -1e-3, 0.0}, -Vec3::UnitY()}).S;
         const WedgeStiffness expected = wedge(w, static_cast<double>(points));
-        // Weights are known to their regularisation, 1e-6 in exact shaping, over the least eigenvalue of their
-        // equations, sin^2 2w; else to rounding over that.
+        // The error of the weights is their regularisation (1e-6 in exact shaping), or otherwise rounding, divided by
+        // the smallest eigenvalue of their equations, sin^2 2w.
         const bool exact = config.algorithm == "exact_shaping" || config.algorithm == "merged_shaping";
         const double tolerance = (exact ? 2.0 * kExactShapingEpsilon : 1e-12) / std::pow(std::sin(2.0 * w), 2);
         EXPECT_LE((S - Mat3(Vec3(expected.across, expected.along, 0.0).asDiagonal())).norm(), tolerance)
@@ -154,22 +154,22 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
     const auto points = static_cast<double>(n);
     EXPECT_EQ(bound("summation", n), points);  // n parallel springs
     EXPECT_EQ(bound("mean", n), 1.0);
-    EXPECT_GE(bound("virtual_coupling", n), points / (1.0 + points));  // n parallel springs in series with one
+    EXPECT_GE(bound("virtual_coupling", n), points / (1.0 + points));  // n parallel springs in series with one spring
     EXPECT_GE(bound("least_squares", n), points / (0.01 + points));
     EXPECT_EQ(bound("highest_depth", n), 1.0);
     EXPECT_EQ(bound("mcneely", n), std::min(points, 10.0));
-    EXPECT_EQ(bound("static_coupling", n), 30.0 / 20'000.0);  // N over N/m
+    EXPECT_EQ(bound("static_coupling", n), 30.0 / 20'000.0);  // newtons divided by newtons per metre
     EXPECT_GE(bound("shaped_stiffness", n), 1.0);
     EXPECT_LE(bound("shaped_stiffness", n), 3.0);
   }
-  // The bound of a proxy is its motion: 64 passes of a fifth of the radius, 0.5 mm.
+  // The bound of a proxy is its motion: 64 passes, each at most a fifth of the radius of 0.5 mm.
   EXPECT_DOUBLE_EQ(bound("proxy", 1), 64 * 0.2 * 0.0005);
   config.iterations = 0;
   EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // summation
 }
 
-/// The contacts of the tilted peg in its hole after the algorithm, in a second step so that depth models with a memory
-/// show it.
+/// Returns a hash of the contacts of the tilted peg in its hole after the algorithm. Takes a second step, so that a
+/// depth model with a memory affects the result.
 std::uint64_t rendered_contacts(const RenderingConfig& config) {
   test::Setting setting;
   setting.tool = {0.0005, 0.005, Tip::round};

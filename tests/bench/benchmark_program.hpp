@@ -9,9 +9,9 @@
 
 namespace hapbench::bench {
 
-/// The main function of a program of Google Benchmark: runs what `add` registers, with the commit and the machine under
-/// "context" of --benchmark_format=json. Returns the exit status: 2 for an unknown argument and for a filter that
-/// matches nothing, which is a mistake; 1 for an exception.
+/// The main function of a Google Benchmark program. Runs the benchmarks that `add` registers, and writes the commit and
+/// the machine into "context" of --benchmark_format=json. Returns the exit status: 2 for an unknown argument or a
+/// filter that matches nothing, which is a mistake; 1 for an exception.
 template <class Add>
 int run_benchmarks(const char* program, int argc, char** argv, Add add) {
   try {

@@ -31,7 +31,7 @@ ContactBuffer task_contacts(std::size_t n) {
 
 namespace {
 
-/// n contacts for any n; beyond kRepeated, they repeat.
+/// Returns n contacts for any n; beyond kRepeated contacts, they repeat.
 constexpr std::size_t kRepeated = 1000;
 ContactBuffer repeated_contacts(std::size_t n) {
   const ContactBuffer base = task_contacts(std::min(n, kRepeated));
@@ -45,7 +45,7 @@ void law(benchmark::State& state, const std::string& algorithm, std::size_t n) {
   RenderingConfig config;
   config.algorithm = algorithm;
   const auto rendering = make_algorithm(config);
-  // The contacts have their depths already, so the law alone is timed.
+  // The contacts already have depths, so only the law is timed.
   ContactBuffer contacts = repeated_contacts(n);
   rendering->prepare({.capacity = n});
   rendering->reset();
@@ -69,7 +69,7 @@ void add_laws() {
       benchmark::RegisterBenchmark(fmt::format("law/{}/{}", name, n).c_str(), law, name, n);
     }
     for (const std::size_t n : kGrowthContacts) {
-      // Takes seconds per call for all pairs of contacts.
+      // tandpasta takes seconds per call, because it uses all pairs of contacts.
       if (name == "tandpasta" && n > 10'000) continue;
       benchmark::RegisterBenchmark(fmt::format("growth/law/{}/{}", name, n).c_str(), law, name, n);
     }

@@ -10,7 +10,7 @@ namespace {
 
 bool refuted = false;
 
-/// Removes our option --full from the arguments and returns whether it was there.
+/// Removes our option --full from the arguments and returns true if it was there.
 bool take_full(int& argc, char** argv) {
   char** const end =
       std::remove_if(argv + 1, argv + argc, [](const char* a) { return std::string_view(a) == "--full"; });

@@ -1,7 +1,6 @@
-// Latency of a call of the renderer beside the offline step: renderer_latency [CALLS]. Prints median, 99.9 % and
-// largest of the calls in microseconds, with the time of reading the clock, and the number of allocations (0).
-//
-// The poses are those of an offline run, forwards and backwards.
+// Compares the latency of a call of the renderer with the time of an offline step: renderer_latency [CALLS]. Prints the
+// median, the 99.9th percentile and the largest latency in microseconds, the time of reading the clock, and the number
+// of allocations (0).
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -23,12 +22,12 @@ struct Scene {
   const char* what;
   const char* scenario;
   std::vector<std::string> overrides;
-  double lift = 0.0;  ///< of the poses above those of the run [m]
+  double lift = 0.0;  ///< height of the poses above the poses of the run [m]
 };
 
 const std::vector<Scene> kScenes = {
     {"tooth", "drag_molar", {}},
-    {"hole", "press_into_hole", {"rendering.reduction=null"}},
+    {"hole", "press_into_hole", {"rendering.reduction=null", "environment.grid_m=4.3e-5"}},
     {"slot", "matching_slot", {}},
     {"free air", "drag_molar", {}, 0.01},
 };
@@ -37,7 +36,7 @@ double microseconds(Clock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
 
-/// Prints median, 99.9 % and largest.
+/// Prints the median, the 99.9th percentile and the maximum.
 void print_latency(const char* what, std::vector<double>& times) {
   std::sort(times.begin(), times.end());
   const auto at = [&](double share) {
@@ -48,7 +47,7 @@ void print_latency(const char* what, std::vector<double>& times) {
 
 void measure(const Scene& scene, std::size_t calls) {
   using namespace hapbench;
-  // Run offline, and keep poses and times.
+  // Run the scenario offline, and keep poses and times.
   class Poses final : public Observer {
    public:
     void on_step(const StepRecord& record) noexcept override {
@@ -82,7 +81,7 @@ void measure(const Scene& scene, std::size_t calls) {
   for (std::size_t i = 0; i < calls; ++i) {
     const std::size_t k = i / n % 2 == 0 ? i % n : n - 1 - i % n;
     const ToolState& tool = poses.tools[k];
-    // The rotation that turns the tool's -z to its axis.
+    // Rotation from the tool's -z to its axis.
     const Eigen::Quaterniond q = Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitZ(), tool.pose.axis);
     input.time_ns += static_cast<std::uint64_t>(1e9 * period);
     input.handle = {{tool.pose.position.x(), tool.pose.position.y(), tool.pose.position.z() + scene.lift},

@@ -14,7 +14,7 @@
 #include "tests/bench/bench.hpp"
 #include "tests/support/searches.hpp"
 
-/// The searches for contacts and the shells that they search, also as the grid of the block gets finer.
+/// Times contact searches and the construction of the shells that they search, also for finer grids of the block.
 namespace hapbench::bench {
 namespace {
 
@@ -25,8 +25,8 @@ std::unique_ptr<ContactQuery> make_search(const std::string& search, const Point
   return make_contact_query(shell, tool, search == "brute_force" ? Skips::off : Skips::on);
 }
 
-/// A search over a shell at the poses of a task. The answer of a search may depend on earlier poses, so it is called at
-/// all of them, but is compared with brute force, and that is timed, at every so many only.
+/// A search over a shell at the poses of a task. The result of a search may depend on earlier poses, so the search is
+/// called at all poses. The comparison with brute force, and the timing of brute force, use only every n-th pose.
 struct Search {
   std::string name;  ///< one of kSearches
   std::shared_ptr<const PointShell> shell;
@@ -34,7 +34,7 @@ struct Search {
   std::size_t brute_force_every;
 
   std::unique_ptr<ContactQuery> make() const { return make_search(name, *shell, *scene.tool); }
-  /// Says where it does not find what brute force finds; empty if nowhere.
+  /// Returns where the search differs from brute force; empty if it never differs.
   std::string wrong() const {
     const auto query = make(), brute = make_search("brute_force", *shell, *scene.tool);
     ContactBuffer found(query->capacity()), all(brute->capacity());
@@ -60,7 +60,7 @@ void time_search(benchmark::State& state, const Search& search) {
   const auto batch = static_cast<benchmark::IterationCount>((poses.size() - 1) / every);
   std::uint64_t found = 0, queries = 0, tested = 0;
   while (state.KeepRunningBatch(batch)) {
-    state.PauseTiming();  // back to the first pose, with a warm list
+    state.PauseTiming();  // back to the first pose, with a list that is in use
     tested += query->work().points_tested;
     query->reset();
     query->contacts_at(poses[0], contacts);
@@ -91,7 +91,7 @@ void add_searches() {
   }
 }
 
-/// A line of /proc/self/status [bytes]; 0 if there is none.
+/// Returns a value of /proc/self/status [bytes]; 0 if there is no such line.
 double memory(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -101,7 +101,7 @@ double memory(const std::string& key) {
   return 0.0;
 }
 
-/// Growth of the process while it builds the shell [bytes].
+/// Returns the growth of the process while it builds the shell [bytes].
 double memory_of_building(const Scenario& scenario) {
   malloc_trim(0);                               // returns free memory to the system
   std::ofstream("/proc/self/clear_refs") << 5;  // resets the peak
@@ -131,7 +131,8 @@ void add_shell() {
 constexpr std::size_t kPoints[] = {10'000, 30'000, 100'000, 300'000};
 constexpr std::size_t kManyPoints[] = {1'000'000, 3'000'000, 7'000'000};
 
-/// The block of T2 with a grid that gives about so many points. Their number is the surface in units of the grid.
+/// Returns the block of T2 with a grid that gives about this number of points, which is the surface area in units of
+/// the grid's cells.
 Scenario block_of(std::size_t points) {
   Scenario scenario = step_scenario("T2").scenario;
   double& grid = std::get<BlockEnvironment>(scenario.environment).grid;
@@ -139,8 +140,8 @@ Scenario block_of(std::size_t points) {
   return scenario;
 }
 
-/// The shell of block_of. Keeps the last one only, because benchmarks are ordered by size and large shells take
-/// gigabytes.
+/// Returns the shell of block_of(). Keeps only the last shell, because benchmarks are ordered by size and large shells
+/// take gigabytes.
 std::shared_ptr<const PointShell> shell_of(std::size_t points) {
   static std::size_t kept = 0;
   static std::shared_ptr<const PointShell> shell;
@@ -160,7 +161,7 @@ void search_among(benchmark::State& state, const std::string& search, std::size_
   time_search(state, {search, shell_of(points), task_scene("T2"), 1024});
 }
 
-/// Poses of all tasks. In T1 the tool comes down from free air, where building a list takes longest.
+/// Returns poses of all tasks. In T1 the tool comes down from free air, where building a list takes longest.
 std::vector<ToolPose> some_poses() {
   constexpr std::size_t kEvery = 64;
   std::vector<ToolPose> poses;
@@ -171,7 +172,7 @@ std::vector<ToolPose> some_poses() {
   return poses;
 }
 
-/// A search that builds its list anew, as in the longest step.
+/// Times a search that builds a new list in each query, as in the longest step.
 void list_rebuild(benchmark::State& state, std::size_t points) {
   using Clock = std::chrono::steady_clock;
   constexpr int kRepeats = 5;
@@ -183,7 +184,7 @@ void list_rebuild(benchmark::State& state, std::size_t points) {
     query->reset();
     query->contacts_at(pose, contacts);
   };
-  // The shortest time of each pose excludes disturbances by the machine.
+  // Use the shortest time of each pose, which excludes disturbances by the machine.
   double longest = 0.0;
   for (const ToolPose& pose : poses) {
     auto shortest = Clock::duration::max();

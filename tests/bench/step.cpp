@@ -22,7 +22,7 @@
 #include "tests/results/observing.hpp"
 #include "tests/support/meshes.hpp"
 
-/// Whole steps: their mean time, single steps, growth with the number of contacts, and what each skip saves.
+/// Times whole steps: mean time, single steps, growth with the number of contacts, and the time that each skip saves.
 namespace hapbench::bench {
 namespace {
 
@@ -48,7 +48,7 @@ constexpr const char* kSteps[] = {"T1",
 /// Steps before the first timed one. By then T1 has touched the block, and every buffer has been used.
 constexpr std::uint64_t kWarmUp = 1024;
 
-/// The mesh of the drill of all tasks, 128 sides and some 128^3 nodes.
+/// Returns the grid of the drill of all tasks: a mesh with 128 sides, and some 128^3 nodes.
 std::shared_ptr<const SignedDistanceGrid> drill_grid(const Cylinder& drill) {
   static const auto grid = [&drill] {
     const TriangleSoup soup = test::cylinder_mesh(drill.radius(), drill.length(), 128);
@@ -57,7 +57,7 @@ std::shared_ptr<const SignedDistanceGrid> drill_grid(const Cylinder& drill) {
   return grid;
 }
 
-/// The drill with its side cut into eight lines, every other corner lowered by 0.1 um if it is to be grooved.
+/// Returns the drill with its side divided into eight lines. With grooves, every other corner is lowered by 0.1 um.
 std::shared_ptr<const ToolShape> as_revolved(const Cylinder& drill, bool grooved) {
   std::vector<ProfilePoint> profile;
   for (int k = 0; k <= 8; ++k) {
@@ -68,7 +68,7 @@ std::shared_ptr<const ToolShape> as_revolved(const Cylinder& drill, bool grooved
   return revolved;
 }
 
-/// The shape of the drill according to the suffix of a name in kSteps; null for the drill of the scenario.
+/// Returns the shape of the drill that the suffix of a name in kSteps selects; null for the drill of the scenario.
 std::shared_ptr<const ToolShape> other_shape(const Cylinder& drill, const std::string& name) {
   if (name.ends_with("_mesh")) return std::make_shared<MeshTool>(drill_grid(drill));
   if (name.ends_with("_revolved")) return as_revolved(drill, false);
@@ -88,7 +88,7 @@ SimulationParts parts_of(const Scenario& scenario, const std::string& name) {
   return parts;
 }
 
-/// Writes the numbers of a row of trajectory.csv into preallocated memory.
+/// Writes the numbers of a line of trajectory.csv into preallocated memory.
 class MemoryRecorder final : public Observer {
  public:
   explicit MemoryRecorder(std::size_t rows) : rows_(rows) {}
@@ -114,7 +114,7 @@ class MemoryRecorder final : public Observer {
   std::vector<Row> rows_;
 };
 
-/// A simulation with the observers of every `hapbench run`, and perhaps a recorder.
+/// A simulation with the observers of every `hapbench run`, and optionally a recorder.
 struct WatchedRun {
   MetricsObserver metrics;
   PassivityObserver passivity;
@@ -130,28 +130,28 @@ struct WatchedRun {
   }
 };
 
-/// The scenario of one of kSteps. In `_revolved` the drill is a solid of revolution whose side is cut into eight lines,
-/// the same body; in `_grooved` it has grooves of 0.1 um, so that it is not convex but meets nearly the same points.
+/// Returns the scenario of one of kSteps. In `_revolved` the drill is a solid of revolution whose side is divided into
+/// eight lines, the same body. In `_grooved` it has grooves of 0.1 um, so that it is not convex but touches nearly the
+/// same points.
 Scenario scenario_of(const std::string& name, Skips skips) {
   Scenario scenario = step_scenario(name.substr(0, name.find("_revolved")).substr(0, name.find("_grooved"))).scenario;
   scenario.rendering.skips = skips;
   return scenario;
 }
 
-/// A run of one of kSteps as `hapbench run` makes it, with a recorder that keeps the numbers of trajectory.csv in
-/// memory.
+/// A run of one of kSteps as in `hapbench run`, with a recorder that keeps the numbers of trajectory.csv in memory.
 class TimedRun {
  public:
   explicit TimedRun(const std::string& name, Skips skips = Skips::on) : TimedRun(name, scenario_of(name, skips)) {}
 
-  /// Back to the state after kWarmUp steps.
+  /// Returns to the state after kWarmUp steps.
   void rewind() noexcept {
     simulation().reset();
     for (std::uint64_t k = 0; k < kWarmUp; ++k) simulation().step();
   }
-  /// The rest of the run after rewinding.
+  /// Returns the number of steps after rewinding.
   std::uint64_t steps_left() const { return steps_ - kWarmUp; }
-  /// Whether every step has been taken.
+  /// Returns true if every step has been taken.
   bool at_end() const { return run_.simulation.next_row() == steps_; }
   Simulation& simulation() { return run_.simulation; }
   const MetricsObserver& metrics() const { return run_.metrics; }
@@ -167,8 +167,8 @@ class TimedRun {
   WatchedRun run_;
 };
 
-/// Says what is wrong with the first second of the run; empty if nothing. The reference is the run without skips (brute
-/// force, everything computed); position, velocity and force of every row must be identical.
+/// Returns what is wrong with the first second of the run; empty if nothing is wrong. The reference is the run without
+/// skips (brute force, everything computed); position, velocity and force of every step must be identical.
 std::string wrong_run(const std::string& name) {
   TimedRun run(name), reference(name, Skips::off);
   for (int k = 0; k < 2048; ++k) {
@@ -201,8 +201,8 @@ void add_steps() {
   }
 }
 
-/// Runs for the latencies. All take the same steps, so the shortest time of each step excludes disturbances by the
-/// machine.
+/// Number of runs for the latencies. All runs take the same steps, so the shortest time of each step excludes
+/// disturbances by the machine.
 constexpr benchmark::IterationCount kRuns = 5;
 
 void latency(benchmark::State& state, const std::string& name) {
@@ -237,7 +237,7 @@ void add_latencies() {
 
 constexpr std::uint64_t kStepsAtATime = 64;
 
-/// The wall of a hole, 0.05 mm inside the upright drill that fills it: n points, all of them contacts, evenly
+/// Returns the wall of a hole, 0.05 mm inside the upright drill that fills it: n points, all of them contacts, evenly
 /// distributed like the seeds of a sunflower.
 std::shared_ptr<const PointShell> wall(std::size_t n, const Cylinder& tool) {
   const double radius = tool.radius() - 5e-5, turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
@@ -251,7 +251,7 @@ std::shared_ptr<const PointShell> wall(std::size_t n, const Cylinder& tool) {
   return std::make_shared<const PointShell>(points, 0.0);
 }
 
-/// The drill at rest in that hole, held by its contacts, without a hand.
+/// Returns the drill at rest in this hole, held by its contacts, without a hand.
 std::unique_ptr<WatchedRun> filled_hole(std::size_t n, Skips skips) {
   static const LoadedScenario loaded =
       load_unrecorded("round_the_wall", {"rendering.reduction=null", "hand={\"type\":\"none\"}",
@@ -259,7 +259,7 @@ std::unique_ptr<WatchedRun> filled_hole(std::size_t n, Skips skips) {
   Scenario scenario = loaded.scenario;
   scenario.rendering.skips = skips;
   SimulationConfig config = simulation_config(scenario);
-  config.steps = 1'000'000'000;  // more than are timed
+  config.steps = 1'000'000'000;  // more than the number of timed steps
   auto run = std::make_unique<WatchedRun>(
       config, assemble(scenario, NamedFiles(scenario), wall(n, make_cylinder(scenario.tool)), {}), nullptr);
   run->simulation.advance(kStepsAtATime);
@@ -284,7 +284,7 @@ void add_growth() {
   }
 }
 
-/// One force algorithm on fixed contacts.
+/// Times one force algorithm on fixed contacts.
 void rendering_benchmark(benchmark::State& state, RenderingConfig config, std::size_t contacts, Skips skips) {
   const std::size_t capacity = std::max<std::size_t>(contacts, 1);
   const auto made = [&](Skips s) {
@@ -312,7 +312,7 @@ void rendering_benchmark(benchmark::State& state, RenderingConfig config, std::s
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
-/// A query in free air, which the clearance of the list answers, while brute force compares every point.
+/// Times a query in free air. The skin of the empty neighbour list answers it, while brute force compares every point.
 void clearance_benchmark(benchmark::State& state, Skips skips) {
   const TaskScene& scene = task_scene("T1");
   const ToolPose pose{{0.0, 0.0, 0.002}, {0.0, 0.0, -1.0}};
@@ -326,7 +326,7 @@ void clearance_benchmark(benchmark::State& state, Skips skips) {
   for (auto _ : state) query->contacts_at(pose, contacts);
 }
 
-/// T3 without observers. With the skip off, ratios and energies are computed nevertheless.
+/// Times T3 without observers. With the skip off, ratios and energies are computed although no observer reads them.
 void records_benchmark(benchmark::State& state, Skips skips) {
   const Scenario& scenario = step_scenario("T3").scenario;
   const auto run = [&scenario](Skips s) {
@@ -349,7 +349,7 @@ void records_benchmark(benchmark::State& state, Skips skips) {
   }
 }
 
-/// The drill of the thesis: shaping, reduction and friction.
+/// Returns the rendering of the thesis's drill: shaping, reduction and friction.
 RenderingConfig task_rendering() {
   RenderingConfig config;
   config.reduction = ReductionConfig{};

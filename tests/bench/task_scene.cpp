@@ -10,7 +10,7 @@
 namespace hapbench::bench {
 namespace {
 
-/// The first pose and their number [steps]: T1 from its start, the others one later period of 6 s.
+/// First pose and number of poses [steps]: T1 from its start, the other tasks during one later period of 6 s.
 struct Window {
   std::uint64_t first, count;
 };
@@ -29,13 +29,13 @@ LoadedScenario load_step_scenario(const std::string& name) {
                                               "rendering.reduction=null"});
   }
   if (name == "upright" || name == "upright_proxy") {
-    // The first 10 s of the first trial, with points shared by cells, where the proxy needs most passes.
+    // The first 10 s of the first trial, with points shared by cells; here the proxy needs most passes.
     std::vector<std::string> overrides = {"environment.vertices=shared", "time.duration_s=10"};
     if (name == "upright_proxy") overrides.emplace_back("rendering.algorithm=proxy");
     return load_unrecorded("vertical_peg_in_hole_shaped_stiffness", std::move(overrides));
   }
   if (name == "pressed_ideal" || name == "pressed_impedance") {
-    // Soft enough that both rest on the same points.
+    // Soft enough that both devices rest on the same points.
     const char* device =
         name == "pressed_ideal"
             ? R"(device={"type":"ideal"})"
@@ -81,7 +81,7 @@ TaskScene make_task_scene(const std::string& task) {
 }  // namespace
 
 LoadedScenario load_unrecorded(const char* bundled, std::vector<std::string> overrides) {
-  // Records take time, so only the summary is kept.
+  // Records take time, so only the summary is written.
   for (const char* off : {"record.trajectory=false", "record.ratio_iterations=[]", "record.ideal_trajectory=false"}) {
     overrides.emplace_back(off);
   }

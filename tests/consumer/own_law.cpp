@@ -1,5 +1,5 @@
-// Runs a bundled scenario with a force law of its own: own_law [SCENARIO]. The law is `mean` written again, so that who
-// reads the state hash can tell that the numbers are hapbench's to the last bit.
+// Runs a bundled scenario with a user-defined force law: own_law [SCENARIO]. The law is a copy of `mean`, so that the
+// state hash shows whether the numbers equal hapbench's numbers to the last bit.
 #include <algorithms/laws/force_law.hpp>
 #include <algorithms/penalty_rendering.hpp>
 #include <cinttypes>

@@ -16,7 +16,7 @@
 namespace hapbench::devices_test {
 namespace {
 
-// The parts of an impedance device, and the device in the loop of the simulation, compared with recurrences.
+// Compares the parts of an impedance device, and the device in the loop of the simulation, with recurrences.
 
 constexpr double kT = 0.001, kMass = 0.1;
 
@@ -40,7 +40,7 @@ TEST(ForcePath, SaturatesTheNormAfterRounding) {
 }
 
 TEST(ForcePath, LimitsTheChangeOfTheForce) {
-  ForcePath path({.force_slew = 1000.0}, kT);  // 1 N a period
+  ForcePath path({.force_slew = 1000.0}, kT);  // 1 N per period
   EXPECT_EQ(path.hold({3.0, 0.0, 0.0}).after, Vec3(1, 0, 0)) << "from zero";
   EXPECT_EQ(path.hold({3.0, 0.0, 0.0}).after, Vec3(2, 0, 0));
   EXPECT_EQ(path.hold({2.5, 0.0, 0.0}).after, Vec3(2.5, 0, 0));
@@ -55,7 +55,7 @@ TEST(ForcePath, DelaysByWholeAndFractionalPeriods) {
     EXPECT_EQ(path.switch_fraction(), delay - std::floor(delay));
     for (int round = 0; round < 2; ++round) {
       for (int k = 0; k < 10; ++k) {
-        // Force k + 1 acts from k + delay on. Before the first one the force is zero.
+        // Force k + 1 acts from k + delay on. Before the first force, the motors' force is zero.
         const HeldForce held = path.hold({k + 1.0, 0, 0});
         EXPECT_EQ(held.after.x(), std::max(0.0, k + 1.0 - std::floor(delay))) << delay;
         EXPECT_EQ(held.before.x(), std::max(0.0, k - std::floor(delay))) << delay;
@@ -72,9 +72,9 @@ TEST(VelocityFilter, DifferenceIsThatOfTheLastTwoSamples) {
   EXPECT_EQ(filter.read({1.5, 1, 0}), Vec3(0, 0, 0));
 }
 
-/// With w = 2 pi f, the continuous Butterworth low-passes answer a step of the velocity from 0 to 1, and the sampled
-/// ones as they do, by 1 - e^(-w t), 1 - sqrt(2) e^(-w t / sqrt 2) sin(w t / sqrt 2 + pi / 4) and 1 - e^(-w t) - (2 /
-/// sqrt 3) e^(-w t / 2) sin(sqrt 3 w t / 2).
+/// With w = 2 pi f, the step responses of the continuous Butterworth low-passes are 1 - e^(-w t), 1 - sqrt(2) e^(-w t /
+/// sqrt 2) sin(w t / sqrt 2 + pi / 4) and 1 - e^(-w t) - (2 / sqrt 3) e^(-w t / 2) sin(sqrt 3 w t / 2). The sampled
+/// filters have the same response to a step of the velocity from 0 to 1.
 TEST(VelocityFilter, LowPassesAnswerAStepLikeTheContinuousOnes) {
   constexpr double w = 2.0 * std::numbers::pi * 20.0;
   VelocityFilter first(LowPassFilter{20.0}, kT), second(LowPassFilter{20.0, 2}, kT), third(LowPassFilter{20.0, 3}, kT);
@@ -89,8 +89,8 @@ TEST(VelocityFilter, LowPassesAnswerAStepLikeTheContinuousOnes) {
   }
 }
 
-/// Of a slow sine the sampled filter makes what |H|^2 = 1 / (1 + (f / f_c)^(2 n)) says, but for the share of the sine
-/// that holding it over a period loses, below (pi f T)^2.
+/// For a slow sine, the power after the sampled filter is |H|^2 = 1 / (1 + (f / f_c)^(2 n)), up to the fraction of the
+/// sine that holding it over a period loses, below (pi f T)^2.
 TEST(SampledLowPass, HasHalfThePowerAtItsCutOffWhateverItsOrder) {
   for (std::size_t order = 1; order <= LowPassFilter::kMaxOrder; ++order) {
     for (const double f : {2.0, 4.0, 6.0}) {
@@ -102,7 +102,7 @@ TEST(SampledLowPass, HasHalfThePowerAtItsCutOffWhateverItsOrder) {
     }
     SampledLowPass filter({4.0, order}, kT);
     filter.settle_at({1, 2, 3});
-    // The shares of high orders are tens of times the input.
+    // The modes of high orders are tens of times larger than the input.
     EXPECT_NEAR((filter.filter({1, 2, 3}) - Vec3(1, 2, 3)).norm(), 0.0, 1e-12) << order;
   }
 }
@@ -128,13 +128,14 @@ TEST(ImpedanceDevice, ItsNoiseIsThatOfTheSeedAndGaussian) {
   EXPECT_NE(readings(config), x);
   double squares = 0.0, beyond = 0.0;
   for (const double value : x) squares += value * value, beyond += std::abs(value) > 2e-6 ? 1.0 : 0.0;
-  // Four standard errors of 20 000 values: 2 % of the deviation, 1.3 % of the 31.7 % beyond one.
+  // Four standard errors of 20 000 values: 2 % of the standard deviation, and 1.3 % of the fraction beyond one standard
+  // deviation, 31.7 %.
   EXPECT_NEAR(std::sqrt(squares / 20'000) / 2e-6, 1.0, 0.02);
   EXPECT_NEAR(beyond / 20'000, 0.3173, 0.0132);
 }
 
-/// The definition, on all samples at once: the longest window, grown from 1, all samples of which are within the noise
-/// of the line through its ends.
+/// Computes the definition on all samples at once: the longest window, grown from 1, in which all samples differ from
+/// the line through its ends by at most the noise.
 double longest_line(const std::vector<double>& x, double noise) {
   const std::size_t k = x.size() - 1;
   double slope = 0.0;
@@ -192,7 +193,7 @@ TEST(DevicePresets, HaveNamesOfTheirOwnAndPossibleNumbers) {
   EXPECT_EQ(find_device_preset("Touch"), nullptr);
 }
 
-/// The rows of a run in which the device renders `law` of the tool and a hand pushes with `push` along x.
+/// Returns the steps of a run in which the device renders `law` of the tool and a hand pushes with `push` along x.
 std::vector<StepRecord> rows_of(const ImpedanceDeviceConfig& config, test::FakeAlgorithm::Law law, std::uint64_t steps,
                                 const Vec3& start, const Vec3& velocity = Vec3::Zero(), double push = 0.0) {
   SimulationParts parts = test::fake_parts(std::move(law));
@@ -201,7 +202,7 @@ std::vector<StepRecord> rows_of(const ImpedanceDeviceConfig& config, test::FakeA
   SimulationConfig run;
   run.dt = kT;
   run.steps = steps;
-  run.mass = 1e9;  // must not matter
+  run.mass = 1e9;  // must not affect the result
   run.position = start;
   run.velocity = velocity;
   test::Recorder recorder;
@@ -209,7 +210,7 @@ std::vector<StepRecord> rows_of(const ImpedanceDeviceConfig& config, test::FakeA
   return recorder.rows;
 }
 
-/// A wall that pushes along +x at x < 0.
+/// Returns the law of a wall that pushes along +x at x < 0.
 test::FakeAlgorithm::Law wall(double K, double B) {
   return [=](const ToolState& t) {
     const double x = t.pose.position.x();
@@ -263,7 +264,7 @@ TEST(ImpedanceDevice, SaturatedMotorsYield) {
     config.viscous = 5.0;
     config.force_max = 3.0;
     const auto rows = rows_of(config, wall(1000.0, 5.0), 4000, Vec3::Zero(), Vec3::Zero(), push);
-    // Beyond the saturation, 0.1 N moves it against the friction at 0.02 m/s for four seconds.
+    // Beyond the saturation, 0.1 N moves the handle against the friction at 0.02 m/s for four seconds.
     EXPECT_EQ(rows.back().handle.position.x() < -0.05, push < -3.0);
   }
 }
@@ -299,7 +300,7 @@ TEST(ImpedanceDevice, AResetRepeatsEverythingBitForBit) {
   }
 }
 
-// The admittance device and its parts; AdmittanceLoop compares it with a linear map.
+// Tests the admittance device and its parts; AdmittanceLoop compares the device with a linear map.
 
 constexpr double kStep = 1.0 / 2048;
 
@@ -328,7 +329,7 @@ TEST(ForceSensor, NoiseHasTheGivenDeviationInEveryComponentAndNoMean) {
     squares += e.cwiseAbs2();
     products += Vec3(e.x() * e.y(), e.y() * e.z(), e.z() * e.x());
   }
-  // Five standard errors: 1 / sqrt(n) of the mean and of a product, sqrt(2 / n) of the square.
+  // Five standard errors: 1 / sqrt(n) for the mean and for a product, sqrt(2 / n) for the square.
   const double error = 5.0 / std::sqrt(kSamples);
   EXPECT_LE((sum / kSamples).cwiseAbs().maxCoeff(), error);
   EXPECT_LE((products / kSamples).cwiseAbs().maxCoeff(), error);
@@ -366,7 +367,7 @@ TEST(HandleMechanics, TheStructureSwingsAtItsFrequency) {
   config.friction = config.structure_damping = 0.0;
   HandleMechanics mechanics(config);
   mechanics.reset({});
-  // An impulse sets handle and carriage swinging against each other.
+  // An impulse makes handle and carriage oscillate against each other.
   constexpr double kFine = 1e-6;
   mechanics.advance({1000, 0, 0}, {0, 0, 0}, kFine);
   const auto stretch = [&] { return mechanics.handle().position.x() - mechanics.carriage().position.x(); };
@@ -379,7 +380,8 @@ TEST(HandleMechanics, TheStructureSwingsAtItsFrequency) {
   }
   const double reduced = 1.0 / (1.0 / config.carriage_mass + 1.0 / config.handle_mass);
   const double period = 2.0 * std::numbers::pi * std::sqrt(reduced / config.structure_stiffness);
-  // The midpoint rule stretches a period by (omega dt)^2 / 12 = 3e-7 of it; the interpolation errs less.
+  // The midpoint rule lengthens a period by (omega dt)^2 / 12 = 3e-7 of the period; the error of the interpolation is
+  // smaller.
   EXPECT_NEAR(crossings[2] - crossings[1], period, 1e-6 * period);
 }
 
@@ -399,7 +401,7 @@ TEST(HandleMechanics, KeepsItsEnergyBalanceToRounding) {
       mechanics.advance(5.0 * random.direction(), 30.0 * random.direction(), kStep);
       const DeviceEnergy e = mechanics.energy();
       turnover = std::max({turnover, std::abs(e.hand), std::abs(e.actuator), -e.dissipated, std::abs(e.stored)});
-      // Each step rounds sums of the size of the turnover, and of the elastic energy hidden in it: 1e-16 a step.
+      // Each step rounds sums of the size of the exchanged energy, which includes elastic energy: 1e-16 per step.
       ASSERT_NEAR(e.stored, e.hand + e.actuator + e.dissipated, 1e-12 * (turnover + 1.0));
       ASSERT_LE(e.dissipated, 0.0);
     }
@@ -437,7 +439,7 @@ TEST(AdmittanceDevice, AHandStrongerThanTheActuatorsMovesTheHandle) {
     AdmittanceDevice device({});
     device.reset({});
     for (int i = 0; i < 8192; ++i) device.advance({}, {0, 0, -push}, kStep);
-    // Four seconds of 1 N beyond the 30 N against 2 N s/m of friction: metres.
+    // Four seconds with a force of 1 N beyond the 30 N, against a friction of 2 N s/m: the handle moves by metres.
     EXPECT_EQ(device.handle().position.z() < -0.5, push > 30.0);
   }
 }

@@ -13,11 +13,11 @@
 namespace hapbench::handle_motion_test {
 namespace {
 
-// Motors and handle on an elastic transmission, compared with closed forms and an independent integrator.
+// Compares motors and handle on an elastic transmission with closed forms and an independent integrator.
 
 constexpr double kT = 0.001;
 
-/// 0.06 kg of motors and 0.04 kg of handle.
+/// Returns a device with 0.06 kg of motors and a 0.04 kg handle.
 ImpedanceDeviceConfig elastic_device(double stiffness, double damping) {
   ImpedanceDeviceConfig config;
   config.handle_mass = 0.1;
@@ -29,8 +29,8 @@ ElasticMotion motion_of(const ImpedanceDeviceConfig& config, const AttachedHand&
   return {config, *config.transmission, hand};
 }
 
-/// Undamped, the centre of mass moves as a body of 0.1 kg, and the stretch s = x_m - x_h swings about f / (m_m w^2)
-/// with w^2 = k (1 / m_m + 1 / m_h).
+/// Without damping, the centre of mass moves like a body of 0.1 kg, and the stretch s = x_m - x_h oscillates about f /
+/// (m_m w^2) with w^2 = k (1 / m_m + 1 / m_h).
 TEST(ElasticMotion, SwingsAsTheNormalModesDo) {
   constexpr double k = 5000.0, f = 2.0, v0 = 0.3;
   const double w = std::sqrt(k * (1.0 / 0.06 + 1.0 / 0.04)), rest = f / (0.06 * w * w);
@@ -40,15 +40,15 @@ TEST(ElasticMotion, SwingsAsTheNormalModesDo) {
     motion.reset({{1.0, 0, 0}, {v0, 0, 0}});
     motion.advance({f, 0, 0}, stretch);
     const double centre = 1.0 + v0 * time + 0.5 * f / 0.1 * time * time, s = rest * (1.0 - std::cos(w * time));
-    // Doubling a piece of a quarter radian n times multiplies its rounding by 2^n = 4 w t.
+    // Doubling an interval of a quarter radian n times multiplies its rounding error by 2^n = 4 w t.
     EXPECT_NEAR(motion.motor().position.x(), centre + 0.4 * s, 1e-14) << time;
     EXPECT_NEAR(motion.handle().position.x(), centre - 0.6 * s, 1e-14) << time;
     EXPECT_NEAR(motion.motor().velocity.x() - motion.handle().velocity.x(), rest * w * std::sin(w * time), 1e-13);
   }
 }
 
-/// A push F on a handle of 0.04 kg at motors that stick loads the spring with F (1 - cos(w t)), w^2 = k / m_h, and
-/// breaks them loose where that is c.
+/// A push F on a handle of 0.04 kg, with motors that stick, loads the spring with F (1 - cos(w t)), w^2 = k / m_h. The
+/// motors start to move when this force reaches c.
 TEST(ElasticMotion, StickingMotorsBreakLooseWhereTheClosedFormSays) {
   constexpr double k = 4000.0, kPush = 0.5, c = 0.7;
   ImpedanceDeviceConfig config = elastic_device(k, 0.0);
@@ -66,7 +66,8 @@ TEST(ElasticMotion, StickingMotorsBreakLooseWhereTheClosedFormSays) {
       EXPECT_NEAR(motion.handle().position.x(), swung + speed * after, 1e-15);
       continue;
     }
-    // From then on the spring's force grows as k speed t: v_m = k speed t^2 / (2 m_m), less (w t)^2 / 12 of it.
+    // From then on, the spring's force grows as k speed t: v_m = k speed t^2 / (2 m_m), with a relative error of (w
+    // t)^2 / 12.
     const double v = 0.5 * k * speed * after * after / 0.06;
     EXPECT_NEAR(motion.motor().velocity.x(), v, (after < 1e-6 ? 1e-3 : 0.02) * v) << after;
   }
@@ -76,7 +77,8 @@ struct Rates {
   double v_m, a_m, v_h, a_h;
 };
 
-/// Motors and handle by the classical Runge-Kutta rule with steps of `h`; a stop or a start falls on a step.
+/// Simulates motors and handle by the classical Runge-Kutta method with steps of `h`; stops and starts are rounded to
+/// whole steps.
 struct FineRun {
   ImpedanceDeviceConfig device;
   AttachedHand hand;
@@ -110,7 +112,7 @@ struct FineRun {
   }
 };
 
-/// Random forces stop the motors and break them loose some fifty times.
+/// Random forces stop the motors and start them again some fifty times.
 TEST(ElasticMotion, WithDryFrictionFollowsAnIndependentIntegrator) {
   ImpedanceDeviceConfig config = elastic_device(3000.0, 0.8);
   config.viscous = 0.5;
@@ -135,9 +137,9 @@ TEST(ElasticMotion, WithDryFrictionFollowsAnIndependentIntegrator) {
     EXPECT_GT(std::abs(fine.x_h), 1e-4);
     return worst;
   };
-  // The reference stops and starts up to h late. With 30 m/s^2 that is a speed of 30 h, which lasts for some 10 ms:
-  // 3e-7 m for 1e-6 s, from a few stops at a time. It is first order in h, so ten times finer steps come closer
-  // accordingly.
+  // In the reference, stops and starts are up to h late. With 30 m/s^2 this changes the speed by 30 h for some 10 ms:
+  // 3e-7 m for h = 1e-6 s, for a few stops at a time. The error is of first order in h, so steps that are ten times
+  // finer reduce it by a factor of ten.
   const double coarse = largest_error(1e-6), fine = largest_error(1e-7);
   EXPECT_LT(coarse, 1e-6);
   EXPECT_LT(fine, 0.3 * coarse);
@@ -167,7 +169,7 @@ TEST(ElasticMotion, KeepsItsEnergyBalance) {
 
 using Complex = std::complex<long double>;
 
-/// Position and velocity by the two exponentials, in complex long doubles.
+/// Computes position and velocity from the two exponentials, in complex long doubles.
 struct Reference {
   MotionLaw law;
 
@@ -197,7 +199,7 @@ TEST(FreeMotion, IsTheSumOfTwoExponentials) {
     const Reference reference{law};
     for (const double t : {1e-4, 1e-3, 0.01, 0.3}) {
       const FreeMotion m = free_motion(law, t);
-      // The long double reference loses digits if the exponents are close.
+      // The long double reference loses digits if the exponents are nearly equal.
       const double rate = 1.0 + law.damping + std::sqrt(law.stiffness);
       EXPECT_NEAR(m.S, static_cast<double>(reference.position(1, 0, t)), 1e-13 * t) << law.damping << " " << t;
       EXPECT_NEAR(m.V, static_cast<double>(reference.velocity(1, 0, t)), 1e-13 * (1 + rate * t)) << t;
@@ -214,7 +216,7 @@ TEST(FreeMotion, WithoutASpringIsTheOneOfAFrictionalMass) {
       const double S = -std::expm1(-k * t) / k;
       EXPECT_NEAR(m.S, S, 1e-14 * t + 1e-13 * S);
       EXPECT_NEAR(m.V, std::exp(-k * t), 1e-13);
-      // (t - S) / k, or its series where the difference cancels.
+      // (t - S) / k, or its series if the difference cancels.
       const double z = k * t, P = z < 1e-4 ? t * t * (0.5 - z / 6.0 + z * z / 24.0) : (t - S) / k;
       EXPECT_NEAR(m.P, P, (z < 1e-4 ? 1e-14 : 1e-12) * P / std::min(1.0, z < 1e-4 ? 1.0 : z));
     }
@@ -255,7 +257,7 @@ TEST(FreeMotion, StaysFiniteAndAtRestWhereEverythingIsOver) {
 
 TEST(TimeOfRest, IsWhereTheVelocityIsZeroForTheFirstTime) {
   std::vector<MotionLaw> laws(std::begin(kSwings), std::end(kSwings));
-  laws.insert(laws.end(), {{}, {1e-7, 0.0}, {20.0, 0.0}, {20.0, 100.0}});  // the last one critical
+  laws.insert(laws.end(), {{}, {1e-7, 0.0}, {20.0, 0.0}, {20.0, 100.0}});  // the last law is critically damped
   for (const MotionLaw& law : laws) {
     for (const auto& [v, g] : {std::pair{0.1, -3.0}, {-0.1, 3.0}, {1e-9, -3.0}, {0.1, 3.0}, {-2.0, 0.3}}) {
       const double t = time_to_stop(law, v, g);
@@ -286,7 +288,7 @@ ImpedanceDeviceConfig handle_of(double viscous, double coulomb) {
   return config;
 }
 
-/// A handle that starts with this velocity at the origin, with a hand that exerts no force.
+/// Returns a handle that starts with this velocity at the origin, with a hand that exerts no force.
 HandleMotion started(const ImpedanceDeviceConfig& config, const Vec3& velocity, const AttachedHand& hand = {}) {
   HandleMotion motion(config, hand);
   motion.reset({Vec3::Zero(), velocity});
@@ -322,8 +324,8 @@ TEST(HandleMotion, SticksUpToTheFrictionAndBreaksAwayBeyond) {
   EXPECT_EQ(motion.handle().position.z(), 0.0);
 }
 
-/// A mass on a spring with dry friction loses an amplitude of 2 c / k in each half period and stops where the spring is
-/// weaker than the friction. One call covers the whole motion.
+/// A mass on a spring with dry friction loses an amplitude of 2 c / k in each half period, and stops where the spring
+/// force is smaller than the friction. One call covers the whole motion.
 TEST(HandleMotion, SwingsOutUnderAHandWithASpring) {
   constexpr double k = 100.0, kStart = 0.0987;
   HandleMotion motion(handle_of(0.0, kCoulomb), {0.1, k, 0.0});
@@ -341,7 +343,7 @@ TEST(HandleMotion, SwingsOutUnderAHandWithASpring) {
   EXPECT_EQ(motion.handle().position.y(), 0.0);
 }
 
-/// A handle that sticks stays at rest although the spring of the hand pushes it.
+/// A sticking handle stays at rest although the spring of the hand pushes it.
 TEST(HandleMotion, DoesNotChatter) {
   HandleMotion motion = started(handle_of(0.3, kCoulomb), {kSpeed, 0, 0}, {0.1, 300.0, 6.0});
   bool stuck = false;
@@ -378,12 +380,12 @@ TEST(HandleMotion, KeepsItsEnergyBalanceToRounding) {
   }
 }
 
-/// Compared with path and speed, which the energy balance does not use.
+/// The comparison uses path length and speed, which the energy balance does not use.
 TEST(HandleMotion, DissipatesByItsFrictionAlone) {
   constexpr double b = 2.0;
   HandleMotion motion = started(handle_of(b, kCoulomb), {kSpeed, 0, 0});
   double viscous = 0.0, path = 0.0, speed = kSpeed;
-  for (int i = 0; i < 20000; ++i) {  // halfway, a force reverses it
+  for (int i = 0; i < 20000; ++i) {  // half-way, a force reverses the motion
     const double before = motion.handle().position.x();
     advance(motion, {i < 10000 ? 0.0 : -1.0, 0, 0}, 1e-5);
     const double way = motion.handle().position.x() - before, mean = 0.5 * (speed + motion.handle().velocity.x());

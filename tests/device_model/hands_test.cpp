@@ -14,7 +14,7 @@
 namespace hapbench::hands_test {
 namespace {
 
-/// The numbers of a HandView, which only refers to them.
+/// Owns the numbers to which a HandView refers.
 struct Seen {
   HandleState handle;
   ToolPose tool;
@@ -40,8 +40,8 @@ TEST(ImpedanceHand, IsASpringAndADamperFromTargetToHandle) {
   EXPECT_EQ(hand.force(3.0, seen), Vec3(100 * 6 + 10 * 0, 0, 100 * 1 - 10 * 3));
 }
 
-/// Over ten minutes the mean square of eight tones is that of their amplitudes to 1 %: what beats does so faster than
-/// once in ten seconds or stays below that share.
+/// Over ten minutes, the mean square of eight tones equals the sum of the mean squares of the tones to 1 %: beats are
+/// faster than one in ten seconds or contribute less than this.
 TEST(Tremor, HasItsStandardDeviationInItsBandAlone) {
   const Tremor tremor({{20e-6, 0.0, 5e-6}, 8.0, 12.0}, 3);
   constexpr double kStep = 0.005;
@@ -55,7 +55,7 @@ TEST(Tremor, HasItsStandardDeviationInItsBandAlone) {
     EXPECT_EQ(x.y(), 0.0);
   }
   EXPECT_NEAR(std::sqrt(squares / count), 20e-6, 0.2e-6);
-  const double rate = std::sqrt(speeds / squares) / (2.0 * std::numbers::pi);  // its rms frequency
+  const double rate = std::sqrt(speeds / squares) / (2.0 * std::numbers::pi);  // rms frequency [Hz]
   EXPECT_GT(rate, 8.0);
   EXPECT_LT(rate, 12.0);
   EXPECT_NEAR(turns / 600.0 / 2.0, rate, 0.5);
@@ -68,7 +68,7 @@ TEST(Tremor, MovesTheTargetOfAHandAsItsSeedSays) {
   const double t = 0.37, h = 1e-6;
   const auto [x, v] = tremor.at(t);
   EXPECT_LE((shaky.force(t, Seen{}) - still.force(t, Seen{}) - 100.0 * x - 10.0 * v).norm(), 1e-15);
-  // The difference errs by the third derivative, 43 m/s^3, times h^2 / 6, and by rounding over h.
+  // The error of the difference is the third derivative, 43 m/s^3, times h^2 / 6, plus rounding divided by h.
   EXPECT_LE(((tremor.at(t + h).position - tremor.at(t - h).position) / (2.0 * h) - v).norm(), 1e-10);
   EXPECT_EQ(Tremor(config, 1).at(t).position, x);
   EXPECT_NE(Tremor(config, 2).at(t).position, x);
@@ -76,7 +76,7 @@ TEST(Tremor, MovesTheTargetOfAHandAsItsSeedSays) {
 
 constexpr double kSmoothing = 0.0005;
 
-/// Points spread evenly over a sphere about the origin, on a spiral of golden angles.
+/// Returns points distributed evenly over a sphere around the origin, on a spiral of golden angles.
 std::vector<SurfacePoint> sphere(double radius, int count) {
   std::vector<SurfacePoint> points;
   for (int i = 0; i < count; ++i) {
@@ -95,7 +95,7 @@ TEST(SmoothedSurface, OfAPlaneIsThePlane) {
   for (int i = 0; i < 100; ++i) {
     const Vec3 at = 0.002 * random.direction();
     const SurfacePoint place = surface.nearest(at);
-    // All points have z = 0 and one normal, so the averages are exact but for the division of equal sums.
+    // All points have z = 0 and equal normals, so the averages are exact up to the division of equal sums.
     EXPECT_LT((place.normal - Vec3(0, 0, 1)).norm(), 1e-15);
     EXPECT_LT((place.position - Vec3(at.x(), at.y(), 0)).norm(), 1e-18) << at.transpose();
   }
@@ -109,8 +109,8 @@ TEST(SmoothedSurface, OfASphereFollowsIt) {
   for (int i = 0; i < 200; ++i) {
     const Vec3 radial = random.direction();
     const SurfacePoint place = surface.nearest((kRadius + 0.001 * random.uniform()) * radial);
-    // Neighbours lie within R of a place near the sphere, so no normal among them, and no mean of them, is further
-    // off than the angle 2 asin(R / 2r); and their centre is no deeper than the sagitta of R.
+    // Neighbours lie within R of a position near the sphere. Therefore no normal among them, and no mean of the
+    // normals, differs by more than the angle 2 asin(R / 2r), and their centre is no deeper than the sagitta of R.
     EXPECT_LT(std::acos(std::min(1.0, place.normal.dot(radial))), 2.0 * std::asin(kSmoothing / (2.0 * kRadius)));
     EXPECT_NEAR(place.position.norm(), kRadius, kSmoothing * kSmoothing / (2.0 * kRadius));
   }
@@ -130,7 +130,7 @@ TEST(SmoothedSurface, EndsWithTheShell) {
   const PointShell shell(surface_points(Plane{0.004, 0.0001}), 0.0001);
   const SmoothedSurface surface(shell, kSmoothing);
   EXPECT_LT((surface.nearest({0.9, 0, 0.3}).position - Vec3(0.002, 0, 0)).norm(), 1e-15);
-  // Within the radius the last points are the plane's neighbours still.
+  // Within the radius, the last points are still the neighbours of the plane.
   EXPECT_LT((surface.nearest({0.0024, 0, 0.0001}).position - Vec3(0.0024, 0, 0)).norm(), 1e-15);
 }
 
@@ -167,7 +167,7 @@ TEST_F(DragOnPlane, DirectionTurnsSteadilyAroundACorner) {
 
 TEST_F(DragOnPlane, PathAlongADirectionEndsAtTheEdge) {
   const auto path = along({0.001, 0, 0.002}, {2, 0, -5}, 1.0);
-  // Places beyond the last points are still in their plane as long as some point is within the smoothing radius.
+  // Positions beyond the last points are still in their plane, as long as a point is within the smoothing radius.
   EXPECT_GT(path->length(), 0.001 - 1e-12);
   EXPECT_LT(path->length(), 0.001 + kSmoothing);
   EXPECT_NEAR(path->at(0.0005).position.x(), 0.0015, 1e-12);
@@ -176,7 +176,8 @@ TEST_F(DragOnPlane, PathAlongADirectionEndsAtTheEdge) {
 }
 
 TEST(SurfacePath, AlongADirectionStartsFromFarAboveARoughSurface) {
-  // Waves of 0.1 mm, shorter than the smoothing radius: seen from 2 mm above, the first place lies off the surface.
+  // Waves of 0.1 mm, shorter than the smoothing radius: projected from 2 mm above, the first position lies off the
+  // surface.
   constexpr double kWave = 2.0 * std::numbers::pi / 0.0003, kHeight = 0.0001;
   std::vector<SurfacePoint> points;
   for (int i = -40; i <= 40; ++i) {
@@ -200,7 +201,7 @@ TEST_F(DragOnPlane, PushesAlongTheNormalAndPullsWithinTheSurface) {
   // At t = 0.05 s the moving point is at x = -0.5 mm.
   const Vec3 expected(100.0 * -0.0001 + 10.0 * (0.01 - 0.003), 100.0 * -0.0002 + 10.0 * 0.001, -2.0 + 50.0 * 0.02);
   EXPECT_LT((hand.force(0.05, Seen{{x, v}, {}, {}}) - expected).norm(), 1e-12);
-  // Once the path is at its end, the point rests.
+  // When the moving point has reached the end of the path, it rests.
   EXPECT_LT((hand.force(1.0, Seen{{{0.001, 0, 0.0005}, {0, 0, 0}}, {}, {}}) - Vec3(0, 0, -2)).norm(), 1e-12);
 }
 
@@ -211,7 +212,7 @@ TEST_F(DragOnPlane, AxisLeansFromTheNormalTowardsTheTravel) {
   };
   EXPECT_LT((axis(0.0, 0.0) - Vec3(0, 0, -1)).norm(), 1e-12);
   EXPECT_LT((axis(0.3, 0.0) - Vec3(-std::sin(0.3), 0, -std::cos(0.3))).norm(), 1e-12);
-  // A quarter turn about the normal, right-handed: to the left of the travel.
+  // A quarter turn about the normal, right-handed: to the left of the direction of travel.
   EXPECT_LT((axis(0.3, std::acos(0.0)) - Vec3(0, -std::sin(0.3), -std::cos(0.3))).norm(), 1e-12);
 }
 
@@ -234,7 +235,7 @@ TargetTask one_target(TargetDisplay display, const Vec3& place) {
 TEST(TrackingHand, DoesNothingBeforeTheReactionDelay) {
   const Subject subject = calm();
   TrackingHand hand(subject, one_target(TargetDisplay::panel, {0.01, 0, 0}), 0.0, kStep, 1);
-  const Seen view{{}, {}, {0, 0, subject.press}};  // nothing to correct in z
+  const Seen view{{}, {}, {0, 0, subject.press}};  // no correction needed in z
   const int delay = static_cast<int>(std::lround(subject.reaction_delay / kStep));
   double first_force = -1.0;
   for (int i = 0; i <= delay; ++i) {
@@ -277,7 +278,7 @@ TEST(TrackingHand, ReadsTheSpringForceFromAGaugeAndTheRenderedForceWithoutOne) {
   TargetRules rules;
   rules.places = {Vec3(0, 0, 0)};
   for (const bool has_gauge : {false, true}) {
-    if (has_gauge) rules.gauge = Gauge{1e6, 0.1};  // too fast to filter anything
+    if (has_gauge) rules.gauge = Gauge{1e6, 0.1};  // so fast that it filters nothing
     TrackingHand hand(calm(), TargetTask(rules, 1), 0.0, kStep, 1);
     hand.force(0.0, view);
     EXPECT_EQ(hand.task()->reading(), has_gauge ? 2.0 : 3.0);
@@ -300,7 +301,7 @@ TEST(TrackingHand, TurnsTheToolOnlyWithTheHeightDisplay) {
 
 TEST(TrackingHand, NoiseHasTheGivenDeviationAndBandwidth) {
   Subject subject;
-  subject.bandwidth = subject.press_bandwidth = 0.0;  // no motion but noise
+  subject.bandwidth = subject.press_bandwidth = 0.0;  // no motion except noise
   subject.motor_noise = 0.5;
   subject.noise_bandwidth = 8.0;
   TargetRules rules;
@@ -316,7 +317,8 @@ TEST(TrackingHand, NoiseHasTheGivenDeviationAndBandwidth) {
     last = x;
   }
   const double memory = std::exp(-2.0 * std::numbers::pi * subject.noise_bandwidth * kStep);
-  // A sum of correlated samples is as good as n (1 - a^2) / (1 + a^2) independent ones. Five standard errors.
+  // A sum of correlated samples is as accurate as a sum of n (1 - a^2) / (1 + a^2) independent samples. Five standard
+  // errors.
   const double independent = kSamples * (1.0 - memory * memory) / (1.0 + memory * memory);
   EXPECT_NEAR(squares / kSamples / 0.25, 1.0, 5.0 * std::sqrt(2.0 / independent));
   // 1 - products / squares estimates 1 - a with relative error about sqrt(2 / (n (1 - a))).

@@ -17,14 +17,14 @@
 namespace hapbench::linear_loops_test {
 namespace {
 
-/// An undamped handle of 0.1 kg.
+/// Returns the loop of an undamped handle of 0.1 kg.
 SampledLoop light_loop() {
   SampledLoop loop;
   loop.device.handle_mass = 0.1;
   return loop;
 }
 
-/// An undamped handle of 1 kg and a period of 1 s: K is alpha = K T^2/m and B is beta = B T/m.
+/// Returns the loop of an undamped handle of 1 kg with a period of 1 s: K is alpha = K T^2/m and B is beta = B T/m.
 SampledLoop unit_loop(double delay, double beta) {
   SampledLoop loop;
   loop.device.handle_mass = loop.period = 1.0;
@@ -33,7 +33,8 @@ SampledLoop unit_loop(double delay, double beta) {
   return loop;
 }
 
-/// The largest value over beta, found between 0 and 2 by the golden section; the edge rises and falls once.
+/// Returns the largest limit over beta, found between 0 and 2 by golden-section search; the limit first increases and
+/// then decreases.
 template <class Edge>
 double best_over_damping(Edge edge) {
   const double ratio = std::numbers::phi - 1.0;
@@ -46,7 +47,7 @@ double best_over_damping(Edge edge) {
 }
 
 TEST(SampledLoop, RendersAtMostTheseStiffnessesOnAnUndampedHandle) {
-  // Rounded to these digits. Half a sample more or less of delay would give other numbers.
+  // The published values are rounded to these digits. A delay that differs by half a sample would give other numbers.
   const double published[] = {0.6863, 0.1445, 0.0624, 0.0348};
   for (const int d : {0, 1, 2, 3}) {
     const double largest = best_over_damping([d](double beta) { return linear_stability_limit(unit_loop(d, beta)); });
@@ -73,9 +74,9 @@ TEST(SampledLoop, OfAHandWithASpringMovesAsTheClosedFormHasIt) {
   EXPECT_NEAR(A(0, 1) * T, decay * std::sin(wd * T) / wd, 1e-15 * T);
 }
 
-/// The smallest K with an eigenvalue on the unit circle, by the frequency response. The wall enters the state matrix as
-/// K times a matrix of rank one, u v^T, so an eigenvalue e^(j theta) needs K v^T (e^(j theta) I - A_0)^(-1) u = 1 with
-/// a real positive K.
+/// Returns the smallest K with an eigenvalue on the unit circle, by the frequency response. The wall enters the state
+/// matrix as K times a matrix of rank one, u v^T, so an eigenvalue e^(j theta) requires K v^T (e^(j theta) I -
+/// A_0)^(-1) u = 1 with a real positive K.
 double first_crossing(SampledLoop loop) {
   loop.stiffness = 0.0;
   const Eigen::MatrixXd A = loop.state_matrix();
@@ -120,12 +121,12 @@ TEST(SampledLoop, HasNoCrossingBelowItsEdge) {
     if (i % 4 == 1) loop.device.position_filter = LowPassFilter{0.3, 2};
     const double edge = linear_stability_limit(loop);
     ASSERT_GT(edge, 0.0);
-    // The sweep cannot see a crossing at pi, but none of these loops has its first crossing there.
+    // The sweep cannot find a crossing at pi, but no loop here has its first crossing at pi.
     EXPECT_NEAR(first_crossing(loop), edge, 1e-8 * edge) << i;
   }
 }
 
-/// A run of the device, free of steps and dry friction, on springs to both sides follows the map sample by sample.
+/// A run of the device, without quantization and dry friction, on bilateral springs, follows the map sample by sample.
 TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
   for (const std::size_t order : {1u, 2u, 3u, 5u, 8u}) {
     for (const bool filters_position : {false, true}) {
@@ -142,7 +143,8 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
       const Vec3 kick(0.7, 0, 0);  // the motors' force of the first period, before there is any contact
       device.drive(kick, Vec3::Zero());
       Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
-      state[A.rows() - 1] = kick.x() * loop.period * loop.period / 0.1;  // on its way, and acting since 3/4 T
+      state[A.rows() - 1] = kick.x() * loop.period * loop.period / 0.1;  // delayed force, and force that acts since 3/4
+                                                                         // T
       const double a = kick.x() / 0.1, h = 0.25 * loop.period, b = 0.5 / 0.1;
       state[0] = a / (b * b) * (b * h - 1.0 + std::exp(-b * h));
       state[1] = loop.period * a / b * (1.0 - std::exp(-b * h));
@@ -150,10 +152,10 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
       for (int k = 0; k < 300; ++k) {
         const HandleState& tool = device.sampled();
         scale = std::max(scale, std::abs(state[0]));
-        // Rounding of the closed form above, a few ulp of a / b^2, and of up to eight modes of some ten times the
-        // input.
+        // Rounding of the closed form above, a few ulp of a / b^2, and of up to eight modes that are some ten times
+        // larger than the input.
         ASSERT_NEAR(device.handle().position.x(), state[0], 1e-9 * scale) << order << " " << k;
-        // Before the first sample of the map the device rests at zero, in the map all modes do.
+        // Before the first sample, the device rests at zero; in the map, all modes are zero.
         device.drive(-loop.stiffness * tool.position - loop.wall_damping * tool.velocity, Vec3::Zero());
         state = A * state;
       }
@@ -162,7 +164,7 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
   }
 }
 
-/// The same with a transmission and a hand, from a state displaced by 1 mm.
+/// The same comparison with a transmission and a hand, from a state displaced by 1 mm.
 TEST(SampledLoop, IsTheMapOfTheDeviceWithATransmission) {
   for (const double delay : {0.0, 1.0, 1.75}) {
     for (const std::size_t order : {1u, 2u}) {
@@ -178,7 +180,7 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithATransmission) {
       ImpedanceDevice device(loop.device, loop.period, loop.hand);
       device.reset({.pose = {.position = {1e-3, 0, 0}}});
       Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
-      state[0] = state[2] = state[A.rows() - 2] = 1e-3;  // motors, their last sample, handle
+      state[0] = state[2] = state[A.rows() - 2] = 1e-3;  // motors, last sample of the motors, handle
       for (int k = 0; k < 400; ++k) {
         const HandleState held = device.handle();
         ASSERT_NEAR(held.position.x(), state[A.rows() - 2], 1e-9 * 1e-3) << delay << " " << order << " " << k;
@@ -193,12 +195,13 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithATransmission) {
   }
 }
 
-/// A rotation without special directions.
+/// Returns a rotation without special directions.
 Mat3 some_rotation() {
   return Eigen::AngleAxisd(0.7, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
 }
 
-/// Wall along one direction and a hand whose damping along it differs from its damping across, in a turned frame.
+/// A wall along one direction, and a hand whose damping along this direction differs from its damping perpendicular to
+/// it, in a rotated frame.
 TEST(ContactLoop, OfAWallInAnyDirectionIsTheLoopOfOneAxis) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 0.5;
@@ -211,7 +214,8 @@ TEST(ContactLoop, OfAWallInAnyDirectionIsTheLoopOfOneAxis) {
   const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
   const auto stable = [&](double K) {
     LinearContact contact;
-    contact.rendered.stiffness = K * along + 0.3 * K * n * some_rotation().col(0).transpose();  // one-sided coupling
+    // Coupling in one direction only.
+    contact.rendered.stiffness = K * along + 0.3 * K * n * some_rotation().col(0).transpose();
     contact.rendered.damping = 2.0 * along;
     contact.hand = {300.0 * across, 6.0 * across + 20.0 * along};
     return is_stable_loop(contact_loop(loop, contact));
@@ -220,8 +224,8 @@ TEST(ContactLoop, OfAWallInAnyDirectionIsTheLoopOfOneAxis) {
   EXPECT_FALSE(stable(limit * (1.0 + 1e-6)));
 }
 
-/// Axes that drive each other in both directions: the device itself, in three dimensions, decays just below the limit
-/// and grows just above.
+/// The axes drive each other in both directions. The device itself, in three dimensions, decays just below the limit
+/// and grows just above it.
 TEST(ContactLoop, OfCoupledAxesIsThatOfTheDevice) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 1.0;
@@ -263,14 +267,14 @@ std::optional<double> limit(std::string_view name, const SampledLoop& loop) {
   return std::ranges::find(stiffness_limits(), name, &StiffnessLimit::name)->largest(loop);
 }
 
-/// A stiff transmission is none; a soft one resonates and lowers the edge.
+/// A stiff transmission has no effect; a soft transmission resonates and lowers the limit.
 TEST(SampledLoop, ATransmissionThatIsStiffIsNone) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 2.0;
   loop.wall_damping = 5.0;
   const double rigid = linear_stability_limit(loop);
   loop.device.transmission = Transmission{0.5, 1e9, 1000.0};
-  // The edge is near 2e4 N/m, so what gives way is 2e-5 of it.
+  // The limit is near 2e4 N/m, so the compliance of the transmission changes it by 2e-5.
   EXPECT_NEAR(linear_stability_limit(loop), rigid, 1e-4 * rigid);
   loop.device.transmission = Transmission{0.5, 1e5, 0.1};
   EXPECT_LT(linear_stability_limit(loop), 0.7 * rigid);
@@ -312,7 +316,7 @@ TEST(StiffnessLimits, AllowsWithDelayAndWithoutDampingWhatTheClosedFormAllows) {
   EXPECT_FALSE(limit("passive_with_delay", loop)) << "the sum over the aliases needs whole delays";
 }
 
-/// The inequality itself, on a grid of angles, holds slightly below the limit and fails slightly above.
+/// Checks that the inequality itself, on a grid of angles, holds slightly below the limit and fails slightly above it.
 TEST(StiffnessLimits, ThePassiveStiffnessIsTheLargestThatMeetsTheInequality) {
   const auto holds = [](const SampledLoop& loop, double K) {
     for (int i = 1; i <= 20000; ++i) {
@@ -345,7 +349,7 @@ TEST(StiffnessLimits, WhatIsPassiveIsStableWithEveryHand) {
       SampledLoop loop = damped_loop();
       loop.device.delay_samples = delay;
       loop.wall_damping = B;
-      // Both edges are exact to 1e-9; at B = 0 without a hand they differ by a thousandth.
+      // Both limits are exact to 1e-9; at B = 0 without a hand they differ by a thousandth.
       EXPECT_LE(*limit("passive_with_delay", loop), worst_hand_stability_limit(loop) * (1.0 + 1e-9))
           << delay << " " << B;
     }
@@ -389,7 +393,7 @@ AdmittanceLoop random_loop(Random& random) {
   return loop;
 }
 
-/// The rows of the simulation with this loop, from a given position and velocity of the tool along x.
+/// Returns the steps of the simulation with this loop, from a given position and velocity of the tool along x.
 std::vector<StepRecord> simulated(const AdmittanceLoop& loop, double position, double velocity, std::uint64_t steps) {
   test::Recorder recorder;
   SimulationConfig config;
@@ -412,7 +416,7 @@ std::vector<StepRecord> simulated(const AdmittanceLoop& loop, double position, d
   return recorder.rows;
 }
 
-/// The state at the start of a run: handle and carriage on the tool, no command on its way.
+/// Returns the state at the start of a run: handle and carriage at the tool, no delayed command.
 Eigen::VectorXd first_state(const AdmittanceLoop& loop, double position, double velocity) {
   Eigen::VectorXd state = Eigen::VectorXd::Zero(loop.state_matrix().rows());
   for (const Eigen::Index i : {0, 2, 4}) {
@@ -435,7 +439,7 @@ TEST(AdmittanceLoop, IsTheLinearMapOfTheSimulation) {
       for (const StepRecord& row : simulated(loop, position, velocity, 40)) {
         scale = std::max(scale, state.norm());
         const double dt = loop.tool.dt;
-        // Rounding of some forty steps, of a state that need not decay.
+        // Rounding of some forty steps of a state that need not decay.
         EXPECT_NEAR(row.tool.pose.position.x(), state[0], 1e-12 * scale) << row.step;
         EXPECT_NEAR(row.tool.velocity.x() * dt, state[1], 1e-12 * scale) << row.step;
         EXPECT_NEAR(row.handle.position.x(), state[4], 1e-12 * scale) << row.step;
@@ -446,7 +450,7 @@ TEST(AdmittanceLoop, IsTheLinearMapOfTheSimulation) {
   }
 }
 
-/// Runs with hands one per cent softer and stiffer than the edge decay and grow.
+/// Checks that runs with hands one per cent softer than the limit decay, and with hands one per cent stiffer grow.
 TEST(AdmittanceLoop, HasItsEdgeWhereRunsGrow) {
   for (const std::size_t delay : {0u, 1u, 2u}) {
     AdmittanceLoop loop;

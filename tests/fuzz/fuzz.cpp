@@ -30,8 +30,8 @@
 #include "scenarios/scene/recordings.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
-/// libFuzzer's targets: each reader of files from outside, fed with bytes of libFuzzer's choice (scripts/fuzz). It
-/// reads them or refuses them by an InputError of one line; whatever else happens is a finding.
+/// Targets for libFuzzer: each reader of external files, with bytes from libFuzzer (scripts/fuzz). The reader must
+/// accept them or throw an InputError of one line; everything else is a finding.
 namespace hapbench::fuzz {
 namespace {
 
@@ -46,7 +46,8 @@ void require(bool holds, const char* what) {
   if (!holds) finding(what);
 }
 
-/// A file with these bytes, in memory where the system has such a folder.
+/// Writes these bytes to a file and returns the path of the file. The file is in the memory file system /dev/shm if
+/// that exists, otherwise in the directory for temporary files.
 const fs::path& file_with(std::string_view bytes) {
   static const fs::path file = (fs::is_directory("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path()) /
                                ("hapbench-fuzz-" + std::to_string(::getpid()));
@@ -56,14 +57,14 @@ const fs::path& file_with(std::string_view bytes) {
 
 const fs::path kBundled = fs::path(HAPBENCH_SCENARIOS) / "examples";
 
-/// What is accepted is a scenario: its effective form reads as itself.
+/// Checks that an accepted text is a scenario: reading its effective form gives the same scenario.
 void read_scenario_text(std::string_view text) {
   const Json effective = effective_scenario(read_scenario(parse_json(std::string(text)), kBundled).scenario, kBundled);
   require(effective_scenario(read_scenario(effective, kBundled).scenario, kBundled) == effective,
           "an effective scenario reads as another one");
 }
 
-/// About as many points as an environment has; 0 where its file says how many.
+/// Returns the approximate number of points of an environment; 0 if a file determines the number.
 double points_of(const Environment& environment) {
   return std::visit(
       []<class Shape>(const Shape& shape) {
@@ -78,15 +79,15 @@ double points_of(const Environment& environment) {
       environment);
 }
 
-/// The same, and its first steps, with an environment of a tenth of the points or less, which takes a tenth of the
-/// time.
+/// Reads a scenario and runs its first steps, with an environment of at most about a tenth of the points. This takes a
+/// tenth of the time.
 void run_scenario_text(std::string_view text) {
   Json json = effective_scenario(read_scenario(parse_json(std::string(text)), kBundled).scenario, kBundled);
   if (Json& environment = json["environment"];
       environment.contains("spacing_m") && environment["spacing_m"].is_number())
     environment["spacing_m"] = 4.0 * environment["spacing_m"].get<double>();
   LoadedScenario loaded = read_scenario(json, kBundled);
-  // Larger ones are only slower.
+  // Larger environments are only slower.
   constexpr double kMaxSurfacePoints = 1e5;
   constexpr std::int64_t kMaxSteps = 20;
   const auto* tool = std::get_if<MeshToolFields>(&loaded.scenario.tool);
@@ -125,7 +126,7 @@ void read_trace(std::string_view text) {
   require(trace.most() <= trace.contacts.size(), "more contacts at a time than there are");
 }
 
-/// A finished table: its rows are taken over or refused.
+/// Checks that the rows of a finished table are accepted or rejected.
 void read_table(std::string_view text) {
   const fs::path folder = file_with("").parent_path(), name = file_with("").filename();
   const fs::path file = folder / (name.string() + ".csv"), part = folder / (name.string() + ".csv.part");
@@ -138,14 +139,15 @@ void read_table(std::string_view text) {
   fs::remove(part);
 }
 
-/// The file of a device, which `limit --device` takes.
+/// Reads a device file, as `limit --device` does.
 void read_device(std::string_view text) {
   device_of_file(file_with(text));
 }
 
-/// The table of a law whose texts and numbers are the bytes: it becomes a law or is refused.
+/// Makes a module table of a law from the bytes: its texts and numbers are the bytes. The law must be accepted or
+/// rejected.
 void read_module(std::string_view bytes) {
-  std::vector<std::string> texts;  // between bytes of zero
+  std::vector<std::string> texts;  // texts between zero bytes
   std::istringstream in{std::string(bytes)};
   for (std::string text; std::getline(in, text, '\0');) texts.push_back(text);
   texts.resize(std::max<std::size_t>(texts.size(), 8));
@@ -195,7 +197,7 @@ constexpr std::array kTargets = {
     Target{"trace", read_trace},
 };
 
-/// The target that FUZZ_TARGET names.
+/// Returns the target that FUZZ_TARGET names.
 const Target& target() {
   const char* name = std::getenv("FUZZ_TARGET");
   for (const Target& t : kTargets) {
@@ -210,7 +212,7 @@ const Target& target() {
 }  // namespace
 }  // namespace hapbench::fuzz
 
-/// Without a target it ends here, before libFuzzer takes the end for a crash.
+/// Ends the program if there is no target, before libFuzzer mistakes this for a crash.
 extern "C" int LLVMFuzzerInitialize(int*, char***) {  // NOLINT: the name is libFuzzer's
   hapbench::fuzz::target();
   return 0;

@@ -83,6 +83,8 @@ def league(bench):
         rank.update(
             {name: 1 + sum(bad[other] < bad[name] for other in LAWS) for name in LAWS if bad[name]}
         )
+        if len(set(rank.values())) < 2:
+            rank = {}  # all would be equal
         of_law = outcomes[s, law]
         counts = [f"{name} {of_law.count(name)}" for name in dict.fromkeys(of_law)]
         known.append(
@@ -114,7 +116,7 @@ def league(bench):
                 "seeds": SEEDS - bad[law],
             }
         )
-        if ranked:
+        if ranked and law in rank:
             ranks[law].append(rank[law])
     says = {
         "failed": "of runs that diverge",

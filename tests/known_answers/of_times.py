@@ -199,3 +199,18 @@ def errors_of_settings(bench):
         EXACT,
         ("the cheapest", texts([True, False, False, False])),
     )
+
+
+@scene
+def times_of_a_sweep(bench):
+    """Three runs with other masses on the same spring."""
+    base = oscillator(bench, "times_of_a_sweep")
+    words = ("--vary", "rendering.mass_kg=0.1,0.2,0.3", "--time", "--out", "swept", "--quiet")
+    bench.hapbench("sweep", base, *words)
+    times = Table(bench.folder / "swept" / "sweep_timing.csv")
+    add_times(bench, "sweep_timing.csv", times, STEP)
+    for name, known, naive, wrong in (
+        ("index", [0, 1, 2], "from one", [1, 2, 3]),
+        ("steps", [STEPS] * 3, "without the first", [STEPS - 1] * 3),
+    ):
+        bench.add(f"sweep_timing.csv:{name}", times[name], known, "as asked", EXACT, (naive, wrong))

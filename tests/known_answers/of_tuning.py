@@ -1,4 +1,5 @@
 """Scenes behind the tables of tune: the eigenvalues of the held loop of a handle on one spring."""
+import json
 import math
 
 import numpy as np
@@ -34,6 +35,14 @@ def tuned(bench):
         Table(out / "tune_trials.csv"),
     )
     loop = lambda K, B, more=0.0: held_loop(m, b, T, K, B, delay=delay + more)
+    bench.add(
+        "tune.csv:bounds",
+        json.dumps(json.loads(table.rows[0]["bounds"])),
+        json.dumps({"force_rms_above_30Hz_N": {"max": 1e3}}),
+        "--bound",
+        EXACT,
+        ("without bounds", "{}"),
+    )
     edge = lambda B: edge_of(lambda K: loop(K, B), 1.0, 1e5)
     B = max(np.geomspace(1, 100, 60), key=edge)
     B = max(np.linspace(0.93 * B, 1.07 * B, 60), key=edge)

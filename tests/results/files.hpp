@@ -8,7 +8,7 @@
 
 namespace hapbench::test {
 
-/// A new empty directory, removed with its contents at the end of the test.
+/// Creates a new empty directory, which is removed with its contents at the end of the test.
 class TemporaryDirectory {
  public:
   TemporaryDirectory();
@@ -18,34 +18,35 @@ class TemporaryDirectory {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  /// Names of all entries, hidden ones included, sorted.
+  /// Returns the names of all entries, including hidden entries, sorted.
   std::vector<std::string> entries() const;
 
  private:
   std::filesystem::path path_;
 };
 
-/// The bytes of a file; fails the test when it cannot be read.
+/// Returns the bytes of a file. Fails the test if the file cannot be read.
 std::string read_file(const std::filesystem::path& path);
 void write_plainly(const std::filesystem::path& path, const std::string& contents);
 
-/// Contents of all files below a directory, hidden ones included, by their path from there.
+/// Returns the contents of all files below a directory, including hidden files, by their path relative to the
+/// directory.
 std::map<std::string, std::string> files_below(const std::filesystem::path& directory);
 
-/// The paths of those files alone.
+/// Returns only the paths of these files.
 std::vector<std::string> names_below(const std::filesystem::path& directory);
 
-/// Fails the test unless both directories hold the same files with the same bytes; `ignored` names are not compared.
+/// Fails the test unless both directories have the same files with the same bytes. Names in `ignored` are not compared.
 void expect_same_files(const std::filesystem::path& a, const std::filesystem::path& b,
                        const std::vector<std::string>& ignored = {});
 
-/// The text's lines without their ends, and a line's cells.
+/// Return the lines of a text without line ends, and the cells of a line.
 std::vector<std::string> lines_of(const std::string& text);
 std::vector<std::string> cells_of(const std::string& line);
-/// The number a cell holds; fails the test when anything else is in it.
+/// Returns the number in a cell. Fails the test if the cell has anything else.
 double number_in(const std::string& cell);
 
-/// While it lives, no file of this process may grow beyond `bytes`: writing fails as it does on a full disk.
+/// While an object exists, no file of this process may grow beyond `bytes`: writing fails as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(unsigned long bytes);
@@ -58,7 +59,8 @@ class FileSizeLimit {
   void (*handler_before_)(int);
 };
 
-/// An environment variable of this process and the programs it starts, set or (without a value) unset while this lives.
+/// Sets an environment variable of this process and of programs that it starts, or unsets it without a value, while the
+/// object exists.
 class EnvironmentVariable {
  public:
   EnvironmentVariable(std::string name, const std::optional<std::string>& value);

@@ -6,11 +6,12 @@
 
 #include "results/observe/metric_observer.hpp"
 
-// Rows for observers in tests, and a reader of the metrics that they tell.
+// Steps for observers in tests, and access to the metrics that observers report.
 
 namespace hapbench::test {
 
-/// A row as the step loop would show it, at rest at the origin and without force; `contacts` must outlive it.
+/// Returns the record of a step as the step loop passes it, at rest at the origin and without force. `contacts` must
+/// outlive it.
 inline StepRecord row(std::uint64_t step, double time, const ContactBuffer& contacts) {
   StepRecord r;
   r.step = step;
@@ -20,7 +21,8 @@ inline StepRecord row(std::uint64_t step, double time, const ContactBuffer& cont
   return r;
 }
 
-/// Padded contacts with these gradients, shell index 10, 11, …, depth 1 mm and weight 1, all at (0.5, 0.25, 0).
+/// Returns padded contacts with these gradients, shell indices 10, 11, …, depth 1 mm and weight 1, all at (0.5, 0.25,
+/// 0).
 inline ContactBuffer contacts_along(const std::vector<Vec3>& gradients) {
   ContactBuffer contacts(gradients.size());
   for (std::size_t i = 0; i < gradients.size(); ++i) {
@@ -37,7 +39,7 @@ inline ContactBuffer contacts_along(const std::vector<Vec3>& gradients) {
 
 namespace hapbench {
 
-/// The metrics of an observer, named without a section.
+/// Returns the metrics of an observer, with names without a section.
 inline MetricList reported(const MetricObserver& observer) {
   MetricList list;
   Section section(list, "");
@@ -45,7 +47,7 @@ inline MetricList reported(const MetricObserver& observer) {
   return list;
 }
 
-/// One number of it; none when the metric has no value.
+/// Returns the value of a metric; empty if the metric has no value.
 inline std::optional<double> reported(const MetricObserver& observer, std::string_view name) {
   return number_of(reported(observer), name);
 }

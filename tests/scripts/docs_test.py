@@ -16,7 +16,17 @@ from fixture import PROGRAM, SOURCE, hapbench, must, ran, scratch_folder
 
 from hapbench.columns import read_columns
 from hapbench.errors import InputError
-from hapbench_docs.manuals import MAKERS, Manual, broken_links, manuals, renewed, same_but_for_times
+from hapbench_docs.manuals import (
+    MAKERS,
+    STAMP,
+    Manual,
+    Program,
+    broken_links,
+    manuals,
+    renewed,
+    same_but_for_times,
+    write_files_of_getting_started,
+)
 
 RECORD = SOURCE / "results" / "reference"
 TUTORIALS = SOURCE / "scenarios" / "library" / "tutorials"
@@ -63,7 +73,7 @@ def prepare(folder):
     log = "".join(
         f"{i / 100},{turn},{round(2.533e4 * (1 - turn)) * 1e-5}\n" for i, turn in enumerate(turns)
     )
-    device = re.search(r"^    {\n.*?^    }$", text_of("device_model/README.md"), re.M | re.S)[0]
+    device = re.search(r"^    {\n.*?^    }$", text_of("device_model/STIFFNESS.md"), re.M | re.S)[0]
     for name, text in (
         ("rec.csv", f"t,fx,fy,fz,x,y,z,qx,qy,qz,qw\n{stroke}"),
         ("log.csv", f"time_s,force_N,position_m\n{log}"),
@@ -71,8 +81,11 @@ def prepare(folder):
         ("log_device.json", device),
     ):
         (folder / name).write_text(text, encoding="ascii")
+    write_files_of_getting_started(folder)
     # The example in C, by the manual's line.
-    compiler = re.search(r"^    (gcc .*) -o \S+$", text_of("algorithms/README.md"), re.M)[1].split()
+    compiler = re.search(r"^    (gcc .*) -o \S+$", text_of("algorithms/WRITE_A_LAW.md"), re.M)[
+        1
+    ].split()
     must(*compiler, "-o", folder / "depth_weighted.so", cwd=SOURCE)
     shutil.copy(Path(PROGRAM).parents[1] / "tests/scenarios/module/sphere.so", folder)
     made = partial(must, PROGRAM, statuses=(0, 3), cwd=folder)
@@ -219,6 +232,20 @@ class Generated(unittest.TestCase):
     def test_a_block_without_end_is_refused(self):
         with self.assertRaises(InputError):
             renewed("<!-- generated: robustness -->\n| a |\n", MAKERS)
+
+    def test_a_session_names_the_version_and_no_commit(self):
+        program, session = Program(Path(PROGRAM)), "    $ hapbench run x\n\n    mean   1.25"
+        version = re.search(r"project\(hapbench VERSION (\S+)", text_of("CMakeLists.txt"))[1]
+        stamped = program.stamped(session, "")
+        head, _, stamp = stamped.rpartition("\n\nPrinted by ")
+        self.assertEqual(head, session)
+        self.assertRegex(stamp, STAMP)
+        self.assertTrue(stamp.startswith(f"hapbench {version}, "), stamp)
+        self.assertNotRegex(stamp, r"\b[0-9a-f]{7,}\b|dirty")
+        older = stamped.replace(version, "0.1.0")
+        self.assertEqual(program.stamped(session, f"{older}\n"), f"{older}\n")
+        with_commit = f"{session}\n\nPrinted by commit 0123456789ab-dirty, 2026-11-28, AMD EPYC.\n"
+        self.assertEqual(program.stamped(session, with_commit), stamped)
 
     def test_measured_times_are_no_news(self):
         old = (

@@ -1,5 +1,5 @@
 """Synthetic logs of identifications, and whether what is told of them holds. As a script it is a test: the
-study of 200 logs, whose table device_model/README.md has."""
+study of 200 logs, whose table is in device_model/FIT_METHOD.md."""
 import os
 import sys
 

@@ -1,4 +1,6 @@
 """Layouts of recordings of other programs: columns, texts, units, clocks and held rows."""
+from datetime import datetime, timedelta
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -152,6 +154,7 @@ class Layouts(Given):
             (comma.replace(";", " "), "numbers have a decimal comma"),
             (quoted.replace(".", ","), "numbers have a decimal comma"),
             ("% " + self.PLAIN, ""),
+            ("# t x y z\n" + self.PLAIN.partition("\n")[2].replace(",", "\t"), ""),
             ("# made by hand\n#" + self.PLAIN, "1 comment line skipped, the first: line 1"),
             (self.PLAIN.replace("\n", ",\n"), "a separator at the end of every line ignored"),
             (self.PLAIN.replace("\n", ",\n").replace("z,", "z"), "at the end of 100 lines ignored"),
@@ -258,6 +261,31 @@ class Layouts(Given):
         self.assertIn("with --scale time=0.001 the rate is 1e+04 Hz", found["warnings"][0])
         _, found = self.report(self.PLAIN, "time=t,position=x", scale="time=1e-3")
         self.assertIn("with --scale time=1 the rate is 500 Hz", found["warnings"][0])
+
+    def test_times_of_day_are_seconds_since_the_first(self):
+        rows = self.PLAIN.partition("\n")[2].splitlines()
+        midnight = datetime(2026, 11, 27, 23, 59, 59, 900000)
+        for text, said in (
+            ("%Y-%m-%dT%H:%M:%S.%fZ", "2026-11-27T23:59:59.900000Z"),
+            ("%Y-%m-%d %H:%M:%S.%f+02:00", "2026-11-27 23:59:59.900000+02:00"),
+        ):
+            data = "t,x,y,z\n" + "".join(
+                f"{(midnight + timedelta(seconds=float(time))):{text}},{row.partition(',')[2]}\n"
+                for time, row in zip(self.TIME, rows)
+            )
+            self.assertIn(f'such as "{said}" are read as seconds', self.assert_places(data)[0])
+            self.assertIn(
+                "the times are times of day, in seconds",
+                self.refusal(data, "time=t,position=x", scale="time=0.001"),
+            )
+        of_day = data.replace("2026-11-27 ", "").replace("2026-11-28 ", "").replace("+02:00", "")
+        self.assertIn(
+            "got time -86399.9 s after 0.098 s", self.refusal(of_day, "time=t,position=x")
+        )
+        self.assertIn(
+            'column 1 t: got "2026-13-01 00:00:00"',
+            self.refusal("t,x,y,z\n" + "2026-13-01 00:00:00,0,0,0\n" * 3, "time=t,position=x"),
+        )
 
     def test_poses_held_for_several_rows_are_thinned_to_the_true_samples(self):
         time = 1e-3 * np.arange(1200)

@@ -5,12 +5,13 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from figure_checks import assert_fits, curves_of, legend_labels
+from fixture import hapbench
 from pictures_test import Given, made, make_root, plotted
 
 from hapbench.columns import read_records
 from hapbench_pictures.device_plot import BEYOND_LABEL, PUBLISHED_LABEL
 from hapbench_pictures.study_plot import draw_study
-from hapbench_style import SHEETS, plt
+from hapbench_style import RED, SHEETS, plt
 
 setUpModule = make_root
 OVER = "rendering.damping_N_s_per_m"
@@ -101,6 +102,35 @@ class Limits(Given):
         )
         made("converge", "converge", "springs_oscillation", "--metric", "inside_max_m")
         self.assertIn("nothing to draw: no level has an error above 0", plotted(folder, expected=2))
+
+    def test_the_program_finds_knees(self):
+        """In logarithms to the base 10: (0, 0), (1, -3), (2, -3.5), (3, -4): the second is farthest below the chord."""
+        bent = hapbench("plot", "--knee", "1:1", "1000:1e-4", "10:1e-3", "100:3.2e-4")
+        self.assertEqual(bent, "2\n")
+        self.assertEqual(
+            hapbench("plot", "--knee", "1:1", "2:0.25", "4:0.0625", "8:0.015625"), "\n"
+        )
+        for wrong in ("1", "1:0", "a:1", "-1:1"):
+            self.assertIn("COST:ERROR", hapbench("plot", "--knee", wrong, expected=2))
+
+    def test_laws_against_a_reference_force(self):
+        folder = made(
+            "model",
+            "converge",
+            "plane_wiped_round",
+            "--over",
+            "rendering.algorithm=mean,summation",
+            "--set",
+            "time.duration_s=0.1",
+        )
+        self.assert_plot_shows(
+            folder,
+            "mean",
+            "summation",
+            "rms error of the force [N]",
+            "mean error of the direction [°]",
+            "deadline, 0.5 ms",
+        )
 
     def test_tuning(self):
         folder = made(
@@ -285,6 +315,22 @@ class Limits(Given):
         rewrite(folder / "tune_trials.csv", refuse)
         self.assertEqual(legend_labels(draw_study(folder)), ["mean", "not feasible"])
         plt.close()
+
+    def test_the_bounds_of_tune_are_drawn(self):
+        bounds = ("--bound", "inside_max_m=4e-3", "--bound", "force_rms_above_30Hz_N=0.5:20")
+        words = ("tune", "impedance_at_wall", "--algorithms", "mean", "--damping-ratio", "0.2:0.3")
+        folder = made("bounded", *words, *bounds)
+        figure = draw_study(folder, SHEETS["double"])
+        depth, vibration = {4.0}, {0.5, 20.0}
+        for ax, x, y in zip(figure.axes, (set(), set(), depth), (depth, vibration, vibration)):
+            lines = [line for line in ax.lines if line.get_color() == RED]
+            drawn = [tuple(map(set, zip(*line.get_xydata()))) for line in lines]
+            self.assertEqual({xs.pop() for xs, _ in drawn if len(xs) == 1}, x)
+            self.assertEqual({ys.pop() for _, ys in drawn if len(ys) == 1}, y)
+            (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+            self.assertTrue(all(left < v < right for v in x) and all(low < v < high for v in y))
+        self.assertIn("bound", legend_labels(figure))
+        plt.close(figure)
 
     def test_they_fit_every_sheet(self):
         folders = [

@@ -67,7 +67,7 @@ class Standings(WithRuns):
             found = scene.standings(row["metric"])[law.label]
             self.assertEqual(len(law.failures), int(row["failed"]), row)
             self.assertEqual(len(scene.seeds), int(row["common_seeds"]), row)
-            self.assertEqual(found.rank, int(row["rank"]), row)
+            self.assertEqual("" if found.rank is None else str(found.rank), row["rank"], row)
             for name in ("mean", "spread"):
                 value = getattr(found, name)
                 self.assertEqual(value is None, row[name] == "", row)
@@ -80,7 +80,7 @@ class Standings(WithRuns):
     def test_outcomes_that_fail_are_those_of_the_program(self):
         """The table of results/summary/outcome.cpp marks them with true."""
         source = (SOURCE / "results/summary/outcome.cpp").read_text(encoding="utf-8")
-        entries = re.findall(r'\{"(\w+)",\s*(?:"[^"]*"\s*)+(,\s*true)?\}', source)
+        entries = re.findall(r'\{"(\w+)",\s*(?:"[^"]*"\s*)+(,\s*true)?(?:,[^}]*)?\}', source)
         self.assertGreater(len(entries), len(FAILURES))
         self.assertEqual({name for name, fails in entries if fails}, set(FAILURES))
 

@@ -70,22 +70,30 @@ def claim(verdict, **more):
         "rule": "within one standard deviation",
         "verdict": verdict,
         "why": "It is an input.",
-        "sureness": "not sampled",
+        "robustness": "not sampled",
+        "number": "47",
+        "published_short": "44.8",
         **more,
     }
 
 
 def make_claims(file):
-    verdicts = ("reproduced", "reproduced in kind", "not reproduced", "refuted", "not reproducible")
+    verdicts = (
+        "replicated",
+        "qualitatively replicated",
+        "not replicated",
+        "contradicted",
+        "not testable",
+    )
     claims = [claim(verdict, id=f"C{i}") for i, verdict in enumerate(verdicts)]
     claims[0] |= {
-        "sureness": "steady",
-        "robustness": {"holds": 64, "judged": 64},
+        "robustness": "robust",
         "command": "hapbench reproduce --only C0",
         "seconds": 2.4,
-        "main": {"claim": "Few points are left", "published": "6.2", "ours": "6.3"},
+        "published_short": "6.2",
+        "number": "6.3",
     }
-    claims[1] |= {"sureness": "fragile", "robustness": {"holds": 24, "judged": 64}}
+    claims[1] |= {"robustness": "sensitive to local.average"}
     claims.append(claim("holds", id="C5", ours=True))
     claims[1] |= {
         "place": "A.3, Table A.2, Fig. A.5",
@@ -94,7 +102,14 @@ def make_claims(file):
     }
     claims[2] |= {"place": "A.2", "scenarios": ["single_spring", "not_among_these"]}
     file.write_text(
-        json.dumps({"headline": "One verdict is steady.", "claims": claims}), encoding="utf-8"
+        json.dumps(
+            {
+                "headline": "One verdict is robust.",
+                "abstract": [{"sentence": "Few points are left", "claims": ["C0"]}],
+                "claims": claims,
+            }
+        ),
+        encoding="utf-8",
     )
 
 
@@ -164,14 +179,7 @@ class Page(WithResults):
         )
         claims = self.root / "hostile.json"
         claims.write_text(
-            json.dumps(
-                {
-                    "claims": [
-                        {k: hostile for k in claim("")}
-                        | {"verdict": "refuted", "sureness": "steady"}
-                    ]
-                }
-            )
+            json.dumps({"claims": [{k: hostile for k in claim("")} | {"verdict": "contradicted"}]})
         )
         page = self.page("--figures", figures, "--claims", claims, results=results)
         self.assertFalse("<script>alert" in page or '<img src="https' in page)
@@ -242,7 +250,7 @@ class BadInput(WithResults):
                 claims,
                 json.dumps({"claims": [claim("maybe")]}),
                 of_claims,
-                '/claims/0/verdict: got "maybe"; allowed: "refuted"',
+                '/claims/0/verdict: got "maybe"; allowed: "contradicted"',
             ),
             (
                 figures,

@@ -1,5 +1,5 @@
 """How scripts/reproduce runs its parts, with a program that does nothing in place of hapbench, and
-what scripts/readings.py draws."""
+what scripts/assumption_sets.py draws."""
 import csv
 import json
 import math
@@ -151,23 +151,27 @@ class Reproduce(unittest.TestCase):
         self.assertEqual(process.returncode, 143)
 
 
-class Readings(unittest.TestCase):
-    def test_lie_in_every_stratum_of_each_choice(self):
-        readings = list(csv.DictReader(must(SOURCE / "scripts" / "readings.py", "8").splitlines()))
-        choices = json.loads(
-            (SOURCE / "results" / "reference" / "choices.json").read_text(encoding="utf-8")
-        )["choices"]
-        self.assertEqual(list(readings[0]), [choice["id"] for choice in choices])
-        for choice in choices:
-            values = [reading[choice["id"]] for reading in readings]
-            if "options" in choice:
-                self.assertLessEqual(set(values), set(choice["options"]))
-                self.assertEqual(len(set(values)), min(8, len(choice["options"])), choice["id"])
+class AssumptionSets(unittest.TestCase):
+    def test_lie_in_every_stratum_of_each_assumption(self):
+        drawn = must(SOURCE / "scripts" / "assumption_sets.py", "8")
+        sets = list(csv.DictReader(drawn.splitlines()))
+        recorded = json.loads(
+            (SOURCE / "results" / "reference" / "assumptions.json").read_text(encoding="utf-8")
+        )["assumptions"]
+        free = [assumption for assumption in recorded if "calibrated" not in assumption]
+        self.assertEqual(list(sets[0]), [assumption["id"] for assumption in free])
+        for assumption in free:
+            values = [one[assumption["id"]] for one in sets]
+            if "options" in assumption:
+                self.assertLessEqual(set(values), set(assumption["options"]))
+                self.assertEqual(
+                    len(set(values)), min(8, len(assumption["options"])), assumption["id"]
+                )
                 continue
-            scale = math.log if choice.get("scale") == "log" else float
-            low, high = map(scale, choice["range"])
+            scale = math.log if assumption.get("scale") == "log" else float
+            low, high = map(scale, assumption["range"])
             self.assertEqual(
                 sorted(int(8 * (scale(float(value)) - low) / (high - low)) for value in values),
                 list(range(8)),
-                choice["id"],
+                assumption["id"],
             )

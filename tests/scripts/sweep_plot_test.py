@@ -65,7 +65,7 @@ class Sweeps(Given):
         found = {
             line.split()[0]: line.split()[1:]
             for line in said.splitlines()
-            if line.startswith(("rendering.", "seed")) and len(line.split()) == 4
+            if line.startswith(("rendering.", "seed")) and len(line.split()) >= 4
         }
         self.assertGreater(float(found["rendering.stiffness_N_per_m"][0]), 0.5)
         self.assertLess(abs(float(found["seed"][0])), 0.5)
@@ -147,6 +147,66 @@ class Sweeps(Given):
             self.assertLess(found.error, 0.035)
         self.assertIsNone(sensitivity(texts[:10], None, y[:10]))
         self.assertIsNone(sensitivity(x[0], columns[0][1], np.ones(n)))
+
+    def test_outliers_do_not_hide_a_field(self):
+        """A metric falls as 1 / K over three decades; another field has no influence. Three runs are a million times
+        larger."""
+        random, n = np.random.default_rng(11), 200
+        field, idle = random.uniform(0, 1, n), random.uniform(0, 1, n)
+        y = 10 ** (-3 * field) * random.lognormal(0, 0.2, n)
+        y[:3] *= 1e6
+        decides, other = sensitivity(field, field, y), sensitivity(idle, idle, y)
+        self.assertLess(decides.rank, -0.93)
+        self.assertLess(decides.first_order, 0.2)
+        # Variance of the logarithm by the field: (3 ln 10)^2 / 12 = 3.98; by noise 0.04, by the outliers
+        # 3/200 (6 ln 10)^2 = 2.86. Without outliers the share would be 0.99.
+        self.assertGreater(
+            decides.of_logarithm, 3.98 / (3.98 + 0.04 + 2.86) - 2 * decides.error_of_logarithm
+        )
+        self.assertGreater(decides.of_logarithm, other.of_logarithm + 3 * other.error_of_logarithm)
+
+    def test_the_logarithm_has_an_index_if_values_span_a_decade(self):
+        place = np.linspace(0, 1, 100)
+        for y, exists in (
+            (1 + 9.1 * place, True),
+            (1 + 8.9 * place, False),
+            (place, False),  # zero has no logarithm
+            (-1 - 20 * place, False),
+        ):
+            found = sensitivity(place, place, y)
+            self.assertEqual(found.of_logarithm is not None, exists, y[-1])
+        # y is an exponential of the field: the logarithm is linear.
+        found = sensitivity(place, place, np.exp(12 * place))
+        self.assertGreater(found.of_logarithm, 0.998)
+        self.assertLess(found.first_order, found.of_logarithm - 0.05)
+
+    def test_both_indices_are_shown(self):
+        folder = made(
+            "decades",
+            "sweep",
+            "springs_limited_mean",
+            "--vary",
+            "rendering.mass_kg=0.1:0.2",
+            "--vary",
+            "rendering.stiffness_N_per_m=1e3:1e5:log",
+            "--sample",
+            "lhs:40",
+            *FEW_STEPS,
+        )
+        said = plotted(folder, "--metric", "force_step_max_N")
+        self.assertIn("of the logarithm", said.splitlines()[0])
+        lines = {
+            line.split()[0]: line.split()[1:]
+            for line in said.splitlines()
+            if line.startswith("rendering.")
+        }
+        self.assertEqual({len(cells) for cells in lines.values()}, {5})
+        self.assertEqual(list(lines)[0], "rendering.stiffness_N_per_m")
+        self.assertIn(
+            "Of the logarithm: the index of the logarithm of force_step_max_N",
+            " ".join(said.split()),
+        )
+        self.assert_shows(folder / "plot.svg", "of the logarithm")
 
     def test_axes_are_as_they_were_varied(self):
         for values, logarithmic, *sample in (

@@ -130,7 +130,7 @@ def scene(integrator="leapfrog", B=0.0, law="summation", **parts):
 # Name, the hand, and its force as driven() and geared() have it.
 HANDS = (
     ("none", {"type": "none"}, {}),
-    ("force, steady", {"type": "force", "z_N": 3.0}, {"force": 3.0}),
+    ("force, constant", {"type": "force", "z_N": 3.0}, {"force": 3.0}),
     (
         "force, sine",
         {"type": "force", "z_N": {"type": "sine", "mean": 0, "amplitude": 3.0, "period_s": 0.013}},

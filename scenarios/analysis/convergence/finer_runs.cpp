@@ -62,7 +62,7 @@ FinerRuns::FinerRuns(const Comparison& comparison, std::span<const Result> repor
     scenes_.push_back({part_of(cases, [&] { return level_sweep(loaded, kStepPath, kErrorLevels, kErrorRatio); }),
                        part_of(cases, [&] { return spacing_levels(loaded, has_points); }), has_points});
   }
-  finer_ = run_all(finer, jobs);
+  finer_ = run_all(finer, jobs, {}, comparison.length);
 }
 
 KnownError FinerRuns::known_error(std::size_t run, const std::string& metric) const {
@@ -87,7 +87,9 @@ std::optional<double> FinerRuns::error_by(const Part& part, std::size_t run, con
 std::string FinerRuns::refined(std::size_t scene) const {
   const auto text = [](const Part& part) {
     if (!part.why_not.empty()) return part.why_not;
-    return fmt::format("{} {}", part.levels.axis.path, fmt::join(part.levels.axis.values, ", "));
+    std::vector<std::string> values;
+    for (std::size_t i = 0; i < part.levels.axis.values.size(); ++i) values.push_back(level_text(part.levels, i));
+    return fmt::format("{} {}", part.levels.axis.path, fmt::join(values, ", "));
   };
   return fmt::format("{}; {}", text(scenes_[scene].step), text(scenes_[scene].spacing));
 }

@@ -24,7 +24,7 @@ struct KnownError {
                                         ///< from a histogram
 
   /// Returns the sum of the three errors. Empty if the error by the time step is unknown, or if the scene has a point
-  /// spacing and the error by it is unknown.
+  /// spacing and the error by the point spacing is unknown.
   std::optional<double> sum() const;
 };
 
@@ -48,7 +48,7 @@ class FinerRuns {
   struct Part {
     LevelSweep levels = {};
     std::size_t first = 0;     ///< index in finer_ of the first refined run
-    std::string why_not = {};  ///< why no refinement was made; empty if one was made
+    std::string why_not = {};  ///< why no refinement was made; empty if a refinement was made
   };
   struct Scene {
     Part step, spacing;

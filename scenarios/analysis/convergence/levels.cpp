@@ -13,6 +13,7 @@
 #include "results/io/columns.hpp"
 #include "scenarios/analysis/current_value.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
@@ -22,8 +23,8 @@ namespace hapbench {
 namespace {
 
 /// Returns the formal order of convergence in the time step. A device holds the force between samples: first order.
-/// Without damping, leapfrog is of second order in amplitudes and energies: its velocity belongs to half a step before.
-/// Values at a fixed time are of first order, because the run begins with the velocity of the full step.
+/// Without damping, leapfrog is of second order in amplitudes and energies: its velocity belongs to a time half a step
+/// earlier. Values at a fixed time are of first order, because the run begins with the velocity of the full step.
 double order_in_step(const Scenario& scenario) {
   const IntegratorEntry& integrator = *scenario.integrator.type;
   if (has_device(scenario)) return 1.0;
@@ -85,6 +86,12 @@ LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, st
   for (std::size_t i = 0; i < levels; ++i, value /= ratio)
     sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
   return sweep;
+}
+
+std::string level_text(const LevelSweep& levels, std::size_t i) {
+  const std::string& value = levels.axis.values[i];
+  const auto number = finite_number(value);
+  return number ? fmt::format("{:.6g}", *number) : value;
 }
 
 Cases finer_cases(const LevelSweep& levels, const Cases& cases) {

@@ -15,9 +15,9 @@ inline constexpr const char* kStepPath = "time.step_s";
 /// The refinement levels of a field of a scene, coarsest first.
 struct LevelSweep {
   Axis axis;                  ///< the field's values, and the overrides that each value needs
-  double ratio = 2.0;         ///< r: each value over the next value
+  double ratio = 2.0;         ///< r, ratio of each value to the next value
   double formal_order = 2.0;  ///< largest order of the integrator in the step; 2 for a spacing
-  std::string no_order = {};  ///< why metrics of this scene have no convergence order; empty if they can
+  std::string no_order = {};  ///< why metrics of this scene have no convergence order; empty if they can have an order
 };
 
 /// Returns `levels` levels of the field at `path`, each finer by `ratio`.
@@ -27,6 +27,9 @@ struct LevelSweep {
 /// the mean distance of its vertices. Throws InputError if the field is not a floating-point number > 0, or if the
 /// ratio of time steps is not an integer.
 LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
+
+/// Returns the value of level i for messages: a number with six significant digits, other text unchanged.
+std::string level_text(const LevelSweep& levels, std::size_t i);
 
 /// Returns the cases at all levels except the first. Throws InputError if a case is not valid.
 Cases finer_cases(const LevelSweep& levels, const Cases& cases);

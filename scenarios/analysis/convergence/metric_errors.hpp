@@ -15,7 +15,7 @@ using MetricValues = std::map<std::string, double, std::less<>>;
 
 /// Error estimates of the metrics of one run.
 struct MetricErrors {
-  MetricValues errors = {};  ///< without the metrics that a refined run lacks
+  MetricValues errors = {};  ///< error estimates of the metrics; metrics that a refined run lacks are missing
   std::size_t runs = 0;      ///< number of refined runs, one to three
 };
 

@@ -47,19 +47,20 @@ std::string switching_reason(std::span<const LevelResult> last) {
     const auto& [name, coarse] = last.front().contacts[i];
     for (const LevelResult& level : last.subspan(1)) {
       if (level.contacts[i].second == coarse) continue;
-      return fmt::format("contacts change between the last levels ({} is {:.10g} at {}, {:.10g} at {})", name, coarse,
-                         last.front().setting, level.contacts[i].second, level.setting);
+      return fmt::format("contacts change between the last {} levels ({} is {:.10g} at {}, {:.10g} at {})", last.size(),
+                         name, coarse, last.front().setting, level.contacts[i].second, level.setting);
     }
   }
   return "";
 }
 
-/// Returns why the differences or orders of the last `count` results are not credible; empty if they are. `f`:
+/// Returns why the differences or orders of the last `count` results are not credible; empty if they are credible. `f`:
 /// results, coarsest first. `formal`, `ratio`: as in LevelSweep.
 std::string incredible_reason(std::span<const double> f, std::span<const std::optional<double>> orders,
                               std::size_t count, double formal, double ratio) {
   const std::size_t last = f.size() - 1, from = f.size() >= count ? f.size() - count : 0;
-  // The same deviation of the differences from a power of the step as in the asymptotic range.
+  // The largest credible order. It allows the same relative deviation of the differences as the asymptotic range,
+  // beyond twice the formal order.
   const double most = 2.0 * formal + math::log(1.0 + kAsymptoticWithin) / math::log(ratio);
   for (std::size_t i = from + 2; i <= last; ++i) {
     const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];
@@ -76,7 +77,7 @@ std::string incredible_reason(std::span<const double> f, std::span<const std::op
 /// The levels that count: the finest consecutive levels that have a result and the outcome of the finest level.
 struct CountedLevels {
   std::size_t first = 0;  ///< index of the first level that counts
-  std::vector<double> f;  ///< results of the levels that count, coarsest first
+  std::vector<double> f;  ///< results of the levels that are used, coarsest first
   double largest = 0.0;   ///< largest magnitude of the results
 
   std::size_t count() const { return f.size(); }
@@ -197,7 +198,7 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
   // only the number of landings is comparable.
   constexpr const char* kContactCounts[] = {"landings", "steps_in_contact", "colliding_mean", "rendered_mean"};
   const std::string& path = levels.axis.path;
-  LevelResult result{.setting = fmt::format("{} = {}", path, levels.axis.values[level]),
+  LevelResult result{.setting = fmt::format("{} = {}", path, level_text(levels, level)),
                      .outcome = std::string(outcome_name(summary.end.outcome)),
                      .result = std::nullopt,
                      .state_hash = summary.state_hash};

@@ -52,7 +52,7 @@ struct Convergence {
   std::vector<std::optional<double>> errors;
 };
 
-/// Returns the properties of a metric; the strictest ones if the list does not have the metric.
+/// Returns the properties of a metric; the strictest properties if the list does not have the metric.
 MetricTraits traits_of(const MetricList& list, const std::string& metric);
 
 /// Returns a metric of the run at a level. `summary`: the result of this run.
@@ -61,7 +61,7 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
 /// Returns the convergence of a metric from its results at all levels. Only the finest consecutive levels that have a
 /// result and the same outcome as the finest level count. No order is stated if:
 /// - all runs are bitwise equal;
-/// - the levels have a reason (LevelSweep::no_order);
+/// - LevelSweep::no_order gives a reason;
 /// - fewer than three levels count, or fewer than five for a metric that is not smooth;
 /// - the last two results differ by rounding only;
 /// - contacts switch between the last three levels (of a metric that is not smooth: five);

@@ -146,17 +146,17 @@ void add_cause(const LimitQuestion& question, FieldLimit& limit) {
 }
 
 /// Returns true if the contact of a run lasts in its last quarter and has a linear loop: the same points touch. While a
-/// script or a hand moves the tool, other points may touch, as long as the stiff directions stay.
+/// script or a hand moves the tool, other points may touch, as long as the stiff directions do not change.
 bool contact_lasts(const SettledState& settled, bool is_moved) {
   return settled.last_contact && settled.share_away == 0.0 && !settled.directions_change &&
          (is_moved || !settled.contacts_change);
 }
 
-/// Writes the linear limit of a tool on a surface, or the reason why there is none.
+/// Writes the linear limit of a tool on a surface, or the reason why there is no linear limit.
 void add_linear_limit(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   if (limit.theory || limit.theory_has_none || question.search.smallest || !limit.end.value) return;
   const Scenario scenario = question.at(*limit.end.value).scenario;
-  if (scenario.rendering.late && scenario.rendering.late->any()) {
+  if (has_multi_rate_contacts(scenario)) {
     limit.no_linear = "the contacts are not found in every step";
     return;
   }

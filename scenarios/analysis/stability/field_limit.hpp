@@ -24,20 +24,20 @@ struct IntervalEnd {
   std::optional<double> value;        ///< outermost stable value; empty if no run is stable
   std::optional<JudgedValue> beyond;  ///< nearest unstable value beyond it; empty if the end of the range is stable
 
-  /// Returns |beyond - value|: the limit lies between the two. Empty if one of them is empty.
+  /// Returns |beyond - value|: the limit lies between `value` and `beyond`. Returns nothing if one of them is empty.
   std::optional<double> tolerance() const;
 };
 
 /// The one value of a limit that a user may render; see quoted_limit().
 struct QuotedLimit {
   std::optional<double> value = {};
-  std::string reason = {};  ///< why it is this value, or why there is none
+  std::string reason = {};  ///< why the limit has this value, or why no value can be quoted
 };
 
 /// The result of a search for a stability limit.
 struct FieldLimit {
   QuotedLimit quoted = {};
-  IntervalEnd end;    ///< the limit: the end of the interval that the question asks for
+  IntervalEnd end;    ///< the limit: the end of the interval that the question selects
   IntervalEnd other;  ///< the other end of the interval
   /// Linear limit by the eigenvalues of a step, for springs that stay in contact. If the whole range is stable, it is
   /// infinite, or 0 in a search for the smallest stable value. Empty if the theory does not apply or no value is
@@ -50,7 +50,8 @@ struct FieldLimit {
   /// with the largest stable value in which contact lasts. Dry friction and encoder are ignored; they and loss of
   /// contact can raise the simulated limit above it. Infinite if the whole range is stable.
   std::optional<double> linear;
-  std::string no_linear = {};  ///< why there is neither `theory` nor `linear`; empty if there is, or with `smallest`
+  std::string no_linear = {};  ///< why neither `theory` nor `linear` has a value; empty if one of them has a value, or
+                               ///< with `smallest`
   /// Errors of the bounded metrics at the limit: their largest change when step and point spacing are halved. The
   /// bounds hold with these errors added.
   MetricValues metric_errors = {};
@@ -59,7 +60,8 @@ struct FieldLimit {
   std::optional<double> worst_hand;  ///< WallLimits::worst_hand [N/m]
   std::string no_theory;             ///< WallLimits::no_theory
   SettledState settled;              ///< settled state of the run at the limit
-  std::string unstable_part = {};    ///< unstable_without_wall() at the suspect of `unstable_alone`
+  std::string unstable_part = {};    ///< name of the part that is unstable without contact, such as "hand and device";
+                                     ///< empty unless `unstable_alone`
   std::optional<JudgedValue> own;    ///< the run at the scenario's value; empty if the value is outside of the range
   /// True if the loop of hand and device is unstable without contact (unstable_without_contact()) at the nearest
   /// value beyond the limit, or at the smallest evaluated value if there is no limit.
@@ -82,9 +84,9 @@ struct FieldLimit {
 /// Finds a stability limit. Evaluates 17 equidistant parameters, the scenario's value and the middles of intervals that
 /// are stable in theory, then searches the interval: with find_stable_interval (`beside`), or with
 /// find_verified_interval if LimitQuestion::between. Makes 35 to 120 runs; each failed verification costs up to 56
-/// more. Bounds on metrics hold with the metrics' errors at the limit added, as in `tune`; if they do not, searches
-/// again with bounds that are tighter by these errors. Throws InputError, with the file, if the rule limits vibration
-/// and the sampling rate is 60 Hz or less.
+/// more. Bounds on metrics hold with the metrics' errors at the limit added, as in `tune`; if a metric with its error
+/// violates a bound, searches again with bounds that are tighter by these errors. Throws InputError, with the file, if
+/// the rule limits vibration and the sampling rate is 60 Hz or less.
 FieldLimit field_limit(const LimitQuestion& question);
 
 }  // namespace hapbench

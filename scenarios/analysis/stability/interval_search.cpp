@@ -71,7 +71,7 @@ class TransitionSearch {
     start_ = current && evaluate(*current) ? *current : 0.0;
   }
 
-  /// Returns the first group of stable parameters at or above the start; empty if there is none.
+  /// Returns the first group of stable parameters at or above the start; empty if there is no such group.
   std::optional<Transition> next_transition() const {
     const auto first = std::find_if(evaluated_.lower_bound(start_), evaluated_.end(), is_stable_entry);
     if (first == evaluated_.end()) return std::nullopt;
@@ -217,7 +217,7 @@ StableInterval find_verified_interval(const IntervalSearchOptions& options, Eval
     if (!failing) return interval;
     if (*failing > first) continue;
     // The unstable sample lies below the interval: the interval is shorter than kNearLimit. Search above the interval,
-    // except if the interval has the current value.
+    // except if the interval contains the current value.
     scattered = true;
     const std::optional<double> current = options.current_parameter();
     if (current && first <= *current && *current <= *interval.stable) return {.scattered = true};

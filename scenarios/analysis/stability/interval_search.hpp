@@ -31,7 +31,7 @@ struct IntervalSearchOptions {
 
   /// Returns the value at the parameter `t`, rounded if `whole`.
   double value_at(double t) const;
-  /// Returns the parameter of the current value; empty if there is none.
+  /// Returns the parameter of the current value; empty if `current` is empty.
   std::optional<double> current_parameter() const;
   /// Returns true if the values at two parameters differ by more than the resolution (`whole`: by more than 1).
   bool needs_bisection(double a, double b) const;

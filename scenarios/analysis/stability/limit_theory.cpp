@@ -5,10 +5,9 @@
 #include <iterator>
 #include <limits>
 
-#include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/impedance_device.hpp"
 #include "device_model/theory/linear_loops.hpp"
-#include "scenarios/analysis/stability/linear_contact.hpp"
+#include "scenarios/run/linear_contact.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/scene/environments.hpp"
 
@@ -105,16 +104,6 @@ TheoreticalLimit eigenvalue_limit(const LimitQuestion& question) {
 
 TheoreticalLimit inequality_limit(const LimitQuestion& question) {
   return limit_by(question, has_inequality, keeps_inequality, kScanIntervals);
-}
-
-/// Returns a contact with its stiffness in proportion to K and its damping in proportion to B.
-static LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to) {
-  const double K = to.stiffness / from.stiffness,
-               B = normal_damping(from) > 0.0 ? normal_damping(to) / normal_damping(from) : 1.0;
-  LinearForce& rendered = contact.rendered;
-  rendered = {
-      K * rendered.stiffness, B * rendered.damping, {K * rendered.assumed.stiffness, B * rendered.assumed.damping}};
-  return contact;
 }
 
 std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near) {

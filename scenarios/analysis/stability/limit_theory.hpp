@@ -31,10 +31,10 @@ TheoreticalLimit eigenvalue_limit(const LimitQuestion& question);
 TheoreticalLimit inequality_limit(const LimitQuestion& question);
 
 /// Returns the limit by the eigenvalues of the loop of hand, device and a permanent contact. At each value of the
-/// field, the contact has the derivatives of the rendered force at the equilibrium of the tool (linear_contact),
-/// searched from `near`, the state of a run at the field's value `stable`. The search starts at this value. Infinite if
-/// the whole range above it is stable; zero if no value is stable. Empty if the tool touches nothing at `stable`, or
-/// without has_linear_loop().
+/// field, the contact has the derivatives of the rendered force at the equilibrium of the tool (linear_contact). `near`
+/// is the state of a run at the field's value `stable`; the search for the equilibrium starts from `near`, and the
+/// search for the limit starts at `stable`. Returns infinity if the whole range above `stable` is stable, zero if no
+/// value is stable. Returns nothing if the tool touches nothing at `stable`, or without has_linear_loop().
 std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near);
 
 /// Limits of the stiffness K [N/m] on a two-sided wall that holds the handle of an impedance device.
@@ -43,7 +43,7 @@ struct WallLimits {
   /// Empty if the question does not concern K on such a wall.
   std::vector<std::optional<double>> closed_forms = {};
   std::optional<double> worst_hand = {};  ///< smallest limit over the hands of typical_hands()
-  std::string no_theory = {};             ///< why the eigenvalues of the loop give no limit; empty if they give one
+  std::string no_theory = {};             ///< why the eigenvalues of the loop give no limit; empty if they give a limit
 };
 /// Returns the limits of K if the question varies K on a two-sided wall with an impedance device; otherwise empty
 /// limits.

@@ -40,9 +40,9 @@ class MotionClassifier final : public Observer {
   /// rounding, and the run may be stopped.
   bool at_rest() const noexcept { return !is_moved_ && rows_at_rest_ >= kRowsAtRest; }
   /// Called after a complete run. Returns true if the run is too short to judge: the amplitude of the last quarter is
-  /// at least 1 % of the first quarter's, but the last quarter does not oscillate.
+  /// at least 1 % of the amplitude of the first quarter, but the last quarter does not oscillate.
   bool is_undecided() const noexcept;
-  /// Called after the run. Returns its class. Precondition: the run is complete, diverged, or at_rest().
+  /// Called after the run. Returns the class of its motion. Precondition: the run is complete, diverged, or at_rest().
   MotionClass motion_class(Ending ending) const noexcept;
 
  private:

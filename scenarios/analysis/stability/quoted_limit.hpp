@@ -6,10 +6,10 @@
 namespace hapbench {
 
 /// Returns the value to quote and the reason why it is this value: the simulated or the linear limit, whichever the
-/// field reaches first. Without a value if no limit was found, for example if every run up to the end of the range is
-/// stable and there is no linear limit: the end of a range is no limit. Also without a value if no value is stable by
-/// both. If runs are stable beyond the linear limit, the reason names what was measured in the run at the simulated
-/// limit. Precondition: all other members of `limit` are set.
+/// field reaches first. Returns no value if no limit was found, for example if every run up to the end of the range is
+/// stable and there is no linear limit: the end of a range is no limit. Also returns no value if no value of the field
+/// is stable by both limits. If runs are stable beyond the linear limit, the reason names what was measured in the run
+/// at the simulated limit. Precondition: all other members of `limit` are set.
 QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit);
 
 }  // namespace hapbench

@@ -52,8 +52,7 @@ void RunEndObserver::add_contact(const StepRecord& record) noexcept {
   }
   contacts_change_ |= contact_set_ && *contact_set_ != set;
   contact_set_ = set;
-  last_contact_ = ContactState{record.tool.pose, record.time};
-  if (record.handle_moves_tool) last_contact_->pose.position = record.handle.position;
+  last_contact_ = contact_state(record);
 }
 
 bool RunEndObserver::has_left(const PointShell& shell, double reach) const {

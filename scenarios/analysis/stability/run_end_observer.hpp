@@ -5,6 +5,7 @@
 
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/analysis/stability/slow_bounces.hpp"
+#include "scenarios/run/linear_contact.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/geometry/point_shell.hpp"
@@ -14,12 +15,6 @@
 /// Observes the state at the end of a run, from which the run is judged.
 namespace hapbench {
 
-/// A state of a run in contact, from which linear_contact() searches the equilibrium.
-struct ContactState {
-  ToolPose pose;      ///< of the tool; true position of the handle if the handle moves the tool
-  double time = 0.0;  ///< [s]
-};
-
 /// The settled state of a run: `contacts`, `lambda_max`, `share_away` and the two changes are over the steps of its
 /// last quarter. The last quarter of a run that comes to rest early is the quarter in which it came to rest.
 struct SettledState {
@@ -28,9 +23,9 @@ struct SettledState {
   std::optional<double> vibration;
   double contacts = 0.0;    ///< mean number of rendered contacts, over the steps in contact
   double lambda_max = 0.0;  ///< largest eigenvalue of the mean stiffness tensor S in contact, in units of K
-  std::optional<ContactState> last_contact;  ///< at the last step in contact; empty without contact
+  std::optional<ContactState> last_contact;  ///< state at the last step in contact; empty without contact
   double share_away = 1.0;                   ///< fraction of the steps without contact
-  bool contacts_change = false;              ///< true if other points touch in some step than in the step before
+  bool contacts_change = false;  ///< true if the set of touching points differs between two consecutive steps
   bool directions_change =
       false;             ///< true if S changes by more than 1 % of its norm, so that the stiff directions turn
   bool rests = false;    ///< true if the run was stopped because the tool came to rest
@@ -62,8 +57,8 @@ class RunEndObserver final : public Observer {
  private:
   void add_contact(const StepRecord& record) noexcept;
 
-  bool touches_ = false;     ///< in contact in the last step
-  Vec3 tip_ = Vec3::Zero();  ///< centre of the tip [m]
+  bool touches_ = false;     ///< true if the tool was in contact in the last step
+  Vec3 tip_ = Vec3::Zero();  ///< tip centre in the last step [m]
   Hash64 motion_;
   std::uint64_t steps_;  ///< number of steps of the run
   EvaluationWindow judged_;
@@ -76,7 +71,7 @@ class RunEndObserver final : public Observer {
   std::optional<std::uint64_t> contact_set_;  ///< hash of the rendered contacts of the last step in contact
   bool contacts_change_ = false, directions_change_ = false;
   std::optional<ContactState> last_contact_;
-  bool sticks_ = false;   ///< dry friction of the surface holds the tool in the last step
+  bool sticks_ = false;   ///< true if dry friction of the surface holds the tool in the last step
   double coulomb_ = 0.0;  ///< Coulomb friction of an impedance device [N]
 };
 

@@ -56,7 +56,8 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
   RunEndObserver run_end(scenario);
   SimulationParts parts = assemble(scenario, files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
-  const auto outcome_seen = outcome_observer(scenario, files, parts);
+  // The class of the motion needs the whole run. Once the tool has gone through, its depth needs no search any more.
+  const auto outcome_seen = outcome_observer(scenario, files, parts, nullptr, RunLength::until_failure);
   Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &run_end, outcome_seen.get()});
   const MotionClass motion = classify(simulation, classifier);
   const SettledState settled = run_end.state(classifier.at_rest());

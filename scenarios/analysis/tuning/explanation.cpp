@@ -56,7 +56,7 @@ bool relax(const Trials& trials, const TuneTrial& trial, const std::string& name
   return true;
 }
 
-/// Returns the confirmed relaxation of all limits that a trial violates; empty if there is none.
+/// Returns the confirmed relaxation of all limits that a trial violates; empty if no relaxation is confirmed.
 std::optional<std::string> confirmed(Trials& trials, const TuneLimits& limits, const TuneTrial& trial,
                                      const MetricValues& violated, const IsFeasible& is_feasible) {
   for (const double factor : {1.0, 1.1, 1.5}) {
@@ -99,8 +99,8 @@ bool violates_only(const Trials& trials, const TuneTrial& trial, const std::stri
   });
 }
 
-/// Returns for each limit the smallest confirmed relaxation of this limit alone; if there is none, the relaxations that
-/// the nearest trial needs together.
+/// Returns for each limit the smallest confirmed relaxation of this limit alone; if no single relaxation is confirmed,
+/// the relaxations that the trial `nearest` needs together.
 std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasible& is_feasible) {
   constexpr std::size_t kMaxCompleted = 8;  // trials of each limit that are evaluated further
   const TuneLimits limits = trials.limits();
@@ -127,8 +127,8 @@ std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasib
 
 // ---- Trials whose motion fails
 
-/// Returns the failure that most trials have among the trials that came furthest: a failure of a later variant means
-/// that the scene itself and the earlier variants are settled with the margin.
+/// Returns the most frequent failure among the trials whose failing variant comes last. If a later variant fails, the
+/// scene itself and the earlier variants are settled with the margin.
 const TuneFailure* binding_failure(const Trials& trials) {
   const auto key_of = [](const TuneFailure& f) {
     return std::tuple(f.variant_index, f.binding == "margin", f.variant, f.verdict);

@@ -56,19 +56,22 @@ double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearch
   }
 }
 
-/// Returns the damping ratio of the least damped mode of the loop in contact; empty without contact. `lambda`:
-/// stiffness in contact, in units of K. `over_hands`: also over the hands of typical_hands().
-std::optional<double> smallest_damping_ratio(const Scenario& scenario, double lambda, bool over_hands) {
+/// Returns the damping ratio of the mode with the eigenvalue z of one step; empty for a state of a delay line, and for
+/// a tool that moves freely in some direction.
+std::optional<double> damping_ratio(const std::complex<double>& z) {
+  constexpr double kDelayLine = 1e-9, kFree = 1e-5;  // is_stable_loop() has the same distance of a free tool from 1
+  const double magnitude = math::hypot(z.real(), z.imag()), decay = -math::log(std::max(magnitude, kDelayLine));
+  if (magnitude < kDelayLine || std::norm(z - 1.0) < kFree * kFree || decay == 0.0) return std::nullopt;
+  return decay / math::hypot(decay, math::atan2(z.imag(), z.real()));
+}
+
+/// Returns the damping ratio of the least damped mode of the loops in contact; empty without loops.
+std::optional<double> smallest_damping_ratio(const std::vector<NamedLoop>& loops) {
   std::optional<double> smallest;
-  if (!(lambda > 0.0)) return smallest;
-  for (const auto& [hand, step] : contact_step_matrices(scenario, lambda, over_hands)) {
-    for (const std::complex<double>& z : eigenvalues(step)) {
-      const double magnitude = math::hypot(z.real(), z.imag());
-      if (magnitude < 1e-9) continue;  // this is a state of a delay line and not a mode
-      const double decay = -math::log(magnitude), ratio = decay / math::hypot(decay, math::atan2(z.imag(), z.real()));
-      if (decay != 0.0) smallest = std::min(smallest.value_or(1.0), ratio);
-    }
-  }
+  for (const NamedLoop& loop : loops)
+    for (const Eigen::MatrixXd& step : loop.matrices)
+      for (const std::complex<double>& z : eigenvalues(step))
+        if (const auto ratio = damping_ratio(z)) smallest = std::min(smallest.value_or(1.0), *ratio);
   return smallest;
 }
 
@@ -102,7 +105,8 @@ TuneMargins margins_of(Trials& trials, const TuneTrial& choice) {
   margins.gain = gain_margin(trials, choice);
   const Scenario scenario = trials.load(choice.setting, choice.stiffness).scenario;
   margins.delay_samples = delay_margin(trials, choice, scenario);
-  margins.damping_ratio = smallest_damping_ratio(scenario, trials.lambda_of(choice), trials.over_hands());
+  margins.damping_ratio =
+      smallest_damping_ratio(trials.loops_in_contact(scenario, choice.contact, trials.over_hands()));
   return margins;
 }
 

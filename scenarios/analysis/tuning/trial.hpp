@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "algorithms/rendering_config.hpp"
+#include "device_model/theory/linear_loops.hpp"
 #include "scenarios/analysis/convergence/metric_errors.hpp"
 
 /// A trial of `tune`: a setting with a stiffness K, and whether it is feasible.
@@ -32,18 +34,26 @@ struct TuneSetting {
 /// Returns the fields of a setting as text, such as ", zeta = 0.3, 0.2 kg".
 std::string setting_text(const TuneSetting& setting);
 
-/// The run of a trial that fails, apart from limits on metrics.
+/// A failure of a trial other than a violated limit on metrics: a run or a linear loop that is not stable, or a force
+/// that is zero.
 struct TuneFailure {
-  std::string binding;  ///< as TuneTrial::binding
-  std::string why;      ///< as TuneTrial::why
+  std::string binding;  ///< the violated constraint, as in TuneTrial::binding
+  std::string why;      ///< the reason for the user, as in TuneTrial::why
   /// Name of the variant; empty for the scene itself.
   std::string variant = {};
-  std::string family = {};  ///< family of the variant; empty for the scene itself
+  std::string family = {};  ///< variant set that contains the variant (kFamilies); empty for the scene itself
   /// Name of the verdict on the run, such as "no_contact"; empty if the linear loop is unstable.
   std::string verdict = {};
   bool too_soft = false;          ///< true if a larger K may help
-  bool unstable_at_K = false;     ///< the linear loop is unstable at K itself, so that no margin helps
-  std::size_t variant_index = 0;  ///< 0: the scene itself
+  bool unstable_at_K = false;     ///< true if the linear loop is unstable at K itself, so that no margin helps
+  std::size_t variant_index = 0;  ///< index of the variant; 0: the scene itself
+};
+
+/// The contact of a run, linearised at the equilibrium of the tool. Empty if the tool ended without contact, or without
+/// a linear loop.
+struct ContactOfTrial {
+  std::optional<LinearContact> linear = {};
+  RenderingConfig rendering = {};  ///< stiffness and damping of `linear`
 };
 
 /// A setting with a stiffness, evaluated for one law. G: the required gain margin.
@@ -59,23 +69,24 @@ struct TuneTrial {
   bool too_soft = false;      ///< true if a larger K may keep the constraint
   bool settled = false;       ///< true if the run of the scene itself is settled at K
   bool limits_alone = false;  ///< true if only limits on metrics are violated, as far as the trial was evaluated
-  MetricValues metrics = {};  ///< of the run of the scene itself; empty if not measured
+  MetricValues metrics = {};  ///< metrics of the run of the scene itself; empty if not measured
   /// Worst value of each limited metric over the evaluated variants, and the low-vibration numbers of the scene itself.
   MetricValues worst = {};
-  std::map<std::string, std::string> worst_text = {};  ///< `worst`, for the user
+  std::map<std::string, std::string> worst_text = {};  ///< the values in `worst` as text for the user
   /// Error estimates of `metrics` (metric_errors); empty unless all limits are kept, or nearly, without errors.
   MetricValues error = {};
 
   // How far the trial was evaluated. A trial is evaluated further only while it keeps the limits.
   std::size_t judged = 0;    ///< number of variants whose motion was judged, the scene itself first
-  bool is_measured = false;  ///< the limits were measured in the scene's own run
-  bool is_complete = false;  ///< the limits were measured in all variants
-  bool has_error = false;    ///< `error` was computed
+  bool is_measured = false;  ///< true if the limits were measured in the scene's own run
+  bool is_complete = false;  ///< true if the limits were measured in all variants
+  bool has_error = false;    ///< true if `error` was computed
   std::size_t runs = 0;      ///< number of simulations of the trial
   /// The variant whose motion fails and how it fails; empty if no motion fails. The failure does not depend on limits.
   std::optional<TuneFailure> failure = {};
   /// Largest eigenvalue of the mean stiffness tensor S at the end of the scene's run, in units of K.
   double lambda_max = 0.0;
+  ContactOfTrial contact = {};  ///< at the end of the scene's run at K
 
   bool feasible() const { return binding.empty(); }
   /// Returns the largest rendered stiffness [N/m].

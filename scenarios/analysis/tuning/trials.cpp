@@ -132,7 +132,7 @@ TuneTrial& Trials::mutable_trial(const TuneSetting& setting, double stiffness) {
     trial.stiffness = stiffness;
   }
   if (requested_.insert(&trial).second) {
-    search_runs_ += trial.runs;  // as if this search had made the runs
+    search_runs_ += trial.runs;  // counted as if this search had made the runs
     judge(trial);
   }
   return trial;
@@ -185,13 +185,13 @@ const TuneTrial& Trials::completed(const TuneTrial& trial) {
 
 std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t count,
                                              const std::function<std::string(std::size_t run)>& more) {
-  const double lambda = lambda_of(trial), K = trial.stiffness;
+  const double K = trial.stiffness;
   std::vector<std::string> why(count);
   in_parallel(nullptr, count, [&](std::size_t i) {
     // Check the linear loop in contact, then run.
     const SceneVariant& variant = variants_[i % variants_.size()];
     const CheckedScenario scene = checked(load(trial.setting, K, variant, more(i)));
-    if (unstable_loop(scene.scenario(), lambda, K, scene.scenario().rendering.stiffness, over_hands_)) {
+    if (unstable_loop(scene.scenario(), trial.contact, K, scene.scenario().rendering.stiffness, over_hands_)) {
       why[i] = "the contact loop is unstable" + with(variant);
       return;
     }
@@ -250,7 +250,7 @@ void Trials::evaluate(TuneTrial& trial, bool in_full) {
   constexpr double kNear = 1.5;  // factor beyond a limit from which errors are estimated, so that a search can approach
   // The scene itself: its loop, its motion, its metrics.
   if (trial.judged == 0 && !trial.failure) {
-    if (springs_lambda_) trial.failure = loop_failure(trial, 0, *springs_lambda_);
+    if (springs_lambda_) trial.failure = loop_failure(trial, 0, {});
     if (!trial.failure) judge_motion(trial, 0, 1);
   }
   if (trial.failure) return;
@@ -265,45 +265,71 @@ void Trials::evaluate(TuneTrial& trial, bool in_full) {
 
 /// Returns the first hand with which the loop in contact is unstable at a stiffness between K and `most` [N/m]; empty
 /// if all loops are stable. Samples the stiffness in steps of 10 %.
-std::optional<std::string> Trials::unstable_loop(Scenario scenario, double lambda, double K, double most,
-                                                 bool over_hands) const {
+std::optional<std::string> Trials::unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K,
+                                                 double most, bool over_hands) const {
   constexpr double kStiffnessStep = 1.1;
-  for (double at = most; lambda > 0.0 && at * kStiffnessStep > K; at /= kStiffnessStep) {
+  for (double at = most; at * kStiffnessStep > K; at /= kStiffnessStep) {
     scenario.rendering.stiffness = at;
-    for (const auto& [hand, step] : contact_step_matrices(scenario, lambda, over_hands))
-      if (!is_stable_step(step)) return hand;
+    const std::vector<NamedLoop> loops = loops_in_contact(scenario, contact, over_hands);
+    if (loops.empty()) return std::nullopt;
+    for (const auto& [hand, matrices] : loops)
+      if (!is_stable_loop(matrices)) return hand;
   }
   return std::nullopt;
 }
 
+std::vector<NamedLoop> Trials::loops_in_contact(const Scenario& scenario, const ContactOfTrial& contact,
+                                                bool over_hands) const {
+  if (springs_lambda_) return wall_loops(scenario, *springs_lambda_, over_hands);
+  if (!contact.linear) return {};
+  return contact_loops(scenario, scaled(*contact.linear, contact.rendering, scenario.rendering), over_hands);
+}
+
+/// Returns the contact of a settled run, near the last step in which the tool was in contact.
+ContactOfTrial Trials::contact_of(const CheckedScenario& scene, const RunStability& run) const {
+  ContactOfTrial contact;
+  contact.rendering = scene.scenario().rendering;
+  if (springs_lambda_ || !run.settled.last_contact || !has_linear_loop(scene.scenario()) ||
+      has_multi_rate_contacts(scene.scenario()))
+    return contact;
+  if (const auto at_rest = linear_contact(scene, shell_, *run.settled.last_contact)) contact.linear = at_rest->contact;
+  return contact;
+}
+
 /// Returns the failure of a variant whose loop in contact is unstable between K and G K; empty if it is stable.
-std::optional<TuneFailure> Trials::loop_failure(const TuneTrial& trial, std::size_t variant, double lambda) const {
+std::optional<TuneFailure> Trials::loop_failure(const TuneTrial& trial, std::size_t variant,
+                                                const ContactOfTrial& contact) const {
   const double K = trial.stiffness, G = question_.margin;
   const Scenario scenario = load(trial.setting, K, variants_[variant]).scenario;
-  const auto hand = unstable_loop(scenario, lambda, K, G * K, over_hands_);
+  const auto hand = unstable_loop(scenario, contact, K, G * K, over_hands_);
   if (!hand) return std::nullopt;
   const std::string own = springs_lambda_ ? "the device alone" : variants_[variant].name;
   const std::string who = hand->empty() ? own : *hand + with(variants_[variant]);
   TuneFailure failure{"margin", fmt::format("between K and {:g} K the contact loop is unstable with {}", G, who)};
   failure.variant = hand->empty() && variant == 0 ? "" : who;
-  // A loop that is unstable only with other hands fails because of the family "hands".
-  const bool is_own = unstable_loop(scenario, lambda, K, G * K, false).has_value();
+  // A loop that is unstable only with other hands fails because of the variant set "hands".
+  const bool is_own = unstable_loop(scenario, contact, K, G * K, false).has_value();
   failure.family = is_own ? variants_[variant].family : "hands";
-  failure.unstable_at_K = unstable_loop(scenario, lambda, K, K, over_hands_).has_value();
+  failure.unstable_at_K = unstable_loop(scenario, contact, K, K, over_hands_).has_value();
   failure.variant_index = variant;
   return failure;
 }
 
 /// Runs the variants [first, last) at K and at G K. Records the first run that is not settled.
 void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
-  std::vector<RunStability> judged(2 * (last - first));  // of each variant at K, then at G K
+  std::vector<RunStability> judged(2 * (last - first));  // verdicts on each variant at K, then at G K
+  std::vector<ContactOfTrial> contacts(last - first);    // of each variant at K
   in_parallel(&trial, judged.size(), [&](std::size_t job) {
     const double gain = job % 2 != 0 ? question_.margin : 1.0;
     const CheckedScenario scene = checked(load(trial.setting, gain * trial.stiffness, variants_[first + job / 2]));
     judged[job] = stability_of(scene, shell_, rule_of(scene.scenario()));
+    if (job % 2 == 0) contacts[job / 2] = contact_of(scene, judged[job]);
   });
   trial.judged = last;
-  if (first == 0) trial.lambda_max = judged[0].settled.lambda_max;
+  if (first == 0) {
+    trial.lambda_max = judged[0].settled.lambda_max;
+    trial.contact = contacts[0];
+  }
   for (std::size_t i = first; i < last && !trial.failure; ++i) {
     const RunStability &at_K = judged[2 * (i - first)], &at_GK = judged[2 * (i - first) + 1];
     const auto fail = [&](const char* binding, const std::string& where, const RunStability& run) {
@@ -321,7 +347,7 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
     if (i == 0) trial.settled = true;
     if (!is_stable(at_GK.verdict)) return fail("margin", fmt::format("at {:g} K: ", question_.margin), at_GK);
     // For springs in permanent contact, evaluate() checked the loop before the runs.
-    if (!springs_lambda_) trial.failure = loop_failure(trial, i, at_K.settled.lambda_max);
+    if (!springs_lambda_) trial.failure = loop_failure(trial, i, contacts[i - first]);
   }
 }
 

@@ -11,10 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/analysis/tuning/scene_variants.hpp"
 #include "scenarios/analysis/tuning/trial.hpp"
 #include "scenarios/analysis/tuning/tune_question.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_loop.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 /// The trials of one law: settings with stiffnesses, each evaluated in every variant of the scene.
@@ -82,7 +84,7 @@ class Trials {
   void evaluate_and_measure(const TuneSetting& setting, double stiffness);
   /// Returns all trials of all searches, by setting and K.
   const std::map<std::pair<TuneSetting, double>, TuneTrial>& all() const { return all_; }
-  /// Returns the feasible trial of this search with the largest K; null without any.
+  /// Returns the feasible trial of this search with the largest K; null if no trial is feasible.
   const TuneTrial* stiffest_feasible() const;
   /// Returns the stiffnesses of the feasible trials of a setting in this search [N/m].
   std::vector<double> feasible_stiffnesses(const TuneSetting& setting) const;
@@ -92,8 +94,10 @@ class Trials {
   /// Evaluates a trial that violates limits as if it kept them: its motion in all variants, its metrics and their
   /// errors.
   const TuneTrial& completed(const TuneTrial& trial);
-  /// Returns the largest eigenvalue of the stiffness tensor in contact, in units of K.
-  double lambda_of(const TuneTrial& trial) const { return springs_lambda_.value_or(trial.lambda_max); }
+  /// Returns the loops of a scenario in a contact (contact_loops()), with its own stiffness and damping. In a scene of
+  /// springs in permanent contact, the loops on their stiffest direction. Empty without contact.
+  std::vector<NamedLoop> loops_in_contact(const Scenario& scenario, const ContactOfTrial& contact,
+                                          bool over_hands) const;
   /// Makes `count` runs of a trial that cycle through the variants. `more`: additional override of a run, such as a
   /// larger K. Returns the first run that is not settled or whose loop in contact is unstable between the trial's K and
   /// the run's K; empty if all runs are settled.
@@ -140,9 +144,11 @@ class Trials {
                       const std::string& more = {}) const;
   void in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job);
   MetricValues metrics_of(const Result& run) const;
-  std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double K, double most,
+  ContactOfTrial contact_of(const CheckedScenario& scene, const RunStability& run) const;
+  std::optional<std::string> unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K, double most,
                                            bool over_hands) const;
-  std::optional<TuneFailure> loop_failure(const TuneTrial& trial, std::size_t variant, double lambda) const;
+  std::optional<TuneFailure> loop_failure(const TuneTrial& trial, std::size_t variant,
+                                          const ContactOfTrial& contact) const;
   void judge_motion(TuneTrial& trial, std::size_t first, std::size_t last);
   void measure_scene(TuneTrial& trial);
   void measure_variants(TuneTrial& trial);
@@ -161,7 +167,8 @@ class Trials {
   TuneLimits limits_;
   std::vector<SceneVariant> variants_;  ///< the scene itself first
   std::shared_ptr<const PointShell> shell_;
-  std::optional<double> springs_lambda_;  ///< lambda_of() for springs in permanent contact; empty otherwise
+  /// Largest eigenvalue of the stiffness tensor of springs in permanent contact, in units of K; empty otherwise.
+  std::optional<double> springs_lambda_;
   double smallest_unstable_ = std::numeric_limits<double>::infinity();
   std::map<std::pair<TuneSetting, double>, TuneTrial> all_;
   std::set<const TuneTrial*> requested_;  ///< trials of this search

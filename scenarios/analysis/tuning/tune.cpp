@@ -22,14 +22,15 @@ void evaluate_along_stiffness(Trials& trials, const TuneTrial& choice) {
   }
 }
 
-/// Searches with the current limits until a choice passes its verification; `any`: a choice that need not be the
-/// stiffest. Returns an empty choice if no trial is feasible.
+/// Searches with the current limits until a choice passes its verification; `any`: true if the choice need not be the
+/// stiffest feasible trial. Returns an empty choice if no trial is feasible.
 std::optional<TuneTrial> verified_choice(Trials& trials, bool any, TunedLaw& law) {
   constexpr int kMaxVerifications = 60;
   TuneSearch search(trials);
   for (int i = 0; i < kMaxVerifications; ++i) {
     const std::optional<TuneTrial> choice = any ? search.first_feasible() : search.best();
-    // A choice that fails its verification refutes trials of similar settings, at last only trials of its own setting.
+    // A choice that fails its verification refutes trials of similar settings. If no choice is left, every refutation
+    // is restricted to its own setting, and the search is repeated.
     if (!choice && trials.restrict_refutations()) continue;
     if (choice && !is_verified(trials, *choice, law)) continue;
     if (choice) {
@@ -41,8 +42,8 @@ std::optional<TuneTrial> verified_choice(Trials& trials, bool any, TunedLaw& law
   return std::nullopt;
 }
 
-/// Explains why nothing is feasible. The searches with other limits may find a trial that keeps all limits after all:
-/// then it is the choice.
+/// Explains why nothing is feasible. If the searches with other limits find a trial that keeps all limits, this trial
+/// becomes the choice.
 void explain_or_find(Trials& trials, TunedLaw& law) {
   const TuneLimits limits = trials.limits();
   const auto is_feasible = [&](const TuneLimits& other) {

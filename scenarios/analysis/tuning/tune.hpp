@@ -18,8 +18,8 @@ namespace hapbench {
 struct TunedLaw {
   std::string algorithm;
   std::optional<TuneTrial> choice;  ///< the best feasible setting and its K; empty if no setting is feasible
-  /// Constraint (TuneTrial::binding) that a slightly larger K violates; without a choice, the constraint that the
-  /// nearest trial violates.
+  /// Constraint (TuneTrial::binding) that a slightly larger K violates. Without a choice, the violated constraint that
+  /// explain() selects.
   std::string binding;
   std::string why;    ///< reason of the violation, for the user
   std::string relax;  ///< without a choice: which limit to relax, and by how much; or which option to change
@@ -43,14 +43,13 @@ struct TunedLaw {
 ///   diagnosis.hpp).
 /// - the run of the scene itself renders a force.
 /// - every variant is settled at G K.
-/// - the loop in contact has stable eigenvalues from K to G K (contact_step_matrices; with every hand of
+/// - the loop in contact has stable eigenvalues from K to G K (contact_loops(); with every hand of
 ///   typical_hands() if a hand holds an impedance device).
 ///
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified
 /// (verification.hpp). If the verification fails, the search is repeated without this choice. If nothing is feasible,
-/// searches with relaxed limits confirm the relaxations that are named; a trial of theirs that keeps all limits is the
-/// choice. Throws InputError for a
-/// scene without a free position, and Stopped.
+/// searches with relaxed limits confirm the relaxations that are named; a trial of these searches that keeps all limits
+/// becomes the choice. Throws InputError for a scene without a free position, and Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench

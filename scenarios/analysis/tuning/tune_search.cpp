@@ -63,10 +63,11 @@ std::optional<TuneTrial> TuneSearch::first_feasible() {
   return best_;
 }
 
-/// Finds the best trial of the initial settings; if there is none, a feasible trial by finer searches.
+/// Finds the best trial of the initial settings. If no initial setting is feasible, finds a feasible trial by finer
+/// searches.
 void TuneSearch::search_settings() {
-  constexpr std::size_t kStarts = 3;  // descents, from different settings
-  // A trial that this search knows already may be the only feasible trial.
+  constexpr std::size_t kStarts = 3;  // number of descents, which start from different settings
+  // A trial that was evaluated earlier in this search may be the only feasible trial.
   best_.reset();
   if (const TuneTrial* known = trials_.stiffest_feasible()) improve(TuneTrial(*known).setting);
   for (const TuneSetting& setting : settings_) improve(setting);
@@ -103,8 +104,8 @@ Range TuneSearch::stiffnesses() const {
   return {whole.from, whole.to / trials_.question().margin, true};
 }
 
-/// Searches a feasible K of a setting above the best K so far. If there is one, makes the trial with the largest such
-/// K the best trial and returns true.
+/// Searches a feasible K of a setting above the best K so far. If such a K exists, makes the trial with the largest
+/// such K the best trial and returns true.
 bool TuneSearch::improve(const TuneSetting& setting) {
   // Search only above the best K.
   IntervalSearchOptions options{.range = stiffnesses(), .resolution = kTuneResolution};
@@ -123,7 +124,8 @@ bool TuneSearch::improve(const TuneSetting& setting) {
   const StableInterval interval = find_stable_interval(options, scan, holds, false);
   if (!interval.stable) return false;
   best_ = trials_.trial_at(setting, options.value_at(*interval.stable));
-  // The stiffness of a known trial may be rounded differently here.
+  // If rounding makes this stiffness differ from the stiffness of a known feasible trial, use the largest feasible
+  // stiffness.
   if (!best_->feasible()) best_ = trials_.trial_at(setting, trials_.feasible_stiffnesses(setting).back());
   if (interval.beyond) {
     beyond_ = trials_.trial_at(setting, options.value_at(*interval.beyond));
@@ -134,7 +136,7 @@ bool TuneSearch::improve(const TuneSetting& setting) {
   return true;
 }
 
-/// Adds the feasible trials of a setting that this search knows between the scan's values.
+/// Adds the feasible trials of a setting, evaluated earlier in this search, to the values of the scan.
 void TuneSearch::add_known(const TuneSetting& setting, const IntervalSearchOptions& options,
                            EvaluatedParameters& scan) const {
   const auto [from, to, logarithmic] = options.range;
@@ -147,7 +149,7 @@ bool TuneSearch::is_too_soft(const TuneSetting& setting, const IntervalSearchOpt
 }
 
 /// Searches between two neighbouring values of the scan, of which the lower is too soft and the upper too stiff.
-/// Returns the parameter of a feasible value; empty if there is none.
+/// Returns the parameter of a feasible value; empty if no feasible value is found.
 std::optional<double> TuneSearch::window(const TuneSetting& setting, const IntervalSearchOptions& options,
                                          const EvaluatedParameters& scan) {
   for (auto at = scan.begin(); std::next(at) != scan.end(); ++at) {
@@ -160,7 +162,7 @@ std::optional<double> TuneSearch::window(const TuneSetting& setting, const Inter
 }
 
 /// Bisects between a parameter that is too soft and a parameter that is too stiff. Returns the first feasible
-/// parameter; empty if there is none.
+/// parameter; empty if no feasible parameter is found.
 std::optional<double> TuneSearch::feasible_between(const TuneSetting& setting, const IntervalSearchOptions& options,
                                                    double soft, double stiff) {
   while (options.needs_bisection(soft, stiff)) {

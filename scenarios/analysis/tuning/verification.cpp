@@ -48,6 +48,8 @@ bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law)
   const double G_K = trials.question().margin * choice.stiffness;
   // Reject a choice without a contiguous stable interval, or with a limit below G K.
   if (!law.edge.end.value) return refute(trials, choice, G_K, "stable and unstable values alternate");
+  if (law.edge.linear && *law.edge.linear < G_K)
+    return refute(trials, choice, *law.edge.linear, "the contact loop is unstable");
   if (!law.edge.end.beyond) return false;
   const auto& [K, verdict] = *law.edge.end.beyond;
   if (K < G_K) return refute(trials, choice, K, std::string(run_verdict_name(verdict)));

@@ -13,7 +13,7 @@ namespace hapbench {
 
 /// Tip position and rendered force of a run at the times of every n-th step.
 struct SampledMotion {
-  std::vector<Vec3> position;  ///< of the tip centre [m]
+  std::vector<Vec3> position;  ///< position of the tip centre [m]
   std::vector<Vec3> force;     ///< rendered force [N]
   Ending ending = Ending::completed;
 };

@@ -23,8 +23,8 @@ namespace {
 
 constexpr const char* kIntegratorPath = "integrator.type";
 
-/// The reference solution of a curve uses another integrator than the curve: the first of these, or the second for
-/// curves of the first.
+/// The reference solution of a curve uses another integrator than the curve: the first integrator of this list, or the
+/// second for the curve of the first integrator.
 const IntegratorEntry* const kReferenceIntegrators[] = {&kRk4, &kVelocityVerlet};
 
 std::string reference_integrator(const std::string& of_curve) {
@@ -40,7 +40,8 @@ struct StudyRun {
   auto operator<=>(const StudyRun&) const = default;
 };
 
-/// Returns the number of levels between the smallest time step of the settings and that of the reference solution.
+/// Returns the number of levels between the smallest time step of the settings and the time step of the reference
+/// solution.
 std::size_t reference_levels(double ratio) {
   return static_cast<std::size_t>(std::ceil(math::log(kReferenceRefinement) / math::log(ratio) - 1e-9));
 }
@@ -120,7 +121,7 @@ class Motions {
   void run(const JobOptions& jobs) {
     std::vector<std::pair<const StudyRun, SampledMotion>*> all;
     for (auto& entry : motions_) all.push_back(&entry);
-    // The longest runs first, so that no thread has a long run left at the end.
+    // Start the longest runs first, so that no thread has a long run left at the end.
     std::ranges::stable_sort(all, [](auto* a, auto* b) { return a->first.level > b->first.level; });
     const std::size_t shifts = study_.problems();
     shifted_.resize(shifts);
@@ -143,7 +144,8 @@ class Motions {
   }
 
   /// Returns the error of the reference solution of a curve: the largest of its difference from the next coarser level
-  /// and its differences from the reference solutions of the other curves. Nothing if they ended differently.
+  /// and its differences from the reference solutions of the other curves. Returns nothing if the solutions ended
+  /// differently.
   std::optional<MotionDifference> reference_error(std::size_t problem, const std::string& curve) const {
     const SampledMotion& reference = this->reference(problem, curve);
     std::vector<const SampledMotion*> others = {
@@ -170,7 +172,7 @@ class Motions {
 
   const Study& study_;
   std::map<StudyRun, SampledMotion> motions_;
-  std::vector<SampledMotion> shifted_;  ///< by problem
+  std::vector<SampledMotion> shifted_;  ///< shifted motions, by problem
 };
 
 /// Marks the Pareto front of a problem and its knee. Errors that are not resolved do not count: their true value is
@@ -211,7 +213,7 @@ std::string reference_text(const Study& study) {
     if (std::ranges::find(names, reference_integrator(curve)) == names.end())
       names.push_back(reference_integrator(curve));
   return fmt::format("{} at {} = {}", fmt::join(names, " and "), kStepPath,
-                     study.levels().axis.values[study.reference_level()]);
+                     level_text(study.levels(), study.reference_level()));
 }
 
 }  // namespace

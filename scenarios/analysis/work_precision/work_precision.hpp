@@ -22,12 +22,12 @@ namespace hapbench {
 /// The question of a work-precision study.
 struct WorkPrecisionQuestion {
   ScenarioText scenario;
-  std::vector<std::string> overrides = {};  ///< as in --set, for all runs
+  std::vector<std::string> overrides = {};  ///< overrides for all runs, as in --set
   /// Fields that vary. The axis `integrator.type` gives the curves of a problem, every other axis gives problems.
   std::vector<Axis> over = {};
-  std::size_t levels = 4;   ///< number of time steps; the coarsest is that of the scenario
+  std::size_t levels = 4;   ///< number of time steps; the coarsest is the time step of the scenario
   double ratio = 2.0;       ///< ratio of two neighbouring time steps; an integer
-  double max_error = 1e-6;  ///< error that is asked for: rms of the tip's position [m]
+  double max_error = 1e-6;  ///< requested error: rms of the tip's position [m]
 };
 
 /// A reference solution uses a time step that is at least this factor smaller than the smallest step of the settings.
@@ -57,10 +57,10 @@ struct WorkPrecisionProblem {
   std::string name;
   std::string reference = {};  ///< description of the reference solutions
   double grown_shift = 0.0;    ///< rms distance [m] of two runs of the smallest step that start kInitialShift apart
-  bool is_predictable = true;  ///< grown_shift is at most the error that is asked for
+  bool is_predictable = true;  ///< true if grown_shift is at most the requested error
   std::vector<WorkPrecisionSetting> settings = {};
 
-  /// Returns the cheapest setting with a position error of at most `max_error`; null if there is none.
+  /// Returns the cheapest setting with a position error of at most `max_error`; null if no setting has such an error.
   const WorkPrecisionSetting* cheapest_below(double max_error) const;
 };
 

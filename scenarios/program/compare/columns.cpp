@@ -11,6 +11,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/batch/number_with_error.hpp"
 #include "scenarios/batch/ranking.hpp"
+#include "scenarios/batch/sweep_columns.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/compare/times.hpp"
 #include "scenarios/scene/metric_sections.hpp"
@@ -53,6 +54,7 @@ Columns<ComparedRun> comparison_columns(bool seeds) {
     columns.add(
         {{metric.name, metric.unit, metric.meaning, [name](const Row& r) { return value_of(r.run.metrics, name); }}});
   }
+  columns.add({{"ended_at_s", "s", kEndedAtMeaning, [](const Row& r) { return cell_of(r.run.end.ended_at); }}});
   return columns;
 }
 
@@ -79,7 +81,8 @@ Columns<RankingEntry> ranking_columns(bool seeds) {
       {"rank", "1",
        "rank of the algorithm in this scenario by this metric: 1 + the number of algorithms that are better by more "
        "than 0.1 % and by more than the sum of both errors; algorithms with failed runs come last, ordered by the "
-       "number of failed runs; empty if the metric has no better direction",
+       "number of failed runs; empty if the metric has no better direction, if the error of the mean is not smaller than "
+       "the mean, or if all algorithms would have the same rank",
        &Row::rank, under("rank")},
       {"common_seeds", "1",
        "number of seeds over which mean and spread are taken: seeds with which every algorithm succeeded that "

@@ -42,6 +42,7 @@ struct CompareOptions : CommonOptions {
   ComparisonQuestion question;  ///< if it has no algorithms, all algorithms are compared
   bool errors = false;
   bool time = false;
+  bool full = false;
   std::string replay;  ///< log of a haptic loop; empty: the scenarios' own motions
 };
 
@@ -57,6 +58,7 @@ Comparison planned(const CompareOptions& options) {
     fail_in_option("--jitter", fmt::format("got {}; allowed: 0 ... {} m", question.jitter, kMaxJitter));
   question.scenarios = find_scenarios(options.scenarios);
   question.overrides = options.overrides;
+  question.length = options.full ? RunLength::full : RunLength::until_failure;
   question.algorithms = question.algorithms.empty() ? algorithm_names() : chosen_algorithms(question.algorithms);
   return planned(question);
 }
@@ -110,28 +112,32 @@ void write_runs(const Comparison& comparison, const std::vector<Result>& reports
 /// Reports the ranking in ranking.csv, in the printed text and in the JSON.
 void report_ranking(const Ranking& league, const Layout& layout, Report& report) {
   report.write("ranking.csv", ranking_columns(false), league.standings);
-  report.say(ranking_text(league, layout));
+  report_ranking_text(league, layout, report);
   report.json()["standings"] = ranking_columns(false).json_list(league.standings);
   Json& laws = report.json()["laws"] = law_ranking_columns().json_list(league.laws);
   for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
 }
 
-/// Returns the table of the runs of one scene. `errors`: errors are reported, so that the sentence on vibration
+/// Reports the table of the runs of one scene. `errors`: errors are reported, so that the sentence on vibration
 /// is omitted.
-std::string runs_text(const std::vector<Result>& reports, const Ranking& league, bool errors, const Layout& layout) {
-  std::string text = reports.front().name + "\n\n" + run_table(reports, false, layout) + fidelity_text(reports, layout);
-  if (!errors) text += vibration_text(league, layout);
-  if (layout.in_full()) text += step_time_text(reports, layout);
-  return text;
+void report_runs(const std::vector<Result>& reports, const Ranking& league, bool errors, const Layout& layout,
+                 Report& report) {
+  report.say(reports.front().name + "\n\n");
+  report.show(run_table(reports, false, layout));
+  report_fidelity(reports, layout, report);
+  report.say(unranked_text(league, layout));
+  if (!errors) report.say(vibration_text(league, layout));
+  if (layout.in_full()) report.say(step_time_text(reports, layout));
 }
 
 /// Throws InputError for options that have no meaning with --replay.
 int compare_replay(const CompareOptions& options, ProgramContext& context) {
-  if (options.errors || options.time || options.question.seeds != 1 || options.question.jitter != 0.0 ||
+  if (options.errors || options.time || options.full || options.question.seeds != 1 || options.question.jitter != 0.0 ||
       !options.metrics.empty())
-    fail_in_option("--replay",
-                   "got it together with --errors, --time, --seeds, --jitter or --by; allowed: --algorithms, --set, "
-                   "--out, --json, --quiet");
+    fail_in_option(
+        "--replay",
+        "got it together with --errors, --time, --full, --seeds, --jitter or --by; allowed: --algorithms, --set, "
+        "--out, --json, --quiet");
   if (options.scenarios.size() != 1)
     fail_in_option("--replay", fmt::format("got {} scenarios; allowed: one", options.scenarios.size()));
   const std::vector<std::string> algorithms =
@@ -167,8 +173,8 @@ int compare(const CompareOptions& given, ProgramContext& context) {
   // The wide table of a single scene shows times, and concurrent runs would be slower. Therefore make one run at a
   // time unless --jobs is given.
   if (options.jobs == 0 && !ranks && layout.in_full()) timed.threads = 1;
-  const std::vector<Result> reports =
-      run_all(comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); });
+  const std::vector<Result> reports = run_all(
+      comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); }, comparison.length);
   // Rank the algorithms and write the results of all runs.
   const Ranking league = rank_comparison(comparison, reports, ranks ? options.metrics : printed_metrics(reports));
   write_runs(comparison, reports, context, report);
@@ -177,18 +183,13 @@ int compare(const CompareOptions& given, ProgramContext& context) {
   if (ranks) {
     report_ranking(league, layout, report);
   } else {
-    report.say(runs_text(reports, league, options.errors, layout));
+    report_runs(reports, league, options.errors, layout, report);
   }
   if (options.errors) {
     // Repeat the runs with finer steps and spacings for the errors of their metrics.
     const FinerRuns finer(comparison, reports, jobs);
     for (std::size_t s = 0; s < league.scenarios.size(); ++s)
       report_errors(league, finer, s, ranks || layout.in_full(), report, layout);
-    report.say("\n" +
-               layout.wrapped(
-                   "<: smaller by more than the sum of both errors; ~: not distinguishable; ?: a finer run has another "
-                   "outcome, so that no error is known",
-                   0));
   }
   if (options.time) report_times(comparison, reports, jobs, layout, report);
   report.say(fmt::format("\nresults in {}\n", out.string()));
@@ -222,18 +223,24 @@ void add_compare(CommandLine& line) {
               "render the log of a haptic loop with each law instead of the scenario's motion (scenarios/LOOP.md)");
   command.flag(
       "--errors", options.errors,
-      "repeat all runs at half and a quarter of the time step and of the point spacing, to print errors and check "
-      "which ranks hold; about 9 times the work");
+      "repeat all runs at half and a quarter of the time step and of the point spacing, to print the errors of the "
+      "metrics and the order that is significant at these errors; about 9 times the work");
   command.flag(
       "--time", options.time,
-      "also measure the processor time of each law, in runs without observers, and rank the laws by it; writes "
-      "comparison_timing.csv");
+      "also measure the processor time of a step with each law, and rank the laws by it; one run at a time, without "
+      "observers, the smallest of five repetitions; writes comparison_timing.csv");
+  add_table(command, options.output);
+  command.flag(
+      "--full", options.full,
+      "make all steps of runs that fail; otherwise such a run ends when it has failed for good, and its metrics "
+      "are empty");
   command.footer(
       "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
-      "of laws that are better by more than 0.1 % and by more than the errors of both. Laws with a failed run rank "
-      "last.\n\n"
+      "of laws whose mean is better by more than 0.1 % and by more than the errors of both; the spread over seeds does "
+      "not count. Laws with a failed run rank last.\n\n"
       "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "
-      "along, or does not end as its scenario expects.\n\n"
+      "along, or does not end as its scenario expects. It ends when it has failed for good (hapbench describe \"early "
+      "end\").\n\n"
       "Files: comparison.csv (one row per run), ranking.csv (one row per scenario, law and metric), and each run in "
       "OUT/[SCENARIO/]ALGORITHM[/seed_K]; the parts in brackets exist if there are several. An earlier comparison in "
       "the folder is removed, other files stay.\n\n"

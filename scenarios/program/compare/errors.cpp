@@ -63,6 +63,7 @@ std::vector<NumberWithError> numbers_of(const Ranking& league, const FinerRuns& 
 void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report,
                    const Layout& layout) {
   Table table{{{"algorithm", false}}};
+  bool has_order = false, has_ties = false, has_unknown = false;  // true if the signs <, ~ and ? are printed
   for (const std::string& algorithm : league.algorithms) table.rows.push_back({algorithm});
   std::string sentences;
   // Evaluate each metric. The JSON has all metrics. Unless `all` is true, the printed table has only the
@@ -78,17 +79,28 @@ void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t sc
     const bool known = heading != std::end(kRunHeadings);
     if (!all && (!known || heading->wide)) continue;
     const double factor = known ? heading->factor : 1.0;
-    table.columns.push_back({known ? heading->title : metric});
+    std::string title = known ? heading->title : metric;
+    table.columns.push_back({.title = title, .unit = metric_unit(metric)});
     for (std::size_t a = 0; a < numbers.size(); ++a) {
       const auto& [value, error] = numbers[a];
       const auto shown_error = error ? std::optional(factor * *error) : error;
       table.rows[a].push_back(value ? with_error_text(factor * *value, shown_error) : "-");
+      has_unknown |= value && !error;
     }
-    sentences += layout.wrapped(fmt::format("{}: {}", metric, says), 0);
+    // Name the metric by its heading in one line.
+    std::ranges::replace(title, '\n', ' ');
+    sentences += layout.wrapped(fmt::format("{}: {}", title, says), 0);
+    has_order |= says.find(" < ") != std::string::npos;
+    has_ties |= says.find(" ~ ") != std::string::npos;
   }
-  report.say(fmt::format(
-      "\nerror estimates: {}\n\n{}\n{}\n{}", league.scenarios[scenario], table.text(layout.prose_width()), sentences,
-      layout.wrapped(fmt::format("+-: error estimated by refinement: {}", finer.refined(scenario)), 0)));
+  std::string signs = fmt::format("+-: error, estimated from runs with finer values: {}", finer.refined(scenario));
+  if (has_order) signs += "\n<: smaller by more than the sum of both errors";
+  if (has_ties) signs += "\n~: the difference is within the sum of both errors";
+  if (has_unknown) signs += "\n?: unknown, because a finer run has another outcome";
+  table.caption = fmt::format("error estimates: {}", league.scenarios[scenario]);
+  report.say(fmt::format("\n{}\n\n", table.caption));
+  report.show(std::move(table), layout.prose_width());
+  report.say(fmt::format("\n{}\n{}", sentences, layout.wrapped(signs, 0)));
 }
 
 std::string vibration_text(const Ranking& league, const Layout& layout) {
@@ -106,7 +118,8 @@ std::string vibration_text(const Ranking& league, const Layout& layout) {
     if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
   if (failing.size() == league.algorithms.size())
     return "\n" + layout.wrapped("every run failed: there is no vibration to compare", 0);
-  // Compare the force; if a law without failures has no value of it, compare the tool.
+  // Compare the vibration of the force. If a law without failures has no value of this metric, compare the vibration of
+  // the tool.
   for (const auto& [of, metric, threshold] : kVibrations) {
     const auto metric_index =
         static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
@@ -123,7 +136,8 @@ std::string vibration_text(const Ranking& league, const Layout& layout) {
   }
   if (!failing.empty()) says += fmt::format("; failed: {}", fmt::join(failing, ", "));
   const bool has_order = failing.size() + 1 < league.algorithms.size();
-  return "\n" + layout.wrapped(says + (has_order ? "; --errors checks this order with finer runs" : ""), 0);
+  return "\n" + layout.wrapped(
+                    says + (has_order ? "; add --errors to check this order with finer time steps and points" : ""), 0);
 }
 
 }  // namespace hapbench

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "scenarios/input/shell_words.hpp"
 #include "scenarios/program/compare/columns.hpp"
+#include "scenarios/program/compare/law_metric_table.hpp"
 #include "scenarios/program/names.hpp"
 
 namespace hapbench {
@@ -35,19 +39,19 @@ std::vector<RankingEntry> ranked(const Ranking& league) {
   return all;
 }
 
-/// Number of rankings in which a law has a rank, and number of rankings in which it is first.
-struct RankCount {
-  std::size_t rankings = 0, first = 0;
-};
+/// Returns the number of pairs of scenario and metric in which a law has a rank.
+std::size_t ranking_count(const Ranking& league) {
+  std::set<std::pair<std::string, std::string>> rankings;
+  for (const RankingEntry& standing : league.standings)
+    if (standing.rank) rankings.emplace(standing.scenario, standing.metric);
+  return rankings.size();
+}
 
-RankCount rank_count(const Ranking& league, const std::string& algorithm) {
-  RankCount count;
-  for (const RankingEntry& standing : league.standings) {
-    if (standing.algorithm != algorithm || !standing.rank) continue;
-    ++count.rankings;
-    if (*standing.rank == 1) ++count.first;
-  }
-  return count;
+/// Returns the number of rankings in which a law is first.
+std::size_t first_ranks(const Ranking& league, const std::string& algorithm) {
+  return static_cast<std::size_t>(std::ranges::count_if(league.standings, [&](const RankingEntry& standing) {
+    return standing.algorithm == algorithm && standing.rank == 1;
+  }));
 }
 
 bool is_ranked(const Ranking& league) {
@@ -59,35 +63,43 @@ const char* no_ranks_reason(const Ranking& league) {
   if (std::ranges::count(league.failed, false) == 0) return "every run failed";
   const auto has_direction = [](Better better) { return better != Better::none; };
   if (std::ranges::none_of(league.better, has_direction)) return "none of these metrics has a better direction";
-  return "no successful run has a value of these metrics";
+  const auto has_mean = [](const RankingEntry& standing) { return standing.mean.has_value(); };
+  if (std::ranges::none_of(league.standings, has_mean)) return "no successful run has a value of these metrics";
+  return "the differences are within the errors or 0.1 %";
 }
 
 std::string first_ranks_text(const Ranking& league) {
   constexpr std::size_t kMaxNamed = 5;
   if (!is_ranked(league)) return std::string("nothing is ranked: ") + no_ranks_reason(league);
-  std::size_t rankings = 0;  // equal for all laws
+  const std::size_t rankings = ranking_count(league);
   std::vector<std::string> firsts;
+  bool is_everywhere = true;  // true if a law alone is first in all rankings
   for (const LawRankingEntry& law : league.laws) {
-    const RankCount count = rank_count(league, law.algorithm);
-    rankings = count.rankings;
-    if (count.first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count.first));
+    const std::size_t count = first_ranks(league, law.algorithm);
+    if (count > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count));
+    is_everywhere = is_everywhere && (count == 0 || count == rankings);
   }
-  if (firsts.size() == 1)
-    return fmt::format("{} alone has rank 1 in all {} rankings (scenario and metric)", league.laws.front().algorithm,
-                       rankings);
-  return fmt::format("no algorithm alone has rank 1 in all {} rankings (scenario and metric); times with rank 1: {}",
-                     rankings, fmt::join(first_few(firsts, kMaxNamed), ", "));
+  if (firsts.empty()) return "no algorithm has rank 1, because its metric is only known to be smaller than its error";
+  const std::string where =
+      rankings == 1 ? "" : fmt::format(" in each of the {} rankings (one per scenario and metric)", rankings);
+  if (firsts.size() == 1 && is_everywhere)
+    return fmt::format("only {} has rank 1{}", league.laws.front().algorithm, where);
+  return fmt::format("no algorithm has rank 1 alone{}; rank 1: {}", where,
+                     fmt::join(first_few(firsts, kMaxNamed), ", "));
 }
 
 /// Summarizes which algorithms are first, and whether the seeds give a spread.
-std::string verdict(const Ranking& league, const Layout& layout) {
-  const std::string text = layout.wrapped(first_ranks_text(league), 0);
+std::string verdict(const Ranking& league, const std::string& folder, const Layout& layout) {
+  std::string text = layout.wrapped(first_ranks_text(league), 0);
   if (!is_ranked(league)) return text;
   if (league.seeds < 2) return text + "one seed: the spread is unknown; --seeds K estimates it\n";
   std::vector<std::string> alike;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s)
     if (!league.depends_on_seed[s]) alike.push_back(league.scenarios[s]);
-  if (alike.empty()) return text + "\"hapbench report\" shows the differences between algorithms, seed by seed\n";
+  if (alike.empty())
+    return text + layout.wrapped(fmt::format("\"hapbench report {}\" compares the algorithms in pairs, seed by seed",
+                                             shell_file(folder)),
+                                 0);
   return text +
          layout.wrapped(
              fmt::format(
@@ -99,18 +111,37 @@ std::string verdict(const Ranking& league, const Layout& layout) {
 
 }  // namespace
 
-std::string ranking_text(const Ranking& league, const Layout& layout) {
+std::string unranked_text(const Ranking& league, const Layout& layout) {
+  const bool has_unranked = std::ranges::count(league.algorithms, kSharesReference) > 0 &&
+                            std::ranges::count(league.is_rigid_reference, true) > 0;
+  if (!has_unranked) return "";
+  return layout.wrapped(
+      fmt::format(
+          "{} is not ranked by fidelity: it renders by the same constraints as the reference force, rigid contact",
+          kSharesReference),
+      0);
+}
+
+void report_ranking_text(const Ranking& league, const Layout& layout, Report& report) {
+  if (report.prints_tables()) return report.show(law_metric_table(league));
   constexpr std::size_t kMaxPrinted = 60;
-  const std::string table =
-      league.standings.size() <= kMaxPrinted || layout.in_full()
-          ? ranking_columns(league.seeds > 1).text(ranked(league), layout)
-          : fmt::format("{} ranks are in ranking.csv; --wide prints them\n", league.standings.size());
-  const std::string note =
-      is_ranked(league)
-          ? layout.wrapped("rank: 1 is best; equal ranks mean that the difference is within the errors or 0.1 %", 0)
-          : "";
-  return fmt::format("{}\n{}\n{}{}", table, law_ranking_columns().text(league.laws, layout), note,
-                     verdict(league, layout));
+  if (league.standings.size() <= kMaxPrinted || layout.in_full()) {
+    report.show(ranking_columns(league.seeds > 1).table(ranked(league), "ranks", layout.in_full()));
+  } else {
+    report.say(fmt::format("{} ranks are in ranking.csv; --wide prints them\n", league.standings.size()));
+  }
+  report.say("\n");
+  report.show(law_ranking_columns().table(league.laws, "mean ranks", layout.in_full()));
+  report.say("\n");
+  if (is_ranked(league))
+    report.say(layout.wrapped(
+        std::string(
+            "rank: 1 is best; algorithms share a rank if their means differ by at most 0.1 % or the errors of the "
+            "metric; no rank (-): only a bound of the number is known (<=), or all ranks would be equal") +
+            (league.seeds > 1 ? "; the spread over the seeds does not count" : ""),
+        0));
+  report.say(unranked_text(league, layout));
+  report.say(verdict(league, report.folder().string(), layout));
 }
 
 }  // namespace hapbench

@@ -76,10 +76,12 @@ void report_times(const Comparison& comparison, const std::vector<Result>& repor
   }
   const Columns<LawTime> columns = time_columns(scenes > 1);
   report.write(kTimesFile, columns, rows);
-  report.say("\n" + columns.text(rows, layout) +
-             layout.wrapped("processor time in runs without observers and files, one run at a time: smallest of five "
-                            "repetitions; equal ranks mean that the difference is within the spreads",
-                            0));
+  report.say("\n");
+  report.show(columns.table(rows, "processor time of the laws", layout.in_full()));
+  report.say(
+      layout.wrapped("processor time in runs without observers and files, one run at a time: smallest of five "
+                     "repetitions; equal ranks mean that the difference is within the spreads",
+                     0));
   if (report.json().is_array()) report.json() = {{"runs", std::move(report.json())}};
   report.json()["times"] = columns.json_list(rows);
 }

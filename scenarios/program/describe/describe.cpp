@@ -78,14 +78,15 @@ std::vector<Description> described_headings(const Index& index, const std::strin
                   name, nearest_name_hint(name, names)));
 }
 
-/// Returns the meanings of a name that the program itself does not define. Throws InputError if there are none.
+/// Returns the meanings of a name that the program itself does not define. Throws InputError if the name has no
+/// meaning.
 std::vector<Description> other_meanings(const Index& index, const std::string& name, const Layout& layout) {
   if (const std::optional<Description> place = describe_thesis_location(name, layout)) return {*place};
   // Find fields with this name in any object: "torque" finds record.torque.
   std::vector<Description> found =
       described(index, [&](const IndexEntry& item) { return item.kind == "field" && item.name.ends_with("." + name); });
   if (!found.empty()) return found;
-  // Find scenarios, studies, claims and choices of this name.
+  // Find scenarios, studies, claims and assumptions of this name.
   const Index in_folders = folder_index(layout);
   found = described(in_folders, [&](const IndexEntry& item) {
     return item.name == name || (item.kind == "claim" && lower_case(item.name) == lower_case(name));
@@ -119,6 +120,9 @@ int describe(const DescribeOptions& options, ProgramContext& context) {
   if (meanings.empty()) meanings = described_headings(index, options.name);
   const bool is_group = std::ranges::find(kScenarioGroups, options.name) != std::end(kScenarioGroups);
   if (meanings.empty() && is_group) return list(options, context);
+  if (!options.output.table.empty())
+    fail_in_option("--table",
+                   fmt::format("got it with \"{}\"; allowed: with a list, such as claims or algorithms", options.name));
   if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
   const bool is_known = !meanings.empty();
   if (!is_known) meanings = other_meanings(index, options.name, layout);
@@ -138,8 +142,9 @@ void add_describe(CommandLine& line) {
   auto [command, options] = line.command("describe", "Explain a name, or list what exists.", describe);
   command.add("name <name>", options.name, "what to explain, see below; without it, everything is listed");
   command.add("--grep <text>", options.grep, "list only entries with this text in name, description or source");
+  add_table(command, options.output);
   command.footer(
-      "A list: algorithms, scenarios, studies, devices, metrics, columns, claims, terms, or a group of scenarios such "
+      "A list: algorithms, scenarios, studies, devices, metrics, columns, claims, assumptions, terms, or a group of scenarios such "
       "as thesis.\n\n"
       "Scenario files: \"scenario\" (all fields), a field such as rendering.limits (unit, allowed values, default), or "
       "\"schema\".\n\n"
@@ -148,7 +153,7 @@ void add_describe(CommandLine& line) {
       "Concepts: \"stability\", \"diagnosis\", or a term of the glossary such as \"linear limit\".\n\n"
       "Models: the name of a force law, depth model, integrator, environment, hand, device, scenario or study.\n\n"
       "Thesis: a claim such as C5, an assumption such as planar.first_tilt, a place such as \"Fig. A.2\", or "
-      "\"choices_schema\".");
+      "\"assumptions_schema\".");
 }
 
 }  // namespace hapbench

@@ -25,7 +25,7 @@ bool is_object(const ValueGuide& value) {
   return value.choices.empty() && value.schema.is_object() && value.schema.contains("properties");
 }
 
-/// Returns the default as JSON, with spaces where a line may break; empty if there is none.
+/// Returns the default as JSON, with spaces where a line may break; empty if the field has no default.
 std::string default_of(const FieldGuide& field) {
   std::string text;
   if (field.presence == Presence::has_default)
@@ -91,6 +91,15 @@ const FieldGuide* find_field(const std::string& path) {
   const std::vector<ScenarioField> all = scenario_fields();
   const auto found = std::ranges::find(all, path, &ScenarioField::path);
   return found == all.end() ? nullptr : found->field;
+}
+
+std::string field_unit(const std::string& path) {
+  // The text of the allowed values ends with the unit, as in "a number > 0 and <= 10 [m]".
+  const FieldGuide* field = find_field(path);
+  if (field == nullptr || !field->value.allowed.ends_with(']')) return "1";
+  const std::string& allowed = field->value.allowed;
+  const std::size_t begin = allowed.rfind('[') + 1;
+  return allowed.substr(begin, allowed.size() - begin - 1);
 }
 
 Description describe_field(const std::string& path, const Layout& layout) {

@@ -9,9 +9,12 @@
 /// The descriptions of the fields of scenario files.
 namespace hapbench {
 
-/// Returns the field at a dotted path; null if there is none. If several types of an object have the field,
+/// Returns the field at a dotted path; null if no field has this path. If several types of an object have the field,
 /// returns the field of the first type.
 const FieldGuide* find_field(const std::string& path);
+
+/// Returns the unit of the numbers of a field, such as "N/m"; "1" for numbers without a unit and for other fields.
+std::string field_unit(const std::string& path);
 
 /// Describes the field at a dotted path, with one description for each group of types that share the field's
 /// schema.

@@ -1,11 +1,14 @@
 #include "scenarios/program/describe/folders.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -62,22 +65,71 @@ Json list_on_record(const std::string& list) {
   return with_file(file, [&] { return read_json(file).at(list); });
 }
 
-/// Returns the entry of a claim or choice of the reference results.
-IndexEntry on_record(const char* kind, const Json& item, const Layout& layout) {
+/// Returns the entry of a claim or assumption of the reference results, with the members that `titled` gives to its
+/// text.
+IndexEntry on_record(const char* kind, const Json& item, const std::string& summary,
+                     const std::function<Json(Json)>& titled, const Layout& layout) {
   const auto describe = [=] {
-    Json titled = {{"kind", fmt::format("{}, as recorded in results/reference", kind)}, {"name", item.at("id")}};
-    titled.update(item);
-    if (const Json& counts = item.value("robustness", Json()); !counts.is_null())
-      titled["sureness"] =
-          fmt::format("{}: {} of {} tested assumption sets give this verdict", item.at("sureness").get<std::string>(),
-                      counts.at("holds").dump(), counts.at("judged").dump());
-    // Omit the members that the text gives in another form, and data for programs.
-    for (const char* member : {"id", "cases", "choices_reach_it", "ours", "robustness", "timing"}) titled.erase(member);
-    return Description{entry_text(titled, layout), item};
+    Json named = {{"kind", fmt::format("{}, as recorded in results/reference", kind)}, {"name", item.at("id")}};
+    named.update(item);
+    named.erase("id");
+    return Description{entry_text(titled(named), layout), item};
   };
-  Json more = Json::object();
-  if (item.contains("claim")) more = {{"verdict", item.at("verdict")}, {"source", item.at("place")}};
-  return {kind, item.at("id").get<std::string>(), item.value("claim", ""), describe, more};
+  return {kind, item.at("id").get<std::string>(), summary, describe};
+}
+
+/// Returns the cases of a claim's record of sensitivity that have another verdict, as texts.
+std::vector<std::string> moved_cases(const Json& claim) {
+  std::vector<std::string> texts;
+  for (const Json& one : claim.at("cases_moved")) {
+    const auto text = [&one](const char* key) { return one.at(key).get<std::string>(); };
+    texts.push_back(fmt::format("{} = {}: {}{}{}", text("assumption"), text("value"), text("verdict"),
+                                text("number").empty() ? "" : ", ", text("number")));
+  }
+  return texts;
+}
+
+IndexEntry recorded_claim(const Json& claim, const Layout& layout) {
+  const auto titled = [](Json named) {
+    const auto tried = named.at("cases_tried").get<std::size_t>();
+    if (tried > 0) {
+      const std::vector<std::string> moved = moved_cases(named);
+      named["sensitivity"] =
+          fmt::format("{} other values of assumptions tried; {}", tried,
+                      moved.empty() ? "none moves the verdict" : fmt::format("{}", fmt::join(moved, "; ")));
+    }
+    if (named.contains("revised")) {
+      const Json before = named.at("revised");
+      named["rule before"] =
+          fmt::format("{} ({}); revised because {}", before.at("rule").get<std::string>(),
+                      before.at("verdict").get<std::string>(), before.at("reason").get<std::string>());
+    }
+    // Move the measured cases under their title, and omit data for programs.
+    named["cases"] = named.at("measured");
+    for (const char* member : {"measured", "ours", "timing", "added", "deciders", "cases_tried", "cases_moved",
+                               "revised", "published_short"})
+      named.erase(member);
+    return named;
+  };
+  IndexEntry entry = on_record("claim", claim, claim.at("claim").get<std::string>(), titled, layout);
+  entry.more = {{"verdict", claim.at("verdict")}, {"source", claim.at("place")}};
+  for (const char* member : {"robustness", "published", "measured"}) entry.more[member] = claim.value(member, "");
+  return entry;
+}
+
+/// Returns the entry of an assumption, with the claims whose verdict it decides.
+IndexEntry recorded_assumption(const Json& assumption, const Json& claims, const Layout& layout) {
+  std::string decided;
+  for (const Json& claim : claims) {
+    const auto deciders = claim.at("deciders").get<std::vector<std::string>>();
+    if (std::ranges::find(deciders, assumption.at("id").get<std::string>()) == deciders.end()) continue;
+    decided += (decided.empty() ? "" : ", ") + claim.at("id").get<std::string>();
+  }
+  const auto titled = [decided](Json named) {
+    named["decides"] = decided.empty() ? "no verdict" : decided;
+    return named;
+  };
+  return on_record("assumption", assumption, assumption.at("what").get<std::string>(), titled, layout);
 }
 
 }  // namespace
@@ -102,8 +154,10 @@ Index folder_index(const Layout& layout) {
   for (const BundledScenario& bundled : bundled_scenarios()) index.push_back(named_scenario(bundled, layout));
   for (const BundledStudy& study : bundled_studies())
     index.push_back({"study", study.name, study.summary, [study, layout] { return describe_study(study, layout); }});
-  for (const Json& claim : list_on_record("claims")) index.push_back(on_record("claim", claim, layout));
-  for (const Json& choice : list_on_record("choices")) index.push_back(on_record("choice", choice, layout));
+  const Json claims = list_on_record("claims");
+  for (const Json& claim : claims) index.push_back(recorded_claim(claim, layout));
+  for (const Json& assumption : list_on_record("assumptions"))
+    index.push_back(recorded_assumption(assumption, claims, layout));
   std::ranges::move(glossary_index(layout), std::back_inserter(index));
   return index;
 }

@@ -5,13 +5,13 @@
 #include "scenarios/program/describe/index.hpp"
 #include "scenarios/program/layout.hpp"
 
-/// Descriptions of the files installed beside the program: scenarios, studies, claims, choices, glossary terms.
+/// Descriptions of the files installed beside the program: scenarios, studies, claims, assumptions, glossary terms.
 namespace hapbench {
 
 /// Describes a scenario by its description, its source and the values that its file sets. The JSON has all
 /// fields. Throws InputError.
 Description describe_scenario(const std::filesystem::path& file, const Layout& layout);
-/// Returns entries for the bundled scenarios and studies, the recorded claims and choices, and the terms of the
+/// Returns entries for the bundled scenarios and studies, the recorded claims and assumptions, and the terms of the
 /// glossary. Throws InputError.
 Index folder_index(const Layout& layout);
 

@@ -7,7 +7,7 @@
 #include "scenarios/program/describe/result_names.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
-#include "scenarios/thesis/choices.hpp"
+#include "scenarios/thesis/assumptions.hpp"
 
 namespace hapbench {
 namespace {
@@ -21,9 +21,9 @@ constexpr std::pair<const char*, Description (*)(const Layout&)> kSections[] = {
     {"algorithm", describe_algorithms},
     {"profile", describe_profile},
     {"scenario", describe_scenario_fields},
-    {"choices_schema",
+    {"assumptions_schema",
      [](const Layout&) {
-       return Description{"", choices_schema()};
+       return Description{"", assumptions_schema()};
      }},
     {"diagnosis", describe_diagnosis},
     {"schema",
@@ -43,7 +43,7 @@ Index program_index(const Layout& layout) {
   add_presets(index, layout);
   for (const auto& [name, describe] : kSections)
     index.push_back({"section", name, "", [describe = describe, layout] { return describe(layout); }});
-  add_metric_terms(index, layout);
+  add_metric_terms(index, tables, layout);
   for (const DescribedTable& table : tables)
     if (!table.file.empty())
       index.push_back({"file", table.file, "", [table, layout] { return describe_table(table, layout); }});

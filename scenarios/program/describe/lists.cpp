@@ -19,10 +19,10 @@
 namespace hapbench {
 namespace {
 
-/// The kinds of names that have lists, in the order of the lists.
+/// The kinds of names that `describe` lists, in the order in which it prints them.
 constexpr const char* kListed[] = {"algorithm", "depth model", "stage",  "integrator", "environment",
                                    "tool",      "hand",        "device", "preset",     "scenario",
-                                   "study",     "metric",      "claim",  "term"};
+                                   "study",     "metric",      "claim",  "assumption", "term"};
 
 std::string group_of(const IndexEntry& item) {
   return item.more.value("group", "");
@@ -38,7 +38,7 @@ std::string short_summary(const std::string& text, const Layout& layout) {
     const bool is_last = dot + 1 == text.size();
     if (is_last || (text[dot + 1] == ' ' && !text.substr(0, dot).ends_with("Fig"))) end = dot;
   }
-  const std::string sentence = text.substr(0, end);
+  std::string sentence = text.substr(0, end);
   const std::size_t room = std::max<std::size_t>(layout.width(), kColumn + 10) - kColumn;
   if (sentence.size() <= room) return sentence;
   return sentence.substr(0, sentence.rfind(' ', room - 4)) + " ...";
@@ -67,6 +67,29 @@ std::string list_text(const Index& all, bool only_names, const Layout& layout) {
   return text;
 }
 
+/// Returns the list as a table: kind (if there are several), name, summary, and the further members of the JSON.
+Table list_table(const Index& all) {
+  const bool is_one_kind = std::ranges::all_of(all, [&all](const IndexEntry& i) { return i.kind == all.front().kind; });
+  std::vector<std::string> members;
+  for (const IndexEntry& item : all)
+    for (const auto& member : item.more.items()) append_new(members, {member.key()});
+  Table table{.caption = is_one_kind ? list_name(all.front().kind) : "names"};
+  if (!is_one_kind) table.columns.push_back({"kind", false});
+  table.columns.push_back({is_one_kind ? all.front().kind : "name", false});
+  table.columns.push_back({"summary", false});
+  for (const std::string& member : members) table.columns.push_back({member, false});
+  for (const IndexEntry& item : all) {
+    auto& row = table.rows.emplace_back();
+    if (!is_one_kind) row.push_back(item.kind);
+    row.insert(row.end(), {item.name, item.summary});
+    for (const std::string& member : members) {
+      const Json value = item.more.value(member, Json(""));
+      row.push_back(value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+  return table;
+}
+
 }  // namespace
 
 std::span<const char* const> listed_kinds() {
@@ -88,7 +111,8 @@ int list(const DescribeOptions& options, ProgramContext& context) {
   const bool of_everything = options.name.empty() && options.grep.empty();
   const std::string pattern = lower_case(options.grep);
   const auto is_requested = [&](const IndexEntry& item) {
-    if (of_everything) return item.kind != "metric" && item.kind != "claim" && item.kind != "term";
+    if (of_everything)
+      return item.kind != "metric" && item.kind != "claim" && item.kind != "assumption" && item.kind != "term";
     const std::string text = item.name + " " + item.summary + " " + item.more.value("source", "");
     return (options.name.empty() || list_name(item.kind) == options.name || group_of(item) == options.name) &&
            lower_case(text).find(pattern) != std::string::npos;
@@ -100,6 +124,10 @@ int list(const DescribeOptions& options, ProgramContext& context) {
     for (const IndexEntry& item : index)
       if (item.kind == kind && is_requested(item)) all.push_back(item);
   if (all.empty()) throw InputError(fmt::format("--grep: no name or text contains \"{}\"", options.grep));
+  if (!options.output.table.empty()) {
+    print_tables(context, options.output, std::vector{list_table(all)});
+    return kSuccess;
+  }
   Json json = Json::array();
   for (const IndexEntry& item : all) {
     Json& entry = json.emplace_back(Json{{"kind", item.kind}, {"name", item.name}, {"summary", item.summary}});
@@ -107,7 +135,7 @@ int list(const DescribeOptions& options, ProgramContext& context) {
   }
   const char* more =
       of_everything
-          ? ", \"hapbench describe KIND\" lists one kind with summaries; further kinds: metrics, claims, terms"
+          ? ", \"hapbench describe KIND\" lists one kind with summaries; further kinds: metrics, claims, assumptions, terms"
           : "";
   print(context, options.output,
         list_text(all, of_everything, layout) + "\n" +

@@ -1,12 +1,16 @@
 #include "scenarios/program/describe/result_names.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/program/result_tables.hpp"
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/thesis/claims.hpp"
@@ -38,27 +42,34 @@ constexpr PrintedName kPrintedNames[] = {
     {"plot.svg", kResultFile, "picture written by plot"},
     {"figures.json", kResultFile, "figures drawn by scripts/figures, with their captions and source files"},
     {"claims.json", kResultFile, "ledger written by reproduce: claims, measured values, verdicts, robustness"},
-    {"claims.md", kResultFile, "ledger written by reproduce, as a table to read"},
-    {"choices.json", kResultFile,
-     "assumptions: what the thesis leaves open, and the value that the reproduction uses; \"describe choices_schema\" "
-     "explains the format"},
-    {"robustness.csv", kResultFile,
-     "written by reproduce --choices: one row per assumption set, with its assumptions and the verdicts"},
-    {"robustness.json", kResultFile,
-     "for each claim: number of assumption sets that give the recorded verdict, and the assumptions that decide it"},
+    {"claims.md", kResultFile, "ledger written by reproduce, to read"},
+    {"claim_pages.md", kResultFile, "written by reproduce: a section for each claim, with rule, cases and sensitivity"},
+    {"assumptions.json", kResultFile,
+     "assumptions: what the thesis leaves open, and the value that the reproduction uses; \"describe "
+     "assumptions_schema\" explains the format"},
+    {"sensitivity.json", kResultFile,
+     "written by reproduce --sensitivity: verdict and number of each claim for each plausible value of each assumption, "
+     "one at a time"},
     {"quantum", "number of import",
      "resolution of a recording along an axis: smallest step between the recorded coordinates (quantum_m with "
      "--json); K times this step is the force step that the recording alone causes"}};
 
 Json printed_names() {
   Json all = Json::array();
-  const auto add = [&all](std::string_view name, const char* kind, const char* meaning) {
+  const auto add = [&all](std::string_view name, const char* kind, std::string_view meaning) {
     all.push_back({{"kind", kind}, {"name", name}, {"meaning", meaning}});
   };
   for (const auto& [name, kind, meaning] : kPrintedNames) add(name, kind, meaning);
-  for (const OutcomeInfo& outcome : outcome_infos()) add(outcome.name, "outcome of a run", outcome.meaning);
+  for (const OutcomeInfo& outcome : outcome_infos()) {
+    const std::string early =
+        outcome.ends_early == nullptr ? "" : fmt::format("; compare and sweep end such a run {}", outcome.ends_early);
+    add(outcome.name, "outcome of a run", outcome.meaning + early);
+  }
   for (const RunVerdictText& verdict : run_verdict_texts())
     add(verdict.name, "class of motion, of limit and stability", verdict.meaning);
+  for (const Diagnosed& rule : diagnosis_rules())
+    add(rule.rule, "rule of the diagnosis",
+        fmt::format("applies above {:g}{}: {}", rule.threshold, rule.unit == "1" ? "" : " " + rule.unit, rule.number));
   for (const auto& [name, meaning, mark] : kVerdicts) add(name, "verdict on a claim", meaning);
   return all;
 }
@@ -100,10 +111,15 @@ Description describe_printed_names(const Layout& layout) {
   return {"terms that the program prints\n" + entry_text(json, layout), json};
 }
 
-void add_metric_terms(Index& index, const Layout& layout) {
-  for (const Metric& metric : all_metrics())
-    add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}},
-             layout);
+void add_metric_terms(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout) {
+  for (const Metric& metric : all_metrics()) {
+    Json json = {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}};
+    for (const DescribedTable& table : tables)
+      for (const auto& column : table.columns)
+        if (!table.file.empty() && column.name == metric.name && column.meaning == metric.meaning)
+          json["files"].push_back(table.file);
+    add_term(index, json, layout);
+  }
 }
 
 void add_columns(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout) {
@@ -111,6 +127,9 @@ void add_columns(Index& index, const std::vector<DescribedTable>& tables, const 
   for (const DescribedTable& table : tables) {
     if (table.file.empty()) continue;
     for (const auto& [name, unit, meaning] : table.columns) {
+      // The entry of a metric names the files with this column.
+      const Metric* metric = find_metric(all_metrics(), name);
+      if (metric != nullptr && metric->meaning == meaning) continue;
       Json column = {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}};
       const auto same = std::ranges::find_if(all, [&column](const Json& known) {
         return known["name"] == column["name"] && known["meaning"] == column["meaning"];

@@ -17,10 +17,10 @@ Description describe_table(const DescribedTable& table, const Layout& layout);
 Description describe_tables(const Layout& layout);
 /// Describes all words that the program prints, such as outcomes and verdicts.
 Description describe_printed_names(const Layout& layout);
-/// Adds the metrics of summary.json.
-void add_metric_terms(Index& index, const Layout& layout);
-/// Adds the columns of all files. Columns with equal names and meanings share an entry, which lists their
-/// files.
+/// Adds the metrics of summary.json, each with the files of `tables` that have a column with its name and meaning.
+void add_metric_terms(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout);
+/// Adds the columns of all files that add_metric_terms() does not add. Columns with equal names and meanings share an
+/// entry, which lists their files.
 void add_columns(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout);
 /// Adds the words that the program prints.
 void add_printed_names(Index& index, const Layout& layout);

@@ -17,34 +17,41 @@
 #include "scenarios/program/describe/folders.hpp"
 #include "scenarios/program/describe/lists.hpp"
 #include "scenarios/program/text.hpp"
+#include "scenarios/scene/field_files.hpp"
 
 namespace hapbench {
 namespace {
 
-/// A location in the thesis: "Fig. A.2" has the kind "Fig." and the number "A.2". The kind is "Fig.", "Table"
-/// or "section"; empty: any kind.
+/// A location in the thesis: "Fig. A.2" has the kind "Fig." and the number "A.2". The kind is "Fig.", "Table", "Eq." or
+/// "section"; empty: any kind.
 struct ThesisLocation {
   std::string kind, number;
 };
 
-/// Returns the kind of the locations whose numbers follow a word. After every word other than "figure" and "table"
-/// they are sections.
+/// Returns the kind of the locations whose numbers follow a word. After every word other than "figure", "table" and
+/// "equation", the numbers are sections.
 std::string location_kind(const std::string& word) {
   const std::string lower = lower_case(word);
   if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";
   if (lower == "table" || lower == "tables") return "Table";
+  if (lower == "eq" || lower == "eqs" || lower == "equation") return "Eq.";
   return "section";
 }
 
 /// Parses a location, of any kind if `name` gives none. Also accepts the file name of a figure, such as
 /// figure_A.4_springs.svg. Returns empty for other names.
 std::optional<ThesisLocation> parse_thesis_location(const std::string& name) {
-  static const std::regex kLocation(R"((?:(fig|figs|figure|table|section)[._ ]*)?)"
-                                    R"(((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
+  static const std::regex kLocation(R"((?:(fig|figs|figure|table|section|eq|eqs|equation)[._ ]*)?)"
+                                    R"(\(?((?:[a-f]\.? ?)?\d+(?:\.\d+)*[a-d]?)\)?(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
                                     std::regex::icase);
   std::smatch parts;
   if (!std::regex_match(name, parts, kLocation)) return std::nullopt;
   ThesisLocation location{parts[1].matched ? location_kind(parts[1]) : "", parts[2]};
+  // Accept "Fig. F4" and "Table A. 1", as the thesis prints them, for F.4 and A.1.
+  if (!location.kind.empty() && std::isalpha(static_cast<unsigned char>(location.number[0]))) {
+    std::erase(location.number, ' ');
+    if (location.number[1] != '.') location.number.insert(1, ".");
+  }
   // A number without a dot and a kind is ambiguous.
   if (location.kind.empty() && location.number.find('.') == std::string::npos) return std::nullopt;
   if (location.number.find('.') == 1) location.number[0] = static_cast<char>(std::toupper(location.number[0]));
@@ -67,6 +74,20 @@ bool mentions_location(const std::string& source, const ThesisLocation& requeste
     if (part.empty() || part[0] == '.' || std::isalpha(static_cast<unsigned char>(part[0]))) return true;
   }
   return false;
+}
+
+/// Returns what the thesis has at the location, and where hapbench has it, as entries of thesis_places.json. Two tables
+/// have the same number.
+Json contents_of(const ThesisLocation& location) {
+  const std::filesystem::path file = installed_folder("results/reference") / "thesis_places.json";
+  const std::string number = location.number.substr(0, location.number.find_last_not_of("abcd") + 1);
+  Json contents = Json::array();
+  for (const Json& place : with_file(file, [&] { return read_json(file).at("places"); })) {
+    const std::string name = place.at("place").get<std::string>();
+    if (location.kind.empty() ? name.ends_with(" " + number) : name == location.kind + " " + number)
+      contents.push_back(place);
+  }
+  return contents;
 }
 
 /// Returns the stored pictures of a figure of the thesis: figure_A.2.svg for "A.2".
@@ -109,9 +130,19 @@ std::optional<Description> describe_thesis_location(const std::string& name, con
     pictures += fmt::format("    {}\n    redraw it with: scripts/reproduce --figure {}\n", picture.string(), id);
     json["pictures"].push_back(picture.string());
   }
-  if (scenarios.empty() && claims.empty() && pictures.empty())
+  // Collect what the thesis has there.
+  std::string contents;
+  const Json places = contents_of(*location);
+  for (const Json& place : places) {
+    const std::string see = place.value("see", "");
+    contents += layout.entry(place.at("place").get<std::string>(),
+                             place.at("what").get<std::string>() + (see.empty() ? "" : "; here: " + see), 4, 16);
+  }
+  json["contents"] = places;
+  if (scenarios.empty() && claims.empty() && pictures.empty() && contents.empty())
     throw InputError(fmt::format("no bundled scenario and no claim refers to {} of the thesis", title));
-  return Description{fmt::format("{} of the thesis\n\n{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),
+  return Description{fmt::format("{} of the thesis\n\n{}{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),
+                                 contents.empty() ? "" : "  contents\n" + contents + "\n",
                                  pictures.empty() ? "" : "  picture\n" + pictures + "\n",
                                  scenarios.empty() ? "    none\n" : scenarios, claims.empty() ? "    none\n" : claims),
                      json};

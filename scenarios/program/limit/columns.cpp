@@ -9,6 +9,7 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/analysis/stability/compared_devices.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/describe/fields.hpp"
 #include "scenarios/program/digits.hpp"
 
 namespace hapbench {
@@ -28,11 +29,8 @@ Columns<Row> case_columns(const LimitTable* table) {
        when(devices || table->cases.scenes().size() > 1, under("scenario"))}};
   for (std::size_t i = 1; table != nullptr && i <= table->over(); ++i) {
     const std::string& path = table->cases.axes()[i].path;
-    const auto value = [i](const LimitRow& r) {
-      const auto number = finite_number(r.axis_values[i]);
-      return number ? Cell(*number) : Cell(r.axis_values[i]);
-    };
-    columns.add({{path, "unit of the field", "value of the field given by --over", value, under(path)}});
+    const auto value = [i](const LimitRow& r) { return axis_cell(r.axis_values[i]); };
+    columns.add({{path, field_unit(path), "value of the field given by --over", value, varied(under(path))}});
   }
   columns.add(
       {{"algorithm", "", "force algorithm", [](const LimitRow& r) { return r.algorithm(); }, under("algorithm")}});
@@ -63,7 +61,7 @@ Cell class_beyond_limit(const LimitRow& row) {
 std::string linear_limit_text(const LimitRow& row) {
   const auto& edge = row.limit.linear_edge();
   if (!edge) return "-";
-  return std::isinf(*edge) || *edge == 0.0 ? "none" : significant(*edge, 6);
+  return std::isinf(*edge) || *edge == 0.0 ? "none" : rounded_text(*edge, 6);
 }
 
 /// Returns a function of a row that applies `get` to a part of the row.
@@ -81,12 +79,13 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
   const auto has_inequality = [](const LimitRow& row) { return row.limit.closed_form.has_value(); };
   const auto limit_end = [](const LimitRow& row) -> const IntervalEnd& { return row.limit.end; };
   const auto tolerance = [](const LimitRow& row) { return row.limit.end.tolerance(); };
+  const std::string unit = table == nullptr ? "unit of the field" : field_unit(table->first().question.path);
   using Row = LimitRow;
   return {
       {"field", "", "path of the field", of(&Row::question, &LimitQuestion::path), kOnlyCsv},
       {"side", "", "largest or smallest: which stable value was searched", of(&Row::question, &LimitQuestion::side),
        kOnlyCsv},
-      {"quoted_limit", "unit of the field",
+      {"quoted_limit", unit,
        "limit to quote, which a user may render: the linear or the simulated limit, whichever is reached first; empty "
        "if "
        "no limit was found within the range",
@@ -94,51 +93,51 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
        [](const Row& r) { return r.limit.quoted_tolerance(); }},
       {"quoted_reason", "", "reason why quoted_limit has this value or none",
        [](const Row& r) { return r.limit.quoted.reason; }},
-      {"linear\nlimit", "unit of the field",
+      {"linear\nlimit", unit,
        "of limit: theoretical limit, or, if there is none, the linear limit; \"none\" if no value of the range or "
        "every value is stable, \"-\" if neither limit applies",
        linear_limit_text, only_printed()},
-      {"limit", "unit of the field",
+      {"limit", unit,
        "simulated limit: last stable value before the first unstable one, by bisection on simulated runs; empty if no "
        "interval of values is stable, or if the values are stable to the end of the range, which is no limit",
        [](const LimitRow& row) { return row.limit.end.beyond ? row.limit.end.value : std::nullopt; },
        under("simulated\nlimit", 6), tolerance},
-      {"first_unstable", "unit of the field",
+      {"first_unstable", unit,
        "first unstable value beyond the limit; empty if the values are stable to the end of the range",
        of(limit_end, value_beyond)},
       {"first_unstable_class", "",
        "class of the run at the first unstable value (hapbench describe stability), or \"end of the range\" if there "
        "is no such value",
        class_beyond_limit, under("first\nunstable")},
-      {"stable_low", "unit of the field",
+      {"stable_low", unit,
        "low end of the interval of stable values that contains the limit: smallest stable value, to the resolution",
        of(low_end, &IntervalEnd::value), under(is_printed(true) ? "stable\nfrom" : "", 6),
        [](const Row& r) { return low_end(r).tolerance(); }},
-      {"unstable_below", "unit of the field",
+      {"unstable_below", unit,
        "first unstable value below the stable interval; empty if the values are stable to the low end of the range",
        of(low_end, value_beyond)},
       {"unstable_below_class", "", "class of the run at the first unstable value below the stable interval",
        of(low_end, class_beyond)},
-      {"stable_high", "unit of the field",
+      {"stable_high", unit,
        "high end of the interval of stable values that contains the limit: largest stable value, to the resolution",
        of(high_end, &IntervalEnd::value), under(is_printed(false) ? "stable\nto" : "", 6),
        [](const Row& r) { return high_end(r).tolerance(); }},
-      {"unstable_above", "unit of the field",
+      {"unstable_above", unit,
        "first unstable value above the stable interval; empty if the values are stable to the high end of the range",
        of(high_end, value_beyond)},
       {"unstable_above_class", "", "class of the run at the first unstable value above the stable interval",
        of(high_end, class_beyond)},
-      {"theoretical_limit", "unit of the field",
+      {"theoretical_limit", unit,
        "theoretical limit for contact that cannot be lost (bilateral springs), from the eigenvalues of one time step, "
        "with or without a device; empty if the theory does not apply",
        of(&Row::limit, &FieldLimit::theory)},
-      {"closed_form_limit", "unit of the field",
+      {"closed_form_limit", unit,
        "closed-form limit: theoretical limit from the integrator's inequality, for leapfrog 4 - 2 lambda B dt / M - "
        "lambda K dt^2 / M >= 0 with lambda = lambda_max(S) (thesis A.3); empty if the integrator has no such "
        "inequality",
        of(&Row::limit, &FieldLimit::closed_form),
        when(table == nullptr || std::ranges::any_of(table->rows, has_inequality))},
-      {"linear_limit", "unit of the field",
+      {"linear_limit", unit,
        "linear limit of a tool on a surface that can only push: largest value at which the loop of hand, device and "
        "contact is stable by its eigenvalues, with the derivative of the rendered force at the equilibrium and without "
        "dry friction and encoder steps; empty if contacts come and go in every stable run (no_linear_reason), or if a "

@@ -8,8 +8,8 @@
 /// The tables of `limit`.
 namespace hapbench {
 
-/// New and old name of one column. It lists the runs that are unstable within the stable interval, or stable outside
-/// of it.
+/// New and old name of one column. The column lists the runs that are unstable within the stable interval, or stable
+/// outside of it.
 inline constexpr const char* kNonMonotonic = "non_monotonic_runs";
 
 /// A row of limit_runs.csv: a run and the case that it belongs to.

@@ -52,7 +52,7 @@ void report_limits(const LimitTable& table, const Layout& layout, Report& report
   }
   report.write("limit.csv", columns, table.rows);
   report.write("limit_runs.csv", limit_run_columns(&table), runs);
-  report.say(limits_text(table, columns, layout));
+  report_limits_text(table, columns, layout, report);
   report.json() = {{"field", question.path},
                    {"side", question.side()},
                    {"from", question.search.range.from},
@@ -119,6 +119,7 @@ void add_limit(CommandLine& line) {
       "relative width of the interval that encloses the limit (default: 0.001); relative to the range if the range "
       "reaches 0 or below");
   add_common(command, options, "limit_NAME");
+  add_table(command, options.output);
   command.footer(
       "Stable: the run comes to rest or its oscillation decays; if a script moves the tool, the handle hardly "
       "vibrates. A run that diverges, passes through the surface, loses contact, sticks or never touches is unstable. "

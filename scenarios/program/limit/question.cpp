@@ -135,7 +135,7 @@ LimitTable make_limit_table(const LimitOptions& options) {
   // Make the axes in the order of LimitTable::cases.
   Axis algorithm{.path = "--algorithms", .values = {""}, .named = true};
   if (!options.algorithms.empty()) algorithm = {"rendering.algorithm", chosen_algorithms(options.algorithms)};
-  for (const std::string& text : options.over) axes.push_back(parse_axis(text));
+  for (const std::string& text : options.over) axes.push_back(parse_axis(text, false, "--over"));
   axes.insert(axes.end(), {scene, algorithm});
   return {std::move(devices), Cases(std::move(scenes), options.overrides, std::move(axes))};
 }

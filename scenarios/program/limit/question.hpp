@@ -30,10 +30,9 @@ struct LimitRow {
   const ComparedDevice* device = nullptr;     ///< null: the scene's device
   Scenario scenario = {};  ///< the scenario with overrides, device and axis values, and its current value of the field
   LimitQuestion question = {};
-  /// stiffness_ratio: the limit divided by the limit of the reference case. The reference case has the first scene
-  /// and the first algorithm, and is equal in everything else. rendered_ratio: the same ratio of the rendered
-  /// stiffness K lambda_max(S), with the stiffness tensor S in units of K. Empty if one of the two cases has no
-  /// limit.
+  /// stiffness_ratio: the limit divided by the limit of the reference case. The reference case has the first scene, the
+  /// first algorithm, and the same values of all other axes. rendered_ratio: the same ratio of the rendered stiffness K
+  /// lambda_max(S), with the stiffness tensor S in units of K. Empty if one of the two cases has no limit.
   std::optional<double> stiffness_ratio = {}, rendered_ratio = {};
 
   const std::string& scene() const { return axis_values[axis_values.size() - 2]; }

@@ -30,7 +30,7 @@ std::string damping_text(const RenderingConfig& rendering) {
 std::string resolution_text(const LimitQuestion& question) {
   const IntervalSearchOptions& search = question.search;
   if (search.whole) return "1";
-  return fmt::format("{} %{}", 100.0 * search.resolution, search.range.logarithmic ? "" : " of the range");
+  return fmt::format("{} %{}", significant(100.0 * search.resolution), search.range.logarithmic ? "" : " of the range");
 }
 
 /// States the question for one scene. `over`: true if other fields vary too; values that depend on these fields are
@@ -38,7 +38,7 @@ std::string resolution_text(const LimitQuestion& question) {
 std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over, const Layout& layout) {
   const IntervalSearchOptions& search = question.search;
   const std::string width = resolution_text(question);
-  const auto end = [&search](double value) { return significant(search.whole ? std::round(value) : value); };
+  const auto end = [&search](double value) { return rounded_text(search.whole ? std::round(value) : value, 4); };
   std::string text = fmt::format("{}: {} stable {} between {} and {}, resolution {}", scenario.name, question.side(),
                                  question.path, end(search.range.from), end(search.range.to), width);
   if (!over) text += fmt::format("; runs of {} steps", scenario.time.steps);
@@ -106,25 +106,34 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
   const auto is_marked = [&names](const char* mark) { return names.find(mark) != std::string::npos; };
   const std::pair<bool, std::string> notes[] = {
       {table.is_grid(),
-       "quote: the value that a user may render, the linear or the simulated limit, whichever is reached first; - if "
-       "no "
-       "limit was found, because the end of the range is no limit. limit.csv has the reason in quoted_reason"},
+       "quote: the value that a user may render, the linear or the simulated limit, whichever is reached first; -: "
+       "there is none, because no value is stable or the values are stable to the end of the range. Column "
+       "quoted_reason of limit.csv has the reason"},
+      {!table.is_grid(), fmt::format("stable {}: other end of the interval of stable values that contains the limit",
+                                     table.first().question.search.smallest ? "to" : "from")},
+      {true,
+       "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the limit; "
+       "if no value is stable, of the run at the low end of the range"},
+      {true,
+       "non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond it; "
+       "limit_runs.csv has the class of each run"},
       {table.is_grid(),
-       "a table makes no verification runs inside the stable interval; run limit with one scene, device and algorithm "
-       "for these. non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond "
-       "it; limit_runs.csv has the class of each run"},
+       "verification samples inside the stable intervals: none here; run limit with one scene, device and algorithm to "
+       "get them"},
       {std::ranges::any_of(table.devices, is_published),
-       "published: largest stable stiffness of a wall, as published (\"hapbench describe DEVICE\" names the source)"},
+       "published: largest stable stiffness of a wall [N/m] that was published (\"hapbench describe DEVICE\" names the "
+       "source)"},
       {is_marked("* "), "*: a preset with fields changed by --set; nothing is published for this combination"},
       {is_marked("[soft]"),
-       fmt::format("[soft], [stiff]: the preset at the two ends of its unpublished parameters ({})", kPresetRanges)},
+       fmt::format("[soft], [stiff]: the preset with all unpublished parameters at one end of their ranges ({})",
+                   kPresetRanges)},
       {is_marked("[friction*"), "[friction*2]: the preset with its dry friction multiplied by this factor"},
       {table.first().question.path == kStiffnessPath && friction.has_value(),
-       "which of these stiffnesses to quote: see device_model/README.md, \"Which K to quote?\""},
+       "device_model/README.md, \"Which K to quote?\", explains which of these stiffnesses to quote"},
       {friction > 0.0,
-       "dry friction (our estimate in every preset) holds the tool if the hand presses slowly. Then the limit depends "
-       "on how this scene approaches the surface and is no property of the device; --set device.coulomb_N=0 gives the "
-       "limit without dry friction"}};
+       "dry friction can hold the tool if the hand presses slowly. The limit then depends on how this scene approaches "
+       "the surface, and is no property of the device. --set device.coulomb_N=0 gives the limit without dry friction. "
+       "The dry friction of every preset is our estimate"}};
   std::string text;
   for (const auto& [holds, note] : notes)
     if (holds) text += layout.wrapped(note, 0);
@@ -165,9 +174,11 @@ std::string limit_answer(const FieldLimit& found) {
                                                 deserved(*quoted.value, found.quoted_tolerance(), 6), quoted.reason)
                                   : fmt::format("no limit to quote: {}", quoted.reason);
   const auto& linear = found.linear_edge();
-  if (linear && std::isfinite(*linear) && *linear > 0.0)
-    text += fmt::format(". Linear limit {}", significant(*linear, 6));
-  if (found.end.beyond) text += fmt::format(". Simulated limit {}", deserved(*found.end.value, found.end.tolerance()));
+  // Name the limits that are not the quoted limit.
+  if (linear && std::isfinite(*linear) && *linear > 0.0 && linear != quoted.value)
+    text += fmt::format(". Linear limit {}", rounded_text(*linear, 6));
+  if (found.end.beyond && found.end.value != quoted.value)
+    text += fmt::format(". Simulated limit {}", deserved(*found.end.value, found.end.tolerance()));
   if (found.tried_between == 0) return text;
   return text + fmt::format(
                     ". {} verification samples inside the stable interval are also stable: at most {:.0f} % of "
@@ -175,7 +186,8 @@ std::string limit_answer(const FieldLimit& found) {
                     found.tried_between, 100.0 * may_fail_share(found.tried_between));
 }
 
-std::string limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout) {
+void report_limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout,
+                        Report& report) {
   std::string text, answers, remarks;
   for (std::size_t i = 0; i < table.columns(); ++i) {
     const LimitRow& row = table.rows[i];
@@ -186,9 +198,11 @@ std::string limits_text(const LimitTable& table, const Columns<LimitRow>& column
     remarks += remarks_text(row, layout);
   }
   const LimitRow& first = table.first();
-  return fmt::format("{}\n{}{}{}\n{}{}{}", text, answers, answers.empty() ? "" : "\n", columns.text(table.rows, layout),
-                     layout.wrapped(rule_text(first.question.rule, first.scenario), 0), remarks,
-                     notes_text(table, layout));
+  report.say(fmt::format("{}\n{}{}", text, answers, answers.empty() ? "" : "\n"));
+  const std::string caption = fmt::format("{} stable {}", first.question.side(), first.question.path);
+  report.show(columns.table(table.rows, caption, layout.in_full()));
+  report.say("\n" + layout.wrapped(rule_text(first.question.rule, first.scenario), 0) + remarks +
+             notes_text(table, layout));
 }
 
 }  // namespace hapbench

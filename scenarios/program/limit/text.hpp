@@ -5,6 +5,7 @@
 #include "scenarios/program/columns.hpp"
 #include "scenarios/program/layout.hpp"
 #include "scenarios/program/limit/question.hpp"
+#include "scenarios/program/report.hpp"
 
 /// The printed text of `limit`.
 namespace hapbench {
@@ -14,7 +15,8 @@ namespace hapbench {
 std::string limit_answer(const FieldLimit& found);
 /// Returns the condition under which a run counts as stable.
 std::string rule_text(const StabilityRule& rule, const Scenario& scenario);
-/// Returns the questions, the answers, the table of the rows and the notes on it.
-std::string limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout);
+/// Reports the questions, the answers, the table of the rows and the notes on it.
+void report_limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout,
+                        Report& report);
 
 }  // namespace hapbench

@@ -105,8 +105,12 @@ void add_new(CommandLine& line) {
   command.add("--side <axis>", options.side,
               "side from which the tool approaches: x, y, z (default), --side=-x, --side=-y or --side=-z",
               {.one_of = {"x", "y", "z", "-x", "-y", "-z"}});
-  command.add("--path <x,y,z>", options.path, "point [m] of the path over which the tool is dragged; give two or more",
+  command.add("--path <x,y,z>", options.path,
+              "point [m] of the path over which the tool is dragged, or follows in kind fidelity; give two or more",
               {.several = true});
+  command.add("--depth <length>", options.depth,
+              "of kind fidelity: depth of the tip below the surface, such as 0.1mm (default: a tenth of the tool's "
+              "diameter)");
   command.add("--at <x,y,z>", options.at, "start above the surface point nearest to this point [m]");
   command.flag("--preview", options.preview,
                "also run the scenario and draw surface, tool and path to OUT with the ending .svg");

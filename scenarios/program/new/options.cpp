@@ -35,6 +35,7 @@ void check_options(const NewOptions& options, const StartKind& kind) {
   const std::string &name = kind.name, &from = options.from;
   // `lands`: the tool starts above a surface. `drags`: it also moves along the surface.
   const bool drags = name == "drag" || name == "bur", lands = drags || name == "mesh" || name == "shell";
+  const bool follows_path = name == "fidelity";
   const bool has_mesh = !options.on.empty() || (kind.source == "mesh" && !from.empty());
   const auto require = [](bool is_right, const char* option, const char* allowed) {
     if (!is_right) fail_in_option(option, fmt::format("allowed: {}", allowed));
@@ -50,10 +51,12 @@ void check_options(const NewOptions& options, const StartKind& kind) {
     fail_in_option("--from", fmt::format(R"(got "{}"; "{}" starts from no file)", from, name));
   require_file("--from", from);
   require(options.on.empty() || name == "stroke", "--on", "for stroke");
-  require(options.path.empty() || (drags && options.path.size() > 1 && options.at.empty()), "--path",
-          "for drag and bur, two points or more, and without --at");
+  require(options.path.empty() || ((drags || follows_path) && options.path.size() > 1 && options.at.empty()), "--path",
+          "for drag, bur and fidelity, two points or more, and without --at");
+  require(options.depth.empty() || follows_path, "--depth", "for fidelity");
   require(options.at.empty() || lands, "--at", "for mesh, shell, drag and bur");
-  require(options.side == "z" || (lands && !from.empty()), "--side", "for mesh, shell, drag and bur with --from");
+  require(options.side == "z" || ((lands || follows_path) && !from.empty()), "--side",
+          "for mesh, shell, drag, bur and fidelity with --from");
   require(options.extent.empty() || has_mesh, "--extent", "with the file of a mesh");
   require(options.unit.empty() || has_mesh || name == "shell", "--unit", "with the file of a mesh or shell");
   require(options.unit.empty() || options.extent.empty(), "--unit", "either --unit or --extent");

@@ -12,7 +12,7 @@ namespace hapbench {
 
 /// The options of `new`.
 struct NewOptions {
-  std::string kind, from, on, extent, unit, side = "z", at, out;
+  std::string kind, from, on, extent, unit, side = "z", at, depth, out;
   std::vector<std::string> path;
   bool preview = false;
   OutputOptions output;

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "device_model/hands/drag_hand.hpp"
 #include "scenarios/input/fields.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
@@ -76,6 +78,7 @@ class Start {
     } else if (is_placed) {
       place_tool();
     }
+    if (follows_path()) place_path();
     if (kind.source == "stroke") choose_stroke_steps();
     if (!has_type("environment", "mesh")) return;
     notes_.push_back(fmt::format("{} points with a spacing of {}, a tenth of the tool's diameter", shell()->size(),
@@ -87,6 +90,12 @@ class Start {
  private:
   bool has_type(const char* part, const char* type) const {
     return scene_.contains(part) && scene_.at(part).value(kTypeField, "") == type;
+  }
+
+  /// Returns true if the tool's positions are prescribed along a path.
+  bool follows_path() const {
+    const Json::json_pointer type("/motion/position/type");
+    return scene_.contains(type) && scene_.at(type) == "prescribed";
   }
 
   /// Writes the names of the source file and of the mesh below a stroke into the fields that need them.
@@ -107,8 +116,8 @@ class Start {
     const auto axis = static_cast<Eigen::Index>(options_.side.back() - 'x');
     const Vec3 up = side_sign() * Vec3::Unit(axis), lean = Vec3::Unit(axis == 0 ? 1 : 0);
     to_world_ << lean, up.cross(lean), up;
-    if (options_.side != "z" && has_type("hand", "impedance"))
-      scene_["motion"] = {{"orientation", {{"up", list_of(up)}, {"lean", list_of(lean)}}}};
+    if (options_.side != "z" && (has_type("hand", "impedance") || follows_path()))
+      scene_["motion"]["orientation"] = {{"up", list_of(up)}, {"lean", list_of(lean)}};
   }
 
   /// Returns the mesh file of the environment; if the mesh is a tool, the file of the tool.
@@ -121,8 +130,8 @@ class Start {
     return make_shell(loaded.scenario, loaded.files);
   }
 
-  /// Returns the points over which the tool starts, in the side's frame: of the largest component of a mesh, unless a
-  /// point of the start is given.
+  /// Returns the points over which the tool starts, in the side's frame. These are the points of the largest component
+  /// if is_over_largest_, otherwise all points.
   std::vector<SurfacePoint> points() const {
     return in_frame_of_side(is_over_largest_ ? largest_component().points() : shell()->points());
   }
@@ -157,7 +166,7 @@ class Start {
     return scale;
   }
 
-  /// Returns the relation of a scale to the closest unit, if that is within 20 %.
+  /// Returns the difference of the scale from the closest unit as text; empty if the difference is more than 20 %.
   static std::string scale_note(double scale) {
     const auto distance = [scale](const LengthUnit& unit) { return std::abs(scale / unit.metres - 1.0); };
     const LengthUnit& unit = *std::ranges::min_element(kLengthUnits, {}, distance);
@@ -240,7 +249,8 @@ class Start {
     choose_tool(box.size().maxCoeff());
     const Vec3 top = top_center(shell, box.max.z(), 0.1 * diameter_);
     const bool is_open = !has_type("environment", "mesh") || !largest_component().open_edges().empty();
-    // Sum the normals around the top along the side's axis; a negative sum means that they point away.
+    // Sum the normals around the top along the side's axis; a negative sum means that the normals point away from the
+    // side.
     double facing = 0.0;
     for (const SurfacePoint& point : shell) {
       const Vec3 from_top = point.position - top;
@@ -384,6 +394,59 @@ class Start {
                                  along[2].dump(), length_text(length), length_text(drag.free_length)));
   }
 
+  /// Returns the path over the surface that the tool follows, in the side's frame: over the requested points, or where
+  /// a drag would go.
+  SurfacePath surface_path() {
+    const std::vector<SurfacePoint> points = points_facing_side();
+    const PointShell shell(points, 0.0);
+    if (!requested_points_.empty()) {
+      std::vector<Vec3> legs;
+      for (const Vec3& point : requested_points_) legs.emplace_back(to_world_.transpose() * point);
+      return SurfacePath::over(SmoothedSurface(shell, 0.5 * diameter_), legs);
+    }
+    const Box box = bounds_of(points);
+    const std::vector<Vec3> starts = {start_above(top_of(points, box)),
+                                      start_above(highest_at_center(points, box, diameter_))};
+    const DragStart drag = choose_drag(shell, starts, 0.5 * diameter_, 0.25 * box.size().maxCoeff());
+    return SurfacePath::along(SmoothedSurface(shell, drag.smoothing), drag.position, drag.direction,
+                              0.8 * drag.free_length);
+  }
+
+  /// Prescribes the tip's positions: from above the surface down to the depth, and along the path at this depth.
+  void place_path() {
+    constexpr double kLanding = 0.25;     // duration of the approach [s]
+    constexpr double kMaxPoints = 400.0;  // of the path
+    const SurfacePath path = surface_path();
+    const double depth = options_.depth.empty() ? 0.1 * diameter_ : parse_length("--depth", options_.depth);
+    if (!(depth < 0.5 * diameter_))
+      fail_in_option("--depth", fmt::format("got {}; allowed: less than the radius of the tool, {}", options_.depth,
+                                            length_text(0.5 * diameter_)));
+    if (!(path.length() > 0.0))
+      fail_in_option("--path", "got none, and no path was found over the surface; allowed: two points or more near it");
+    const double speed = kDragSpeed * diameter_;
+    const double count = std::clamp(std::ceil(path.length() / (0.1 * diameter_)), 1.0, kMaxPoints);
+    std::array<Json, 3> waypoints{Json::array(), Json::array(), Json::array()};
+    const auto add = [&](double time, double s, double height) {
+      const SurfacePoint foot = path.at(s);
+      const Vec3 position = to_world_ * Vec3(foot.position + (0.5 * diameter_ + height) * foot.normal);
+      for (std::size_t k = 0; k < 3; ++k)
+        waypoints[k].push_back(
+            {rounded_to_digits(time, 6), 1e-7 * std::round(1e7 * position[static_cast<Eigen::Index>(k)])});
+    };
+    add(0.0, 0.0, kClearance);
+    double time = kLanding;
+    for (double i = 0.0; i <= count; ++i) {
+      const double s = path.length() * i / count;
+      add(time = kLanding + s / speed, s, -depth);
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      scene_["motion"]["position"][std::string(1, "xyz"[k]) + "_m"] = {{kTypeField, "waypoints"},
+                                                                       {"points", waypoints[k]}};
+    scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil(time / kStartStep));
+    notes_.push_back(fmt::format("a path of {}, {} below the surface; reference: frictionless rigid contact",
+                                 length_text(path.length()), length_text(depth)));
+  }
+
   /// Throws InputError for a stroke that no run can record. Its clock is probably in another unit.
   [[noreturn]] void refuse_long_stroke(const Stroke& stroke) const {
     TimeFields longest;
@@ -420,7 +483,8 @@ class Start {
   std::vector<Vec3> requested_points_;       ///< points of --path, or the point of --at [m]
   Mat3 to_world_ = Mat3::Identity();         ///< rotates vectors of the side's frame into the world frame
   double diameter_ = 0.001;                  ///< [m]
-  mutable std::optional<MeshFile> largest_;  ///< the largest component of the mesh of largest_environment_
+  mutable std::optional<MeshFile> largest_;  ///< largest component of the mesh; valid if the environment is equal to
+                                             ///< largest_environment_
   mutable Json largest_environment_;
   double press_target_ = 0.0;  ///< final target of a pressing hand along the side's axis [m]
 };

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "scenarios/program/run_table.hpp"
+#include "scenarios/program/digits.hpp"
 #include "scenarios/program/tune/answer.hpp"
 
 namespace hapbench {
@@ -13,8 +13,8 @@ namespace {
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
 
-/// Returns the columns of the choice and of the constraint that a larger stiffness violates; empty without a
-/// feasible choice.
+/// Returns the columns of the choice and of the constraint that a larger stiffness violates. Their cells are empty
+/// without a feasible choice.
 Columns<TunedLaw> choice_columns() {
   using Row = TunedLaw;
   const auto of_setting = [](auto member) {
@@ -60,7 +60,16 @@ Columns<TunedLaw> choice_columns() {
 
 }  // namespace
 
-Columns<TunedLaw> tuned_columns() {
+Json bounds_json(const TuneQuestion& question) {
+  Json bounds = Json::object();
+  for (const auto& [name, bound] : question.limits) {
+    if (bound.min) bounds[name]["min"] = *bound.min;
+    if (bound.max) bounds[name]["max"] = *bound.max;
+  }
+  return bounds;
+}
+
+Columns<TunedLaw> tuned_columns(const TuneQuestion& question) {
   using Row = TunedLaw;
   Columns<Row> columns = choice_columns();
   for (const Margin& margin : kMargins) {
@@ -73,7 +82,7 @@ Columns<TunedLaw> tuned_columns() {
   const auto metric = [](const char* heading, const char* name, double factor) {
     const auto text = [=](const Row& r) {
       const auto value = r.choice ? value_in(r.choice->metrics, name, factor) : std::nullopt;
-      return value ? number_text(*value, value_in(r.error, name, factor)) : "-";
+      return value ? deserved(*value, value_in(r.error, name, factor)) : "-";
     };
     return Columns<Row>::Entry(heading, "unit of the metric", name, text, only_printed());
   };
@@ -92,6 +101,9 @@ Columns<TunedLaw> tuned_columns() {
        metric("settled\ndepth [mm]", "inside_settled_m", 1e3),
        metric("vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0),
        metric("max force\nstep [N]", "settled_force_step_max_N", 1.0),
+       {"bounds", "", "bounds on metrics of the runs at K (--bound), as JSON; empty if none were given",
+        [bounds = bounds_json(question)](const Row&) { return bounds.empty() ? Cell() : Cell(bounds.dump()); },
+        kOnlyCsv},
        {"binding", "", "of tune: binding constraint, the first constraint that a larger K violates", &Row::binding,
         only_printed()}});
   return columns;
@@ -128,7 +140,7 @@ Columns<TuneTrial> trial_columns() {
 }
 
 std::vector<DescribedTable> tune_tables() {
-  return {tuned_columns().described("tune.csv", "written by tune: one line per algorithm"),
+  return {tuned_columns({}).described("tune.csv", "written by tune: one line per algorithm"),
           trial_columns().described("tune_trials.csv",
                                     "written by tune: one line per algorithm, setting and stiffness that was tried")};
 }

@@ -8,8 +8,10 @@
 /// The tables of `tune`.
 namespace hapbench {
 
+/// Returns the bounds of --bound as JSON: {"inside_max_m": {"max": 0.0003}}.
+Json bounds_json(const TuneQuestion& question);
 /// Returns the columns of tune.csv, which has a row for each law.
-Columns<TunedLaw> tuned_columns();
+Columns<TunedLaw> tuned_columns(const TuneQuestion& question);
 /// Returns the columns of tune_trials.csv, which has a row for each setting that was evaluated.
 Columns<TuneTrial> trial_columns();
 /// Returns the tables that this command writes and prints, for `describe`.

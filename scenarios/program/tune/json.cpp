@@ -12,8 +12,8 @@
 namespace hapbench {
 namespace {
 
-Json law_json(const TunedLaw& law) {
-  Json json = tuned_columns().json(law);
+Json law_json(const TuneQuestion& question, const TunedLaw& law) {
+  Json json = tuned_columns(question).json(law);
   for (const Margin& margin : kMargins) json["margins"][margin.key] = cell_json(cell_of(law.margins.*margin.of));
   json["metrics"] = law.choice ? law.choice->metrics : MetricValues();
   json["error"] = law.error;
@@ -24,10 +24,7 @@ Json law_json(const TunedLaw& law) {
 
 Json limits_json(const TuneQuestion& question) {
   Json limits = {{"margin", question.margin}, {"low_vibration", !question.allow_vibration}};
-  for (const auto& [name, bound] : question.limits) {
-    if (bound.min) limits[name]["min"] = *bound.min;
-    if (bound.max) limits[name]["max"] = *bound.max;
-  }
+  limits.update(bounds_json(question));
   return limits;
 }
 
@@ -35,7 +32,7 @@ Json limits_json(const TuneQuestion& question) {
 
 Json tuning_json(const Tuning& tuning, const std::filesystem::path& tuned) {
   Json laws = Json::array();
-  for (const TunedLaw& law : tuning.laws) laws.push_back(law_json(law));
+  for (const TunedLaw& law : tuning.laws) laws.push_back(law_json(tuning.question, law));
   const auto name_of = [&](std::size_t rank) {
     return rank < tuning.ranking.size() ? Json(tuning.ranking[rank]->algorithm) : Json();
   };

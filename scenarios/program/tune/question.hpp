@@ -13,6 +13,7 @@ namespace hapbench {
 /// The options of `tune`.
 struct TuneOptions : CommonOptions {
   std::string scenario, device, damping_ratio, mass;
+  std::string scale = "1";  ///< scale of the mount in the user's loop: virtual metres per metre of the device
   std::vector<std::string> algorithms, bounds, family;
   TuneQuestion question;  ///< holds the members of TuneQuestion that options set directly; tune_question() fills the
                           ///< others

@@ -17,19 +17,18 @@ namespace {
 
 std::string limits_text(const Tuning& tuning) {
   std::string text =
-      fmt::format("largest K for which all runs settle at stiffnesses up to {:g} K{}", tuning.question.margin,
-                  tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m) at each stiffness" : "");
+      fmt::format("largest K for which all runs settle at every stiffness from K to {:g} K{}", tuning.question.margin,
+                  tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m)" : "");
   if (!tuning.question.allow_vibration)
     text +=
-        ", and the run at K has low vibration (rules buzz, pop, shake, bounces, chatter and energy of \"hapbench "
-        "describe "
-        "diagnosis\")";
+        ". The run at K has low vibration: none of the rules buzz, pop, shake, bounces, chatter and energy applies "
+        "(\"hapbench describe diagnosis\")";
   for (const auto& [name, bound] : tuning.question.limits) {
-    if (bound.min) text += fmt::format(", and {} >= {:g}", name, *bound.min);
-    if (bound.max) text += fmt::format(", and {} <= {:g}", name, *bound.max);
+    if (bound.min) text += fmt::format(". At K {} >= {:g}", name, *bound.min);
+    if (bound.max) text += fmt::format(". At K {} <= {:g}", name, *bound.max);
   }
   const auto range = [](const char* name, const std::optional<Range>& found) {
-    return found ? fmt::format("; {} {:.3g} ... {:.3g}", name, found->from, found->to) : "";
+    return found ? fmt::format(". Range of {}: {:.3g} ... {:.3g}", name, found->from, found->to) : "";
   };
   return text + range("zeta (of rendering.mass_kg)", tuning.ranges.damping_ratio) +
          range("virtual mass [kg]", tuning.ranges.mass);
@@ -60,16 +59,17 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
     line("runner-up", fmt::format("{}, {}: renders {} times the stiffness", next->algorithm, choice_text(*next->choice),
                                   significant(next->choice->rendered() / best->choice->rendered(), 2)));
   }
-  line("limits of K", limit_answer(best->edge));
+  line("limit of K", fmt::format("without margin, and with the scenario's own hand: {}", limit_answer(best->edge)));
   line("verified",
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
                    "unstable (95 % confidence); {} runs in total",
                    best->verified, tuning.question.margin, 100.0 * may_fail_share(kVerificationSamples), tuning.runs));
   std::vector<std::string> findings;
-  for (const Diagnosed& found : tuning.findings)
-    findings.push_back(fmt::format("{} ({:.3g})", found.rule, found.value));
+  for (const Diagnosed& found : tuning.findings) findings.push_back(finding_text(found));
   line("diagnosis", findings.empty() ? "\"hapbench run\" reports no problem at K"
-                                     : fmt::format("\"hapbench run\" reports at K: {}", fmt::join(findings, ", ")));
+                                     : fmt::format("\"hapbench run\" reports at K: {} (\"hapbench describe "
+                                                   "diagnosis\" explains the rules)",
+                                                   fmt::join(findings, ", ")));
   line("metrics at K",
        "+-: change with half the time step, half the point spacing, and the depth evaluated at every step");
   for (const auto& [name, value] : best->choice->metrics)
@@ -79,14 +79,15 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
 
 }  // namespace
 
-std::string tuning_text(const Tuning& tuning, const Layout& layout) {
-  std::string text = layout.wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
-                     recommendation_text(tuning, layout) + "\n" + tuned_columns().text(tuning.laws, layout) + "\n";
+void report_tuning(const Tuning& tuning, const Layout& layout, Report& report) {
+  report.say(layout.wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
+             recommendation_text(tuning, layout) + "\n");
+  report.show(tuned_columns(tuning.question).table(tuning.laws, tuning.scene, layout.in_full()));
+  report.say("\n");
   for (const TunedLaw& law : tuning.laws)
     if (!law.choice)
-      text += layout.wrapped(
-          fmt::format("{}: no stiffness keeps all constraints: {}; {}", law.algorithm, law.why, law.relax), 0);
-  return text;
+      report.say(layout.wrapped(
+          fmt::format("{}: no stiffness keeps all constraints: {}; {}", law.algorithm, law.why, law.relax), 0));
 }
 
 }  // namespace hapbench

@@ -1,15 +1,14 @@
 #pragma once
 
-#include <string>
-
 #include "scenarios/program/layout.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/tune/answer.hpp"
 
 /// The printed text of `tune`.
 namespace hapbench {
 
-/// Returns the question, the recommendation, the table of the laws, and the reason why a law has no feasible
+/// Reports the question, the recommendation, the table of the laws, and the reason why a law has no feasible
 /// choice.
-std::string tuning_text(const Tuning& tuning, const Layout& layout);
+void report_tuning(const Tuning& tuning, const Layout& layout, Report& report);
 
 }  // namespace hapbench

@@ -12,10 +12,12 @@
 #include "scenarios/input/shell_words.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/program/names.hpp"
+#include "scenarios/program/option_values.hpp"
 #include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/tune/columns.hpp"
 #include "scenarios/program/tune/json.hpp"
+#include "scenarios/program/tune/loop_lines.hpp"
 #include "scenarios/program/tune/question.hpp"
 #include "scenarios/program/tune/text.hpp"
 #include "scenarios/run/checked_scenario.hpp"
@@ -52,6 +54,7 @@ std::vector<Diagnosed> findings_at(const Tuning& tuning, const TunedLaw& law) {
 
 int tune(const TuneOptions& options, ProgramContext& context) {
   const Layout layout = context.layout();
+  const double scale = parse_bounded_number("--scale", options.scale, 1e-3, 1e3);
   const std::filesystem::path file = find_scenario(options.scenario);
   Tuning tuning;
   tuning.question = tune_question(options, file);
@@ -68,28 +71,30 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   const std::filesystem::path& out = report.folder();
   // Tune the laws and write their tables.
   tune_laws(algorithms, options.output.quiet, tuning, context);
-  report.write("tune.csv", tuned_columns(), tuning.laws);
+  report.write("tune.csv", tuned_columns(tuning.question), tuning.laws);
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
   report.write("tune_trials.csv", trial_columns(), trials);
   // Write the scenario with the best choice. Remove the scenario of an earlier tune if nothing is feasible.
   const std::filesystem::path tuned_file = out / (file.stem().string() + "_tuned.json");
   std::filesystem::path tuned;
+  Json tuned_json;
   if (tuning.ranking.empty()) report.files().remove(tuned_file);
   if (!tuning.ranking.empty()) {
     tuned = tuned_file;
     tuning.findings = findings_at(tuning, *tuning.ranking[0]);
-    report.files().write(tuned, json_text(tuned_scenario(tuning, *tuning.ranking[0], out)));
+    tuned_json = tuned_scenario(tuning, *tuning.ranking[0], out);
+    report.files().write(tuned, json_text(tuned_json));
   }
-  report.say(tuning_text(tuning, layout));
+  report_tuning(tuning, layout, report);
   if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
   if (!tuned.empty()) {
     report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
-    report.say(
-        fmt::format("in your own loop (scenarios/LOOP.md): setup.scenario = {};\n", Json(tuned.string()).dump()));
+    report.say(loop_lines(tuned_json, tuned, scale));
   }
   report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", out.string(), shell_file(out)));
   report.json() = tuning_json(tuning, tuned);
+  if (!tuned.empty() && scale != 1.0) report.json()["loop_overrides"] = overrides_for_scale(tuned_json, scale);
   return report.finish();
 }
 
@@ -118,8 +123,11 @@ void add_tune(CommandLine& line) {
               "range of the damping ratio zeta of the virtual mass rendering.mass_kg (default: 0.01:10)");
   command.add("--mass <a:b>", options.mass,
               "range of the virtual mass on an admittance device [kg] (default: half to twice the scenario's)");
+  command.add("--scale <number>", options.scale,
+              "scale of the mount in your own loop: the printed lines divide the coefficients by it (default: 1)");
   command.flag("--filters", options.question.filters, "on an impedance device, choose the velocity filter too");
   add_common(command, options, "tune_NAME");
+  add_table(command, options.output);
   command.footer(fmt::format(
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
       "limit "

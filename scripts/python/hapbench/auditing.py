@@ -1,17 +1,9 @@
 """hapbench.audit: what a log of any haptic or contact engine shows."""
 import os
-import sys
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-_HERE = Path(__file__)
-# The packages of the commands, in the source tree and in an installation.
-_PACKAGES = (
-    _HERE.resolve().parents[1],
-    _HERE.parents[4] / "share" / "hapbench" / "scripts" / "python",
-)
-_PROGRAM = _HERE.absolute().parents[4] / "bin" / "hapbench"
+from ._packages import find_packages
 
 
 def audit(
@@ -22,7 +14,7 @@ def audit(
     scale: Mapping[str, float] | None = None,
     force_by_tool: bool = False,
     touch: float | None = None,
-) -> dict:
+) -> dict[str, Any]:
     """Report energy, vibration and stiffness of a log, as `hapbench audit --json` does.
 
     `table`: columns of numbers by name, such as a Table, a dict of arrays or a pandas.DataFrame, with time, position
@@ -30,7 +22,7 @@ def audit(
     `columns`, `scale`: as the options of the command. `force_by_tool`: forces act on the object, and their sign is
     changed. `touch`: force from which a row is in contact [N]; None: any force. Raises InputError.
     """
-    _find_packages()
+    find_packages()
     from hapbench_audit.audit import audit_log
     from hapbench_audit.log import log_of_table
 
@@ -41,12 +33,3 @@ def audit(
         "columns_not_read": log.columns_not_read,
         "scales": log.scales,
     }
-
-
-def _find_packages():
-    """Makes the packages of the commands importable, and names the program that belongs to this package."""
-    folder = next((one for one in _PACKAGES if (one / "hapbench_audit").is_dir()), None)
-    if folder is not None and str(folder) not in sys.path:
-        sys.path.append(str(folder))
-    if _PROGRAM.is_file():
-        os.environ.setdefault("HAPBENCH_PROGRAM", str(_PROGRAM))

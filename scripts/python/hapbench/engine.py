@@ -7,9 +7,11 @@ import tempfile
 import warnings
 import weakref
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ._packages import PROGRAM, use_this_python
 from .errors import ScenarioError, ScenarioWarning
 from .results import Folder, Run, Trial
 from .table import Table
@@ -20,15 +22,17 @@ except ImportError as error:
     raise ImportError(
         "hapbench computes with its compiled module, which is not beside this package; "
         "hapbench.load works without it. To compile it, in the source tree: "
-        "scripts/build --python && export PYTHONPATH=$PWD/build/release/lib/python3/dist-packages"
+        "pip install ./scripts/python, or scripts/build --python && export PYTHONPATH=$PWD/build/release/lib/python3/dist-packages"
     ) from error
 
-_hapbench.set_program(str(Path(_hapbench.__file__).resolve().parents[4] / "bin" / "hapbench"))
+_hapbench.set_program(str(PROGRAM))
+use_this_python()
 
-Scenario = str | os.PathLike | dict
+Scenario = str | os.PathLike[str] | dict[str, Any]
 Overrides = Mapping[str, object] | None
 Names = str | Sequence[str] | None
-Place = str | os.PathLike | None
+Mounted = tuple[Sequence[float], Sequence[float]]  # position [m] and quaternion w, x, y, z
+Place = str | os.PathLike[str] | None
 Progress = Callable[[str, int, int], object] | bool | None
 
 
@@ -184,12 +188,39 @@ def command(*words: object, progress: Progress = None) -> Any:
     return json.loads(text) if text else None
 
 
+class Text(str):
+    """Text that a notebook and an interactive Python show as it is, without quotes."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def describe(name: str = "") -> Text:
+    """Explain a name of hapbench (a law, field, metric, column, device, claim or term), as `hapbench describe` does; or
+    list what there is. `hapbench.command("describe", name)` returns the same as data."""
+    words = ["describe", *([name] if name else [])]
+    status, text, said, errors = _hapbench.command(words, False)
+    _warn(said + errors, status)
+    return Text(text)
+
+
+@cache
+def columns_of(file: str) -> list[dict[str, str]]:
+    """Name, unit and meaning of each column of a result file; an empty list if the program does not know the file."""
+    try:
+        found = command("describe", file)
+    except ScenarioError:
+        return []
+    meanings = found if isinstance(found, list) else [found]
+    return next((one["columns"] for one in meanings if one.get("kind") == "file"), [])
+
+
 def algorithms() -> list[str]:
     """The names of all algorithms there are, own ones among them."""
     return _hapbench.algorithms()
 
 
-def load_plugin(file: str | os.PathLike) -> None:
+def load_plugin(file: str | os.PathLike[str]) -> None:
     """Load a module with hapbench's C interface, as the option --module does.
 
     A force law joins the other laws. A source of contacts may then be used by scenarios that name its file. Raises
@@ -220,7 +251,9 @@ class Report(Folder):
     with --json, `status` its exit status: 0, or 3 when a run did not end as its scenario
     expects."""
 
-    def __init__(self, folder, status, report, scratch=None):
+    def __init__(
+        self, folder: Path, status: int, report: Any, scratch: "_Scratch | None" = None
+    ) -> None:
         super().__init__(folder)
         self.status, self.report = status, report
         self._scratch = scratch  # removed with this object
@@ -245,7 +278,7 @@ class Simulation(_hapbench.Simulation):
     rendered ones as a dict of arrays: index, points_m, normals, depths_m, gradients, weights.
     """
 
-    def __init__(self, scenario: Scenario, overrides: Overrides = None):
+    def __init__(self, scenario: Scenario, overrides: Overrides = None) -> None:
         with _Scratch() as scratch:
             scratch.call(super().__init__, scratch.file_of(scenario), _words(overrides or {}))
 
@@ -275,15 +308,15 @@ class Renderer(_hapbench.Renderer):
         max_force_N: float,
         mode: str = "impedance",
         scale: float = 1.0,
-        world_from_device: tuple = ((0, 0, 0), (1, 0, 0, 0)),
-        handle_from_tip: tuple = ((0, 0, 0), (1, 0, 0, 0)),
+        world_from_device: Mounted = ((0, 0, 0), (1, 0, 0, 0)),
+        handle_from_tip: Mounted = ((0, 0, 0), (1, 0, 0, 0)),
         max_force_rate_N_per_s: float = float("inf"),
         ramp_s: float = 0.5,
         stale_s: float = 0.01,
         engage_force_N: float = 0.2,
         torque: bool = False,
         allow_modules: bool = False,
-    ):
+    ) -> None:
         modes = {"impedance": 1, "admittance": 2}
         if mode not in modes:
             raise ValueError(f"mode: got {mode!r}; allowed: {', '.join(modes)}")

@@ -3,11 +3,11 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from .engine import _hapbench
 
-Law = TypeVar("Law", bound=Callable)
+Law = TypeVar("Law", bound=Callable[..., Any])
 _ARGUMENTS = ("depths", "gradients", "points", "normals", "stiffness")
 
 

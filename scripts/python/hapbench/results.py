@@ -1,17 +1,20 @@
 """Results: of a run, of a folder of them, and single files below a folder. Needs no compiled module."""
+import html
 import json
 import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
+from typing import Any
 
 from .columns import read_columns, read_mixed, read_records
 from .errors import ResultError
-from .table import Table
+from .table import Table, joined, unit_of
 
 SUMMARY, SCENARIO = "summary.json", "scenario.effective.json"
+COMPARISON, RANKING = "comparison", "ranking"  # tables of compare
 KINDS = {dict: "an object", list: "an array", str: "a string"}
 
 
@@ -85,36 +88,38 @@ def number_or_none(value):
         return None
 
 
-class Tables(Mapping):
+class Tables(Mapping[str, Table]):
     """Tables by name, each read when it is first asked for."""
 
-    def __init__(self, readers):
+    def __init__(self, readers: Mapping[str, Callable[[], Table]]) -> None:
         self._readers = {name: cache(read) for name, read in readers.items()}
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Table:
         return self._readers[name]()
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._readers)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._readers)
 
 
 class _WithTables:
     """Tables as attributes: `run.trajectory` is `run.tables["trajectory"]`."""
 
-    def __getattr__(self, name):
+    tables: Mapping[str, Table]
+
+    def __getattr__(self, name: str) -> Table:
         if name.startswith("_") or name == "tables":
             raise AttributeError(name)
         if name in self.tables:
             return self.tables[name]
         raise AttributeError(self._no_table(name))
 
-    def _no_table(self, name):
+    def _no_table(self, name: str) -> str:
         return f"no table or attribute {name!r}; tables: {', '.join(self.tables) or 'none'}"
 
-    def __dir__(self):
+    def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self.tables]
 
 
@@ -128,43 +133,75 @@ class Run(_WithTables):
     is None for a run in memory, `unmet` says which expectations of its scenario a run in memory
     missed."""
 
-    def __init__(self, summary, scenario, tables, timing=None, trials=(), folder=None, unmet=None):
+    def __init__(
+        self,
+        summary: dict[str, Any],
+        scenario: dict[str, Any],
+        tables: Mapping[str, Table],
+        timing: dict[str, Any] | None = None,
+        trials: "Iterable[Trial]" = (),
+        folder: Path | None = None,
+        unmet: list[str] | None = None,
+    ) -> None:
         self.summary, self.scenario, self.timing = summary, scenario, timing or {}
         self.tables, self.trials, self.folder = tables, list(trials), folder
         self.unmet = unmet
 
     @property
-    def name(self):
+    def name(self) -> str:
         return str(self.summary.get("name", ""))
 
     @property
-    def algorithm(self):
+    def algorithm(self) -> str:
         return str(self.summary.get("algorithm", ""))
 
     @property
-    def outcome(self):
+    def outcome(self) -> str:
         return str(self.summary.get("outcome", ""))
 
     @property
-    def expected(self):
+    def expected(self) -> bool:
         """True when the run ended as its scenario expects."""
         return bool(self.summary.get("expected"))
 
     @property
-    def warnings(self):
+    def warnings(self) -> list[str]:
         said = self.summary.get("warnings")
         return [str(warning) for warning in said] if isinstance(said, list) else []
 
     @property
-    def metrics(self):
-        return self.summary.get("metrics", {})
+    def metrics(self) -> dict[str, Any]:
+        found = self.summary.get("metrics")
+        return found if isinstance(found, dict) else {}
 
     @property
-    def state_hash(self):
+    def state_hash(self) -> str | None:
         """Over the bit patterns of position, velocity and force of every row: equal for runs that are the same."""
         return self.summary.get("state_hash")
 
-    def _no_table(self, name):
+    def plot(
+        self, y: str | Iterable[str] = (), metric: str | Iterable[str] = (), width: str = "double"
+    ) -> Any:
+        """The matplotlib Figure that `hapbench plot` draws of this run. `y`: quantities, `metric`: metrics, `width`:
+        "single" or "double" column of a journal, or "slide"."""
+        from .pictures import plot
+
+        return plot(self, metric=metric, y=y, width=width)
+
+    def _repr_html_(self) -> str:
+        """Outcome, metrics with units and warnings for a notebook."""
+        rows = "".join(
+            f"<tr><td>{html.escape(name)}</td><td>{value:.5g}</td><td>{html.escape(unit_of(name))}</td></tr>"
+            for name, value in self.metrics.items()
+            if number_or_none(value) is not None
+        )
+        warnings = "".join(f"<p>Warning: {html.escape(text)}</p>" for text in self.warnings)
+        return (
+            f"<p><b>{html.escape(self.name)}</b> with {html.escape(self.algorithm)}: {html.escape(self.outcome)}</p>"
+            f"{warnings}<details><summary>metrics</summary><table><tbody>{rows}</tbody></table></details>"
+        )
+
+    def _no_table(self, name: str) -> str:
         fields = {
             "contacts",
             "energy",
@@ -180,27 +217,34 @@ class Run(_WithTables):
         )
         return super()._no_table(name) + trials + hint
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<run {self.name} with {self.algorithm}: {self.outcome}, tables {', '.join(self.tables) or 'none'}>"
 
 
 class Folder(_WithTables):
     """A folder that sweep, compare, limit … wrote: `tables` of its CSV files by their paths, those of its runs
-    aside, `runs` below it by theirs, `json` of its other files. `folder.sweep` is the table of sweep.csv.
+    aside, `runs` below it by theirs, `json` of its other files. `folder.sweep` is the table of sweep.csv. A comparison of
+    several scenarios has a table for each; `folder.comparison` joins them, with a column for the scenario.
     """
 
-    def __init__(self, folder):
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
         files = [file for file in sorted(self.folder.rglob("*.csv")) if not _is_of_run(file)]
-        self.tables = Tables(
-            {
-                file.relative_to(self.folder).with_suffix("").as_posix(): _reader(file)
-                for file in files
-            }
-        )
+        readers = {
+            file.relative_to(self.folder).with_suffix("").as_posix(): _reader(file, _columns_of)
+            for file in files
+        }
+        parts = {
+            name.rpartition("/")[0]: name for name in readers if name.endswith(f"/{COMPARISON}")
+        }
+        if parts and COMPARISON not in readers:
+            readers[COMPARISON] = lambda: joined(
+                {scene: self.tables[name] for scene, name in parts.items()}, "scenario", COMPARISON
+            )
+        self.tables = Tables(readers)
 
     @cached_property
-    def runs(self):
+    def runs(self) -> dict[str, Run]:
         files = sorted(self.folder.rglob(SUMMARY))
         found = {
             file.parent.relative_to(self.folder).as_posix(): load_run(file.parent) for file in files
@@ -210,14 +254,38 @@ class Folder(_WithTables):
         return found
 
     @cached_property
-    def json(self):
+    def json(self) -> dict[str, Any]:
         return {file.stem: read_json(file) for file in sorted(self.folder.glob("*.json"))}
 
-    def __repr__(self):
+    def plot(
+        self,
+        metric: str | Iterable[str] = (),
+        y: str | Iterable[str] = (),
+        where: str | Iterable[str] = (),
+        width: str = "double",
+    ) -> Any:
+        """The matplotlib Figure that `hapbench plot` draws of this folder. `metric`: metrics by law, or of a sweep one
+        column; `y`: quantities over time; `where`: rows of a sweep; `width` as of Run.plot."""
+        from .pictures import plot
+
+        return plot(self, metric=metric, y=y, where=where, width=width)
+
+    def _repr_html_(self) -> str:
+        """For a notebook: the ranking or else the first table, and the names of the others."""
+        first = next(
+            (name for name in (RANKING, COMPARISON, *self.tables) if name in self.tables), None
+        )
+        shown = self.tables[first]._repr_html_() if first else ""
+        names = html.escape(", ".join(self.tables) or "none")
+        return (
+            f"<p>{html.escape(str(self.folder))}: tables {names}; {len(self.runs)} runs</p>{shown}"
+        )
+
+    def __repr__(self) -> str:
         return f"<{self.folder}: tables {', '.join(self.tables) or 'none'}>"
 
 
-def load(folder: str | os.PathLike) -> "Run | Folder":
+def load(folder: str | os.PathLike[str]) -> "Run | Folder":
     """Reads a folder of results: a Run, or else a Folder of tables and runs. Raises ResultError."""
     folder = Path(folder)
     if not folder.is_dir():
@@ -252,10 +320,10 @@ def load_run(folder, kind=Run):
 class Trial(_WithTables):
     """The tables of one trial of a run."""
 
-    def __init__(self, tables):
+    def __init__(self, tables: Mapping[str, Table]) -> None:
         self.tables = tables
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<trial: tables {', '.join(self.tables) or 'none'}>"
 
 
@@ -270,10 +338,33 @@ def _tables_of(folder, described=None):
     )
 
 
+def _columns_of(file):
+    """What `hapbench describe` says of the columns of a file with this name; nothing without the compiled module."""
+    try:
+        from .engine import columns_of
+    except ImportError:
+        return []
+    return columns_of(file.name)
+
+
 def _reader(file, described=None):
+    """`described`: entries of the columns with name, unit and meaning, or a function of the file that returns them for a
+    table which may have texts."""
+
     def read():
-        if not described:
-            return Table(read_mixed(file), name=file.stem)
+        if not described or callable(described):
+            columns = read_mixed(file)
+            known = {
+                c["name"]: c for c in (described(file) if described else []) if c["name"] in columns
+            }
+            field = columns.get("field", [""])
+            units = {"unit of the field": unit_of(field[0]) if len(set(field)) == 1 else ""}
+            return Table(
+                columns,
+                {name: units.get(c["unit"], c["unit"]) for name, c in known.items()},
+                {name: c["meaning"] for name, c in known.items()},
+                file.stem,
+            )
         return Table(
             read_columns(file, may_be_empty=True),
             {c["name"]: c["unit"] for c in described},

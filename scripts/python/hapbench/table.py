@@ -1,6 +1,16 @@
 """A table of results, and the units of columns by their names."""
+import html
 import textwrap
-from collections.abc import Mapping
+from collections.abc import ItemsView, Iterable, Iterator, KeysView, Mapping, ValuesView
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import pandas
+
+Column = npt.NDArray[Any]
 
 # Ending of a name -> unit; the longest that fits.
 UNITS = {
@@ -28,31 +38,38 @@ MOST_NAMED = 16
 MOST_PRINTED, WIDEST = 20, 100  # rows and characters of a printed table
 
 
-def ending_of(name):
+def ending_of(name: str) -> str:
     """The end of a name that says its unit, "" where it has none."""
     return max((ending for ending in UNITS if name.endswith("_" + ending)), key=len, default="")
 
 
-def unit_of(name):
+def unit_of(name: str) -> str:
     """The unit of a column, "" where its name says none."""
     return UNITS.get(ending_of(name), "")
 
 
-class Table(Mapping):
+class Table(Mapping[str, Column]):
     """Columns by name: numpy arrays of float64, NaN where a field is empty; in some tables of sweeps, of texts.
 
-    `units` and `meanings` say of each column what they can. `table["time_s"]`, `table.time_s` and, for pandas,
-    `pandas.DataFrame(dict(table))` all work."""
+    `units` and `meanings` have an entry for each column as far as they are known. `table["time_s"]` and `table.time_s`
+    are the same column. `len(table)` is the number of rows, `to_pandas()` a DataFrame. A notebook shows the first rows
+    with units."""
 
-    def __init__(self, columns, units=None, meanings=None, name="table"):
-        self._columns = dict(columns)
+    def __init__(
+        self,
+        columns: Mapping[str, Column] | Iterable[tuple[str, Column]],
+        units: Mapping[str, str] | None = None,
+        meanings: Mapping[str, str] | None = None,
+        name: str = "table",
+    ) -> None:
+        self._columns: dict[str, Column] = dict(columns)
         self.units = {
             column: (units or {}).get(column, unit_of(column)) for column in self._columns
         }
         self.meanings = dict(meanings or {})
         self.name = name
 
-    def __getitem__(self, column):
+    def __getitem__(self, column: str) -> Column:
         try:
             return self._columns[column]
         except KeyError:
@@ -60,26 +77,49 @@ class Table(Mapping):
                 f"{self.name} has no column {column!r}; it has {', '.join(self._columns)}"
             ) from None
 
-    def __getattr__(self, column):
+    def __getattr__(self, column: str) -> Column:
         if column.startswith("_") or column not in self._columns:
             raise AttributeError(f"{self.__dict__.get('name', 'table')} has no column {column!r}")
         return self._columns[column]
 
-    def __dir__(self):
+    def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._columns]
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._columns)
 
-    def __len__(self):
-        """The number of columns, as of every mapping; `rows` is that of the rows."""
-        return len(self._columns)
+    def __len__(self) -> int:
+        """The number of rows, as of a DataFrame. The number of columns is `len(table.keys())`."""
+        return self.rows
+
+    def keys(self) -> KeysView[str]:
+        return self._columns.keys()
+
+    def values(self) -> ValuesView[Column]:
+        return self._columns.values()
+
+    def items(self) -> ItemsView[str, Column]:
+        return self._columns.items()
 
     @property
-    def rows(self):
+    def rows(self) -> int:
         return len(next(iter(self._columns.values()), ()))
 
-    def where(self, **chosen):
+    def to_pandas(self) -> "pandas.DataFrame":
+        """A DataFrame with these columns. `frame.attrs["units"]` has the units, `frame.attrs["meanings"]` the meanings."""
+        import pandas
+
+        frame = pandas.DataFrame(dict(self._columns))
+        frame.attrs.update(units=dict(self.units), meanings=dict(self.meanings))
+        return frame
+
+    def plot(self, *y: str, x: str | None = None, width: str = "double") -> Any:
+        """A matplotlib Figure of the columns `y` over the column `x` (default: the first column of numbers)."""
+        from .pictures import plot_table
+
+        return plot_table(self, y, x, width)
+
+    def where(self, **chosen: object) -> "Table":
         """The rows whose columns have these values: `table.where(algorithm="mean")`."""
         found = self
         for column, value in chosen.items():
@@ -92,12 +132,12 @@ class Table(Mapping):
             )
         return found
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         names = list(self._columns)
         more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
         return f"<{self.name}: {self.rows} rows of {', '.join(names[:MOST_NAMED])}{more}>"
 
-    def __str__(self):
+    def __str__(self) -> str:
         """The first rows, aligned, of as many columns as fit; below them what is left out."""
         shown, width = [], 0
         for name, values in self._columns.items():
@@ -114,8 +154,38 @@ class Table(Mapping):
             lines += textwrap.wrap(f"and columns {', '.join(left)}", WIDEST)
         return "\n".join(lines)
 
+    def _repr_html_(self) -> str:
+        """The first rows for a notebook, with the units below the names of the columns."""
+        heads = "".join(
+            f"<th title=\"{html.escape(self.meanings.get(name, ''))}\">{html.escape(name)}"
+            + (f"<br><small>{html.escape(unit)}</small>" if unit not in ("", "1") else "")
+            + "</th>"
+            for name, unit in self.units.items()
+        )
+        rows = "".join(
+            "<tr>" + "".join(f"<td>{html.escape(_cell(v))}</td>" for v in row) + "</tr>"
+            for row in zip(*(values[:MOST_PRINTED] for values in self._columns.values()))
+        )
+        more = (
+            f"<p>and {self.rows - MOST_PRINTED} more rows</p>" if self.rows > MOST_PRINTED else ""
+        )
+        return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>{more}"
 
-def _cell(value):
+
+def joined(tables: Mapping[str, Table], column: str, name: str) -> Table:
+    """The rows of several tables below each other, after a first column with the key of each table. A table without a
+    column has NaN there."""
+    names = list(dict.fromkeys(own for table in tables.values() for own in table))
+    keys = [key for key, table in tables.items() for _ in range(len(table))]
+    columns: dict[str, Column] = {column: np.array(keys, dtype=object)}
+    for own in names:
+        parts = [t[own] if own in t else np.full(len(t), np.nan) for t in tables.values()]
+        columns[own] = np.concatenate(parts)
+    first = next(iter(tables.values()))
+    return Table(columns, first.units, first.meanings, name)
+
+
+def _cell(value: Any) -> str:
     """A number in short, a count in full, nothing for NaN."""
     if isinstance(value, str):
         return value

@@ -8,7 +8,16 @@ from pathlib import Path
 
 from hapbench_command import FAILED, SUCCESS, Arguments, exit_status, say_error, write
 
-from .manuals import MAKERS, ROOT, Manual, Program, manuals, renewed, session
+from .manuals import (
+    MAKERS,
+    ROOT,
+    Manual,
+    Program,
+    manuals,
+    renewed,
+    session,
+    write_files_of_getting_started,
+)
 
 GALLERY = ROOT / "results" / "reference" / "gallery"
 # Commands, the last of which plots, and below them the picture.
@@ -61,6 +70,9 @@ def run(chosen):
     with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
         if chosen.gallery and program:
             draw_gallery(program, Path(scratch))
+        if program:
+            write_files_of_getting_started(Path(scratch))
+            program.run(["new", "drag", "--from", "my.obj", "--extent", "10mm"], scratch)
         of_program = (
             {"session": lambda old: session(old, program, Path(scratch))} if program else {}
         )

@@ -7,8 +7,8 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
-import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,6 +24,7 @@ ENDS = re.compile(r"^(?:\||&&|;|\d?>.*|<.*)$")
 BLOCK = re.compile(r"(<!-- generated: (\S+)[^\n]*-->\n)(.*?)(<!-- /generated -->)", re.S)
 BEGIN = "<!-- generated:"
 COLUMNS = 100  # of a session in a manual
+STARTED = ROOT / "scenarios" / "GETTING_STARTED.md"
 REFERENCE = ROOT / "results" / "reference"
 TASKS = {
     "D1": "upright, 0.52 mm aside",
@@ -31,6 +32,7 @@ TASKS = {
     "D3": "turning, 3 mm high",
     "D4": "turning, 4 mm high",
 }
+STAMP = re.compile(r"hapbench \d[\w.]*, \d{4}-\d\d-\d\d, [^\n]+\.")  # see Program.provenance()
 PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 
 
@@ -120,8 +122,8 @@ def renewed(text, makers):
 
 
 def session(old, program, directory):
-    """A command in a manual with what it printed, on which commit and machine: the block with the
-    output of its first command."""
+    """A block with a command and its output, which ends with version, date and processor. The command
+    is the first command of the old block."""
     line = next(
         (line.strip() for line in old.splitlines() if line.strip().startswith("$ hapbench ")), None
     )
@@ -134,13 +136,25 @@ def session(old, program, directory):
     return program.stamped(shown, old)
 
 
+def write_files_of_getting_started(folder):
+    """Writes the files that the tutorial makes without hapbench: a mesh my.obj and a compiled law mine.so."""
+    shutil.copy(ROOT / "scenarios/library/examples/data/molar.obj", folder / "my.obj")
+    text = STARTED.read_text(encoding="utf-8")
+    law = re.search(r"^```c\n(.*?)^```$", text, re.M | re.S)[1]
+    (folder / "mine.c").write_text(law, encoding="utf-8")
+    compiler = re.search(r"^    (gcc .*) mine.c -o mine.so$", text, re.M)[1].split()
+    command = [*compiler, folder / "mine.c", "-o", folder / "mine.so"]
+    subprocess.run(command, cwd=ROOT, check=True)
+
+
 def read(name):
     return json.loads((REFERENCE / name).read_text(encoding="utf-8"))
 
 
 def main_results(_old=""):
-    """The main results, as the ledger opens with them."""
-    return (REFERENCE / "claims.md").read_text(encoding="utf-8").split("\n\n")[0]
+    """The sentences of the abstract, as the ledger opens with them; links lead to the ledger."""
+    page = (REFERENCE / "claims.md").read_text(encoding="utf-8")
+    return next(part for part in page.split("\n\n") if part.startswith("| the abstract claims |"))
 
 
 def experiments(_old=""):
@@ -159,37 +173,18 @@ def experiments(_old=""):
 
 
 def robustness(_old=""):
-    """How firmly the verdicts hold over the choices on record: and the fragile ones."""
+    """The assumptions that decide verdicts, each with the claims."""
     claims = read("claims.json")["claims"]
-    sampled = [claim for claim in claims if claim["robustness"]]
-    always = [
-        claim for claim in sampled if claim["robustness"]["holds"] == claim["robustness"]["judged"]
-    ]
-    fragile = [claim for claim in sampled if claim["sureness"] == "fragile"]
-    untouched = [
-        claim["id"]
-        for claim in claims
-        if not claim["choices_reach_it"] and claim["verdict"] != "not reproducible"
-    ]
-    judged = [claim["robustness"]["judged"] for claim in sampled]
-    lines = [
-        f"Of {len(sampled)} verdicts that were sampled, in {min(judged)} to {max(judged)} readings, "
-        f" {len(always)} are the same in every sample. No recorded choice reaches {' '.join(untouched)}. Fragile are "
-        "these; the ledger has the others:",
-        "",
-        "| claim | recorded | recorded verdict in | decided by (first-order Sobol index) |",
-        "|---|---|---|---|",
-    ]
-    for claim in fragile:
-        counts = claim["robustness"]
-        by = counts["decided_by"]
-        decided = f"`{by['choice']}` ({by['index']:.2f})" if by else "no single choice"
-        lines.append(
-            f"| {claim['id']} | {claim['verdict']} | {counts['holds']} of {counts['judged']} | {decided} |"
-        )
-    return "\n".join(
-        line if line.startswith("|") else "\n".join(textwrap.wrap(line, 110)) for line in lines
-    )
+    what = {entry["id"]: entry["what"] for entry in read("assumptions.json")["assumptions"]}
+    decided = {}
+    for claim in claims:
+        for name in claim["deciders"]:
+            alone = len(claim["deciders"]) == 1
+            decided.setdefault(name, []).append(f"**{claim['id']}**" if alone else claim["id"])
+    lines = ["| assumption | what | decides |", "|---|---|---|"]
+    for name, ids in sorted(decided.items(), key=lambda entry: (-len(entry[1]), entry[0])):
+        lines.append(f"| `{name}` | {what[name]} | {' '.join(ids)} |")
+    return "\n".join(lines)
 
 
 def six_dof(_old=""):
@@ -267,19 +262,18 @@ class Program:
         return done.stdout
 
     def stamped(self, text, old):
-        """The text and where it comes from; the old block where the text says the same, since a
-        date or a time is no news."""
-        known = old.rpartition("\n\nPrinted by ")[0]
-        return (
-            old if same_but_for_times(text, known) else f"{text}\n\nPrinted by {self.provenance()}."
-        )
+        """Returns the text with its provenance. Returns the old block if its text differs only in times
+        and its provenance has today's form."""
+        known, _, stamp = old.strip("\n").rpartition("\n\nPrinted by ")
+        if STAMP.fullmatch(stamp) and same_but_for_times(text, known):
+            return old
+        return f"{text}\n\nPrinted by {self.provenance()}."
 
     def provenance(self):
-        """Commit, date and processor: "commit 5e60010bc2c9, 2026-11-21, AMD EPYC"."""
-        commit = re.search(r"\(([^)]+)\)", self.run(["--version"], "."))
-        return (
-            f"commit {commit[1] if commit else 'unknown'}, {datetime.date.today()}, {processor()}"
-        )
+        """Version, date and processor, such as "hapbench 0.3.0, 2026-11-21, AMD EPYC". Without the
+        commit, so that no reader has to check out a commit to compare."""
+        version = self.run(["--version"], ".").partition(" (")[0].strip()
+        return f"{version}, {datetime.date.today()}, {processor()}"
 
 
 def same_but_for_times(a, b):

@@ -7,30 +7,32 @@ from hapbench.results import MissingResult
 
 from . import scene
 
-HANDS = "task2_hands"  # a sweep of task 2 over the hand's force, tilted from upright to 1.047 rad and back
-MARKS = 40  # of a hand at most: more could not be told from their neighbours
-SLID = 0.15  # [mm]
+RUN = "thesis/task2_pressed"  # the run that claim J1 is judged by
+MARKS = 120  # of a group of forces at most: more could not be told from their neighbours
 SETTLED = 0.5  # seconds: the drill starts above its place
 
 
-def samples(results, run):
-    """Rows of a hand, settled, within the compared tilts, and on the wall: not those in which the
-    drill has slid towards the axis. Lengths in millimetres."""
-    rows = results.table(f"{HANDS}/runs/{run:06d}/ideal_trajectory.csv")
+def samples(results):
+    """Rows of the run by force of the hand, below 2 N and from there on, settled and within the
+    compared tilts. Lengths in millimetres."""
+    rows = results.table(f"{RUN}/ideal_trajectory.csv")
     range_ = scene.PUBLISHED["J1.tilt"]
     own = (
         (rows["time_s"] > SETTLED)
         & (rows["tilt_rad"] >= range_["at_least"])
         & (rows["tilt_rad"] <= range_["at_most"])
     )
-    if not own.any():
-        raise MissingResult(f"no row at the compared tilts in {HANDS}/runs/{run:06d}")
-    rows = {
-        key: column[own] * (1 if key in ("time_s", "tilt_rad", "hand_force_N") else 1e3)
-        for key, column in rows.items()
-    }
-    on_wall = np.abs(rows["lateral_m"]) > np.abs(rows["ideal_lateral_m"]) - SLID
-    return {key: column[on_wall] for key, column in rows.items()}
+    firm = rows["hand_force_N"] >= scene.published("J1.split")
+    groups = [own & ~firm, own & firm]
+    if not all(group.any() for group in groups):
+        raise MissingResult(f"no row at the compared tilts in {RUN}")
+    return [
+        {
+            key: column[group] * (1 if key in ("time_s", "tilt_rad", "hand_force_N") else 1e3)
+            for key, column in rows.items()
+        }
+        for group in groups
+    ]
 
 
 def ideal(rows_list):
@@ -69,22 +71,18 @@ def draw_block(ax, environment):
 def trajectory(results):
     figure, axes = style.panels(1, 3, 3.1, gridspec_kw={"width_ratios": [0.75, 1.2, 1.2]})
     section, height, distance = axes[0]
-    hands = results.records(f"{HANDS}/sweep.csv")
-    environment = results.json(f"{HANDS}/runs/000000/scenario.effective.json")["environment"]
+    environment = results.json(f"{RUN}/scenario.effective.json")["environment"]
     draw_block(section, environment)
     bottom = 1e3 * environment["hole_depth_m"]
-    drawn, errors = [], []
-    for run, (hand, own) in enumerate(zip(hands, style.SERIES)):
-        force = float(hand["hand.force_N"])
-        rows = samples(results, run)
-        drawn.append(rows)
+    drawn, errors = samples(results), []
+    for rows, name, own in zip(drawn, ("below 2 N", "from 2 N on"), style.SERIES):
         errors.append(
-            f"{force:.2g} N {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f}/"
-            f"{rows['interpenetration_m'].max():.2f} mm"
+            f"{name} {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f} mm and "
+            f"{np.abs(rows['lateral_m'] - rows['ideal_lateral_m']).max():.2f} mm, "
+            f"{rows['interpenetration_m'].max():.2f} mm inside"
         )
-        pick = slice(None, None, max(1, len(rows["tilt_rad"]) // MARKS))
+        pick = slice(None, None, max(1, -(-len(rows["tilt_rad"]) // MARKS)))
         thin = {key: column[pick] for key, column in rows.items()}
-        # The firmest hand is hollow and lies over its neighbour, whose places it shares.
         look = {
             "color": own.colour,
             "marker": own.marker,
@@ -93,10 +91,8 @@ def trajectory(results):
             "mec": "none",
             "alpha": 0.7,
         }
-        if force > scene.published("J1.split"):
-            look |= {"ms": 4, "mec": own.colour, "mfc": "none", "mew": 0.6}
         section.plot(thin["lateral_m"], thin["height_m"], **look)
-        height.plot(thin["tilt_rad"], thin["height_m"] + bottom, label=f"{force:.2g} N", **look)
+        height.plot(thin["tilt_rad"], thin["height_m"] + bottom, label=name, **look)
         distance.plot(thin["tilt_rad"], np.abs(thin["lateral_m"]), **look)
     tilt, x, y = (column[:: max(1, len(column) // 300)] for column in ideal(drawn))
     section.plot(x, y, color=style.BLACK)
@@ -114,4 +110,4 @@ def trajectory(results):
     height.legend(loc="upper left", markerscale=1.8, fontsize=6.5)
     height.margins(y=0.12)
     style.note(distance, 0.03, 0.3, "shaded: published,\nerror up to about\n0.25 mm", style.RED)
-    return style.lettered(figure, axes[0]), {"errors": ", ".join(errors)}
+    return style.lettered(figure, axes[0]), {"errors": "; ".join(errors)}

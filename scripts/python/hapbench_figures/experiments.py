@@ -66,6 +66,27 @@ def published_test(claim):
     return f"t = {signed(scene.published(f'{claim}.t'))}, p {sign} {bound:g}"
 
 
+def questionnaires(results):
+    """The published efforts (figure D.6), which the ledger has as claim D5."""
+    results.json("claims.json")
+    figure, axes = style.panels(1, 2, 2.2, gridspec_kw={"width_ratios": [2, 1]})
+    effort, relative = axes[0]
+    ticks = []
+    for i, task in enumerate(TARGETS):
+        for j, (method, name) in enumerate(METHODS):
+            entry = scene.PUBLISHED[f"D5.effort.{task}.{method}"]
+            x = 3 * i + j
+            effort.errorbar([x], [entry["mean"]], yerr=[entry["standard_error"]], **style.PUBLISHED)
+            ticks.append((x, f"{name}\n{task}"))
+        entry = scene.PUBLISHED[f"D5.relative_effort.{task}"]
+        relative.errorbar([i], [entry["mean"]], yerr=[entry["standard_error"]], **style.PUBLISHED)
+    effort.set(title="NASA-TLX", ylim=(0, 100), xlim=(-0.7, 4.7), ylabel="effort, 0 to 100 [1]")
+    effort.set_xticks([x for x, _ in ticks], [label for _, label in ticks])
+    relative.set(title="HS beside DP", ylim=(0, 1), xlim=(-0.6, 1.6), ylabel="effort, 0 to 1 [1]")
+    relative.set_xticks([0, 1], list(TARGETS))
+    return style.lettered(figure, axes[0]), {}
+
+
 def draw_measure(ax, tables, place, claim, measure):
     name, column, _, scale = measure
     both = []

@@ -2,9 +2,11 @@
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.legend import Legend
 
 import hapbench_style as style
 from hapbench.results import MissingResult
+from hapbench_command import asked_of_program
 from hapbench_pictures.over_axes import with_room
 
 ACCURACY = "accuracy/accuracy.json"  # of hapbench_accuracy
@@ -53,7 +55,8 @@ PANELS = (
         "second",
     ),
 )
-KNEE = 2  # times the least error of a panel
+# Settings whose order is not the order of their costs: their marks are not joined.
+UNORDERED = ("reduction/",)
 LARGEST_ERROR_MM = 10  # the block is 15 mm wide: beyond, the drill has left it
 
 
@@ -100,13 +103,11 @@ def settings_of(results, beginnings, column, scale, per):
 
 
 def knee(settings):
-    """The cheapest setting whose error is at most KNEE times the least: what takes longer gains no
-    more than that factor."""
-    least = min(setting.error for setting in settings)
-    return min(
-        (setting for setting in settings if setting.error <= KNEE * least),
-        key=lambda setting: setting.time,
-    )
+    """The knee of the front of run time and error, as `hapbench plot` of `converge --over` marks it: the program
+    finds it. None where the front is straight or has fewer than four settings."""
+    points = [f"{setting.time!r}:{setting.error!r}" for setting in settings]
+    found = asked_of_program("finds the knee of a front", "plot", "--knee", *points).strip()
+    return settings[int(found)] if found else None
 
 
 def draw_panel(ax, results, title, beginnings, column, label, scale, per):
@@ -115,16 +116,7 @@ def draw_panel(ax, results, title, beginnings, column, label, scale, per):
     for name in dict.fromkeys(setting.series for setting in settings):
         own = [setting for setting in settings if setting.series == name]
         if name or beginnings == ("shaping/",):
-            look = next(curves)
-            ax.plot(
-                [s.time for s in own],
-                [s.error for s in own],
-                color=look.colour,
-                marker=look.marker,
-                ls=look.line,
-                ms=3.5,
-                label=name.replace("_", " "),
-            )
+            draw_series(ax, name, own, next(curves), joined=beginnings[0] not in UNORDERED)
         else:
             for setting in own:
                 look = style.look(setting.short)
@@ -137,11 +129,12 @@ def draw_panel(ax, results, title, beginnings, column, label, scale, per):
                     label=look.label,
                 )
     found = knee(settings)
-    ax.plot(found.time, found.error, "o", mfc="none", mec=style.RED, ms=10, mew=1.2)
+    if found:
+        ax.plot(found.time, found.error, "o", mfc="none", mec=style.RED, ms=10, mew=1.2)
     ax.set(
         xscale="log",
         yscale="log",
-        title=f"{title}\nknee: {found.name}",
+        title=f"{title}\nknee: {found.name}" if found else f"{title}\nno knee",
         ylabel=label,
         xlabel="time per simulated s [ms]" if per == "second" else f"time of a {per} [µs]",
     )
@@ -154,29 +147,69 @@ def draw_panel(ax, results, title, beginnings, column, label, scale, per):
     return found
 
 
+def draw_series(ax, name, settings, look, joined):
+    """The settings of a sequence, joined by a line; a setting without a number, such as "exact", is a mark alone."""
+    label = name.replace("_", " ")
+    ordered = [s for s in settings if joined and any(map(str.isdigit, s.short))]
+    alone = [s for s in settings if s not in ordered]
+    marks = {"color": look.colour, "marker": look.marker, "ms": 3.5}
+    if ordered:
+        ax.plot(
+            [s.time for s in ordered],
+            [s.error for s in ordered],
+            ls=look.line,
+            label=label,
+            **marks,
+        )
+    if alone:
+        ax.plot(
+            [s.time for s in alone],
+            [s.error for s in alone],
+            ls="none",
+            label=None if ordered else label,
+            **marks | ({"mfc": "white"} if ordered else {}),
+        )
+
+
+def legends_below(axes, drawn):
+    """The names of the panels' curves below all panels, where they cover no mark: (f) has the curves of (a)."""
+    add_legend(axes[0], "a, f", drawn[0], "upper left", 1)
+    add_legend(axes[1], "b", drawn[1], "upper center", 3)
+    add_legend(axes[2], "d", drawn[3], "upper right", 1)
+    add_legend(axes[2], "e", drawn[4], "lower right", 1)
+
+
+def add_legend(ax, letters, of, place, columns):
+    handles, labels = of.get_legend_handles_labels()
+    if not any(labels):
+        return
+    legend = Legend(
+        ax,
+        handles,
+        labels,
+        loc=place,
+        ncol=columns,
+        fontsize=6.5,
+        handlelength=1.8,
+        handletextpad=0.6,
+        title=f"({letters})",
+        title_fontsize=7,
+        borderaxespad=0.0,
+    )
+    legend.set_in_layout(False)
+    ax.add_artist(legend)
+
+
 def run_time_against_error(results):
-    figure, axes = style.panels(3, 3, 6.4, gridspec_kw={"height_ratios": [1, 1, 0.4]})
+    figure, axes = style.panels(3, 3, 6.6, gridspec_kw={"height_ratios": [1, 1, 0.5]})
     drawn = axes[:2].ravel()
     knees = [draw_panel(ax, results, *panel) for ax, panel in zip(drawn, PANELS)]
     for ax in axes[2]:
         ax.axis("off")
-    # The names of (b) below everything: they would cover its marks.
-    for ax in drawn:
-        handles, labels = ax.get_legend_handles_labels()
-        if ax is drawn[1]:
-            axes[2, 1].legend(
-                handles,
-                labels,
-                loc="center",
-                ncol=4,
-                fontsize=7,
-                handlelength=1.6,
-                handletextpad=0.6,
-                title="(b)",
-            ).set_in_layout(False)
-        elif any(labels) and ax is not drawn[5]:  # whose curves have the looks of (a)
-            ax.legend(fontsize=5.5, handlelength=1.8)
-    said = "; ".join(f"({letter}) {found.name}" for letter, found in zip("abcdef", knees))
+    legends_below(axes[2], drawn)
+    said = "; ".join(
+        f"({letter}) {found.name if found else 'none'}" for letter, found in zip("abcdef", knees)
+    )
     time = {
         row["name"].split("/")[1]: row["seconds_per_step"]
         for row in results.json(ACCURACY)["benchmarks"]
@@ -188,4 +221,4 @@ def run_time_against_error(results):
         if len(time) == 2
         else ""
     )
-    return style.lettered(figure, drawn), {"factor": KNEE, "knees": said, "skipped": skipped}
+    return style.lettered(figure, drawn), {"knees": said, "skipped": skipped}

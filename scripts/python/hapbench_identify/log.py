@@ -57,7 +57,7 @@ def read_log(options):
     force, position = (
         scales[name] * recording.column(found[name]) for name in ("force", "position")
     )
-    time = scales["time"] * recording.clock(found["time"])[1]
+    time = scales["time"] * recording.clock(found["time"], scales["time"])[1]
     bad = _bad_rows(recording, time, force, position)
     faults = recording.faults(bad)
     if faults and not options.skip_bad_rows:

@@ -1,6 +1,7 @@
 """Recordings in the formats that are read: their columns as arrays, and where in the file each row is."""
 import math
 import re
+from datetime import date
 
 import numpy as np
 from hapbench_command import fail, finite_number, nearest, plain, quoted
@@ -93,10 +94,28 @@ class Recording:
             values = np.array([finite_number(cell) for cell in cells])
         return np.where(np.isfinite(values), values, math.nan)
 
-    def clock(self, column):
+    def clock(self, column, scale=1.0):
         """(origin, numbers less the origin) of a column of times. The origin is 0, except for whole numbers that a
-        double does not hold, such as nanoseconds since 1970."""
+        double does not hold, such as nanoseconds since 1970. Times of day, with or without a date (ISO 8601), become
+        seconds since the first; `scale`, the seconds per unit of other numbers, must be 1 for them.
+        """
         values = self.column(column)
+        if not self.is_binary and not np.isfinite(values).any():
+            nanoseconds = [
+                _nanoseconds(row[column]) if len(row) > column else None for row in self.rows
+            ]
+            known = [number for number in nanoseconds if number is not None]
+            if known and scale != 1.0:
+                fail(
+                    f"column {self.title(column)}: the times are times of day, in seconds; allowed: no other unit in "
+                    f"the name of the column or in --scale time, got {scale:g} s",
+                    self.file,
+                )
+            if known:
+                self._note_times_of_day(column, nanoseconds.index(known[0]))
+                return 0, np.array(
+                    [math.nan if n is None else 1e-9 * (n - known[0]) for n in nanoseconds]
+                )
         if self.is_binary or not np.nanmax(np.abs(values), initial=0.0) > EXACT:
             return 0, values
         cells = self._cells(column)
@@ -129,6 +148,11 @@ class Recording:
             )
         return cells
 
+    def _note_times_of_day(self, column, row):
+        note = f"column {self.title(column)}: times of day such as {self.shown(column, row)} are read as seconds since the first"
+        if note not in self.notes:
+            self.notes.append(note)
+
     def title(self, column):
         """Number and name of a column."""
         return f"{column + 1} {self.names[column]}".rstrip()
@@ -140,6 +164,30 @@ class Recording:
             if self.is_binary
             else quoted(self.rows[row][column])
         )
+
+
+_TIME_OF_DAY = re.compile(
+    rb"(?:(\d{4}-\d\d-\d\d)[T ])?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,9}))?\s*(Z|[+-]\d\d:?\d\d)?"
+)
+
+
+def _nanoseconds(cell):
+    """The nanoseconds of a time of day, with or without a date and an offset, or None."""
+    found = _TIME_OF_DAY.fullmatch(cell)
+    if not found:
+        return None
+    day, hours, minutes, seconds, fraction, offset = found.groups()
+    days = 0
+    if day:
+        try:
+            days = date.fromisoformat(day.decode()).toordinal()
+        except ValueError:
+            return None
+    total = ((24 * days + int(hours)) * 60 + int(minutes)) * 60 + int(seconds)
+    if offset not in (None, b"Z"):
+        sign = -1 if offset[:1] == b"-" else 1
+        total -= sign * (int(offset[1:3]) * 60 + int(offset[-2:])) * 60
+    return total * 1_000_000_000 + int((fraction or b"0").ljust(9, b"0"))
 
 
 def _kind_of(problem):

@@ -288,8 +288,8 @@ class Rows:
         frame = np.array(options.frame).T
         if columns.time:
             scale = columns.scale("time", columns.time)
-            self._numbers(columns.time)
-            origin, values = recording.clock(columns.time[0])
+            origin, values = recording.clock(columns.time[0], scale)
+            self._refuse_columns(columns.time, values[:, np.newaxis])
             self.origin, self.time = scale * origin, scale * values
         else:
             is_sample = [i not in self.problems for i in range(len(recording.rows))]
@@ -365,6 +365,11 @@ class Rows:
 
     def _numbers(self, columns):
         values = np.column_stack([self._recording.column(column) for column in columns])
+        self._refuse_columns(columns, values)
+        return values
+
+    def _refuse_columns(self, columns, values):
+        """Adds the problems of rows without a number in a column."""
         for column, numbers in zip(columns, values.T):
             name = self._recording.names[column]
             self._refuse(
@@ -374,7 +379,6 @@ class Rows:
                     f"{self._recording.shown(column, row)}; allowed: a finite number"
                 ),
             )
-        return values
 
     def _refuse(self, wrong, problem):
         for row in np.flatnonzero(wrong).tolist():
@@ -523,9 +527,10 @@ def _held_rows(rows, options, notes):
     held = hold_of(np.column_stack(values)[usable]) if usable.any() else None
     if held is None:
         return None
-    steps = np.diff(rows.time[usable])
-    rate = 1.0 / (held.rows * float(np.median(steps))) if np.median(steps) > 0.0 else math.nan
-    said = f"each pose is repeated in {held.rows:.4g} rows: poses were measured at {rate:.4g} Hz"
+    said = f"each pose is repeated in {held.rows:.4g} rows"
+    interval = float(np.median(np.diff(rows.time[usable][held.fresh])))
+    if interval > 0.0:
+        said += f": poses were measured at {1.0 / interval:.4g} Hz"
     if options.held_rows == "keep":
         notes.append(f"{said}, and steps between poses are not motion (--set held_rows=thin)")
         return None

@@ -177,9 +177,11 @@ def _units_of(words):
 def _commented_header(comments, before, count, separator):
     """The line number and the names of a header such as "% time,x,y,z", above the line `before`."""
     for number, comment in reversed(comments):
-        words = split(comment.lstrip(b"#% \t"), separator)
-        if number < before and len(words) == count and (names := _header(words)):
-            return number, names
+        text = comment.lstrip(b"#% \t")
+        # A comment often has blanks between its names, whatever separates the numbers.
+        for words in (split(text, separator), split(text, None)):
+            if number < before and len(words) == count and (names := _header(words)):
+                return number, names
     return None, []
 
 

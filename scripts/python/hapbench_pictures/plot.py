@@ -18,10 +18,17 @@ KINDS = (".svg", ".png", ".pdf")
 
 
 def plot(options):
-    sweep, study = given_sweep(options.runs), given_alone(options.runs, PICTURES, "holds limits")
     file = options.out or common_folder(options.runs) / "plot.svg"
     if file.suffix not in KINDS:
         raise InputError(f"--out {file}: got \"{file.suffix}\"; allowed: {', '.join(KINDS)}")
+    write(file, picture(figure_of(options), file.suffix[1:]))
+    if not options.quiet:
+        print(f"picture in {file}")
+
+
+def figure_of(options):
+    """The figure that these options of `hapbench plot` ask for."""
+    sweep, study = given_sweep(options.runs), given_alone(options.runs, PICTURES, "holds limits")
     sheet = SHEETS[options.width or "double"]
     if study:
         refuse(
@@ -29,14 +36,10 @@ def plot(options):
             ("--y", "--metric", "--where", "--from", "--to"),
             f"{study} holds limits; allowed for it: --width, --out",
         )
-        figure = draw_study(study, sheet)
-    elif sweep:
-        figure = of_sweep(sweep, options, sheet)
-    else:
-        figure = of_runs(options, sheet)
-    write(file, picture(figure, file.suffix[1:]))
-    if not options.quiet:
-        print(f"picture in {file}")
+        return draw_study(study, sheet)
+    if sweep:
+        return of_sweep(sweep, options, sheet)
+    return of_runs(options, sheet)
 
 
 def refuse(options, names, why):

@@ -121,15 +121,18 @@ class Scene:
             places = [(len(law.failures), found[law.label]) for law in self.laws]
             for own in places:
                 own[1].rank = 1 + sum(is_better(*other, *own, direction) for other in places)
+            for failures, own in places:
+                if own.is_unknown and not failures:
+                    own.rank = None
+            if len({own.rank for _, own in places} - {None}) < 2:
+                for _, own in places:
+                    own.rank = None
         return found
 
     def ranks(self, metric):
         """Label of a law -> its rank. None where the metric has no better direction, where only a bound of the
-        number is known, and for all laws if their numbers cannot be told apart."""
-        found = self.standings(metric)
-        known = {label: None if of.is_unknown else of.rank for label, of in found.items()}
-        succeeding = {known[law.label] for law in self.laws if not law.failures}
-        return known if len(succeeding - {None}) > 1 else dict.fromkeys(found)
+        number is known, and for all laws if their ranks would be equal."""
+        return {label: of.rank for label, of in self.standings(metric).items()}
 
     def standing(self, law, metric):
         values = law.values(metric)

@@ -6,11 +6,12 @@ from hapbench_style import SETTINGS, SHEET, plt
 from .convergence_plot import LEVELS, draw_converge
 from .limit_plot import LIMIT_RUNS, draw_limits
 from .tuning_plot import TRIALS, draw_tune
-from .work_precision_plot import ERRORS, draw_work_precision
+from .work_precision_plot import ERRORS, MODEL_ERRORS, draw_model_errors, draw_work_precision
 
 PICTURES = {
     TRIALS: draw_tune,
     ERRORS: draw_work_precision,
+    MODEL_ERRORS: draw_model_errors,
     LEVELS: draw_converge,
     LIMIT_RUNS: draw_limits,
 }

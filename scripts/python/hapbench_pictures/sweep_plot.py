@@ -25,6 +25,8 @@ NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 WIDTH = 100  # of text
 MOST_COSINES, ROWS_PER_COSINE = 6, 10
 LEAST_ROWS = 20  # of a sample that tells how much a field matters
+# Positive values with a larger ratio of largest to smallest also get the index of their logarithm.
+DECADE = 10.0
 
 
 def runs_that_meet(folder, conditions):
@@ -120,6 +122,11 @@ class Sweep:
         return found
 
     @property
+    def spans_decades(self):
+        """Whether the metric is positive and its values span more than a decade."""
+        return spans_decades(self.values[np.isfinite(self.values)])
+
+    @property
     def is_cloud(self):
         """Whether its points are on no grid that a picture shows."""
         return len(self.fields) > 2 or self.sampled and len(self.fields) > 1
@@ -195,7 +202,10 @@ def mark_classes(ax, sweep, x):
 
 def sensitivity_text(found):
     rank = "" if found.rank is None else f"rank {found.rank:+.2f}, "
-    return f"{rank}S\u2081 {hundredths(found.first_order)} ± {hundredths(found.error)}"
+    text = f"{rank}S\u2081 {hundredths(found.first_order)} ± {hundredths(found.error)}"
+    if found.of_logarithm is None:
+        return text
+    return f"{text}\nof the logarithm {hundredths(found.of_logarithm)} ± {hundredths(found.error_of_logarithm)}"
 
 
 def hundredths(number):
@@ -295,39 +305,50 @@ def sensitivity_table(sweep):
             f"too few runs for a sensitivity analysis: {runs} runs have this metric{without}; "
             f"needed: {LEAST_ROWS} runs with several values of the metric"
         ]
+    logarithm = sweep.spans_decades
+    heads = ["sensitivity to field", "rank correlation", "first order", "+-"]
+    heads += ["of the logarithm", "+- "] if logarithm else []
     rows = [
-        [
-            field,
-            *(
-                (
-                    "-" if number is None else hundredths(number)
-                    for number in (of.rank, of.first_order, of.error)
-                )
-                if of
-                else "---"
-            ),
-        ]
-        for field, of in sorted(
-            zip(sweep.fields, found), key=lambda pair: -(pair[1].first_order if pair[1] else -1)
-        )
+        [field, *(numbers_of(of, logarithm) if of else ["-"] * (len(heads) - 1))]
+        for field, of in sorted(zip(sweep.fields, found), key=lambda pair: -most_telling(pair[1]))
     ]
     together = hundredths(sum(of.first_order for of in found if of))
+    of_logarithm = ""
+    if logarithm:
+        together_of_logarithm = hundredths(sum(of.of_logarithm for of in found if of))
+        of_logarithm = (
+            f"Of the logarithm: the index of the logarithm of {sweep.metric}, whose values span more than a "
+            f"decade, so that a few large values determine its variance; the sum is {together_of_logarithm}. "
+        )
     return [
-        table_text(
-            ["sensitivity to field", "rank correlation", "first order", "+-"],
-            rows,
-            wide=True,
-            numbers=True,
-        ),
+        table_text(heads, rows, wide=True, numbers=True),
         *textwrap.wrap(
             "rank correlation: Spearman's coefficient. First order: Sobol's index, the fraction of the "
             f"variance of {sweep.metric} that the field alone explains; the sum is {together}, and "
-            "the rest is due to interactions of fields or to no field. Estimated by regression on "
+            f"the rest is due to interactions of fields or to no field. {of_logarithm}Estimated by regression on "
             f"at most {MOST_COSINES} cosines of the field's position in its range, or on the values "
             f"of a list, over {runs} runs{without}. +-: standard error, by jackknife",
             WIDTH,
         ),
     ]
+
+
+def numbers_of(found, logarithm):
+    """The cells of a field's line."""
+    numbers = [found.rank, found.first_order, found.error]
+    numbers += [found.of_logarithm, found.error_of_logarithm] if logarithm else []
+    return ["-" if number is None else hundredths(number) for number in numbers]
+
+
+def most_telling(found):
+    """The index by which fields are ordered: the logarithm's, if there is one."""
+    if found is None:
+        return -1
+    return found.first_order if found.of_logarithm is None else found.of_logarithm
+
+
+def spans_decades(values):
+    return len(values) > 0 and values.min() > 0 and values.max() > DECADE * values.min()
 
 
 @dataclass(frozen=True)
@@ -343,11 +364,16 @@ class Sensitivity:
     influence has 0 in the mean. Its standard error is the jackknife's over the rows; a Latin
     hypercube or a Sobol sequence errs less. What changes faster than the sixth cosine, as the edge
     of a jump, is not seen: of a step in the middle a fifteenth.
+
+    A variance is dominated by the largest values. Of a positive metric that spans more than a decade, the index
+    of the logarithm is computed, too: three outliers do not hide a field that decides all other values.
     """
 
     rank: float | None  # none for texts, which have no order
     first_order: float
     error: float  # standard error of first_order
+    of_logarithm: float | None = None  # first-order index of log(y); none unless spans_decades(y)
+    error_of_logarithm: float | None = None
 
 
 def sensitivity(column, place, y):
@@ -363,10 +389,9 @@ def sensitivity(column, place, y):
         functions = np.column_stack(
             [np.ones(len(y)), np.cos(np.pi * np.outer(place, np.arange(1, count + 1)))]
         )
-    share, error = adjusted_share(functions, y)
-    return Sensitivity(
-        None if isinstance(column, list) else float(spearmanr(column, y).statistic), share, error
-    )
+    rank = None if isinstance(column, list) else float(spearmanr(column, y).statistic)
+    of_logarithm = adjusted_share(functions, np.log(y)) if spans_decades(y) else (None, None)
+    return Sensitivity(rank, *adjusted_share(functions, y), *of_logarithm)
 
 
 def adjusted_share(functions, y):

@@ -1,11 +1,13 @@
 """The trials of `tune` as a picture."""
+import json
+
 import numpy as np
 from matplotlib.lines import Line2D
 
 from hapbench.columns import numbers
 from hapbench.errors import InputError
 from hapbench_looks import look
-from hapbench_style import BLACK, GREY, SHEET, legend_above, number_ticks
+from hapbench_style import BLACK, GREY, RED, SHEET, legend_above, number_ticks
 
 from .given import axis
 from .over_axes import Axis, look_of, over_axes, pareto, spread_logarithmically, with_room
@@ -14,6 +16,7 @@ TRIALS, LAWS = "tune_trials.csv", "tune.csv"
 STIFFNESS, DEPTH, VIBRATION = "stiffness_N_per_m", "inside_max_m", "force_rms_above_30Hz_N"
 SETTING = ("rendering.damping_ratio", "mass_kg", "velocity_filter")
 CHOICE = {"ls": "none", "marker": "o", "ms": 10, "color": BLACK, "mfc": "none", "zorder": 4}
+BOUND = {"color": RED, "lw": 1.0, "ls": (0, (4, 2)), "zorder": 0.5}
 QUANTITIES = {
     STIFFNESS: (axis(STIFFNESS), 1.0),
     DEPTH: ("largest depth inside [mm]", 1e3),
@@ -49,7 +52,7 @@ def draw_tune(files, sheet=SHEET):
     """
     trials, laws = files.records(TRIALS), files.records(LAWS)
     drawn = [Trials(law, trials) for law in laws]
-    shown = np.vstack([of.values for of in drawn])
+    shown, bounds = np.vstack([of.values for of in drawn]), bounds_of(laws)
     if not shown.size:
         raise InputError(
             "nothing to draw: no trial is settled; column why of tune.csv explains why"
@@ -57,12 +60,21 @@ def draw_tune(files, sheet=SHEET):
     rows, columns = sheet.grid(3)
     figure, axes = sheet.panels(rows, columns, 0.5 + 2.6 * rows)
     for ax, x, y in zip(axes.flat, (0, 0, 1), (1, 2, 2)):
-        draw_panel(ax, x, y, drawn, shown)
-    legend_above(figure, *zip(*legend_of(drawn)), columns=None)
+        draw_panel(ax, x, y, drawn, shown, bounds)
+    legend_above(figure, *zip(*legend_of(drawn, bounds)), columns=None)
     return figure
 
 
-def draw_panel(ax, x, y, drawn, shown):
+def bounds_of(laws):
+    """For each of QUANTITIES the values of --bound. A table of an older version has no bounds."""
+    given = json.loads(laws[0].get("bounds") or "{}")
+    return [
+        [factor * value for value in given.get(name, {}).values()]
+        for name, (_, factor) in QUANTITIES.items()
+    ]
+
+
+def draw_panel(ax, x, y, drawn, shown, bounds):
     series = []
     for of in drawn:
         own = look_of(of.name, ls="none", ms=4)
@@ -77,10 +89,16 @@ def draw_panel(ax, x, y, drawn, shown):
             look_of_front = {"color": own["color"], "lw": 1.0, "ls": "-", "zorder": 1}
             series.append((None, front[:, 0], front[:, 1], look_of_front))
     titles = [title for title, _ in QUANTITIES.values()]
-    over_axes(ax, axis_of(titles[x], shown[:, x]), axis_of(titles[y], shown[:, y]), series)
-    for i, limits, along in ((x, ax.set_xlim, ax.xaxis), (y, ax.set_ylim, ax.yaxis)):
-        limits(*range_of(shown[:, i]))
+    values = [np.append(shown[:, i], bounds[i]) for i in range(len(QUANTITIES))]
+    over_axes(ax, axis_of(titles[x], values[x]), axis_of(titles[y], values[y]), series)
+    for i, limits, along, line in (
+        (x, ax.set_xlim, ax.xaxis, ax.axvline),
+        (y, ax.set_ylim, ax.yaxis, ax.axhline),
+    ):
+        limits(*range_of(values[i]))
         number_ticks(along)
+        for bound in bounds[i]:
+            line(bound, **BOUND)
     if x == 0:
         ax.tick_params(axis="x", labelrotation=40)
 
@@ -101,7 +119,7 @@ def range_of(values):
     )
 
 
-def legend_of(drawn):
+def legend_of(drawn, bounds):
     """Handles and labels of what is drawn, and of nothing else."""
     entries = [
         (Line2D([], [], **look_of(of.name, ls="none", ms=4)), look(of.name).label)
@@ -113,4 +131,6 @@ def legend_of(drawn):
         entries.append((hollow, "not feasible"))
     if any(of.chosen.any() for of in drawn):
         entries.append((Line2D([], [], **{**CHOICE, "ms": 8}), "choice of each law"))
+    if any(bounds):
+        entries.append((Line2D([], [], **BOUND), "bound"))
     return entries

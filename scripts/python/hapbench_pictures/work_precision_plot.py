@@ -3,16 +3,67 @@ for each problem and a curve for each integrator."""
 from itertools import cycle
 
 import numpy as np
+from matplotlib.lines import Line2D
 
 from hapbench.columns import numbers
 from hapbench.errors import InputError
 from hapbench_looks import SERIES
-from hapbench_style import GREY, SHEET, legend_above, note
+from hapbench_style import GREY, SHEET, legend_above, note, number_ticks
+from hapbench_style import look as style_look
 
 from .over_axes import Axis, over_axes
 
 ERRORS, TIMES = "convergence.csv", "convergence_timing.csv"
+KNEE = {"marker": "o", "ms": 10, "mfc": "none", "mec": GREY, "ls": "none"}
+ASKED = {"color": GREY, "lw": 0.8, "ls": ":"}
+SPEED = {"color": GREY, "lw": 0.8, "ls": "--"}
 REAL_TIME = 1000.0  # processor time of a simulated second that passes in real time [ms]
+
+
+MODEL_ERRORS, MODEL_TIMES = "convergence_model.csv", "convergence_model_timing.csv"
+
+
+def draw_model_errors(files, sheet=SHEET):
+    """Laws against a reference force: the error of the force's direction, and of the force, over the time of a step.
+    A mark is the median, a line reaches to the 99.9th percentile. Grey: the deadline of a step. Hollow: a law that
+    renders by the constraints of the reference. Nothing is joined: laws are no sequence."""
+    errors, times = files.records(MODEL_ERRORS), files.records(MODEL_TIMES)
+    median, late = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))
+    deadline = 1e6 * float(times[0]["deadline_s"])
+    shared = is_true(errors, "shares_reference")
+    quantities = (
+        (
+            "mean error of the direction [°]",
+            np.degrees(numbers(errors, "force_direction_error_rad")),
+        ),
+        ("rms error of the force [N]", numbers(errors, "force_error_rms_N")),
+    )
+    figure, axes = sheet.panels(1, 2, 3.4)
+    for ax, (label, values) in zip(axes.flat, quantities):
+        for i, row in enumerate(errors):
+            look = style_look(row["problem"])
+            ax.plot([median[i], late[i]], [values[i]] * 2, color=look.colour, lw=0.8)
+            ax.plot(
+                median[i],
+                values[i],
+                ls="none",
+                marker=look.marker,
+                ms=5,
+                color=look.colour,
+                mfc="white" if shared[i] else look.colour,
+                label=look.label + (" (shares the reference)" if shared[i] else ""),
+            )
+        ax.axvline(deadline, zorder=1, **SPEED)
+        logarithmic = (values[np.isfinite(values)] > 0).all()
+        ax.set(xscale="log", xlabel="time of a step [µs]: median to 99.9 %", ylabel=label)
+        ax.set_yscale("log" if logarithmic else "linear")
+        for of in (ax.xaxis, ax.yaxis) if logarithmic else (ax.xaxis,):
+            number_ticks(of)
+    handles, labels = axes.flat[0].get_legend_handles_labels()
+    handles.append(Line2D([], [], **SPEED))
+    labels.append("deadline, 0.5 ms")
+    legend_above(figure, handles, labels, columns=None)
+    return figure
 
 
 def draw_work_precision(files, sheet=SHEET):
@@ -29,6 +80,7 @@ def draw_work_precision(files, sheet=SHEET):
     problems = list(dict.fromkeys(row["problem"] for row in errors))
     integrators = list(dict.fromkeys(row["integrator"] for row in errors))
     looks = dict(zip(integrators, cycle(SERIES)))
+    is_knee = is_true(times, "knee")
     asked = 1e6 * float(errors[0]["asked_error_m"])
     rows, columns = sheet.grid(len(problems))
     figure, axes = sheet.panels(rows, columns, 0.5 + 2.4 * rows, sharex=True, sharey=True)
@@ -48,24 +100,44 @@ def draw_work_precision(files, sheet=SHEET):
         ]
         across = Axis("processor time per simulated second [ms]", cost, log=True)
         over_axes(ax, across, Axis("rms error of the tip's position [µm]", error, log=True), series)
-        ax.axhline(asked, color=GREY, lw=0.8, ls=":", zorder=1)
+        ax.axhline(asked, zorder=1, **ASKED)
         if cost.max() > 0.1 * REAL_TIME:
-            ax.axvline(REAL_TIME, color=GREY, lw=0.8, ls="--", zorder=1)
-        for at in np.flatnonzero(of_problem & np.array([row["knee"] == "true" for row in times])):
-            ax.plot(cost[at], error[at], marker="o", ms=10, mfc="none", mec=GREY, lw=0)
+            ax.axvline(REAL_TIME, zorder=1, **SPEED)
+        for at in np.flatnonzero(of_problem & is_knee):
+            ax.plot(cost[at], error[at], **KNEE)
         if not np.isfinite(error[of_problem]).any():
             note(ax, 0.5, 0.5, "no error: not predictable", ha="center")
-        ax.set_title(problem)
+        ax.set_title(problem.replace("_", " "))
         ax.label_outer()
     for ax in list(axes.flat)[len(problems) :]:
         ax.set_visible(False)
-    legend_above(figure, *axes.flat[0].get_legend_handles_labels(), columns=None)
+    marks = [
+        Line2D([], [], marker=looks[name].marker, color=looks[name].colour, ls=looks[name].line)
+        for name in integrators
+    ]
+    names = [name.replace("_", " ") for name in integrators]
+    if is_knee.any():
+        marks.append(Line2D([], [], **KNEE))
+        names.append("knee")
+    if (np.isfinite(error) & (error > 0) & ~is_true(errors, "resolved")).any():
+        marks.append(Line2D([], [], marker="s", color=GREY, mfc="white", ls="none"))
+        names.append("not resolved by the reference")
+    marks.append(Line2D([], [], **ASKED))
+    names.append(f"error that is asked for: {asked:g} µm")
+    if cost.max() > 0.1 * REAL_TIME:
+        marks.append(Line2D([], [], **SPEED))
+        names.append("real time")
+    legend_above(figure, marks, names, columns=None)
     return figure
+
+
+def is_true(rows, column):
+    return np.array([row[column] == "true" for row in rows])
 
 
 def curves(name, own, chosen, errors, cost, error):
     """The curve of an integrator, and its unresolved errors as hollow marks."""
-    resolved = np.array([row["resolved"] == "true" for row in errors])
+    resolved = is_true(errors, "resolved")
     look = {"color": own.colour, "marker": own.marker}
     shown = chosen & np.isfinite(error) & (error > 0)
     yield name, cost[shown], np.where(resolved, error, np.nan)[shown], look | {"ls": own.line}

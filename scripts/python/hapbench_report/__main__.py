@@ -121,10 +121,10 @@ def run(options):
         for scenario, _, algorithms in REPLAYED
         for algorithm in algorithms
     ]
-    claims, headline = load_claims(options.claims) if options.claims else ([], "")
+    ledger = load_claims(options.claims) if options.claims else ([], "", [])
     figures = load_figures(options.figures) if options.figures else []
     page = thesis_page(
-        runs, claims, headline, figures, [recorded[path] for path in replayed if path in recorded]
+        runs, ledger, figures, [recorded[path] for path in replayed if path in recorded]
     )
     out = options.out or options.results / "report.html"
     write(out, page)

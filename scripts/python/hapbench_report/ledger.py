@@ -11,11 +11,14 @@ from .markup import cell, command, folded, heading_cell, listed, table, text, ty
 # Verdict -> (mark, tone), what is contradicted first; the last two are of findings of ours. The
 # mark tells verdicts apart without colour.
 VERDICTS = {
-    "refuted": ("⊘", "bad"),
-    "not reproduced": ("✗", "bad"),
-    "reproduced in kind": ("≈", "fair"),
-    "reproduced": ("✓", "good"),
-    "not reproducible": ("–", "none"),
+    "contradicted": ("⊘", "bad"),
+    "not replicated": ("✗", "bad"),
+    "not consistent in simulation": ("✗", "bad"),
+    "not judged": ("?", "none"),
+    "qualitatively replicated": ("≈", "fair"),
+    "consistent in simulation": ("✓", "good"),
+    "replicated": ("✓", "good"),
+    "not testable": ("–", "none"),
     "does not hold": ("✗", "bad"),
     "holds": ("✓", "good"),
 }
@@ -23,21 +26,19 @@ FILTER = (
     '<div class="bar" data-filters="ledger-table"><label>Filter <input type="search" placeholder="words"></label>'
     '<label>Verdict <select data-column="1"><option value="">all</option></select></label><output></output></div>'
 )
-SURENESS = ("steady", "fragile", "not sampled")
 
 
 def load_claims(file):
-    """The ledger's claims, and its sentence on how many have which verdict and how many verdicts are steady."""
+    """The ledger's claims, its sentence with the counts, and the sentences of the abstract."""
     ledger = read_object(file)
     claims = objects(ledger, "claims", file)
     for i, claim in enumerate(claims):
-        for key, allowed in (("verdict", VERDICTS), ("sureness", SURENESS)):
-            if claim.get(key) not in allowed:
-                words = ", ".join(f'"{word}"' for word in allowed)
-                raise InputError(
-                    f"{file}: /claims/{i}/{key}: got {shown(claim.get(key))}; allowed: {words}"
-                )
-    return claims, str(ledger.get("headline") or "")
+        if claim.get("verdict") not in VERDICTS:
+            words = ", ".join(f'"{word}"' for word in VERDICTS)
+            raise InputError(
+                f"{file}: /claims/{i}/verdict: got {shown(claim.get('verdict'))}; allowed: {words}"
+            )
+    return claims, str(ledger.get("headline") or ""), ledger.get("abstract") or []
 
 
 def of_thesis(claims):
@@ -54,13 +55,13 @@ def verdict_mark(verdict):
     return f'<span class="verdict {tone}">{mark} {text(verdict)}</span>'
 
 
-def summary_section(runs, claims, headline, figures):
+def summary_section(runs, claims, headline, abstract, figures):
     met = sum(run.expected for run in runs)
     tiles = [
         (len(runs), "run" if len(runs) == 1 else "runs"),
         (f"{met}/{len(runs)}", "ended as their scenario expects"),
     ]
-    counts = Counter(claim["verdict"] for claim in of_thesis(claims))
+    counts = Counter(claim["verdict"] for claim in of_thesis(claims) if not claim.get("timing"))
     tiles += [(str(count), verdict_mark(verdict)) for verdict, count in counts.items()]
     if figures:
         tiles.append((len(figures), '<a href="#figures">figures</a>'))
@@ -76,41 +77,38 @@ def summary_section(runs, claims, headline, figures):
         "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); "
         "numbers such as Fig. A.2 or "
         f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
-        f'<ul class="cards">{items}</ul>{main_results(claims)}<p>{typeset(headline)}</p>'
+        f'<ul class="cards">{items}</ul>{main_results(claims, abstract)}<p>{typeset(headline)}</p>'
         f"{warnings(runs)}{refusals(claims)}"
     )
 
 
-def main_results(claims):
-    """The results that a reader should have seen, with the command of each."""
-    rows = [
-        [
-            cell(f"{claim_link(claim)} {typeset(claim['main']['claim'])}", classes="prose"),
-            cell(text(claim["place"])),
-            cell(typeset(claim["main"]["published"])),
-            cell(typeset(claim["main"]["ours"])),
-            cell(verdict_mark(claim["verdict"])),
-            cell(text(sureness(claim))),
-            cell(f"<code>{text(claim['command'])}</code>"),
-            cell(text("< 1" if claim["seconds"] < 1 else f"{claim['seconds']:.0f}")),
-        ]
-        for claim in claims
-        if claim.get("main")
-    ]
-    headings = [
-        heading_cell(title)
-        for title in (
-            "Claim",
-            "Place",
-            "Published",
-            "Ours",
-            "Verdict",
-            "Sureness",
-            "Command",
-            "Seconds",
+def main_results(claims, abstract):
+    """The sentences of the abstract, with the claims that test them and the command of each."""
+    by_id = {claim["id"]: claim for claim in claims}
+
+    def each(of_sentence, text_of):
+        return cell("<br>".join(f"{claim_link(claim)} {text_of(claim)}" for claim in of_sentence))
+
+    rows = []
+    for sentence in abstract:
+        tests = [by_id[id_] for id_ in sentence["claims"] if id_ in by_id]
+        if not tests:
+            continue
+        only = ",".join(claim["id"] for claim in tests)
+        rows.append(
+            [
+                cell(typeset(sentence["sentence"]), classes="prose"),
+                each(tests, lambda claim: typeset(claim.get("published_short", ""))),
+                each(tests, lambda claim: typeset(claim.get("number", ""))),
+                each(tests, lambda claim: verdict_mark(claim["verdict"])),
+                each(tests, lambda claim: text(claim.get("robustness", ""))),
+                cell(f"<code>hapbench reproduce --only {text(only)}</code>"),
+            ]
         )
-    ]
-    return table(headings, rows, "<b>Main results</b>", "stack", "main-results") if rows else ""
+    titles = ("The abstract claims", "Published", "Ours", "Verdict", "Decided by", "Command")
+    headings = [heading_cell(title) for title in titles]
+    title = "<b>What the abstract claims</b>"
+    return table(headings, rows, title, "stack", "main-results") if rows else ""
 
 
 def warnings(runs):
@@ -137,14 +135,14 @@ def ledger_section(claims, figures):
     ours = [claim_row(claim, figures) for claim in claims if claim.get("ours")]
     headings = [
         heading_cell(title)
-        for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Sureness")
+        for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Decided by")
     ]
     return (
         "<p>Each claim of the thesis, what it publishes, what our runs give, and a verdict by a rule, which unfolds "
         "with the figures and scenarios behind it. "
         "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
-        "Steady: more than half of the samples spread over the plausible ranges of everything the thesis leaves open "
-        "(<code>results/reference/choices.json</code>) have the verdict; else fragile, or not sampled.</p>"
+        "Decided by: each assumption that the thesis leaves open (<code>results/reference/assumptions.json</code>) was set "
+        "to its other plausible values, one at a time. Exact: no assumption enters; robust: none changes the verdict.</p>"
         + FILTER
         + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table")
         + (
@@ -186,11 +184,5 @@ def claim_row(claim, figures):
             f"{typeset(claim.get('measured', ''))}<p class=note>{typeset(claim.get('why', ''))}</p>",
             classes="prose",
         ),
-        cell(text(sureness(claim))),
+        cell(text(claim.get("robustness", ""))),
     ]
-
-
-def sureness(claim):
-    """The word, and in how many samples."""
-    counts = claim.get("robustness")
-    return claim["sureness"] + (f": {counts['holds']} of {counts['judged']}" if counts else "")

@@ -35,8 +35,10 @@ BUILT = Path(__file__).resolve().parents[3] / "build" / "live" / LIVE  # by scri
 NO_REPLAY = '<p class="note">No recorded runs were given (<code>--program</code>).</p>'
 
 
-def thesis_page(runs, claims, headline, figures, replayed):
-    """The HTML of the report on the thesis. Depends on nothing but its arguments."""
+def thesis_page(runs, ledger, figures, replayed):
+    """The HTML of the report on the thesis, from what load_claims returns and more. Depends on nothing but its
+    arguments."""
+    claims, headline, abstract = ledger
     replay = (
         player(replays(replayed, [run.algorithm.replace("_", " ") for run in replayed]))
         if replayed
@@ -44,7 +46,12 @@ def thesis_page(runs, claims, headline, figures, replayed):
     )
     return whole_page(
         (
-            ("summary", "Summary", "Summary", summary_section(runs, claims, headline, figures)),
+            (
+                "summary",
+                "Summary",
+                "Summary",
+                summary_section(runs, claims, headline, abstract, figures),
+            ),
             ("ledger", "Ledger", "Ledger", ledger_section(claims, figures)),
             ("replay", "Replay", "Replay", replay),
             ("figures", "Figures", "Figures", figures_section(figures, claims)),

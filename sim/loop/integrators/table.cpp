@@ -43,9 +43,9 @@ void velocity_verlet(ToolState& tool, const Vec3& force, double mass, double dt,
   tool.velocity = half + field.force_at(1.0, tool.pose.position, half) / mass * (0.5 * dt);
 }
 
-/// Advances position and velocity by an interval of `h` [s] with the classical Runge-Kutta method of order 4.
-/// The interval starts at the fraction `from` of the step of `dt` [s]. `force` is the force at its start. Calls
-/// `stage` after each further force. Returns position and velocity at its end.
+/// Advances position and velocity by an interval of `h` [s] with the classical Runge-Kutta method of order 4. The
+/// interval starts at the fraction `from` of the step of `dt` [s]. `force` is the force at the start of the interval.
+/// Calls `stage` after each further force. Returns position and velocity at the end of the interval.
 template <class Stage>
 std::pair<Vec3, Vec3> runge_kutta(const Vec3& p, const Vec3& v1, const Vec3& force, double mass, double from, double h,
                                   double dt, ForceField& field, const Stage& stage) noexcept {
@@ -107,7 +107,7 @@ void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceFiel
     acting = force_then;
     set = field.contact_set();
     done = last ? dt : done + h;
-    if (!same) h = dt;  // after the event, try the whole rest of the step
+    if (!same) h = dt;  // after the event, try the rest of the step as one interval
   }
 }
 
@@ -115,11 +115,11 @@ void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceFiel
 /// z^4/24| <= 1 on the negative real axis.
 constexpr double kRk4DamperLimit = 2.785293563405282;
 
-// The implicit integrators solve for the velocity at the end of the step with a linearised force, f(p + dp, v +
-// dv) = f - K dp - D dv. K and D are stiffness and damping of the algorithm's Jacobian. A step costs one 3x3
-// solve and the force at its start. The linearisation ignores contacts that begin within the step, changes of
-// the stiffness tensor S, rotation of the tool, and force limits. In directions in which D adds energy
-// (friction with a law whose S has eigenvalues above 1) the step is that of leapfrog.
+// The implicit integrators solve for the velocity at the end of the step with a linearised force, f(p + dp, v + dv) =
+// f - K dp - D dv. K and D are stiffness and damping of the algorithm's Jacobian. A step costs one 3x3 solve and the
+// force at its start. The linearisation ignores contacts that begin within the step, changes of the stiffness tensor S,
+// rotation of the tool, and force limits. In directions in which D adds energy (friction with a law whose S has
+// eigenvalues above 1) the step equals a step of leapfrog.
 
 /// Returns the velocity change dv [m/s] from (M I + resistance) dv = impulse, with a symmetric `resistance`
 /// [kg] and the impulse in N s. The result is finite if the arguments and their quotients by M are finite.

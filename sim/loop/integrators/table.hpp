@@ -16,8 +16,8 @@ class ForceField {
  public:
   virtual ~ForceField() = default;
   /// Returns f_in + f_render [N] at the time t_k + fraction dt, 0 < fraction <= 1, with the tip at `position` [m] and
-  /// `velocity` [m/s]. The tool's axis at this time is that of the scripted motion. f_in is constant over the step.
-  /// Costs a contact search and a force computation.
+  /// `velocity` [m/s]. The scripted motion gives the tool's axis at this time. f_in is constant over the step. Costs a
+  /// contact search and a force computation.
   virtual Vec3 force_at(double fraction, const Vec3& position, const Vec3& velocity) noexcept = 0;
   /// Returns a hash of the set of contacts that were rendered in the last call of force_at, or at the start of the
   /// step if force_at has not been called in this step. Equal sets have equal hashes. Costs about a nanosecond for
@@ -37,9 +37,9 @@ struct SpringDamper;
 /// evaluate steps of the integrator instead.
 struct IntegratorEntry {
   ModelInfo info;
-  /// Takes one step of dt [s]: moves position and velocity of the tool of `mass` [kg]. `force` [N] is the force
-  /// at the start of the step, and `field` gives it at other times and states. Does not change the axis, keeps
-  /// no state between steps and allocates nothing. `tolerance` [s] is the time tolerance of `event`.
+  /// Takes one step of dt [s]: moves position and velocity of the tool of `mass` [kg]. `force` [N] is the force at the
+  /// start of the step, and `field` gives the force at other times and states. Does not change the axis, keeps no state
+  /// between steps and allocates nothing. `tolerance` [s] is the time tolerance of `event`.
   void (*step)(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double tolerance);
   int order = 1;         ///< order of convergence on undamped springs
   int damped_order = 1;  ///< order of convergence with damping

@@ -1,5 +1,5 @@
-// Prints a hash of every bit of what the engine and the algorithms compute, one line per case. Built once with each
-// variant of the libraries; their outputs must be the same text.
+// Prints a hash of every bit that the engine and the algorithms compute, one line per case. The program is built once
+// with each variant of the libraries; the outputs of all builds must be the same text.
 #include <cstdint>
 #include <iomanip>
 #include <iostream>
@@ -30,7 +30,7 @@ RenderingConfig config_of(std::string_view algorithm) {
   return config;
 }
 
-/// Random springs at random places: the laws on every family of gradients.
+/// Prints hashes for random springs at random positions: the laws on all gradient distributions.
 void print_springs(const AlgorithmEntry& algorithm) {
   for (const GradientDistribution& family : gradient_distributions()) {
     Random random(1);
@@ -47,7 +47,7 @@ void print_springs(const AlgorithmEntry& algorithm) {
   }
 }
 
-/// The 2-D peg: tilting, round tip.
+/// Returns the 2-D peg with tilt and round tip.
 SimulationParts peg(const RenderingConfig& config) {
   Setting setting;
   setting.tool = {0.0005, 0.005, Tip::round};
@@ -59,7 +59,7 @@ SimulationParts peg(const RenderingConfig& config) {
   return parts;
 }
 
-/// A hand that grinds the flat tool, tilting and turning, into a plane.
+/// Returns a hand that presses the flat tool into a plane while the tool tilts and rotates.
 SimulationParts plane(const RenderingConfig& config) {
   Setting setting;
   setting.points = surface_points(Plane{0.006, 0.00011});
@@ -82,7 +82,7 @@ void print_runs(const AlgorithmEntry& algorithm, const std::string& depth_model)
       config.depth_model = depth_model;
       config.local_average = average;
       if (reduce) config.reduction = ReductionConfig{0.99, 20, 3};
-      config.passivity_controller = average && reduce;  // once is enough
+      config.passivity_controller = average && reduce;  // a single configuration with a passivity controller is enough
       const std::string name = std::string(algorithm.info->name) + ' ' + depth_model + (average ? " averaged" : "") +
                                (reduce ? " reduced" : "");
       HashingObserver hash;
@@ -101,7 +101,7 @@ void print_runs(const AlgorithmEntry& algorithm, const std::string& depth_model)
   }
 }
 
-/// The 2-D peg under every integrator.
+/// Prints hashes for the 2-D peg under every integrator.
 void print_integrators(const AlgorithmEntry& algorithm) {
   for (const IntegratorEntry* integrator : kIntegrators) {
     HashingObserver hash;
@@ -114,7 +114,7 @@ void print_integrators(const AlgorithmEntry& algorithm) {
   }
 }
 
-/// All that a mesh tool answers, among points in and around a cup.
+/// Prints hashes of all results of a mesh tool, among points in and around a cup.
 void print_mesh_tool() {
   const MeshTool tool(grid_of(cup(20), 0.1));
   Random random(4);
@@ -142,7 +142,8 @@ void print_mesh_tool() {
   print("mesh tool", hash.value());
 }
 
-/// Every kind of tool on points everywhere in, on and around it: search, depths, constraints, foremost places.
+/// Prints hashes for a kind of tool, with points inside, on and around it: search, depths, constraints and support
+/// points.
 void print_tools(const ToolKind& kind) {
   Random random(4);
   Hash hash;
@@ -156,7 +157,7 @@ void print_tools(const ToolKind& kind) {
     const PointShell shell(points, 0.0);
     const auto query = make_contact_query(shell, *tool.shape, Skips::on);
     ContactBuffer contacts(points.size());
-    const auto brute_force = make_contact_query(shell, *tool.shape, Skips::off);  // which has its own loop
+    const auto brute_force = make_contact_query(shell, *tool.shape, Skips::off);  // brute force has its own loop
     brute_force->contacts_at(pose, contacts);
     hash.add(contacts);
     query->contacts_at(pose, contacts);

@@ -11,10 +11,10 @@
 namespace hapbench::laws_test {
 namespace {
 
-// Sums of n <= 300 products, each rounded: below 2 n eps of the sum of magnitudes.
+// Rounding of sums of n <= 300 products: below 2 n eps times the sum of magnitudes.
 constexpr double kRounding = 600 * std::numeric_limits<double>::epsilon();
 
-/// Compares the law on random sets of all families with weights c(n) by dense matrices.
+/// Compares the law on random sets of all distributions with weights c(n), computed with dense matrices.
 void expect_constant_weights(const char* name, double (*c_of_n)(double), const RenderingConfig& config = {}) {
   test::for_random_contacts([&](ContactBuffer contacts, const char* family) {
     const LawForce force = make_law(name, config)->evaluate(contacts);
@@ -44,7 +44,7 @@ TEST(McNeely, IsTheSumUpToTenPointsAndTenMeansBeyond) {
       "mcneely", [](double n) { return std::min(1.0, 3.0 / n); }, config);
 }
 
-/// One spring along the averaged gradient, whose depth d_r is a function of the depths and of |sum u_i|.
+/// A law with one spring along the averaged gradient. Its depth d_r is a function of the depths and of |sum u_i|.
 struct Law {
   const char* name;
   double (*depth)(const Eigen::VectorXd& depths, double length);
@@ -52,7 +52,7 @@ struct Law {
 const Law kLaws[] = {{"original_averaging", [](const Eigen::VectorXd& d, double length) { return d.sum() / length; }},
                      {"highest_depth", [](const Eigen::VectorXd& d, double) { return d.maxCoeff(); }}};
 
-/// With K = 1.
+/// Returns the result of a law with K = 1.
 LawForce evaluate(const char* law, const std::vector<Vec3>& gradients, const std::vector<double>& depths = {}) {
   ContactBuffer contacts = test::contacts_of(gradients, depths);
   RenderingConfig config;
@@ -68,13 +68,14 @@ TEST(AveragedDirection, IsOneSpringAlongTheSummedGradient) {
       const test::Dense dense(contacts);
       const Vec3 sum = dense.U.rowwise().sum();
       const double n = static_cast<double>(dense.n()), length = sum.norm();
-      // If gradients cancel down to rounding, there is no direction.
+      // If the gradients cancel to rounding, the direction is undefined.
       if (length < 1e-6 * n) return;
       const Vec3 u = sum / length;
       const double d = law.depth(dense.d, length);
 
       const LawForce force = make_law(law.name, config)->evaluate(contacts);
-      // The sum has an error of n eps per component, its direction and inverse length that divided by its length.
+      // The sum has an error of n eps in each component. The direction and the inverse length have this error divided
+      // by the length of the sum.
       const double rounding = 4 * n * n * std::numeric_limits<double>::epsilon() / length;
       ASSERT_LE((force.spring + 1234.5 * d * u).norm(), rounding * 1234.5 * d) << law.name << ' ' << family;
       ASSERT_LE((force.S - u * u.transpose()).norm(), rounding) << law.name << ' ' << family;
@@ -83,7 +84,8 @@ TEST(AveragedDirection, IsOneSpringAlongTheSummedGradient) {
 }
 
 TEST(AveragedDirection, TurnsRoundWhereOneOfOpposedContactsComes) {
-  // Thesis B.3.3: of m contacts one way and one more or fewer the other way, the original algorithm adds all depths.
+  // Thesis B.3.3: m contacts push in one direction, and m - 1 or m + 1 contacts in the opposite direction. The original
+  // algorithm then adds all depths.
   for (const Law& law : kLaws) {
     for (const int n : {0, 1, 5, 50}) {
       for (const int more : {-1, 0, 1}) {
@@ -99,7 +101,7 @@ TEST(AveragedDirection, TurnsRoundWhereOneOfOpposedContactsComes) {
 }
 
 TEST(AveragedDirection, CountsGradientsAsCancelledUpToABillionthOfTheirNumber) {
-  // Two opposite gradients and one of length t: |sum| = t against 3e-9.
+  // Two opposite gradients and a gradient of length t: |sum| = t is compared with 3e-9.
   const auto with_rest = [](double t) {
     return evaluate("original_averaging", {Vec3::UnitX(), -Vec3::UnitX(), t * Vec3::UnitY()}).spring.norm();
   };
@@ -108,7 +110,7 @@ TEST(AveragedDirection, CountsGradientsAsCancelledUpToABillionthOfTheirNumber) {
 }
 
 TEST(HighestDepth, OfStretchedSpringsIsTheLeastStretched) {
-  // Depths of bilateral springs may all be negative; the padding's zeros are no depths.
+  // Depths of bilateral springs may all be negative; the zeros of the padding do not count as depths.
   EXPECT_EQ(evaluate("highest_depth", {Vec3::UnitX(), Vec3::UnitX()}, {-0.5, -0.25}).spring, Vec3(0.25, 0, 0));
 }
 
@@ -127,7 +129,7 @@ LawForce tandpasta(ContactBuffer& contacts) {
   return make_law("tandpasta", {})->evaluate(contacts);
 }
 
-/// Beta_i and sigma_E of thesis F.2, from dense matrices.
+/// Computes beta_i and sigma_E of thesis F.2 with dense matrices.
 TEST(Tandpasta, IsItsFormula) {
   test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     const test::Dense dense(contacts);
@@ -135,10 +137,10 @@ TEST(Tandpasta, IsItsFormula) {
     const Eigen::VectorXd beta = inner.rowwise().sum().cwiseAbs().cwiseQuotient(inner.cwiseAbs().rowwise().sum());
     const Eigen::VectorXd d2 = dense.d.array().square();
     const double s = beta.dot(d2) / d2.sum();
-    // Betas are off by up to n eps (sums of n inner products over a sum of at least 1); c = beta / sigma amplifies
-    // that.
+    // The error of beta is up to n eps (sums of n inner products divided by a sum of at least 1); c = beta / sigma
+    // amplifies this error.
     const double rounding = 8 * static_cast<double>(dense.n()) * kEps / s;
-    if (s < 1e-9) return;  // near the threshold rounding decides
+    if (s < 1e-9) return;  // near the threshold, rounding decides
     const Eigen::VectorXd c = beta / s;
     const LawForce force = tandpasta(contacts);
     ASSERT_LE((test::weights(contacts) - c).cwiseAbs().maxCoeff(), rounding * c.maxCoeff()) << name;
@@ -158,7 +160,7 @@ TEST(Tandpasta, GivesNoForceUpToItsEnergyThreshold) {
     EXPECT_EQ(force.spring == Vec3::Zero(), force.S == Mat3::Zero());
     return force.spring.norm();
   };
-  // Two opposed springs, one turned by an angle t: beta = (1 - cos t) / (1 + cos t) = t^2 / 4 for both.
+  // Two opposed springs, one rotated by an angle t: beta = (1 - cos t) / (1 + cos t) = t^2 / 4 for both.
   const auto at_angle = [&](double t) { return force_of({{1, 0, 0}, {-std::cos(t), std::sin(t), 0}}, 0.001); };
   EXPECT_EQ(at_angle(0.0), 0.0) << "all springs cancel";
   EXPECT_EQ(at_angle(1.9e-6), 0.0);
@@ -176,7 +178,7 @@ RenderingConfig config_of(double coupling, double saturation = 1e9) {
   return config;
 }
 
-// Rounding: sums of n <= 300 terms, amplified by the condition of K_vc I + K S, at most 1 + n K / K_vc.
+// Rounding error: sums of n <= 300 terms, amplified by the condition number of K_vc I + K S, at most 1 + n K / K_vc.
 double rounding(const test::Dense& dense, double coupling) {
   const double n = static_cast<double>(dense.n());
   return 4 * n * kEps * (1 + n * kK / coupling);
@@ -217,7 +219,7 @@ TEST(VirtualCoupling, AlongTheSumKeepsItsDirectionAndTakesItsStiffnessInSeries) 
   });
 }
 
-/// The displacement at which the coupling pulls with f: the inverse of f = K x / sqrt(1 + (K x / F)^2).
+/// Returns the displacement at which the coupling exerts the force f: the inverse of f = K x / sqrt(1 + (K x / F)^2).
 Vec3 displacement(const Vec3& f, double coupling, double saturation) {
   return f / (coupling * std::sqrt(1.0 - (f / saturation).squaredNorm()));
 }
@@ -234,8 +236,8 @@ TEST(StaticCoupling, BalancesACopyBetweenTheCouplingAndTheContactsItIsStillIn) {
         for (Eigen::Index i = 0; i < pressed.size(); ++i)
           if (pressed[i] * dense.d[i] <= 0.0) pressed[i] = 0.0;
         const Vec3 pushed = -kK * (dense.U * pressed);
-        // The law balances to 1e-13 K |pressed|; the inverse divides by 1 - (f / F)^2, which loses the digits that
-        // saturation takes, and the contacts multiply what is left by up to n K / K_vc.
+        // The law balances to 1e-13 K |pressed|. The inverse divides by 1 - (f / F)^2, which loses the digits that
+        // saturation removes. The contacts multiply the remaining error by up to n K / K_vc.
         const double kept = 1.0 - (felt / saturation).squaredNorm();
         const double n = static_cast<double>(dense.n());
         const double lost = 1e-15 / kept * (1.0 + n * kK / coupling) * felt.norm() + 1e-12 * kK * dense.d.norm();
@@ -245,15 +247,16 @@ TEST(StaticCoupling, BalancesACopyBetweenTheCouplingAndTheContactsItIsStillIn) {
   });
 }
 
-/// Rounding of x relative to the sum of depths: sums of n <= 300 terms, amplified by the condition of eps I + S_sum, at
-/// most 1 + n / eps, and by its inverse, at most 1 / eps.
+/// Returns the rounding error of x relative to the sum of depths: sums of n <= 300 terms, amplified by the condition
+/// number of eps I + S_sum, at most 1 + n / eps, and by the inverse, at most 1 / eps.
 double rounding_of(const test::Dense& dense, double regularisation) {
   const double n = static_cast<double>(dense.n());
   return 4 * n * kEps * (1 + n / regularisation) * (1 + 1 / regularisation);
 }
 
 TEST(LeastSquares, IsVirtualCouplingOfPenaltySpringsOverEps) {
-  // Penalty springs K / eps in series with a coupling spring K; S of a coupling is in units of its penalty springs.
+  // Penalty springs K / eps act in series with a coupling spring K. S of a coupling is in units of the stiffness of its
+  // penalty springs.
   test::for_random_contacts([](ContactBuffer contacts, const char* family) {
     for (const double eps : {1e-4, 0.01, 1.0, 10.0}) {
       RenderingConfig resolved = config_of(kK), in_series = resolved;
@@ -284,7 +287,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Coupling, testing::Values("virtual_coupling", "s
 TEST_P(Coupling, ForceIsTheDerivativeOfItsEnergy) {
   test::for_random_contacts([](const ContactBuffer& given, const char* name) {
     const auto law = make_law(GetParam(), config_of(kK, 12.0));
-    // A motion by `by` makes contacts deeper by <u, by>.
+    // A displacement `by` makes contacts deeper by <u, by>.
     const auto energy_at = [&](const Vec3& by, Vec3& spring) {
       ContactBuffer contacts = given;
       for (std::size_t i = 0; i < contacts.size(); ++i) contacts.depth[i] += contacts.gradient(i).dot(by);
@@ -294,8 +297,8 @@ TEST_P(Coupling, ForceIsTheDerivativeOfItsEnergy) {
     Vec3 force, other;
     const double energy = energy_at(Vec3::Zero(), force), n = static_cast<double>(given.size());
     const double h = 1e-8;  // far smaller than the depths, so that few contacts separate
-    // Errors of central differences: the rounding of the energies divided by h, and h times the change of the force
-    // where contacts separate, each with a stiffness of at most K.
+    // Errors of central differences: the rounding of the energies divided by h, plus h times the change of the
+    // stiffness where contacts separate, at most K for each contact.
     const double off = 1e-15 * n * energy / h + n * kK * h;
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 by = h * Vec3::Unit(axis);

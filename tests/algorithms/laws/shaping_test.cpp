@@ -20,9 +20,10 @@
 namespace hapbench::shaping_test {
 namespace {
 
-// Without iterations 20 roundings of a tensor below n = 100, 2e-13, in ratios of at least 1; with them the tensor is of
-// the order of 1 and a ratio off by some 1e-15. An update of the weights does not amplify relative errors (in
-// logarithms it is I minus a matrix with eigenvalues in [0, 1]), so after 20 of them the errors have at most added up.
+// Without iterations, 20 roundings of a tensor with a norm below n = 100 give 2e-13, in ratios of at least 1. With
+// iterations, the norm of the tensor is about 1, and a ratio has an error of some 1e-15. An update of the weights does
+// not amplify relative errors: in logarithms it is I minus a matrix with eigenvalues in [0, 1]. After 20 updates, the
+// errors have at most added up.
 constexpr double kTolerance = 1e-12;
 
 ContactBuffer random_contacts(const test::GradientDistribution& family, Random& random) {
@@ -75,7 +76,7 @@ TEST(ShapedStiffness, AZeroGradientGetsNoWeight) {
   EXPECT_EQ(contacts.weight[1], 0.0);
 }
 
-/// Both kinds of normal projection differ from stiffness shaping in their depth models only.
+/// Both variants of normal projection differ from stiffness shaping only in their depth models.
 class NormalProjectionLaw : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Both, NormalProjectionLaw,
                          testing::Values("normal_projection", "continuous_normal_projection"),
@@ -97,23 +98,23 @@ TEST_P(NormalProjectionLaw, IsStiffnessShapingOnItsDepthModelWithTheSameIteratio
   }
 }
 
-// exact_shaping by the conditions of optimality, which have one solution, and merged_shaping.
+// Tests exact_shaping by its optimality conditions, which have a unique solution, and merged_shaping.
 
 constexpr std::size_t kSetsOfAFamily = 25000;
 constexpr std::size_t kLargestSet = 1000;
 
-// A violation r of the condition moves tr S - |S|^2 by at most r tr S, tr S <= 3/2 + sqrt(3)/2 < 2.4, and the bound on
-// lambda_max that follows from it by less than that.
+// A violation r of the condition changes tr S - |S|^2 by at most r tr S, where tr S <= 3/2 + sqrt(3)/2 < 2.4. It
+// changes the bound on lambda_max that follows from the condition by less.
 constexpr double kTraceRounding = 2.4 * test::kShapingRounding;
 
-/// Everything that holds at the optimum, with the tolerance of double rounding.
+/// Checks all properties of the optimum, with the tolerance of rounding in double precision.
 void expect_optimal(const test::GradientDistribution& family, ContactBuffer& contacts) {
   const int steps = solve_exact_shaping(contacts);
-  // Typical are one to five. Clusters at several scales beside many duplicates,
-  // which only the mixtures have, make the active set change contact by contact: 135 steps were the worst of 1e6.
+  // One to five steps are typical. In the mixtures, clusters of several scales beside many duplicates make the active
+  // set change contact by contact: 135 steps were the worst of 1e6 mixtures.
   ASSERT_LT(steps, std::string(family.name) == "mixture" ? 200 : 60);
   const auto optimality = test::shaping_optimality(contacts, kExactShapingEpsilon);
-  // Written so that NaN fails, too.
+  // Written so that a NaN also fails.
   ASSERT_TRUE(optimality.smallest_weight >= 0.0 && optimality.largest_weight <= 1.0);
   ASSERT_LE(optimality.violation, test::kShapingRounding);
   ASSERT_GE(optimality.ratio_margin, -test::kShapingRounding);
@@ -137,19 +138,21 @@ TEST_P(ExactShapingOnFamily, IsOptimalAndWithinTheBounds) {
   }
 }
 
-/// Sets that once defeated the solver, by the seeds with which the search drew their size and gradients.
+/// Sets for which earlier versions of the solver failed, given by the seeds that determine their size and gradients.
 const std::pair<const char*, std::vector<std::uint64_t>> kHardSets[] = {
-    // The slope of the dual is lost in rounding: a line search that makes no step stops 1e-4 from the optimum.
+    // The slope of the dual function is lost in rounding: a line search that makes no step stops at a distance of 1e-4
+    // from the optimum.
     {"clusters", {573042, 883808, 1649647, 2506946}},
     {"nearly_parallel", {342823, 523566}},
     {"nearly_parallel_planar", {1565149, 1653106, 1905696}},
-    // The active set changes in the last correction: clipping what that makes negative, and no more, stops 1e-9 away.
+    // The active set changes in the last correction: a solver that only clips the negative weights stops at a distance
+    // of 1e-9.
     {"nearly_parallel", {10976, 534807, 863432}},
     {"clusters", {2020649}},
-    // The rounding of a_i . w is small if |w| is: a tolerance for |w| = 1/eps takes gradients for it and stops 0.1
-    // away.
+    // The rounding of a_i . w is small if |w| is small: a tolerance for |w| = 1/eps ignores gradients and stops at a
+    // distance of 0.1.
     {"mixture", {1943, 3501, 90246, 118655, 184124, 189569}},
-    // Contacts leave one by one.
+    // Contacts become inactive one by one.
     {"clusters", {166086, 1300902, 2093822}},
     {"mixture", {265578, 701896}},
 };
@@ -179,7 +182,7 @@ TEST(ExactShaping, AZeroGradientGetsNoWeight) {
 TEST(ExactShaping, ANonFiniteGradientDoesNotHang) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {bad, 0, 0}, {0, 1, 0}});
-    // The answer is useless, and the next check of bounds ends the run, but the time must be bounded.
+    // The result is useless, and the next check of bounds ends the run, but the time must be bounded.
     EXPECT_LE(solve_exact_shaping(contacts), 1000);
   }
 }
@@ -193,7 +196,7 @@ TEST(ExactShaping, ForceIsThatOfItsWeightsAndNewtonStepsAreCounted) {
     std::vector<Vec3> gradients(50);
     for (Vec3& u : gradients) u = random.direction();
     ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, 50)), same = contacts;
-    for (double& c : same.weight) c = 1e6;  // those of an earlier step
+    for (double& c : same.weight) c = 1e6;  // weights of an earlier step
     same.pad();
     const LawForce force = law->evaluate(contacts);
     steps += static_cast<std::uint64_t>(solve_exact_shaping(same));
@@ -213,7 +216,7 @@ TEST(ExactShaping, ForceIsThatOfItsWeightsAndNewtonStepsAreCounted) {
 constexpr double kK = 20'000.0;
 constexpr double kEps = 2.3e-16;
 
-/// The second answer of a law, which is to remember nothing of the first.
+/// Returns the second result of a law, which must not depend on the first call.
 LawForce evaluate(ContactBuffer& contacts) {
   RenderingConfig config;
   config.stiffness = kK;
@@ -248,8 +251,8 @@ TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
         ratios += dense.U.col(j).dot(S * dense.U.col(j));
         members += 1.0;
       }
-      // Contacts of one weight > 0 are of one group, or of groups that happen to have the same; either way the mean of
-      // their ratios is 1 but for epsilon C <= 3e-6.
+      // Contacts with equal weight > 0 belong to one group, or to groups that happen to have the same weight. In both
+      // cases the mean of their ratios is 1 up to epsilon C <= 3e-6.
       ASSERT_TRUE(c[i] == 0.0 || std::abs(ratios / members - 1.0) <= 3.1e-6) << family << ' ' << ratios / members;
     }
     ASSERT_TRUE(same_weight) << family;
@@ -257,7 +260,7 @@ TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
 }
 
 TEST(MergedShaping, TurnsWithTheSceneByTheTurnsOfTheCube) {
-  // Away from borders of cells, which a turn may give to the other side.
+  // Use gradients away from borders of cells, because a rotation may move a gradient on a border to another cell.
   Random random(3);
   for (int i = 0; i < 200; ++i) {
     std::vector<Vec3> gradients;

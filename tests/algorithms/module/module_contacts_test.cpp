@@ -21,14 +21,14 @@ struct Contact {
 
 struct Script {
   std::vector<Contact> answer;
-  std::size_t more = 0;  ///< contacts that are told but not written
+  std::size_t more = 0;  ///< number of contacts that are reported but not written
   int asked = 0;
   int throws_at = -1;
   HapbenchPose pose = {};
 };
 Script script;
 
-/// Gives the answer in `script`, or throws.
+/// Returns the contacts in `script`, or throws.
 int step(void*, const HapbenchPose* pose, HapbenchContacts* contacts, HapbenchForce*, char*) {
   script.pose = *pose;
   if (script.asked++ == script.throws_at) throw std::runtime_error("no\nway");

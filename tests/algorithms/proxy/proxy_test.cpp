@@ -17,7 +17,7 @@
 namespace hapbench::proxy_test {
 namespace {
 
-/// Sum lambda_i u_i, and what rounding may make of it.
+/// Sum of lambda_i u_i and its rounding error.
 struct Held {
   Vec3 sum = Vec3::Zero();
   double lambdas = 0.0;
@@ -35,7 +35,7 @@ double violation(const ContactBuffer& contacts, std::size_t i, const Vec3& x) {
   return contacts.depth[i] + contacts.gradient(i).dot(x);
 }
 
-/// Contacts that a place in the middle satisfies, some of them just so, with a wanted move.
+/// Contacts that a position in the middle satisfies, some of them exactly, with a wanted move.
 struct Problem {
   ContactBuffer contacts;
   Vec3 wanted;
@@ -55,13 +55,13 @@ void for_feasible_problems(Check check) {
   }
 }
 
-// A convex problem with a strictly convex aim has one solution, and these conditions of Karush, Kuhn and Tucker name
-// it.
+// A strictly convex problem has a unique solution, and these conditions of Karush, Kuhn and Tucker characterise it.
 TEST(NearestAllowed, SatisfiesTheConditionsOfOptimality) {
   for_feasible_problems([](Problem problem, const char* family) {
     const AllowedMove allowed = nearest_allowed(problem.wanted, problem.contacts);
     ASSERT_TRUE(allowed.feasible) << family;
-    // Lengths are up to 0.4 mm; an active contact may be off by the rounding of multipliers that cancel.
+    // Lengths are up to 0.4 mm; the violation of an active contact may be the rounding error of multipliers that
+    // cancel.
     const Held h = held(problem.contacts);
     const double rounding = 4e-4 * kViolationTolerance + 1e-13 * h.lambdas;
     for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
@@ -70,7 +70,7 @@ TEST(NearestAllowed, SatisfiesTheConditionsOfOptimality) {
       ASSERT_GE(problem.contacts.weight[i], 0.0) << family;
       ASSERT_TRUE(problem.contacts.weight[i] == 0.0 || off >= -rounding) << family;
     }
-    // Up to three multipliers below the tolerance are left out.
+    // Up to three multipliers below the tolerance are omitted.
     ASSERT_LE((problem.wanted - h.sum - allowed.move).norm(), 4 * rounding) << family;
   });
 }
@@ -92,7 +92,8 @@ TEST(NearestAllowed, HoldsTheSpanOfTheActiveContacts) {
   });
 }
 
-/// n faces against x with depth a, m against -x with depth b, a + b > 0: no room.
+/// Two opposite walls without room between them: n contacts with gradient x and depth a, m contacts with gradient -x
+/// and depth b, a + b > 0.
 TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
   for (const auto& [n, m] : {std::pair<std::size_t, std::size_t>{1, 1}, {3, 1}, {100, 250}}) {
     const double a = 3e-5, b = 1e-5;
@@ -106,11 +107,11 @@ TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
     EXPECT_FALSE(allowed.feasible);
     const double N = static_cast<double>(n), M = static_cast<double>(m);
     const double x = (M * b - N * a + kCompromiseEpsilon * wanted.x()) / (N + M + kCompromiseEpsilon);
-    // The Newton step solves with a matrix of condition (N + M) / epsilon.
+    // The Newton step solves a system with the condition number (N + M) / epsilon.
     EXPECT_NEAR(allowed.move.x(), x, 1e-4 * 1e-16 * (N + M) / kCompromiseEpsilon);
     EXPECT_NEAR(allowed.move.y(), wanted.y(), 1e-12);
     EXPECT_NEAR(allowed.move.z(), wanted.z(), 1e-12);
-    // Every wall has its violation, and the rest is divided among all N + M of them: the identity holds but for
+    // Every wall has its violation, and the remainder is divided among all N + M contacts: the identity holds up to
     // epsilon.
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -140,7 +141,8 @@ TEST(NearestAllowed, FindsTheLeastSquaresOfContradictingContacts) {
     const AllowedMove allowed = nearest_allowed(wanted, contacts);
     if (allowed.feasible) continue;
     ++contradicting;
-    // Its gradient vanishes: the solver stops at epsilon times the tolerance, and sums of n terms of 1e-4 are rounded.
+    // The gradient vanishes at the minimum. The solver stops at epsilon times the tolerance, and sums of n terms of
+    // 1e-4 are rounded.
     Vec3 gradient = kCompromiseEpsilon * (allowed.move - wanted);
     for (std::size_t k = 0; k < n; ++k) gradient += std::max(0.0, violation(contacts, k, allowed.move)) * gradients[k];
     ASSERT_LE(gradient.norm(), 1e-19 + 1e-20 * static_cast<double>(n * n));
@@ -149,8 +151,8 @@ TEST(NearestAllowed, FindsTheLeastSquaresOfContradictingContacts) {
   EXPECT_GT(contradicting, 1'000);
 }
 
-/// The multipliers of a compromise are the derivatives of what it stores, 1/2 |x - t|^2 + 1/2 sum w^2, by the depths,
-/// and t - x its derivative by t.
+/// In a compromise, the multipliers are the derivatives of the stored energy 1/2 |x - t|^2 + 1/2 sum w^2 with respect
+/// to the depths, and t - x is its derivative with respect to t.
 TEST(NearestAllowed, StoresInACompromiseWhatItsMultipliersTakeIn) {
   const std::vector<Vec3> gradients = {Vec3::UnitX(),  Vec3(0.6, 0.8, 0.0),  Vec3(0.6, -0.8, 0.0),
                                        -Vec3::UnitX(), Vec3(-0.8, 0.0, 0.6), Vec3(0.0, 0.6, -0.8)};
@@ -166,7 +168,7 @@ TEST(NearestAllowed, StoresInACompromiseWhatItsMultipliersTakeIn) {
   };
   ContactBuffer contacts = test::contacts_of(gradients, depths);
   const AllowedMove here = nearest_allowed(wanted, contacts);
-  // Central differences of a function that is quadratic where the same walls are violated; epsilon is 1e-6.
+  // Uses central differences of a function that is quadratic while the same walls are violated; epsilon is 1e-6.
   constexpr double h = 1e-8, kLengths = 3e-4;
   for (std::size_t i = 0; i < gradients.size(); ++i) {
     std::vector<double> more = depths, less = depths;
@@ -244,14 +246,14 @@ RenderingConfig proxy_config() {
   return config;
 }
 
-/// A proxy in a setting, stepped by hand.
+/// A proxy in a setting; the test takes its steps.
 struct Rig {
   PointShell shell;
   ShellSource source;
   std::unique_ptr<ForceAlgorithm> proxy;
   ContactBuffer contacts;
   RenderedForce force;
-  Vec3 place = Vec3::Zero();  ///< of the proxy
+  Vec3 place = Vec3::Zero();  ///< position of the proxy [m]
 
   Rig(const test::Setting& setting, const RenderingConfig& config)
       : shell(setting.points, 0.0),
@@ -267,7 +269,7 @@ struct Rig {
     proxy->compute(tool, contacts, force);
     place = tool.pose.position + force.spring / kK;
   }
-  /// How deep a point is in the tool at the proxy's place [m].
+  /// Returns the depth of the deepest point in the tool at the position of the proxy [m].
   double deepest(const Vec3& axis) {
     ContactBuffer there(source.capacity());
     source.contacts_at({place, axis}, there);
@@ -275,8 +277,8 @@ struct Rig {
   }
 };
 
-/// A tilted flat tool whose lowest place, on the edge of its tip, is `depth` below the plane z = 0, anywhere between
-/// the points of the plane.
+/// Returns a tilted flat tool whose lowest point, on the edge of its tip, is `depth` below the plane z = 0, at a random
+/// position between the points of the plane.
 test::Setting tilted_on_plane(double tilt, double depth, Random& random) {
   test::Setting setting;
   setting.points = surface_points(Plane{0.004, 0.0001});
@@ -287,7 +289,7 @@ test::Setting tilted_on_plane(double tilt, double depth, Random& random) {
   return setting;
 }
 
-/// A pose clear of the plane, at most two passes away.
+/// Returns a pose above the plane, at most two passes away.
 ToolPose above(const test::Setting& setting) {
   return {setting.pose.position + Vec3(0, 0, 1.5e-4), setting.pose.axis};
 }
@@ -295,11 +297,11 @@ ToolPose above(const test::Setting& setting) {
 TEST(ProxyRendering, OfAnEdgeOnAPlaneIsTheDepthOfTheEdgeWhereverThePointsLie) {
   Random random(1);
   for (int i = 0; i < 300; ++i) {
-    // Below 0.11 rad the tip is flush with the plane; the first pass looks 0.1 mm ahead.
+    // Below 0.11 rad the tip is flush with the plane; the first pass finds points within 0.1 mm.
     const double tilt = random.uniform(0.11, 1.3), depth = 9e-5 * random.uniform();
     const test::Setting setting = tilted_on_plane(tilt, depth, random);
     test::Probe probe(setting, proxy_config());
-    // The proxy must come from outside, because points would push it sideways out of the shell.
+    // The proxy must come from outside, because otherwise the points would push it sideways out of the shell.
     probe.force_at(above(setting));
     const RenderedForce force = probe.force_at(setting.pose);
     EXPECT_LE((force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-12) << "tilt " << tilt << ", depth " << depth;
@@ -310,7 +312,7 @@ TEST(ProxyRendering, OfAnEdgeOnAPlaneIsTheDepthOfTheEdgeWhereverThePointsLie) {
 TEST(ProxyRendering, SlidesOverAFlatWithoutBumpingIntoThePointsAhead) {
   Random random(8);
   for (int run = 0; run < 10; ++run) {
-    // Normals with errors of a few degrees, as from marching cubes.
+    // The normals have errors of a few degrees, as from marching cubes.
     test::Setting setting;
     setting.points = surface_points(Plane{0.004, 0.0001});
     for (SurfacePoint& point : setting.points) point.normal = (point.normal + 0.1 * random.direction()).normalized();
@@ -320,7 +322,7 @@ TEST(ProxyRendering, SlidesOverAFlatWithoutBumpingIntoThePointsAhead) {
     for (int step = 0; step <= 200; ++step) {
       const Vec3 p = 5e-6 * step * way + Vec3(0, 0, step == 0 ? 1e-4 : -5e-5);
       const Vec3 force = probe.force_at({p, -Vec3::UnitZ()}).spring;
-      // The planes of the patches are tilted by up to 0.1 rad and reach 0.75 spacings from their points.
+      // The planes of the patches are tilted by up to 0.1 rad and extend 0.75 spacings from their points.
       if (step > 0) {
         EXPECT_LE((force - Vec3(0, 0, kK * 5e-5)).norm(), 0.2 * kK * 5e-5) << "step " << step;
       }
@@ -341,7 +343,7 @@ TEST(ProxyRendering, NeverLetsThePointsInWhereTheToolHasRoom) {
       setting.points.push_back(point);
     }
     Rig rig(setting, proxy_config());
-    // A tool swept about and tilted in the slot, pulled through its walls and its floor.
+    // The tool moves and tilts in the slot, and is pulled through the walls and the floor.
     Vec3 velocity = Vec3::Zero();
     ToolState tool{{{0, 0, 0.001}, -Vec3::UnitZ()}, Vec3::Zero()};
     for (int step = 0; step < 400; ++step) {
@@ -372,9 +374,9 @@ TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
 
 /// Half width of the tools.
 constexpr double kHalfWidth = 0.0005;
-/// Motion of a proxy that starts inside in one step: 40 half widths a second.
+/// Largest motion in one step of a proxy that starts inside: 40 half widths per second.
 const double kRecovery = 40.0 * kHalfWidth * Scene{}.dt;
-/// A move is only nearly proportional to the depths, because points that are not yet entered stay in place.
+/// A move is only nearly proportional to the depths, because points that the proxy has not entered stay in place.
 constexpr double kNearly = 1.1;
 
 TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
@@ -393,7 +395,7 @@ TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
     last = rig.place;
   }
   EXPECT_LE((rig.force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-9);
-  // Once outside, it stays outside, however fast the tool turns.
+  // Once outside, the proxy stays outside, however fast the tool rotates.
   const ToolPose turned{tool.pose.position, Vec3(1.0, 0.0, 0.02).normalized()};
   rig.step({turned, Vec3::Zero()});
   EXPECT_LE(rig.deepest(turned.axis), 1e-10);
@@ -422,14 +424,15 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   const Vec3 turn(0.3, -0.4, 0.1);
   rig.step({setting.pose, Vec3::Zero(), turn});
   ASSERT_EQ(rig.contacts.size(), 1u);
-  // One patch holds the edge. The normal component of the velocity omega x r of its point is damped.
+  // One patch holds the edge. The normal component of the velocity omega x r at its point is damped.
   const double along = turn.cross(rig.contacts.point(0) - rig.place).z();
   const double B = 2.0 * config.damping_ratio * std::sqrt(kK * config.mass);
   EXPECT_LE((rig.force.rendered - rig.force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
 }
 
-/// Two planes, of which the tool touches the second one later. Its direction is damped by a share of what is missing in
-/// each row, however often an integrator asks within the row.
+/// Two planes, of which the tool touches the second plane later. In each step, the damping along the normal of the
+/// second plane increases by a fraction of the missing damping, even if an integrator evaluates several forces in the
+/// step.
 TEST(ProxyRendering, DampsANewDirectionWithItsTimeConstant) {
   const SpringSet planes{{Vec3::UnitX(), Vec3::UnitZ()}, false};
   RenderingConfig config = proxy_config();

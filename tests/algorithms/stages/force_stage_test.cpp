@@ -17,7 +17,7 @@ namespace {
 constexpr double kDt = 0.0005, kMass = 0.2;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// A stage on rows whose motion is as foreseen: the tool goes v dt from row to row.
+/// A stage in steps whose motion is as predicted: the tool moves v dt from step to step.
 class Foreseen {
  public:
   explicit Foreseen(ForceStage& stage) : stage_(stage) {
@@ -31,7 +31,7 @@ class Foreseen {
     energy -= given.dot(velocity) * kDt;
     return given;
   }
-  /// Of the roundings of so many rows.
+  /// Rounding error of this number of steps.
   double rounding() const { return 20 * kEpsilon * static_cast<double>(rows_) * turnover; }
 
   double energy = 0.0, turnover = 0.0;
@@ -54,7 +54,7 @@ TEST(EnergyTank, NeverGivesMoreThanItHoldsAndTakesOnlyPush) {
     const EnergyTankConfig config{std::pow(10.0, random.uniform(-5.0, 0.0)), 1e-4};
     EnergyTank tank(config);
     Foreseen rows(tank);
-    double level = config.initial;  // what it holds, kept here
+    double level = config.initial;  // level of the tank, computed by the test
     level = std::min(level, config.capacity);
     for (int k = 0; k < 400; ++k) {
       const Vec3 f = random_force(random), v = random_velocity(random);
@@ -62,7 +62,7 @@ TEST(EnergyTank, NeverGivesMoreThanItHoldsAndTakesOnlyPush) {
       const double wanted = f.dot(v) * kDt, gave = given.dot(v) * kDt;
       const double most = std::max(level, 0.0), rounding = rows.rounding();
       ASSERT_NEAR(gave, std::min(wanted, std::max(most, std::min(wanted, 0.0))), rounding) << seed << " " << k;
-      // What is at right angles to the velocity stays, and so does a force that resists.
+      // The force component perpendicular to the velocity is unchanged, and so is a force that resists the motion.
       ASSERT_LE((given - f).cross(v).norm(), 1e-12 * f.norm() * v.norm());
       if (wanted <= 0.0) {
         ASSERT_EQ(given, f);
@@ -86,15 +86,15 @@ TEST(ActuatorLimitedPassivity, WithoutLimitsOwesNothing) {
       const Vec3 given = rows.answer(f, v);
       ASSERT_GE(rows.energy, -rows.rounding()) << seed << " " << k;
       if (f.dot(v) * kDt <= before) {
-        ASSERT_EQ(given, f);  // a passive force stays
+        ASSERT_EQ(given, f);  // a passive force is unchanged
       }
-      // The direction of the force is enough here, so nothing is damped across it.
+      // Damping along the force is sufficient here, so there is no damping perpendicular to it.
       ASSERT_LE(given.cross(f).norm(), 1e-9 * f.squaredNorm());
     }
   }
 }
 
-/// What the stage dissipates against the most that its limits allow, found by trying.
+/// Compares the damping of the stage with the largest damping that its limits allow, which the test finds by trial.
 TEST(ActuatorLimitedPassivity, DissipatesWhatActuatorsAllowAndOwesTheRest) {
   bool owed_once = false, across_once = false;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
@@ -115,7 +115,8 @@ TEST(ActuatorLimitedPassivity, DissipatesWhatActuatorsAllowAndOwesTheRest) {
       ASSERT_GE(taken, -rows.rounding());
       ASSERT_LE(taken, std::max(owed, 0.0) + rows.rounding());
       if (owed <= 0.0) continue;
-      // In the order of the priorities: a thousandth more of either damping would break a limit, or is not owed.
+      // Check the priorities: a damping that is larger by a thousandth would break a limit, or would dissipate more
+      // than the debt.
       const Vec3 n = f.normalized(), along = v.dot(n) * n, across = v - along;
       const double a1 = (f - given).dot(along) / along.squaredNorm();
       const double a2 = (f - given).dot(across) / across.squaredNorm();
@@ -135,7 +136,7 @@ TEST(ActuatorLimitedPassivity, DissipatesWhatActuatorsAllowAndOwesTheRest) {
   EXPECT_TRUE(across_once);
 }
 
-/// A stage made of a function.
+/// A force stage that calls a function.
 class FakeStage final : public ForceStage {
  public:
   using Answer = std::function<Vec3(const StageStep&)>;
@@ -176,7 +177,7 @@ TEST(StagedRendering, AnIdleStageMovesNoBitUnderAnyIntegrator) {
   }
 }
 
-/// Along the way of the run, by the mean velocity of two rows, which is exact under leapfrog.
+/// Computes the work along the path of the run with the mean velocity of two steps, which is exact under leapfrog.
 TEST(StagedRendering, CountsWhatTheStageTakesAndWhatItAbsorbs) {
   std::vector<double> energies;
   const auto weaker = [&energies](const StageStep& s) -> Vec3 {
@@ -189,7 +190,7 @@ TEST(StagedRendering, CountsWhatTheStageTakesAndWhatItAbsorbs) {
   const auto& rows = recorder.rows;
   double taken = 0.0, absorbed = 0.0;
   for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
-    ASSERT_NEAR(energies[k], absorbed, 1e-15) << k;  // of energies of 1e-3 J
+    ASSERT_NEAR(energies[k], absorbed, 1e-15) << k;  // energies are about 1e-3 J
     const Vec3 way = 0.5 * kDt * (rows[k].tool.velocity + rows[k + 1].tool.velocity);
     taken += (damped_spring(rows[k].tool) - rows[k].force.rendered).dot(way);
     absorbed -= rows[k].force.rendered.dot(way);
@@ -221,7 +222,7 @@ TEST(StagedRendering, TellsTheRowAndCutsTheAnswerToTheForceLimit) {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-/// Dyadic values, so that products below are exact: B = 2 zeta sqrt(K M) = 2 * 0.75 * 64 = 96.
+/// Returns dyadic values, so that products below are exact: B = 2 zeta sqrt(K M) = 2 * 0.75 * 64 = 96.
 RenderingConfig dyadic() {
   RenderingConfig config;
   config.stiffness = 8192.0;
@@ -234,7 +235,7 @@ const Mat3 kS = Vec3(1.0, 0.5, 0.0).asDiagonal();
 const Vec3 kSpring(-4.0, 8.0, 0.0);
 const Vec3 kVelocity(0.5, 0.25, -2.0);
 
-/// The rendered force for a tool that does not turn.
+/// Returns the rendered force for a tool that does not rotate.
 Vec3 rendered(const RenderingConfig& config, const Vec3& spring = kSpring, const Mat3& S = kS,
               const Vec3& v = kVelocity) {
   return DampingAndLimits(config).rendered_force(spring, S, {v, S * v});
@@ -283,8 +284,8 @@ Mat3 load(const Vec3& u, double newtons) {
   return newtons * u * u.transpose();
 }
 
-/// The work that the tool does against friction is at least what the bristle stores more, in every step, for any
-/// motion, loads and normals. The tolerance is rounding: some 50 operations on energies of the size of K_t e^2.
+/// In every step, the work that the tool does against friction is at least the increase of the bristle's energy, for
+/// any motion, loads and normals. The tolerance is rounding: some 50 operations on energies of the size of K_t e^2.
 TEST(DryFriction, IsPassiveForAnyMotionLoadsAndNormals) {
   Random random(1);
   for (int run = 0; run < 400; ++run) {
@@ -328,7 +329,7 @@ TEST(DryFriction, ForgetsItsBristleWithoutLoad) {
   EXPECT_EQ(friction.state(), Friction::none);
 }
 
-/// Integrators that try several states in a row must not move the bristle more than once.
+/// Integrators that evaluate several states in a step must not move the bristle more than once.
 TEST(DryFriction, TheBristleMovesOnceARow) {
   std::uint64_t row = 0;
   Scene scene;
@@ -344,7 +345,8 @@ TEST(DryFriction, TheBristleMovesOnceARow) {
   }
 }
 
-/// f_dn = -chi K d <v, u> u on one spring. Its restitution solves chi u0 - ln(1 + chi u0) = -chi u1 - ln(1 - chi u1).
+/// On one spring, f_dn = -chi K d <v, u> u. The speeds u0 before and u1 after the bounce satisfy chi u0 - ln(1 + chi
+/// u0) = -chi u1 - ln(1 - chi u1).
 TEST(HuntCrossley, BouncesAsItsClosedFormSays) {
   for (const double chi : {0.5, 5.0, 50.0}) {
     RenderingConfig config;
@@ -369,7 +371,7 @@ TEST(HuntCrossley, BouncesAsItsClosedFormSays) {
       v += dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
     }
     const double u1 = -v, left = chi * u0 - std::log1p(chi * u0), right = -chi * u1 - std::log1p(-chi * u1);
-    // The last step ends outside by less than dt u1, where the force, K dt u1, has hardly begun: 1e-6 of u1.
+    // The last step ends outside by less than dt u1, where the force K dt u1 is still small: an error of 1e-6 of u1.
     EXPECT_NEAR(left, right, 1e-5 * left) << chi;
     EXPECT_LT(u1, u0);
   }

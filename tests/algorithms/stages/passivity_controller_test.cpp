@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Keeps the observed energy of every row, and the most that could be given away in one.
+/// Keeps the observed energy of every step, and the largest energy that the controller could return in one step.
 class Watch final : public Observer {
  public:
   Watch(double dt, double mass) : observed_(dt), dt_(dt), mass_(mass) {}
@@ -31,7 +31,7 @@ class Watch final : public Observer {
   double least = std::numeric_limits<double>::infinity();
   double turnover = 0.0;
   double force_max = 0.0;
-  /// Rounding of one step, in the share s, the force and its work.
+  /// Rounding error of one step, in the scale s, the force and its work.
   double rounding() const { return 50 * kEpsilon * turnover; }
 
  private:
@@ -59,8 +59,8 @@ SimulationParts controlled(SimulationParts parts, const RenderingConfig& config 
   return parts;
 }
 
-/// Forces that know nothing of the tool, of all sizes, under a hand that does what it likes: whatever the law, the
-/// observed energy stays above zero, and the force within its limit.
+/// Renders forces of all sizes that do not depend on the tool, under a hand with random forces. For any law, the
+/// observed energy must stay above zero and the force within its limit.
 TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
@@ -88,7 +88,7 @@ TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
   }
 }
 
-/// Forces of at most `limit` and moments, from the third row on, both independent of the tool.
+/// Renders forces of at most `limit` and moments, from the third step on; both are independent of the tool.
 class Lever final : public ForceAlgorithm {
  public:
   Lever(std::uint64_t seed, double limit) : numbers_(seed), limit_(limit) {}
@@ -110,8 +110,8 @@ class Lever final : public ForceAlgorithm {
   Vec3 moment_ = Vec3::Zero();
 };
 
-/// A tilt that is anywhere in 0 … 0.01 rad in each row. The first ones, 0, 0.005 and 0, change the turn by 0.01 rad, so
-/// that no later change, 0.02 rad at most, is more than twice the largest before.
+/// A tilt that is random in 0 … 0.01 rad in each step. The first tilts, 0, 0.005 and 0, change the rotation by 0.01
+/// rad. Later changes are at most 0.02 rad, so no change exceeds twice the largest earlier change.
 class Trembling final : public Motion {
  public:
   explicit Trembling(std::uint64_t seed) {
@@ -151,8 +151,8 @@ TEST(PassivityController, KeepsAnyMomentOfATremblingHandPassive) {
   EXPECT_LT(least_without, -1e-3);
 }
 
-/// The controller foresees the observed energy of the next row exactly, so with a held axis it changes a run if and
-/// only if the run would create energy.
+/// The controller predicts the observed energy of the next step exactly. With a fixed axis it therefore changes a run
+/// if and only if the run would create energy.
 TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
   std::size_t passive = 0, active = 0;
   for (const auto& algorithm : algorithms()) {
@@ -184,12 +184,12 @@ TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
       }
     }
   }
-  // Both kinds have occurred.
+  // Check that both cases have occurred.
   EXPECT_GT(passive, 10u);
   EXPECT_GT(active, 0u);
 }
 
-/// alpha <= M / dt: the damping alone stops the tool and does not turn it round.
+/// alpha <= M / dt: the damping alone stops the tool and does not reverse its velocity.
 TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
   SimulationConfig config = test::thrown(2);
   SimulationParts parts = controlled(test::fake_parts([](const ToolState& tool) { return Vec3(1e9 * tool.velocity); }));
@@ -197,12 +197,13 @@ TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
   const Vec3 before = simulation.tool().velocity;
   simulation.step();
   const Vec3 after = simulation.tool().velocity;
-  // The force along the velocity may give nothing: the speed stays. s^2 |u|^2 = |w|^2 to a few roundings.
+  // The force may not return energy along the velocity, so the speed is unchanged: s^2 |u|^2 = |w|^2 up to a few
+  // roundings.
   EXPECT_NEAR(after.norm(), before.norm(), 10 * kEpsilon * before.norm());
   EXPECT_GT(after.dot(before), 0.0);
 }
 
-/// The Jacobian of f_render = s f - alpha w is s times that of f plus the damping alpha; here s = 0.
+/// The Jacobian of f_render = s f - alpha w is s times the Jacobian of f plus the damping alpha; here s = 0.
 TEST(PassivityController, ItsJacobianIsThatOfTheForceItRenders) {
   RenderingConfig config;
   config.mass = 0.2;
@@ -214,11 +215,11 @@ TEST(PassivityController, ItsJacobianIsThatOfTheForceItRenders) {
   controller.reset();
   ContactBuffer none(0);
   RenderedForce out;
-  controller.compute({}, none, out);  // at rest with nothing stored: no force
+  controller.compute({}, none, out);  // at rest without stored energy: no force
   EXPECT_EQ(out.rendered, Vec3(0, 0, 0));
   EXPECT_EQ(controller.jacobian().stiffness, Mat3(Mat3::Zero()));
   EXPECT_EQ(controller.jacobian().damping, Mat3(0.2 / 0.0005 * Mat3::Identity()));
-  // Within the step the same share and damping answer other states.
+  // Other states within the step get the same scale and damping.
   ToolState moving;
   moving.velocity = {0, 1, 0};
   controller.compute(moving, none, out);

@@ -13,7 +13,7 @@
 namespace hapbench::point_stage_test {
 namespace {
 
-/// A stage prepared for a scene of up to `points` contacts.
+/// Returns a stage prepared for a scene of up to `points` contacts.
 std::unique_ptr<PointStage> reduction(const ReductionConfig& config, std::size_t points) {
   auto stage = make_gradient_reduction(config);
   stage->prepare({.capacity = points});
@@ -89,7 +89,7 @@ TEST(GradientReduction, InnerProductsEqualToTheThresholdAreNotSimilar) {
   EXPECT_EQ(reduced({std::nextafter(0.5, 0.0), 100, {}}, test::contacts_of(gradients)).size(), 1u);
 }
 
-/// Gradients no two of which are similar, so that the reduction keeps all of them in its visiting order.
+/// Returns gradients of which no two are similar, so that the reduction keeps all of them in its visiting order.
 ContactBuffer dissimilar(std::size_t n) {
   std::vector<Vec3> gradients;
   for (std::size_t i = 0; i < n; ++i) {
@@ -146,7 +146,7 @@ struct Contact {
   Vec3 gradient;
 };
 
-/// The contacts of a shell of these points after the stage.
+/// Computes the contacts of a shell of given points after the stage.
 class LocalAverage : public testing::Test {
  protected:
   void prepare(const std::vector<Contact>& all) {
@@ -174,7 +174,7 @@ class LocalAverage : public testing::Test {
   std::unique_ptr<PointStage> stage_;
 };
 
-// One rounding of a product, a sum, a division and a norm.
+// Rounding of a product, a sum, a division and a norm.
 constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
 
 TEST_F(LocalAverage, DropsACellWhoseDepthVectorsCancel) {
@@ -195,7 +195,7 @@ TEST_F(LocalAverage, EqualsAStraightforwardMeanOnRandomContactsStepAfterStep) {
   }
   prepare(all);
   const std::vector<std::uint32_t> cell = shell_->cell_of_points();
-  // Several steps with one stage, which must not keep anything of a step.
+  // Take several steps with one stage, which must not keep any state between steps.
   for (int step = 0; step < 20; ++step) {
     std::vector<std::uint32_t> colliding;
     for (std::uint32_t i = 0; i < n; ++i) {

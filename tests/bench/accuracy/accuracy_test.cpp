@@ -7,13 +7,13 @@
 #include "sim/loop/integrators/table.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 
-/// The errors that stand beside the times, against closed forms.
+/// Tests the errors that are shown beside the run times, against closed forms.
 namespace hapbench::accuracy_test {
 namespace {
 
 using accuracy::Panel, accuracy::Setting, test::bundled;
 
-/// The settings of a panel whose names begin so.
+/// Returns the settings of a panel whose names begin with `beginning`.
 Panel those(const Panel& panel, const std::string& beginning) {
   Panel found;
   for (const Setting& setting : panel)
@@ -26,7 +26,7 @@ double value(const Panel& panel, const std::string& beginning, const char* name)
   return those(panel, beginning).front().errors()[name];
 }
 
-/// The drill in the hole for half a turn, on a coarser wall.
+/// Returns the drill in the hole for half a rotation, with a coarser wall.
 Scenario drill() {
   return bundled("task2_rotate_signed_distance",
                  {"time.duration_s=3", "environment.grid_m=0.0002", "rendering.local_average=false"});
@@ -38,14 +38,14 @@ TEST(Integrators, ConvergeWithTheirOrdersToTheExactSolution) {
     double step = NAN, error = NAN, order = NAN;
     for (const Setting& setting : those(panel, "integrators/" + std::string(integrator->info.name) + " ")) {
       const accuracy::Errors errors = setting.errors();
-      // A hundred times the rounding that rk4 ends with.
+      // A hundred times the rounding error with which rk4 ends.
       if (errors["error_rms_m"] < 5e-12) break;
       order = std::log(error / errors["error_rms_m"]) / std::log(step / errors["step_s"]);
       step = errors["step_s"];
       error = errors["error_rms_m"];
     }
-    // The distance from the formal order falls with the step: 0.2 to 0.7 at 1 ms, so less than 0.7 / 500 at 2 us; of
-    // rk4 with its fourth power, but rounding is a hundredth there.
+    // The deviation from the formal order decreases with the step: 0.2 to 0.7 at 1 ms, so less than 0.7 / 500 at 2 us.
+    // For rk4 it decreases with the fourth power, but rounding is a hundredth at this step.
     EXPECT_NEAR(order, integrator->damped_order, 0.01) << integrator->info.name;
   }
 }
@@ -55,8 +55,8 @@ TEST(Integrators, TellWhichKeepTheEnergyOfUndampedSprings) {
   const auto of = [&](const char* integrator, const char* what) {
     return value(panel, std::string("integrators/") + integrator + " ", what);
   };
-  // At 1 ms, w dt is at most sqrt(2 K dt^2 / M) = 0.45 (lambda_max = 2). Leapfrog swings by up to w dt / 2 on either
-  // side of what it keeps; a step of rk4 loses (w dt)^6 / 72.
+  // At 1 ms, w dt is at most sqrt(2 K dt^2 / M) = 0.45 (lambda_max = 2). The energy of leapfrog oscillates by up to w
+  // dt / 2 about a constant value; a step of rk4 loses (w dt)^6 / 72.
   EXPECT_GT(of("leapfrog", "undamped_energy_swing_relative"), 0.05);
   EXPECT_LT(of("leapfrog", "undamped_energy_swing_relative"), (1.0 + 0.225) / (1.0 - 0.225) - 1.0);
   EXPECT_LT(of("rk4", "undamped_energy_gain_relative"), 0.0);
@@ -100,7 +100,8 @@ TEST(Merging, DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced) {
     const accuracy::Errors errors = setting.errors();
     const bool reduced = setting.name.find("reduced") != std::string::npos;
     EXPECT_EQ(errors["kept_mean"] < errors["contacts_mean"], reduced) << setting.name;
-    // Sums of up to a thousand contacts in another order; exact_shaping knows weights to rounding over epsilon.
+    // Sums of up to a thousand contacts in another order; exact_shaping computes weights to rounding divided by
+    // epsilon.
     EXPECT_EQ(errors["order_spread_relative"] > 1e-9, reduced) << setting.name;
     if (setting.name.starts_with("merging/exact_shaping of all")) {
       EXPECT_EQ(errors["force_error_relative"], 0.0);

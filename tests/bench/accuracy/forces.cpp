@@ -12,7 +12,7 @@
 #include "sim/core/random.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"
 
-/// Panels of forces on given contacts, those of a drill turned in a hole.
+/// Panels of forces on given contacts: the contacts of a drill that rotates in a hole.
 namespace hapbench::accuracy {
 namespace {
 
@@ -27,7 +27,7 @@ constexpr double kThresholds[] = {0.9, 0.95, 0.99, 0.995, 0.999, 0.9999};
 constexpr double kMergedSpacings[] = {0.0001, 0.00005, 0.000025};
 constexpr int kOrders = 4;
 
-/// A law, with the reduction before it or without.
+/// A law with or without the reduction before it.
 struct Way {
   std::string name;
   const char* law;
@@ -44,7 +44,7 @@ Sets drill_sets(const Scenario& drill) {
   return contact_sets(drill_in_hole(drill), kRowsApart);
 }
 
-/// The time of `force(contacts)` over copies of all sets, which it may change; the copying is not timed.
+/// Returns the time of `force(contacts)` over copies of all sets, which it may change. Copying is not timed.
 template <class Force>
 Work forces_of(const Sets& sets, Force force) {
   const auto copies = std::make_shared<Sets>();
@@ -80,7 +80,7 @@ Errors off_the_optimum(const Sets& sets, const std::vector<Mat3>& optimum, int i
           {{"tensor_error_rms", std::sqrt(squares)}, {"tensor_error_max", largest}, {"ratio_error_max", ratio}}};
 }
 
-/// The force of contacts, which it may change.
+/// Computes the force of contacts, which it may change.
 class ForceOf {
  public:
   ForceOf(const Way& way, const RenderingConfig& config, std::size_t capacity)
@@ -88,7 +88,7 @@ class ForceOf {
     if (reduction_) reduction_->prepare({});
     law_->prepare(capacity);
   }
-  /// [N]
+  /// Returns the force [N].
   Vec3 operator()(ContactBuffer& contacts) const {
     if (reduction_) reduction_->process(contacts);
     return law_->evaluate(contacts).spring;
@@ -99,7 +99,7 @@ class ForceOf {
   std::shared_ptr<ForceLaw> law_;
 };
 
-/// The largest change of the force when the contacts of a set are put in another order [N].
+/// Returns the largest change of the force if the contacts of a set are reordered [N].
 double spread_over_orders(const ForceOf& force_of, const ContactBuffer& set, const Vec3& force, Random& random) {
   std::vector<std::size_t> order(set.size());
   ContactBuffer work(set.size());

@@ -8,7 +8,7 @@
 namespace hapbench::accuracy {
 namespace {
 
-/// Times a setting, the least of all runs, with its errors beside it.
+/// Times a setting (the shortest of all runs) and adds its errors.
 void measure(benchmark::State& state, const Setting& setting, const Errors& errors) {
   using Clock = std::chrono::steady_clock;
   const Work work = setting.work();

@@ -22,10 +22,10 @@
 namespace hapbench::accuracy {
 namespace {
 
-/// The scene's time step is divided by these: three decades.
+/// Divisors of the scene's time step, over three decades.
 constexpr int kDivisions[] = {1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
 
-/// Keeps the tensor of the first row, which springs never change.
+/// Keeps the tensor of the first step, which is constant for springs.
 class FirstTensor final : public Observer {
  public:
   void on_step(const StepRecord& record) noexcept override {
@@ -36,11 +36,11 @@ class FirstTensor final : public Observer {
 
 struct Exact {
   Mat3 S;
-  std::vector<Vec3> positions;  ///< at the steps of the scene [m]
+  std::vector<Vec3> positions;  ///< positions at the steps of the scene [m]
 };
 
-/// M x'' = -K S x - B S x' - F (I - S) x', the equation of bilateral springs with constant weights, by the matrix
-/// exponential: exact to rounding.
+/// Solves M x'' = -K S x - B S x' - F (I - S) x', the equation of bilateral springs with constant weights, by the
+/// matrix exponential: exact to rounding.
 Exact exact_solution(const Scenario& scenario) {
   FirstTensor first;
   sampled_run(scenario, nullptr, 1, {&first});
@@ -73,7 +73,7 @@ class SpringEnergy final : public Observer {
     last_ = energy;
     largest_ = std::max(largest_, std::abs(energy - first_));
   }
-  /// (E_end - E_0) / E_0 and the largest |E - E_0| / E_0.
+  /// Return (E_end - E_0) / E_0 and the largest |E - E_0| / E_0.
   double gain() const { return (last_ - first_) / first_; }
   double swing() const { return largest_ / first_; }
 
@@ -118,7 +118,7 @@ Panel integrators(const Scenario& springs) {
   return panel;
 }
 
-// Panels of a drill that a hand presses into a hole while it turns.
+// Panels of a drill that a hand presses into a hole while the drill rotates.
 
 namespace {
 
@@ -126,15 +126,16 @@ constexpr double kShellSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
 constexpr std::pair<const char*, Density> kDensities[] = {{"signed_distance", Density::signed_distance},
                                                           {"binary", Density::binary}};
 
-/// The algorithms of the thesis, whose angular damping is compared with damping of the tip's velocity alone.
+/// Algorithms of the thesis whose angular damping is compared with damping of the tip's velocity alone.
 constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
 
-/// The algorithms that create energy while a peg sticks in a hole; the passivity controller leaves others alone.
+/// Algorithms that create energy while a peg sticks in a hole. The passivity controller does not change other
+/// algorithms.
 constexpr const char* kCreateEnergy[] = {"original_averaging", "summation", "tandpasta", "normal_projection",
                                          "mcneely"};
 
-/// Off the ideal trajectory, over the rows in which the hand is gentle, if it ever is; and the largest change of the
-/// force in a step of all rows.
+/// Returns the deviation from the ideal trajectory over the steps with a gentle hand force, if there are such steps,
+/// and the largest change of the force in a step.
 Errors off_the_ideal(const Scenario& scenario, std::shared_ptr<const PointShell> shell) {
   IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool));
   MetricsObserver motion(scenario.time.step);
@@ -187,7 +188,7 @@ Panel algorithms(const Scenario& drill) {
                      [=] { return bare_run(run, shell()); }});
   };
   RenderingConfig config = scenario.rendering;
-  // Off, except in the settings that are named after them.
+  // Both are off, except in the settings that are named after them.
   config.angular_damping = config.passivity_controller = false;
   for (const AlgorithmEntry& algorithm : hapbench::algorithms()) {
     config.algorithm = algorithm.info->name;
@@ -207,15 +208,16 @@ Panel algorithms(const Scenario& drill) {
   return panel;
 }
 
-// Panels of a free tool whose contacts are found too late: in some rows only, or anywhere between two rows.
+// Panels of a free tool whose contacts are found too late: only in some steps, or at an arbitrary time between two
+// steps.
 
 namespace {
 
 constexpr std::int64_t kQueryEvery[] = {1, 2, 4, 8, 16, 32};
-/// [s]; later two ways are apart because the scene is chaotic, whatever parted them.
+/// time [s] within which two runs are compared; later they differ because the scene is chaotic
 constexpr double kTogether = 0.2;
 
-/// Steps of the bounce, in steps of the scene.
+/// Time steps of the bounce, in units of the scene's time step.
 constexpr double kStepFactors[] = {4.0, 2.0, 1.0, 0.5, 0.25, 0.125};
 
 Scenario briefly_free(Scenario scenario) {
@@ -236,7 +238,8 @@ Errors off_the_fresh(const Scenario& run, const std::shared_ptr<const PointShell
            {"force_rms_above_30Hz_N", reported(metrics, "force_rms_above_30Hz_N")}}};
 }
 
-/// M v^2 / 2 and what the springs store, at the first and the last row [J], and how often contact began or ended.
+/// Computes M v^2 / 2 plus the energy stored in the springs in the first and the last step [J], and counts how often
+/// contact began or ended.
 class MechanicalEnergy final : public Observer {
  public:
   explicit MechanicalEnergy(double mass) : mass_(mass) {}
@@ -257,7 +260,8 @@ class MechanicalEnergy final : public Observer {
   bool touched_ = false;
 };
 
-/// A free tool without hand, damping and friction keeps its energy, unless law or sampling change it.
+/// Returns a free tool without hand, damping and friction. Its energy is constant, unless the law or the sampling
+/// changes it.
 Scenario bouncing(Scenario scenario) {
   scenario.hand = NoHandFields{};
   scenario.device = IdealDeviceFields{};
@@ -323,7 +327,7 @@ Panel events(const Scenario& thrown) {
     const Outcome outcome = outcome_of(sampled_run(run, shell(), 1, {&energy}).result.ending);
     return std::pair(outcome, energy);
   };
-  // The law's own part: that of the integrator which finds the events inside a step.
+  // The energy change of the law itself: measured with the integrator that locates events within a step.
   const auto reference =
       once([=] { return measured(with(scenario, kEvent, kStepFactors[std::size(kStepFactors) - 1])).second; });
   Panel panel;

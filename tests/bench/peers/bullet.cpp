@@ -6,8 +6,8 @@
 #include "tests/bench/peers/contact_library.hpp"
 
 /// Bullet in double precision: its cylinder against a quantised tree of boxes over static triangles, in millimetres
-/// because its margins and thresholds are made for lengths of about 1. Each triangle that the cylinder meets is a
-/// contact. Its depth is that which GJK and EPA find for the pair.
+/// because its margins and thresholds assume lengths of about 1. Each triangle that the cylinder meets is a contact,
+/// with the depth that GJK and EPA find for the pair.
 namespace hapbench::bench {
 namespace {
 

@@ -7,16 +7,16 @@
 
 #include "algorithms/module/hapbench_module.h"
 
-/// Collision libraries that the benchmark asks the questions of our search. No Eigen: they are compiled with the flags
-/// of their libraries, and a type whose layout depends on flags must not pass between them and the benchmark.
+/// Collision libraries that the benchmark compares with our search. Eigen is not used: the libraries are compiled with
+/// their own flags, and a type whose layout depends on flags must not pass between them and the benchmark.
 namespace hapbench::bench {
 
 struct PeerContact {
-  std::uint32_t index;  ///< of the point, where points are asked for
-  double depth;         ///< [m], of libraries that have one
+  std::uint32_t index;  ///< index of the point, if the library finds points
+  double depth;         ///< depth [m], if the library computes depths
 };
 
-/// A library with its structure over a surface.
+/// A library with its data structure over a surface.
 class Peer {
  public:
   virtual ~Peer() = default;
@@ -24,7 +24,7 @@ class Peer {
   virtual std::size_t contacts_at(const HapbenchPose& pose, std::span<PeerContact> room) = 0;
 };
 
-/// Surface and tool are those of the run.
+/// Return a library for the surface and the tool of the run.
 std::unique_ptr<Peer> bullet(const HapbenchRun& run);
 std::unique_ptr<Peer> fcl(const HapbenchRun& run);
 std::unique_ptr<Peer> kd_tree(const HapbenchRun& run);  ///< CGAL, over the vertices of the surface

@@ -13,7 +13,7 @@
 #include "tests/bench/peers/contact_library.hpp"
 
 /// CGAL: a k-d tree over the points of the shell. A query takes the points in the box around the drill and compares
-/// each with the drill, which answers exactly our question.
+/// each point with the drill. Its result is the same as the result of our search.
 namespace hapbench::bench {
 namespace {
 
@@ -34,7 +34,7 @@ class KdTree final : public Peer {
     tree_.build();
   }
 
-  /// The indices of the points in the drill, ascending.
+  /// Returns the indices of the points in the drill, ascending.
   std::size_t contacts_at(const HapbenchPose& pose, std::span<PeerContact> room) override {
     near_.clear();
     points_.clear();
@@ -58,7 +58,7 @@ class KdTree final : public Peer {
   }
 
  private:
-  double length_, radius_;  ///< of the drill
+  double length_, radius_;  ///< length and radius of the drill
   Tree tree_;
   std::vector<Numbered> near_;
   std::vector<std::uint32_t> points_;

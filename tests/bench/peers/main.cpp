@@ -13,21 +13,21 @@
 #include "tests/bench/benchmark_program.hpp"
 #include "tests/bench/peers/contact_library.hpp"
 
-/// Our search and other libraries at the same poses of the same scenes, as peers/<library>/<task>. Libraries that are
-/// not installed are left out.
+/// Times our search and other libraries at the same poses of the same scenes, as peers/<library>/<task>. Libraries that
+/// are not installed are omitted.
 namespace hapbench::bench {
 namespace {
 
 /// Poses between queries, because the libraries take milliseconds per pose.
 constexpr std::size_t kEvery = 64;
 
-/// Room for the contacts of a library; more than the limit of ODE.
+/// Maximum number of contacts of a library; more than the limit of ODE.
 constexpr std::size_t kRoom = 100'000;
 
 struct Library {
   std::string name;
   std::unique_ptr<Peer> (*make)(const HapbenchRun& run);
-  bool same_question;  ///< true: which points of the shell are in the drill
+  bool same_question;  ///< true: the library finds the points of the shell in the drill, like our search
 };
 
 std::vector<Library> libraries() {
@@ -47,7 +47,7 @@ std::vector<Library> libraries() {
   return here;
 }
 
-/// The block with a hole as points or triangles, as the library takes it.
+/// Returns the block with a hole as points or as triangles, whichever the library needs.
 const TriangleSoup& surface_for(const Library& library) {
   static const TriangleSoup points = [] {
     TriangleSoup surface;
@@ -74,7 +74,7 @@ std::unique_ptr<Peer> made(const Library& library, const std::string& task) {
                        .tool_length = drill.length()});
 }
 
-/// The answers of our search and depths at the poses of the queries.
+/// The results of our search and depths at the poses of the queries.
 struct Ours {
   std::vector<HapbenchPose> poses;
   std::vector<std::vector<std::uint32_t>> points;
@@ -100,8 +100,8 @@ const Ours& ours(const std::string& task) {
   return known.emplace(task, std::move(answers)).first->second;
 }
 
-/// Compares the answers before it times them: exactly with a library that answers our question, otherwise by how often
-/// both see a contact, and how deep it is.
+/// Compares the results of a library with ours before timing. The results must be equal if the library solves the same
+/// problem. Otherwise reports how often both find a contact, and the depths.
 void time_library(benchmark::State& state, const Library& library, const std::string& task) {
   const Ours& known = ours(task);
   const std::unique_ptr<Peer> peer = made(library, task);
@@ -133,7 +133,7 @@ void time_library(benchmark::State& state, const Library& library, const std::st
   state.counters["same_question"] = library.same_question ? 1.0 : 0.0;
 }
 
-/// Times a search, with or without depths, at the consecutive poses of a run.
+/// Times a search, with or without depths, at consecutive poses of a run.
 template <class Source>
 void time_ours(benchmark::State& state, Source& source, const std::vector<ToolPose>& poses) {
   ContactBuffer contacts(source.capacity());

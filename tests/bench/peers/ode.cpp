@@ -4,13 +4,13 @@
 
 #include "tests/bench/peers/contact_library.hpp"
 
-/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns as many contacts as there is room
-/// for.
+/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns contacts until the given array is
+/// full.
 namespace hapbench::bench {
 namespace {
 
 constexpr double kMillimetres = 1e3;
-constexpr int kRoom = 0xffff;  // the most that it takes
+constexpr int kRoom = 0xffff;  // largest number that ODE accepts
 
 class Ode final : public Peer {
  public:

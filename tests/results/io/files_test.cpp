@@ -65,7 +65,8 @@ TEST(AtomicFile, WhereNoFileCanBeThrowsAndLeavesNoTemporary) {
 }
 
 TEST(AtomicFile, ThatRunsOutOfSpaceThrowsAtCommitAndLeavesTheOldTarget) {
-  for (const std::size_t bytes : {1'000'000u, 20u}) {  // many times the buffer, and what it still holds at the end
+  for (const std::size_t bytes : {1'000'000u, 20u}) {  // many times the buffer size, and a final part that only fills
+                                                       // the buffer
     const TemporaryDirectory dir;
     write_plainly(dir / "a.csv", "old");
     AtomicFile file(dir / "a.csv");
@@ -79,7 +80,7 @@ TEST(AtomicFile, ThatRunsOutOfSpaceThrowsAtCommitAndLeavesTheOldTarget) {
   }
 }
 
-/// A process that is killed while it writes `target`. What it leaves is longer than what tests write.
+/// Kills a process while it writes `target`. The unfinished file is longer than the files that tests write.
 void kill_a_writer_of(const fs::path& target) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -158,7 +159,7 @@ TEST(JsonText, EscapesStringsAndKeysAndReplacesBytesThatAreNotUtf8) {
   EXPECT_EQ(json_text(value), "{\n  \"a\\\"b\": \"line\\nend \xef\xbf\xbd\"\n}\n");
 }
 
-// nlohmann's own writer gives 5e-324 as 4.94…e-324 and whole numbers a ".0".
+// nlohmann's writer prints 5e-324 as 4.94…e-324, and adds ".0" to whole numbers.
 TEST(JsonText, WritesDoublesInShortestForm) {
   EXPECT_EQ(json_text({0.1, 1.0, 5e-324, 1e22, -0.0}), "[0.1, 1, 5e-324, 1e+22, -0]\n");
 }
@@ -188,7 +189,7 @@ TEST(CsvWriter, QuotesTextThatWouldBreakTheTable) {
   EXPECT_EQ(read_file(dir / "a.csv"), "text\n\"a,b\"\n\"say \"\"x\"\"\"\n\"two\nlines\"\n");
 }
 
-// Random bit patterns reach every exponent, subnormal numbers included.
+// Random bit patterns include all exponents and subnormal numbers.
 TEST(CsvWriter, NumbersReadBackBitForBit) {
   const TemporaryDirectory dir;
   std::mt19937_64 bits(1);

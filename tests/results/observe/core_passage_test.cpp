@@ -20,7 +20,8 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-/// Walls thinner than the tool, which it goes through on every way, and deep places that it does not go through.
+/// Tests walls thinner than the tool, through which the tool passes on different paths, and deep positions where the
+/// tool does not pass through.
 namespace hapbench::core_passage_test {
 namespace {
 
@@ -46,14 +47,14 @@ std::vector<NamedTool> tools() {
           {"mesh", std::make_shared<const MeshTool>(test::grid_of(drill, 0.1 * kRadius))}};
 }
 
-/// A box between two corners [m].
+/// Returns a box between two corners [m].
 TriangleSoup box(const Vec3& low, const Vec3& high) {
   TriangleSoup soup = test::cube(0.5, Vec3::Constant(0.5));
   for (Vec3& v : soup.vertices) v = low + v.cwiseProduct(high - low);
   return soup;
 }
 
-/// The points near y = 0 of a box, a fifth of the tool's radius apart in each face across z and x.
+/// Returns points on the faces of a box across z and x near y = 0, with a spacing of a fifth of the tool's radius.
 std::vector<Vec3> points_of(const Vec3& low, const Vec3& high) {
   std::vector<Vec3> points;
   const double spacing = 0.2 * kRadius;
@@ -66,17 +67,17 @@ std::vector<Vec3> points_of(const Vec3& low, const Vec3& high) {
   return points;
 }
 
-using Way = std::function<ToolPose(double u)>;  ///< u = 0 … 1
+using Way = std::function<ToolPose(double u)>;  ///< path of the tool, u = 0 … 1
 ToolPose upright(double x, double z) {
   return {{x, 0.0, z}, {0.0, 0.0, -1.0}, 0.0};
 }
 
 struct Ran {
-  bool through;    ///< by any part of it
-  double deepest;  ///< contact [m]
+  bool through;    ///< true if any part of the tool has passed through
+  double deepest;  ///< depth of the deepest contact [m]
 };
 
-/// The tool on its way, with contacts at points.
+/// Moves the tool along its path, with contacts at the points.
 Ran run(const NamedTool& tool, const std::shared_ptr<const Solid>& solid, const std::vector<Vec3>& points,
         const Way& way, int rows) {
   InsideObserver observer(tool.shape, solid);
@@ -94,7 +95,7 @@ Ran run(const NamedTool& tool, const std::shared_ptr<const Solid>& solid, const 
   return {observer.passage().went_through() || observer.core_passage().event().has_value(), deepest};
 }
 
-/// A plate from x = 0 to 4 mm below z = 0, `thickness` t thick, through which ways lead.
+/// A path through a plate that extends from x = 0 to 4 mm below z = 0 and is `thickness` t thick.
 struct NamedWay {
   const char* name;
   int rows;
@@ -123,7 +124,7 @@ const NamedWay kWays[] = {
 
 class ThroughAPlate : public testing::TestWithParam<std::size_t> {};
 
-/// From a twentieth of the tool's radius to three of them.
+/// Plates from a twentieth of the tool's radius to three radii thick.
 TEST_P(ThroughAPlate, OnEveryWay) {
   const NamedTool tool = tools()[GetParam()];
   constexpr double kShares[] = {0.05, 0.1, 0.3, 0.6, 1.0, 1.8, 3.0};
@@ -139,7 +140,8 @@ TEST_P(ThroughAPlate, OnEveryWay) {
 }
 INSTANTIATE_TEST_SUITE_P(Tools, ThroughAPlate, testing::Range<std::size_t>(0, 6));
 
-/// A wall on the ground, which the tool leaves by the face behind it without ever having been through at one time.
+/// A wall on the ground, which the tool leaves by the rear face. At no time does the core cross the wall from face to
+/// face.
 TEST(ThroughAWall, FromOneFaceToTheOther) {
   for (const double share : {0.05, 0.3, 1.0, 1.8}) {
     const Vec3 low(0.0, -0.003, -0.02), high(share * kRadius, 0.003, 0.0);
@@ -150,7 +152,7 @@ TEST(ThroughAWall, FromOneFaceToTheOther) {
       const Way way = [](double u) { return upright(-0.0015 + 0.004 * u, -0.002); };
       EXPECT_TRUE(run(tool, solid, points, way, 200).through) << tool.name << " " << share;
       const Way back = [&way](double u) { return way(0.45 * (1.0 - std::abs(2.0 * u - 1.0))); };
-      // Thicker than the tool's way into it.
+      // The wall is thicker than the depth to which the tool enters.
       if (share >= 1.0) {
         EXPECT_FALSE(run(tool, solid, points, back, 200).through) << tool.name << " " << share;
       }
@@ -158,7 +160,7 @@ TEST(ThroughAWall, FromOneFaceToTheOther) {
   }
 }
 
-/// A block of which the tool is kept out, or comes out the way it went in.
+/// A block that keeps the tool out, or that the tool leaves on the path by which it entered.
 TEST(DeepInABlock, IsNotThrough) {
   const Vec3 low(0.0, -0.003, -0.004), high(0.004, 0.003, 0.0);
   const TriangleSoup block = box(low, high);
@@ -184,7 +186,7 @@ TEST(DeepInABlock, IsNotThrough) {
   }
 }
 
-/// The drill in a hole, pressed at its wall, at its rim and on its ground almost as deep as it is wide.
+/// The drill in a hole, pressed against the wall, the rim and the bottom, almost as deep as the drill is wide.
 TEST(DeepInAHole, IsNotThrough) {
   const std::shared_ptr<const Solid> hole = make_solid(BlockWithHole{{0.006, 0.006, 0.004}, 0.00104, 0.002});
   std::vector<Vec3> points;

@@ -21,15 +21,15 @@ namespace {
 
 using test::Setting;
 
-/// A row: its force along x, and whether the tool is in contact.
+/// A step: its force along x, and whether the tool is in contact.
 struct Row {
   double force = 0.0;
   bool in_contact = true;
 };
 
-constexpr double kDt = 0.01;  ///< [s], exact enough that 0.03 s are three rows
+constexpr double kDt = 0.01;  ///< [s], exact enough that 0.03 s are three steps
 
-/// The rows' phases as a text: a, l or s each.
+/// Returns the phases of the steps as a text with a, l or s for each step (away, landing, settled).
 std::string phases(const SettlingRule& rule, const std::string& contact) {
   ContactForces observer(kDt, rule);
   std::string text;
@@ -37,7 +37,7 @@ std::string phases(const SettlingRule& rule, const std::string& contact) {
   return text;
 }
 
-/// Through MetricsObserver, which tells the changes from row to row.
+/// Feeds the steps to a MetricsObserver, which computes the changes from step to step.
 MetricsObserver forces_of(const std::vector<Row>& rows, const SettlingRule& rule) {
   const ContactBuffer none(1);
   MetricsObserver observer(kDt, {.settling = rule});
@@ -50,11 +50,12 @@ MetricsObserver forces_of(const std::vector<Row>& rows, const SettlingRule& rule
   return observer;
 }
 
-// Known answers compare what is behind the filter with scipy's.
+// The known answers compare the output of the filter with scipy.
 TEST(HighPass, SettledAtAConstantGivesExactlyZero) {
   HighPass filter(30.0, 2000.0);
   const Vec3 value(0.1, -1e3, 1.0 / 3.0);
-  for (int k = 0; k < 10; ++k) filter.filter(k * value);  // a past in both sections, which settling forgets
+  // Give both sections earlier samples, which settling must remove.
+  for (int k = 0; k < 10; ++k) filter.filter(k * value);
   filter.settle_at(value);
   for (int k = 0; k < 100; ++k) ASSERT_EQ(filter.filter(value), Vec3::Zero());
 }
@@ -75,7 +76,7 @@ TEST(EvaluationWindow, BeginAQuarterIntoTheContactOrWholePeriodsBeforeTheEnd) {
 
 constexpr SettlingRule kThreeRows = {.from = {}, .time = 0.03};
 
-/// How many of the metrics that take settled contact have a value.
+/// Returns the number of metrics of settled contact that have a value.
 std::ptrdiff_t settled_metrics(const MetricsObserver& observer) {
   constexpr const char* kNames[] = {"force_mean_in_contact_N",  "settled_force_max_N",    "force_step_p99_N",
                                     "settled_force_step_max_N", "force_rms_above_30Hz_N", "force_reversals_per_s"};
@@ -102,7 +103,7 @@ TEST(SettlingRule, RoundsTimesToRows) {
 }
 
 TEST(ContactForces, HaveNoValueBelowAPeriodOfTheHighPass) {
-  // Three rows are 0.03 s, four 0.04 s.
+  // Three steps are 0.03 s, four steps 0.04 s.
   std::vector<Row> rows = {{9}, {9}, {9}, {1}, {1}, {1}};
   EXPECT_EQ(settled_metrics(forces_of(rows, kThreeRows)), 0);
   rows.push_back({1});
@@ -135,7 +136,8 @@ TEST(ContactForces, AShortBreakOfContactVibratesAndALongOneStartsFromRest) {
   EXPECT_EQ(with_break(4), with_break(400));
 }
 
-/// A second trial begins like a first one: its first touch is a landing, and the force before counts no more.
+/// A second trial begins like a first trial: its first touch is a landing, and the last force of the first trial does
+/// not count.
 TEST(ContactForces, OfSeveralTrialsAddUp) {
   ContactForces forces(kDt, kThreeRows);
   const auto add_trial = [&forces](double force) {
@@ -153,14 +155,14 @@ TEST(ContactForces, OfSeveralTrialsAddUp) {
   EXPECT_EQ(number_of(list, "force_rms_above_30Hz_N"), 0.0);
 }
 
-/// The number as a histogram of nothing else has it.
+/// Returns the number as stored in a histogram without other numbers.
 double counted(double number) {
   MagnitudeHistogram histogram;
   histogram.add_square(number * number);
   return histogram.quantile(1.0);
 }
 
-// Every bin, at its lower edge and just below: the numbers that are furthest from its middle.
+// For every bin, tests the lower edge and the number just below it, which are farthest from the middles of their bins.
 TEST(MagnitudeHistogram, ErrorOfEveryBinIsTheStatedOne) {
   double largest = 0.0;
   for (double edge = MagnitudeHistogram::kLeast; edge < MagnitudeHistogram::kMost; edge *= std::sqrt(33.0 / 32.0)) {
@@ -205,7 +207,7 @@ TEST(ForceFidelity, FindsNoLagBeyondItsReach) {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Keeps the largest amount of energy that moved, against which rounding is to be measured.
+/// Keeps the largest exchanged energy, relative to which rounding is measured.
 class Turnover final : public Observer {
  public:
   explicit Turnover(const EnergyLedger& ledger) : ledger_(&ledger) {}
@@ -244,7 +246,7 @@ Accounts keep_accounts(SimulationConfig config, SimulationParts parts) {
   return accounts;
 }
 
-/// Every joule of a free run is accounted for; a limit is that of an ideal device [N].
+/// Checks that the energy balance of a free run is closed. The limit is the limit of an ideal device [N].
 void expect_closed(const test::AnalyticScene& scene, const RenderingConfig& config, const IntegratorEntry& integrator,
                    std::optional<double> limit = {}) {
   SCOPED_TRACE(std::string(scene.name) + " " + config.algorithm + " " + integrator.info.name);
@@ -256,7 +258,7 @@ void expect_closed(const test::AnalyticScene& scene, const RenderingConfig& conf
   run.integrator = &integrator;
   const Accounts a = keep_accounts(run, std::move(parts));
   const EnergyBalance& b = a.balance;
-  // Every row adds a handful of roundings of the energy that moves, to which other integrators add their own.
+  // Every step adds a few roundings of the exchanged energy; other integrators add further roundings.
   const double rounding =
       400 * 20 * kEpsilon * (a.turnover + (&integrator == &kLeapfrog ? 0.0 : std::abs(b.integration)));
   EXPECT_LE(a.residual_max, rounding);
@@ -280,17 +282,18 @@ TEST(EnergyLedger, ClosesToRoundingForEveryAlgorithmAndEveryIntegrator) {
   }
 }
 
-/// A spring whose far end stays while the tool turns: what the turn stores is the rotation's, not created.
+/// The far end of the spring is fixed while the tool rotates. The energy that the rotation stores is work of the
+/// rotation and not created.
 TEST(EnergyLedger, TurningTheToolPutsEnergyIntoTheSprings) {
   EnergyLedger ledger(1.0, 0.1, true, 1);
   ContactBuffer contacts(1);
   StepRecord record;
   record.rendered = &contacts;
-  constexpr double kTorsion = 4.0;  // [N m] of a spring whose moment grows with the angle
+  constexpr double kTorsion = 4.0;  // stiffness [N m] of a spring whose moment increases with the angle
   for (int k = 0; k <= 10; ++k) {
     const double angle = 0.1 * k;
     record.step = static_cast<std::uint64_t>(k);
-    record.tool.pose.axis = {std::sin(angle), 0, -std::cos(angle)};  // turns about -y
+    record.tool.pose.axis = {std::sin(angle), 0, -std::cos(angle)};  // rotates about -y
     record.springs.moment = {0, kTorsion * angle, 0};
     record.springs.energy = 0.5 * kTorsion * angle * angle;
     ledger.on_step(record);
@@ -306,7 +309,7 @@ TEST(EnergyLedger, KeepsTheLargestEventsInOrder) {
   record.rendered = &contacts;
   double energy = 0.0;
   for (int k = 0; k < 50; ++k) {
-    energy += (k * 37) % 50;  // every step another amount, 0 … 49 mixed
+    energy += (k * 37) % 50;  // every step creates another amount; the amounts 0 … 49 are mixed
     record.step = static_cast<std::uint64_t>(k);
     record.springs.energy = energy;
     ledger.on_step(record);

@@ -17,7 +17,7 @@
 #include "tests/results/observing.hpp"
 #include "tests/support/fakes.hpp"
 
-/// Seams between trials and runs without what a metric is of; known answers ask for the numbers.
+/// Tests transitions between trials, and runs that lack the data of a metric. Known answers test the numbers.
 namespace hapbench::metrics_test {
 namespace {
 
@@ -69,7 +69,7 @@ TEST(Metrics, OfNoRowsHaveNoMeansAndNoPlace) {
     EXPECT_FALSE(reported(none, name)) << name;
 }
 
-/// Two rows; `change` alters the second.
+/// Returns the state hash of two steps; `change` alters the second step.
 std::uint64_t state_hash(const std::function<void(StepRecord&)>& change) {
   const ContactBuffer none(1);
   MetricsObserver observer(kDt);
@@ -100,7 +100,7 @@ TEST(ExplicitFrictionLimit, IsThatOfTheIntegratorsDampers) {
   const auto limit = [](const IntegratorEntry& integrator, double mu_s, double mu_f) {
     return explicit_friction_limit(integrator, 0.2, 0.0005, mu_s, mu_f);
   };
-  // B dt / M < 2 for leapfrog, 2.7853 for rk4.
+  // B dt / M < 2 for leapfrog, < 2.7853 for rk4.
   EXPECT_DOUBLE_EQ(*limit(kLeapfrog, 5.0, 10.0), (800.0 - 5.0) / 10.0);
   EXPECT_NEAR(*limit(kRk4, 5.0, 10.0), (2.7853 * 400.0 - 5.0) / 10.0, 0.01);
   EXPECT_EQ(limit(kLeapfrog, 801.0, 1.0), 0.0) << "the constant part alone is too much";
@@ -138,7 +138,8 @@ TEST(PassivityObserver, OfSeveralTrialsTheOneThatCreatedMostCounts) {
   const ContactBuffer none(1);
   PassivityObserver observer;
   EXPECT_FALSE(reported(observer, "energy_min_J"));
-  // A tool that moves at 1 m/s: without rows; least energies of -1, -3 and -3 J, which end with -1, -2 and -3 J.
+  // A tool that moves at 1 m/s. Without steps, and with the smallest energies -1, -3 and -3 J at final energies of -1,
+  // -2 and -3 J.
   for (const std::vector<double>& forces : std::vector<std::vector<double>>{{}, {2, 0}, {4, 2, -2, 0}, {6, 0}}) {
     observer.begin({config, parts});
     for (std::uint64_t k = 0; k < forces.size(); ++k) {
@@ -180,7 +181,8 @@ TEST(ReductionJumps, CompareTheNumbersOfTheSamePointAsWell) {
   EXPECT_EQ(jumps.changes(), 2u) << "fewer points";
 }
 
-/// Shortest time of a row in several trials [s], each with a row of `first` and then a row of `second`.
+/// Returns the shortest time of a step over several trials [s]. Each trial has a step with `first` and then a step with
+/// `second`.
 double shortest_row(const ContactBuffer& first, const ContactBuffer& second) {
   using Clock = std::chrono::steady_clock;
   ReductionJumps jumps(first.capacity());
@@ -195,7 +197,8 @@ double shortest_row(const ContactBuffer& first, const ContactBuffer& second) {
   return shortest;
 }
 
-// From n to 8 n points the time grows by a factor of 8 (linear), about 10 (n log n) or 64 (quadratic).
+// If the number of points grows by a factor of 8, the time grows by a factor of 8 (linear), about 10 (n log n) or 64
+// (quadratic).
 TEST(ReductionJumps, TakeTimeThatGrowsLessThanQuadratically) {
   constexpr std::uint32_t kFew = 2000, kGrowth = 8;
   constexpr double kMostGrowth = 28.0;
@@ -204,7 +207,7 @@ TEST(ReductionJumps, TakeTimeThatGrowsLessThanQuadratically) {
     std::iota(numbers.begin(), numbers.end(), first);
     return numbers;
   };
-  // The first point leaves, and another one comes behind the last.
+  // The first point is removed, and a new point is added after the last point.
   const auto one_change = [&](std::uint32_t n) { return shortest_row(kept(points(n)), kept(points(n, 1))); };
   const auto reversed = [&](std::uint32_t n) {
     std::vector<std::uint32_t> turned = points(n);
@@ -221,7 +224,7 @@ TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {
   MetricsObserver without(0.01);
   const AllocationCount allocations;
   for (std::uint64_t k = 0; k < 20; ++k) {
-    if (k == 10) with.begin();  // a trial, whose first row changes nothing
+    if (k == 10) with.begin();  // begin a new trial, whose first step counts no change
     StepRecord r = test::row(k, 0.0, k % 2 == 0 ? first : second);
     r.force.rendered = {k % 2 == 0 ? 1.0 : 3.0, 0.0, 0.0};
     with.on_step(r);
@@ -233,18 +236,18 @@ TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {
   EXPECT_EQ(reported(with, "reduction_force_step_max_N"), 2.0);
 }
 
-/// The last quarter is of the steps that were made, not of the planned steps.
+/// The metric uses the last quarter of the steps that were made, not of the planned steps.
 TEST(LastQuarterVibration, OfARunThatEndsEarlyIsThatOfARunPlannedSo) {
   for (const std::uint64_t made : {4u, 7u, 108u, 449u, 524u, 1500u, 1999u, 2000u}) {
     LastQuarterVibration planned(2000, 0.001), early(made, 0.001);
     for (std::uint64_t i = 0; i < made; ++i) {
-      // A vibration that decays, so that every interval has its own rms.
+      // The vibration decays, so that every interval has a different rms.
       const Vec3 velocity(std::sin(0.9 * static_cast<double>(i)) / (1.0 + 0.01 * static_cast<double>(i)), 0.0, 0.1);
       planned.add(i, velocity);
       early.add(i, velocity);
     }
     ASSERT_TRUE(planned.value() && early.value()) << made;
-    EXPECT_NEAR(*planned.value(), *early.value(), 1e-15) << made;  // sums of the same squares in the same order
+    EXPECT_NEAR(*planned.value(), *early.value(), 1e-15) << made;  // both sum the same squares in the same order
   }
 }
 

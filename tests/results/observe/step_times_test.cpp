@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// 4.29 s is 2^32 ns. A step that began 5 s ago need not be waited for.
+// 4.29 s is 2^32 ns. The test does not wait: the step has a start time 5 s ago.
 TEST(StepTimes, TimesAStepOfManySeconds) {
   StepTimes times(1);
   times.start(Clock::now() - std::chrono::seconds(5));
@@ -35,7 +35,7 @@ TEST(StepTimes, AStepDoesNotAllocate) {
 
 using std::chrono::milliseconds;
 
-/// Rows between which a step takes `step`, and observers `watching` in each.
+/// Returns the samples of steps that take `step`, with observers that take `watching` in each step.
 std::vector<std::uint64_t> samples(std::uint64_t steps, milliseconds step, milliseconds watching) {
   const ContactBuffer none(1);
   StepSampler sampler(steps);
@@ -51,8 +51,8 @@ std::vector<std::uint64_t> samples(std::uint64_t steps, milliseconds step, milli
 
 TEST(StepSampler, LeavesOutWhatObserversTake) {
   const std::vector<std::uint64_t> times = samples(3, milliseconds(0), milliseconds(5));
-  ASSERT_EQ(times.size(), 2u);  // no row follows the last
-  // A machine that does something else in between can only make it longer, and not twice by chance.
+  ASSERT_EQ(times.size(), 2u);  // no step follows the last step
+  // Another task of the machine can only make a sample longer, and not twice by chance.
   EXPECT_LT(*std::min_element(times.begin(), times.end()), 5'000'000u);
 }
 
@@ -71,7 +71,7 @@ TEST(StepSampler, TakesAFewOfManySteps) {
 
 using Times = std::vector<std::uint64_t>;
 
-/// 1 … n in a scrambled order: 7919 is a prime that divides no n below.
+/// Returns the numbers 1 … n in a scrambled order: 7919 is a prime that divides none of the n used here.
 Times scrambled(std::uint64_t n) {
   Times times(n);
   for (std::uint64_t i = 0; i < n; ++i) times[i] = 1 + i * 7919 % n;
@@ -102,7 +102,7 @@ TEST(StepLatency, AStepThatTakesExactlyTheDeadlineDoesNotMissIt) {
 
 TEST(StepLatency, HistogramHoldsEveryStepOnceBetweenPowersOfTwo) {
   Times times = scrambled(5000);
-  times.push_back(5'000'000'000);  // more than 32 bits hold
+  times.push_back(5'000'000'000);  // more than 32 bits
   const StepLatency latency = step_latency(times, 0);
   std::uint64_t steps = 0, end = latency.histogram.front().from;
   for (const StepLatency::Bin& bin : latency.histogram) {

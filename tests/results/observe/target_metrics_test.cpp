@@ -47,17 +47,18 @@ TEST(IdealTrajectory, ComparesEachSoManyRows) {
   EXPECT_EQ(reported(observer, "rows_without_ideal"), 1.0) << "row 3";
 }
 
-constexpr double kRounding = 1e-11;  // what the header promises
+constexpr double kRounding = 1e-11;  // error that the header states
 const Cylinder kTool;
 
-/// Depth at a place on the tool's side: an angle about its axis and a height above its tip.
+/// Returns the depth at a point on the tool's side, given by an angle about the axis and a height above the tip.
 double depth_at(const ToolPose& pose, double angle, double height) {
   const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
   const Vec3 side = kTool.radius() * (std::cos(angle) * e1 + std::sin(angle) * e2);
   return -signed_distance(kBlock, pose.position + side - height * pose.axis);
 }
 
-/// The deepest place at an angle: of many heights, and then by ternary search round the deepest of them.
+/// Returns the depth of the deepest point at an angle: evaluates many heights, then searches around the deepest height
+/// by ternary search.
 double deepest_at(const ToolPose& pose, double angle) {
   constexpr int kHeights = 400;
   constexpr double kApart = 0.006 / kHeights;  // the rest of the tool is in the air
@@ -77,7 +78,8 @@ double deepest_at(const ToolPose& pose, double angle) {
   return std::max(depth_at(pose, angle, best), depth_at(pose, angle, low));
 }
 
-/// The deepest place of the tool: of many angles, and then of ever smaller neighbourhoods of the deepest of them.
+/// Returns the depth of the deepest point of the tool: evaluates many angles, then ever smaller neighbourhoods of the
+/// deepest angle.
 double searched(const ToolPose& pose) {
   double deepest = 0.0, angle = 0.0;
   const auto look = [&](double from, double apart, int angles) {
@@ -104,11 +106,11 @@ TEST(Interpenetration, EqualsASearchOverTheWholeTool) {
   }
 }
 
-/// Shorter than the hole is deep, and wholly in the wall: the upper end may be the deepest.
+/// The tool is shorter than the hole is deep, and is wholly inside the wall: its upper end may be the deepest point.
 TEST(Interpenetration, KnowsTheUpperEndOfAShortTool) {
   const Cylinder tool(kTool.radius(), 0.001);
   for (const double reach : {0.0006, 0.0008}) {
-    // Leaning outwards, so that the upper end is further out; far below the top.
+    // The tool leans outwards, so that the upper end is further out, and is far below the top.
     const double tilt = 0.3, s = std::sin(tilt), c = std::cos(tilt);
     const ToolPose pose = tilted({reach, 0.0, -0.003}, tilt);
     EXPECT_NEAR(interpenetration(kBlock, tool, pose), reach + 0.001 * s + 0.0005 * c - 0.001, kRounding);
@@ -131,7 +133,7 @@ TEST(PlaceMetrics, TargetsNeverReachedHaveNoForceAndNoSpeed) {
   EXPECT_EQ(place_metrics({missed})[0].speed.subjects, 0u);
 }
 
-/// A hand with a task, whose trial can begin.
+/// A hand with a task; its trial can begin.
 class TaskHand final : public Hand {
  public:
   explicit TaskHand(const TargetTask& task) : task_(task) {}
@@ -197,14 +199,14 @@ TEST(TargetMetrics, MeansAreOverTheRowsOnTheTargetOfTheTrial) {
   step(0.001, 100.0, 100.0);  // off the target
   step(0.0002, 1.0, 4.0);     // near enough to be logged, not to be held
   step(0.0, 3.0, 6.0);
-  step(0.0, 50.0, 50.0);  // removes the target: this row is the next one's
+  step(0.0, 50.0, 50.0);  // removes the target: this step belongs to the next target
   ASSERT_EQ(observer.rows().size(), 1u);
   EXPECT_EQ(observer.rows()[0].rows_on_target, 2u);
   EXPECT_EQ(observer.rows()[0].speed, 5.0);
   step(0.0, 2.0, 0.0);
   step(0.0, 2.0, 0.0);
   ASSERT_EQ(observer.rows().size(), 2u);
-  // Rows on a target that has not ended do not count in the next trial, which adds rows of its own.
+  // Steps on a target that has not ended do not count in the next trial, which adds its own steps.
   TargetTask next(rules, 2);
   record.task = &next;
   begin(observer, 4, 6, next);

@@ -30,9 +30,9 @@ using test::lines_of;
 using test::read_file;
 using test::TemporaryDirectory;
 
-// What known answers do not ask of the tables of a run: they ask every column for its numbers.
+// Tests what the known answers do not test of a run's tables; the known answers test the numbers of every column.
 
-/// Lines of the table that a recorder writes of these rows, without the header.
+/// Returns the lines of the table that a recorder writes for these steps, without the header.
 std::vector<std::string> recorded(const RowSource& source, const std::vector<StepRecord>& rows,
                                   std::uint64_t every = 1) {
   const TemporaryDirectory dir;
@@ -112,8 +112,8 @@ TEST(Recorders, AllocateNothingInAStep) {
                                   ideal_trajectory_rows(ideal), force_reference_rows(fidelity)}) {
     Recorder recorder(dir / "table.csv", source);
     const AllocationCount count;
-    for (int k = 0; k < 1000; ++k) {  // several times the file's buffer
-      r.springs.energy += k;          // an event of the ledger every step
+    for (int k = 0; k < 1000; ++k) {  // several times the size of the file's buffer
+      r.springs.energy += k;          // an event of the ledger in every step
       ledger.on_step(r);
       ideal.on_step(r);
       fidelity.on_step(r);
@@ -136,7 +136,7 @@ TEST(Summary, WritesADivergenceThatIsNotFiniteAsNullAndText) {
   EXPECT_EQ(summary_json(run)["divergence"]["magnitude_text"], "nan");
 }
 
-/// The suffix of a name that ends in its unit, as units are written in names.
+/// Returns the suffix of a name that ends with its unit, as units are written in names.
 std::string unit_in_name(std::string unit) {
   if (unit == "1" || unit.empty()) return "";
   if (unit == "m2/s2") return "_m2_per_s2";
@@ -147,7 +147,7 @@ std::string unit_in_name(std::string unit) {
   return "_" + unit;
 }
 
-/// Names end in their units, and every entry says something.
+/// Checks that names end with their units, and that every entry has a meaning.
 template <class Entries>
 void expect_documented(const Entries& entries, const std::string& where) {
   std::set<std::string> names;

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "scenarios/input/input_error.hpp"
 #include "tests/results/files.hpp"
 
 /// The errors for wrong axes are in tests/data/golden/refused_sweeps.txt.
@@ -47,7 +48,7 @@ TEST(Axis, EndPointsAreExactAndValuesBetweenThemInOrder) {
   }
   EXPECT_EQ(numbers("a=0.1:0.7:97").back(), 0.7);
   EXPECT_EQ(numbers("a=0.1:0.7:97:log").back(), 0.7);
-  // The same value throughout stays the same: no rounding leaves the range.
+  // A constant range gives the same value everywhere: no rounding leaves the range.
   for (const double value : numbers("a=0.1:0.1:1000")) ASSERT_EQ(value, 0.1);
 }
 
@@ -72,6 +73,31 @@ TEST(Axis, OfAllNamesOfAField) {
             (Values{"leapfrog", "velocity_verlet", "rk4", "implicit_euler", "implicit_midpoint", "event"}));
   EXPECT_EQ(parse_axis("rendering.algorithm=all").values.front(), "original_averaging");
   EXPECT_EQ(values_of("name=all"), Values{"all"});
+}
+
+TEST(Axis, OfAWrongRangeSuggestsTheRangeThatWasMeant) {
+  const auto refusal = [](const std::string& values, bool sampled) -> std::string {
+    try {
+      parse_axis("a=" + values, sampled, "--over");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const auto suggests = [&](const std::string& values, const std::string& range, bool sampled = false) {
+    EXPECT_NE(refusal(values, sampled).find("nearest valid form: \"" + range + "\"; allowed: a:b"), std::string::npos)
+        << values << ": " << refusal(values, sampled);
+  };
+  for (const char* values : {"1e3:3e4:5log", "1e3:3e4:log5", "1e3:3e4:log:5"}) suggests(values, "1e3:3e4:5:log");
+  suggests("1:2:5:", "1:2:5");
+  suggests("1:2:log5", "1:2:log", true);
+  suggests("1:2:5:log", "1:2:log", true);
+  suggests("1:2:5", "1:2", true);
+  for (const char* values : {"1:2", "1:2:log", "1:2:1", "1:2:2.5", "1:2:5:lin", "1:2:3:log:log", "1:2:7000000log"})
+    EXPECT_EQ(refusal(values, false).find("nearest"), std::string::npos) << refusal(values, false);
+  EXPECT_EQ(refusal("1:2", false).find("--over \"a=1:2\": got 2 parts between colons; allowed: a:b:n, or a:b:n:log"),
+            0u)
+      << refusal("1:2", false);
 }
 
 TEST(SampledAxis, IsARangeOrAList) {

@@ -7,6 +7,8 @@
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/run_all.hpp"
 #include "scenarios/input/shared_cache.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/motions.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -22,7 +24,7 @@ class ComparisonOf : public testing::Test {
     test::write_plainly(directory_ / name, scenario.dump());
     return directory_ / name;
   }
-  /// Two scenes, the second with random springs.
+  /// Returns a question with two scenes, the second with random springs.
   ComparisonQuestion two_scenes() const {
     Json springs = test::minimal_scenario("springs");
     springs["environment"] = {{"type", "springs"}, {"random", {{"count", 5}}}};
@@ -63,9 +65,31 @@ TEST_F(ComparisonOf, JitteredScenesStartFromOnePlaceForEachSeed) {
     EXPECT_NEAR(start(seed).norm(), 1e-4, 1e-18);
     EXPECT_EQ(start(seed), start(3 + seed)) << "the other algorithm";
     EXPECT_NE(start(seed), start((seed + 1) % 3));
-    // Springs in the plane stay there. Adding to 1e-3 rounds by up to 1e-19.
+    // Springs in the plane remain in the plane. Adding to 1e-3 rounds by up to 1e-19.
     EXPECT_EQ(start(6 + seed).z(), 0.0);
     EXPECT_NEAR((start(6 + seed) - Vec3(0.001, 0.0, 0.0)).norm(), 1e-4, 1e-18);
+  }
+}
+
+TEST_F(ComparisonOf, JitterShiftsAPrescribedPathAsAWhole) {
+  Json script = test::minimal_scenario("plane");
+  script["motion"] = {{"position",
+                       {{"type", "prescribed"},
+                        {"x_m", {{"type", "ramp"}, {"start", 0.0}, {"rate_per_s", 0.01}}},
+                        {"y_m", {{"type", "sine"}, {"mean", 0.0}, {"amplitude", 1e-3}, {"period_s", 1.0}}},
+                        {"z_m", {{"type", "waypoints"}, {"points", {{0, 0.001}, {1, -0.001}}}}}}}};
+  const ComparisonQuestion question{
+      .scenarios = {write("script.json", script)}, .algorithms = {"mean"}, .seeds = 3, .jitter = 1e-4};
+  const Comparison comparison = planned(question);
+  const auto place = [](const Scenario& scenario, double t) -> Vec3 {
+    return make_motion(scenario, NamedFiles(scenario))->position_at(t);
+  };
+  const Scenario own = load_scenario(question.scenarios[0]).scenario;
+  for (std::size_t seed = 0; seed < 3; ++seed) {
+    const Scenario shifted = comparison.load(seed).scenario;
+    const Vec3 shift = place(shifted, 0.0) - place(own, 0.0);
+    EXPECT_NEAR(shift.norm(), 1e-4, 1e-17);
+    for (const double t : {0.3, 0.7, 2.0}) EXPECT_NEAR((place(shifted, t) - place(own, t) - shift).norm(), 0.0, 1e-16);
   }
 }
 
@@ -75,14 +99,18 @@ TEST_F(ComparisonOf, WhatCannotBeComparedSaysWhichFile) {
   script["motion"] = {{"position", {{"type", "prescribed"}, {"x_m", 0.0}, {"y_m", 0.0}, {"z_m", 0.0}}}};
   question.scenarios.push_back(write("script.json", script));
   EXPECT_NO_THROW(planned(question));
+  // A prescribed path is shifted, unless its forces are given.
   question.jitter = 1e-4;
-  EXPECT_NE(refused(question).find("script.json: /motion/position: "), std::string::npos) << refused(question);
+  EXPECT_NO_THROW(planned(question));
+  script["reference_force"] = {{"z_N", 1.0}};
+  question.scenarios.back() = write("script.json", script);
+  EXPECT_NE(refused(question).find("script.json: /reference_force: "), std::string::npos) << refused(question);
   question = two_scenes();
   fs::create_directory(directory_ / "copy");
   question.scenarios.push_back(write("copy/plane.json", test::minimal_scenario("plane")));
   EXPECT_NE(refused(question).find("a second scenario named \"plane\"; allowed: "), std::string::npos);
   question = two_scenes();
-  question.overrides = {"seed=9007199254740991"};  // 2^53 - 1: two more is too many
+  question.overrides = {"seed=9007199254740991"};  // 2^53 - 1: two larger seeds exceed the limit
   EXPECT_NE(refused(question).find("/seed: got 9007199254740991; allowed: at most "), std::string::npos);
   question.seeds = 1'000'000;
   EXPECT_NE(refused(question).find("= 4000000 runs; allowed: at most 1000000"), std::string::npos);
@@ -100,14 +128,14 @@ TEST_F(ComparisonOf, ScenesRemovesWhatAnEarlierOneLeftAndNothingElse) {
   EXPECT_FALSE(fs::exists(out / "plane/mean"));
 }
 
-/// Two blocks of different grids, one of them twice with another start, however many runs each has and whoever comes
-/// first.
+/// Two blocks with different grids, one of them twice with another start, for any number of runs and any order of the
+/// threads.
 TEST_F(ComparisonOf, AnyScenesBuildsEachDistinctShellOnce) {
   for (const unsigned jobs : {1u, 4u}) {
     Json scene = test::minimal_scenario("block_with_hole");
     ComparisonQuestion question{.scenarios = {}, .algorithms = {"mean", "summation", "proxy"}, .seeds = 4};
     for (const auto& [name, grid] : {std::pair{"a", 1e-4}, {"b", 2e-4}, {"c", 1e-4}}) {
-      scene["environment"]["grid_m"] = grid + 1e-6 * jobs;  // shells that no earlier run has left
+      scene["environment"]["grid_m"] = grid + 1e-6 * jobs;  // shells that no earlier run has cached
       scene["initial"]["position_m"] = {0.0, 0.0, name[0] == 'c' ? 1e-3 : 0.0};
       question.scenarios.push_back(write(std::string(name) + ".json", scene));
     }

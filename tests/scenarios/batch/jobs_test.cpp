@@ -13,7 +13,7 @@ TEST(ForEachJob, BeginsEachOnceInOrderAndNoMoreThanItsThreads) {
   for (const unsigned threads : {1u, 2u, 7u}) {
     std::atomic<std::size_t> ended = 0;
     for_each_job(400, {threads, ""}, [&](std::size_t i) {
-      // All before this one have begun, and all of them but threads - 1 have ended.
+      // All earlier jobs have begun, and all except threads - 1 of them have ended.
       EXPECT_LT(i, ended + threads);
       std::this_thread::yield();
       ++ended;
@@ -23,7 +23,7 @@ TEST(ForEachJob, BeginsEachOnceInOrderAndNoMoreThanItsThreads) {
 }
 
 TEST(ForEachJob, ThrowsWhatTheLowestFailingJobThrew) {
-  // All fail: the first one is begun before any other and is the lowest.
+  // All jobs fail. The first job begins before any other job and has the lowest number.
   for (const unsigned threads : {1u, 4u})
     EXPECT_THROW(for_each_job(50, {threads, ""},
                               [](std::size_t i) {

@@ -11,8 +11,8 @@ namespace {
 
 using Values = std::vector<std::optional<double>>;
 
-/// One scene, metric and seed, or so many seeds; a value for each algorithm and seed. A negative one stands for a run
-/// that diverged. Each number may be wrong by `error`.
+/// Ranks one scene and one metric, with a value for each algorithm and seed. A negative value stands for a run that
+/// diverged. The error of each number is `error`.
 Ranking rank_comparison(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0) {
   Ranking league{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}, {}};
   for (std::size_t a = 0; a < values.size() / seeds; ++a) league.algorithms.push_back("law_" + std::to_string(a));
@@ -28,6 +28,31 @@ Ranking rank_comparison(const Values& values, Better better = Better::less, std:
   league.rank();
   league.runs = {};
   return league;
+}
+
+/// The proxy renders by the constraints of rigid contact: its fidelity has no rank, and moves no other law.
+TEST(Ranking, DoesNotRankTheFidelityOfTheReferencesOwnConstraints) {
+  for (const bool is_rigid : {true, false}) {
+    Ranking league{{"scene"},
+                   {"proxy", "mean", "summation"},
+                   {"fidelity.force_error_rms_N", "force_max_N"},
+                   {Better::less, Better::less},
+                   1,
+                   {},
+                   {false, false, false},
+                   {is_rigid}};
+    std::vector<Result> runs(3);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (const std::string& name : league.metrics)
+        Section(runs[a].metrics, "").metric(name, "N", "", static_cast<double>(a + 1), Better::less).within(0.0, 0.0);
+    league.runs = runs;
+    league.rank();
+    const auto rank = [&](std::size_t a, std::size_t m) { return league.at(0, a, m).rank.value_or(0); };
+    EXPECT_EQ(rank(0, 0), is_rigid ? 0u : 1u);
+    EXPECT_EQ(rank(1, 0), is_rigid ? 1u : 2u);
+    EXPECT_EQ(rank(0, 1), 1u) << "other metrics are ranked";
+    EXPECT_EQ(rank(2, 1), 3u);
+  }
 }
 
 std::vector<std::size_t> ranks(const Ranking& league) {
@@ -47,7 +72,8 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(of_one_seed({0.5, 1.0, 0.25}, Better::more), (Ranks{2, 1, 3}));
   EXPECT_EQ(of_one_seed({1.0, 2.0}, Better::none), (Ranks{0, 0}));
   EXPECT_EQ(of_one_seed({2.0, 1.0, 2.0, 5.0}), (Ranks{2, 1, 2, 4}));
-  // 0.1 % of the larger of two is the limit: two are less than 1.0015 by more, the third is not.
+  // The resolution is 0.1 % of the larger number: 1.0015 exceeds the first two numbers by more, but not the third
+  // number.
   EXPECT_EQ(of_one_seed({1.0 + 1e-15, 1.0, 1.0009, 1.0015}), (Ranks{1, 1, 1, 3}));
   EXPECT_EQ(of_one_seed({0.0, 1e-300, 0.0}), (Ranks{1, 3, 1})) << "nothing is like zero";
   EXPECT_EQ(ranks(rank_comparison({1.0, 1.3, 1.5}, Better::less, 1, 0.2)), (Ranks{1, 1, 2}))
@@ -56,15 +82,30 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(of_one_seed({-1.0, kNone, 2.0}), (Ranks{3, 2, 1}));
   EXPECT_EQ(of_one_seed({7.0, -1.0, 3.0, -9.0}), (Ranks{2, 3, 1, 3})) << "however small the numbers of failures";
   EXPECT_EQ(of_one_seed({-1.0, kNone}), (Ranks{0, 0})) << "nobody has a number that counts";
-  // Failing with one seed of three beats two of three, whatever the rest is.
+  // An algorithm that fails for one of three seeds ranks before an algorithm that fails for two, whatever their other
+  // values are.
   const Ranking league = rank_comparison({9.0, 9.0, -1.0, 1.0, -1.0, -1.0, 50.0, 60.0, 70.0}, Better::less, 3);
   EXPECT_EQ(ranks(league), (Ranks{2, 3, 1}));
   EXPECT_EQ(league.at(0, 0, 0).mean, 9.0) << "of those that did not fail";
   EXPECT_EQ(league.at(0, 1, 0).outcome, "completes 1; diverges 2");
-  // No seed is common to both: the law that never failed is judged by all.
+  // No seed is common to both laws: the law that never failed is ranked by all seeds.
   const Ranking apart = rank_comparison({-1.0, 2.0, 3.0, -1.0, 4.0, 6.0}, Better::less, 2);
   EXPECT_EQ(apart.at(0, 2, 0).common_seeds, 2u);
   EXPECT_EQ(apart.at(0, 2, 0).mean, 5.0);
+}
+
+/// The page of tests/scripts/ranking_test.py has the same ranks.
+TEST(Ranking, LeavesOutWhatTheErrorsDoNotAllow) {
+  const auto with_error = [](const Values& values, double error) {
+    return ranks(rank_comparison(values, Better::less, 1, error));
+  };
+  EXPECT_EQ(with_error({1.0, 1.1, 1.2}, 0.2), (Ranks{0, 0, 0})) << "no two can be told apart";
+  EXPECT_EQ(with_error({1.0, 1.1, -1.0}, 0.2), (Ranks{1, 1, 3})) << "a failure can";
+  EXPECT_EQ(with_error({0.1, 3.0, 9.0}, 0.4), (Ranks{0, 2, 3})) << "only a bound of the first is known";
+  EXPECT_EQ(with_error({0.0, 3.0, 9.0}, 0.4), (Ranks{0, 2, 3}));
+  EXPECT_EQ(with_error({0.0, 3.0, 9.0}, 0.0), (Ranks{1, 2, 3})) << "an exact zero";
+  EXPECT_EQ(with_error({0.1, 3.0}, 0.4), (Ranks{0, 0})) << "a single rank says nothing";
+  EXPECT_EQ(with_error({2.0}, 0.0), (Ranks{0}));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(Sampling, HasItsPointsInTheUnitCubeAndMeansWhatItsSeedSays) {
   }
 }
 
-/// The axes that a file of --points with this text gives, or the message with which it is refused.
+/// Returns the axes of a file of --points with this text, or the message of the error.
 std::string points_of(const std::string& text) {
   const test::TemporaryDirectory directory;
   test::write_plainly(directory / "p.csv", text);

@@ -57,7 +57,7 @@ TEST(RunsToCheck, AreAllOfAFewAndTheEdgesOfMany) {
 }
 
 TEST(SweepPlan, GivesEachWarningOnceInTheOrderOfRuns) {
-  // An algorithm that fixes its depth model overrides the one given.
+  // An algorithm that fixes its depth model overrides the given depth model.
   Json scenario = minimal_scenario("plane");
   scenario["rendering"] = {{"algorithm", "normal_projection"}, {"depth_model", "shortest_distance"}};
   const LoadedScenario loaded = load_scenario(ScenarioText{"sweep.json", scenario}, {});
@@ -79,7 +79,8 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
   scenarios.push_back({"with_ideal_trajectory", block});
   std::set<std::string> all;
   for (const auto& [name, json] : scenarios) {
-    const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";  // which take their time
+    // Tasks that take a long time.
+    const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";
     const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
     std::vector<std::string> names;
     for (const Metric& metric : run_scenario(checked(plan.cases.load(0)), std::nullopt, false).metrics)
@@ -113,7 +114,7 @@ TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {
     definitions.insert(plan_sweep(Cases({{"sweep.json", plane}}, {}, box, sampling), {}).definition);
   }
   EXPECT_EQ(definitions.size(), 11u);
-  // Threads, the file's place and spelling do not count.
+  // The number of threads, the location of the file and the spelling of its path do not matter.
   EXPECT_EQ(plan_sweep(grid(steps, {"elsewhere.json", plane}), {7, ""}).definition,
             plan_of(plane, {"time.steps=1.0,2e0"}).definition);
 }
@@ -144,7 +145,8 @@ TEST(SweepPlan, RefusesBadMeshesOfToolsBeforeTheFirstRun) {
   EXPECT_NE(std::string(error->what()).find("open.obj"), std::string::npos) << error->what();
 }
 
-/// A value of --points that a field does not allow is named with its line; a fault of the scenario is not.
+/// The error names the line of a value of --points that a field does not allow. It names no line for a fault of the
+/// scenario.
 TEST(SweepPlan, NamesTheLineOfAPointThatAFieldRefuses) {
   const test::TemporaryDirectory directory;
   const auto refusal_of = [&](const std::string& points, const Json& scene) {
@@ -171,7 +173,7 @@ TEST(SweepPlan, NamesTheLineOfAPointThatAFieldRefuses) {
 
 TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   const test::TemporaryDirectory directory;
-  // So many values are not all checked before the first run; 4567 is one that is not.
+  // Not all of these values are checked before the first run; 4567 is a value that is not checked.
   std::string seeds = "seed=0";
   for (int i = 1; i < 6000; ++i) seeds += "," + std::to_string(i == 4567 ? -1 : i);
   const SweepPlan plan = plan_of(minimal_scenario("springs"), {seeds});
@@ -189,14 +191,14 @@ TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   EXPECT_EQ(table.outcome(table.rows[4568]), "completes");
 }
 
-// What a sweep promises whatever happens to it: the bytes of its table, its memory, and its cost.
+// Tests the guarantees of a sweep: the bytes of its table, its memory, and its cost, also after interruptions.
 
-/// Ends a sweep as its process would end: whatever is written stays.
+/// Thrown to end a sweep like a killed process: all written bytes remain.
 struct Killed {};
 
 class SweepPromises : public testing::Test {
  protected:
-  /// Runs a sweep that is interrupted after some rows: killed, stopped by a signal, or killed amid a line.
+  /// Runs a sweep that is interrupted after some rows: killed, stopped by a signal, or killed within a line.
   void interrupt(const SweepPlan& plan, SweepOptions options) {
     const std::uint64_t way = random_.below(3);
     std::uint64_t rows = random_.below(plan.cases.size());
@@ -230,7 +232,7 @@ class SweepPromises : public testing::Test {
 };
 
 TEST_F(SweepPromises, TheSameBytesWhateverTheJobsTheShardsAndTheKills) {
-  // The environment varies in between, so the runs are not done in the order of the table.
+  // The environment is not the axis that varies slowest, so the runs are not made in the order of the table.
   const SweepPlan plan =
       plan_of(test::minimal_scenario("plane"),
               {"time.steps=1:6:6", "environment.spacing_m=5e-4,4e-4", "rendering.algorithm=mean,summation,proxy"},
@@ -270,7 +272,7 @@ TEST_F(SweepPromises, AFailedRunIsTriedAgain) {
   EXPECT_EQ(read_file(out / "sweep.csv"), read_file(whole / "sweep.csv"));
 }
 
-/// What takes seconds.
+/// Tests that take seconds.
 class SlowSweepPromises : public SweepPromises {};
 
 double most_resident_bytes() {
@@ -286,7 +288,7 @@ TEST_F(SlowSweepPromises, TheMemoryOfAThousandRunsForAHundredTimesAsMany) {
     return most_resident_bytes();
   };
   const double few = run("seed=1:1000:1000");
-  // The places of the rows in their file take 8 bytes a run; what the allocator keeps for itself varies.
+  // The positions of the rows in their file take 8 bytes a run; the memory that the allocator keeps varies.
   EXPECT_LT(run("seed=1:100000:100000") - few, 4e6);
 }
 

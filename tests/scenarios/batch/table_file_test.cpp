@@ -13,7 +13,7 @@
 #include "tests/scenarios/support/mutation.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// Tables that grow, are interrupted and joined.
+/// Tests tables that grow, are interrupted and are joined.
 namespace hapbench::table_file_test {
 namespace {
 
@@ -27,7 +27,7 @@ class TableFiles : public testing::Test {
   TableTitle title(const std::string& definition = "mine") const {
     return {file_, "index,a", {{"definition", definition}}, 9};
   }
-  /// The rows that a table keeps when it goes on.
+  /// Returns the rows that a table keeps when it is continued.
   Rows resumed(const std::string& definition = "mine") const {
     Rows rows;
     const TableFile table(title(definition), [&](std::size_t, std::string_view row) {
@@ -36,7 +36,7 @@ class TableFiles : public testing::Test {
     });
     return rows;
   }
-  /// A table under way, as a killed process leaves it; returns its bytes.
+  /// Writes a partial table, as a killed process leaves it, and returns its bytes.
   std::string left(const Rows& rows) const {
     TableFile table(title());
     for (const std::string& row : rows) table.add(static_cast<std::size_t>(row[0] - '0'), row);
@@ -112,7 +112,7 @@ TEST_F(TableFiles, OnAFullDiskAreAnErrorThatNamesThem) {
   } catch (const IoError& error) {
     EXPECT_NE(std::string(error.what()).find(part_.string()), std::string::npos) << error.what();
   }
-  EXPECT_EQ(added, 3u);  // 8 bytes of header and 63 of each row
+  EXPECT_EQ(added, 3u);  // 8 bytes of header and 63 bytes for each row
 }
 
 TEST_F(TableFiles, OfShardsAreJoinedWhenAllAreThere) {

@@ -14,8 +14,8 @@
 namespace hapbench::fields_test {
 namespace {
 
-// Values at the edge of what is read. What refusals say is in tests/data/golden/refused_scenarios.txt; that reader and
-// schema agree about every field, in tests/scenarios/scene/scenario_schema_test.cpp.
+// Tests values at the limits of what is accepted. tests/data/golden/refused_scenarios.txt has the texts of errors;
+// tests/scenarios/scene/scenario_schema_test.cpp tests that reader and schema agree about every field.
 
 constexpr std::int64_t kMost = std::int64_t{1} << 53;
 
@@ -40,7 +40,7 @@ TEST(Integer, MayBeWrittenAsAnyWholeNumber) {
 }
 
 TEST(Integer, IsRefusedAsAFractionAndBeyondItsBounds) {
-  // 2^53 + 1 has no double of its own and would round to the bound 2^53.
+  // 2^53 + 1 is not a double and would round to the bound 2^53.
   for (const char* text : {"1.5", "0", "-1", "9007199254740993", "9007199254740994", "1e300", "-1e300",
                            "18446744073709551615", "-9223372036854775808"}) {
     const auto error = test::input_error_of([text] { count_of(Json::parse(text)); });

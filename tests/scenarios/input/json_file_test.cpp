@@ -29,7 +29,7 @@ TEST(ParseJson, ReadsJsonAndKeepsTheOrderOfKeys) {
 }
 
 TEST(ParseJson, IgnoresAByteOrderMark) {
-  // RFC 8259, section 8.1: parsers may ignore it; editors on some systems write it.
+  // RFC 8259, section 8.1: parsers may ignore a byte order mark; editors on some systems write it.
   EXPECT_EQ(parse_json("\xef\xbb\xbf{\"a\": 1}"), parse_json("{\"a\": 1}"));
 }
 
@@ -86,7 +86,7 @@ TEST(ParseJson, RefusesObjectsWithMoreThanTenThousandKeys) {
 }
 
 TEST(Pointer, EscapesTildeAndSlashAsRfc6901Says) {
-  // The examples of RFC 6901, section 5.
+  // Examples of RFC 6901, section 5.
   EXPECT_EQ(member("", "a/b"), "/a~1b");
   EXPECT_EQ(member("", "m~n"), "/m~0n");
   EXPECT_EQ(member("", "~1"), "/~01");

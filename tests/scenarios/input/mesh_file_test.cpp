@@ -42,7 +42,7 @@ class MeshFile : public testing::Test {
     return refusal ? refusal->what() : "";
   }
 
-  /// The one warning behind the file's name, which has no directory in front.
+  /// Returns the text of the single warning after the file's name. The name has no directory.
   std::string warning_of(const std::string& name, const std::string& text) const {
     const auto warnings = read(name, text).warnings;
     EXPECT_EQ(warnings.size(), 1u);
@@ -52,7 +52,7 @@ class MeshFile : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-/// Sorted, because some formats do not keep the order.
+/// Returns the positions sorted, because some formats do not keep the order.
 std::vector<Vec3> sorted_positions(const std::vector<SurfacePoint>& points) {
   std::vector<Vec3> positions;
   for (const SurfacePoint& p : points) positions.push_back(p.position);
@@ -63,7 +63,7 @@ std::vector<Vec3> sorted_positions(const std::vector<SurfacePoint>& points) {
 }
 
 TEST_F(MeshFile, IsReadFromEveryFormatAndEncoding) {
-  // Coordinates that single precision holds, so that every file holds the same.
+  // Use coordinates that single precision represents exactly, so that every file has the same coordinates.
   TriangleSoup soup = test::sphere(1.0, 2);
   for (Vec3& v : soup.vertices) v = (1024.0 * v).array().round() / 1024.0;
   const auto expected = vertices_with_normals(mesh_from_triangles(soup).mesh);
@@ -150,7 +150,7 @@ TEST_F(MeshFile, IsReadWhateverElseItsTextHolds) {
   }
 }
 
-/// Lists and other properties before, between and behind what makes the surface.
+/// The file has lists and other properties before, between and after the properties of the surface.
 TEST_F(MeshFile, IsReadFromABinaryPlyWithMoreInIt) {
   std::string text =
       "ply\nformat binary_little_endian 1.0\nelement strip 1\nproperty list ushort short indices\nelement nothing 3\n"
@@ -163,7 +163,7 @@ TEST_F(MeshFile, IsReadFromABinaryPlyWithMoreInIt) {
   for (const auto& [x, y, z] : std::vector<std::array<double, 3>>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
     add(std::uint8_t{200});
     add(static_cast<float>(z));
-    add(static_cast<std::uint8_t>(x));  // as many tags
+    add(static_cast<std::uint8_t>(x));  // number of tags that follow
     if (x > 0.0) add(7.0);
     add(x);
     add(static_cast<float>(y));
@@ -188,7 +188,7 @@ TEST_F(MeshFile, IsReadFromABinaryStlWhateverItsHeaderAndEnd) {
   EXPECT_EQ(read("spaces.stl", "solid" + std::string(75, ' ') + text.substr(80)).points.size(), 8u);
 }
 
-/// Texts of every text format.
+/// Returns texts in all text formats.
 std::vector<test::NamedText> text_formats(const TriangleSoup& soup) {
   return {{"m.obj", test::obj_text(soup)},
           {"m.off", test::off_text(soup)},
@@ -214,7 +214,7 @@ TEST_F(MeshFile, IsReadWithAByteOrderMarkAndAnyLineEnds) {
       }
     }
   }
-  // A header with CR line ends, before binary data that begins with LF.
+  // A header with CR line ends before binary data that begins with LF.
   std::string binary = test::binary_ply_text(test::cube(), true, false);
   const std::size_t data = binary.find("end_header\n") + 11;
   binary[data] = '\n';
@@ -224,14 +224,14 @@ TEST_F(MeshFile, IsReadWithAByteOrderMarkAndAnyLineEnds) {
   EXPECT_EQ(
       sorted_positions(read("crlf.ply", replaced(binary.substr(0, data), "\n", "\r\n") + binary.substr(data)).points),
       expected);
-  // Another encoding.
+  // Files with another encoding.
   for (const std::string& start : {std::string("\xFF\xFEv\0", 4), std::string("\xFE\xFF\0v", 4)})
     EXPECT_NE(refusal_of("utf16.obj", start + " 0 0 0\n").find("is a text in UTF-16 or UTF-32; allowed: UTF-8"),
               std::string::npos);
   EXPECT_NE(refusal_of("packed.stl", "\x1F\x8B\x08").find("is compressed"), std::string::npos);
 }
 
-/// An L-shaped prism, 2 mm high, with polygons in place of triangles.
+/// Returns an L-shaped prism, 2 mm high, with polygons instead of triangles.
 std::vector<test::NamedText> l_prisms(const std::string& face = "5 4 3 2 1 0") {
   const std::vector<std::string> faces = {face,      "6 7 8 9 10 11", "0 1 7 6",   "1 2 8 7",
                                           "2 3 9 8", "3 4 10 9",      "4 5 11 10", "5 0 6 11"};
@@ -304,10 +304,10 @@ TEST_F(MeshFile, NamesVerticesAsTheFileCountsThem) {
             std::string::npos);
 }
 
-/// Every text that is cut is refused, or the rest of it is a mesh that is open and said to be.
+/// Every text that is cut is either rejected, or accepted as an open mesh with a warning.
 TEST_F(MeshFile, IsRefusedOrNamedIfItsFileIsCut) {
   for (const auto& [name, text] : text_formats(test::cube())) {
-    // A cut of the last line end, or of the name after endsolid, loses nothing.
+    // Cutting the last line end, or the name after endsolid, loses nothing.
     const std::size_t whole = name == "m.stl" ? text.rfind("endsolid") + 8 : text.size() - 1;
     for (std::size_t size = 1; size < whole; ++size) {
       SCOPED_TRACE(testing::Message() << name << " after " << size << " bytes");
@@ -351,6 +351,9 @@ TEST_F(MeshFile, WarnsAboutWhatItsReaderIgnores) {
             ": bytes after the last entry that the header declares, which were ignored: 4");
   EXPECT_EQ(warning_of("long.stl", test::binary_stl_text(cube) + "more"),
             ": bytes after the 12 triangles that the header declares, which were ignored: 4");
+  EXPECT_EQ(warning_of("more.stl", test::binary_stl_text(cube) + std::string(100, '\0')),
+            ": bytes after the 12 triangles that the header declares, which were ignored: 100, the size of 2 more "
+            "triangles; is the header wrong?");
 }
 
 TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
@@ -377,7 +380,7 @@ TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
 }
 
 /// Both sides of a plane quadrilateral, which the readers divide along different diagonals. Its corners are rounded to
-/// six digits, so that the sides enclose a little volume.
+/// six digits, so that the sides enclose a small volume.
 TEST_F(MeshFile, NamesASheetWhoseSidesAreDividedInDifferentWays) {
   const std::string corners = "0.123456 0 0\n1.123456 0.3 0.7\n0.423456 1.3 0.912346\n-0.576544 1 0.212346\n";
   std::string vertices = "v " + corners;
@@ -413,7 +416,7 @@ TEST_F(MeshFile, NamesVerticesThatNoFaceUses) {
             "open: is the file cut short?");
 }
 
-/// A file of another format, or with the notation of another country, is named as what it is.
+/// A file of another format, or with numbers in another notation, gives an error that names the problem.
 TEST_F(MeshFile, IsRefusedByWhatItIs) {
   for (const auto& [name, text, says] :
        {std::tuple("off.obj", std::string("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
@@ -474,12 +477,12 @@ TEST_F(MeshFile, IsResampledToTheSpacing) {
   const std::string text = test::stl_text(test::cube(5.0));
   const double spacing = 0.0005;
   const MeshPoints mesh = read("cube.stl", text, {0.001, spacing});
-  // Six sides of 20 x 20 cubes, with half ones at the edges: 21 x 21 at most, and a point in nearly each.
+  // Six sides with 20 x 20 cubes, and half cubes at the edges: 21 x 21 at most. Nearly each cube has a point.
   EXPECT_LE(mesh.points.size(), 6u * 21 * 21);
   EXPECT_GE(mesh.points.size(), 6u * 20 * 20 * 9 / 10);
   for (const SurfacePoint& p : mesh.points) {
     EXPECT_NEAR(p.position.cwiseAbs().maxCoeff(), 0.005, 1e-18) << "on the surface";
-    // No gaps: the next point is in the same or a neighbouring cube, or was thinned out from there.
+    // No gaps: the next point is in the same or a neighbouring cube, or was removed from such a cube.
     const auto near = std::count_if(mesh.points.begin(), mesh.points.end(), [&](const SurfacePoint& q) {
       return (q.position - p.position).cwiseAbs().maxCoeff() <= 2 * spacing;
     });

@@ -24,11 +24,11 @@ TEST(ReadTextFile, ReadsUpToItsLimitAndNoFurther) {
   const auto refusal = test::input_error_of([&] { read_text_file(directory / "file", contents.size() - 1); });
   ASSERT_TRUE(refusal);
   EXPECT_NE(refusal->problem().find("is larger than"), std::string::npos);
-  // A device without end stops at the limit too.
+  // A device without an end also stops at the limit.
   EXPECT_TRUE(test::input_error_of([] { read_text_file("/dev/zero", 1 << 20); }));
 }
 
-/// A second read would wait for a writer for ever.
+/// A second read would wait for a writer forever.
 TEST(ReadTextFile, ReadsAPipeOnceAndKeepsItsContents) {
   const test::TemporaryDirectory directory;
   const auto pipe = directory / "pipe";

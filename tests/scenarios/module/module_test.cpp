@@ -29,7 +29,7 @@ std::unique_ptr<ForceAlgorithm> make_some(const RenderingConfig& config) {
   return std::make_unique<PenaltyRendering>(make_law("mean", config), config);
 }
 
-/// Adds an algorithm and returns the reason of a refusal, or nothing.
+/// Adds an algorithm and returns the reason why it was rejected, or nothing.
 std::string problem_with(const ModelInfo& info, std::vector<AlgorithmParameter> parameters = {}) {
   try {
     add_algorithm({.info = &info, .make = make_some, .algorithm_parameters = parameters});
@@ -42,7 +42,7 @@ std::string problem_with(const ModelInfo& info, std::vector<AlgorithmParameter> 
 TEST(AddedAlgorithm, IsFoundAndCanBeReplaced) {
   const std::size_t before = algorithms().size(), additions_before = additions();
   const AlgorithmEntry& mean = *find_algorithm("mean");
-  std::string text = "text";  // which is copied
+  std::string text = "text";  // the registry copies this text
   const AlgorithmParameter own{"gain", {0, 2, "1"}, 0.5, "m"};
   EXPECT_EQ(problem_with({"added", text.c_str(), "a", "b", "c"}, {own}), "");
   text = "other";
@@ -99,7 +99,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Vec3 kTip(0.1, -0.2, 0.3);
 
-/// The behaviour of the laws below, and counts of their calls.
+/// The behaviour of the laws below, and the counts of their calls.
 struct Script {
   const char* fault = nullptr;
   double weight_scale = 1.0;
@@ -158,7 +158,7 @@ class AModuleLaw : public testing::Test {
  protected:
   AModuleLaw() { script = {}; }
 
-  /// The fault of a law after one call, behind its name and file.
+  /// Returns the fault of a law after one call, without the names of module and file.
   static std::string fault_of(const HapbenchModule& table) {
     ModuleLaw law(module_of(table), kK, {});
     law.prepare(10);
@@ -202,7 +202,7 @@ TEST_F(AModuleLaw, OfAForceAnswersThatForce) {
   EXPECT_EQ(force.spring, Vec3(0, -1, 0));
   EXPECT_EQ(force.S, Mat3(0.5 * Mat3::Identity()));
   EXPECT_EQ(contacts.weight[1], 0.5) << "it wrote none";
-  // One spring of stiffness K at the mean of the contacts, which lie at the origin.
+  // One spring of stiffness K acts at the mean of the contacts, which lie at the origin.
   const SpringState state = law.spring_state(contacts, force.spring, kTip);
   EXPECT_DOUBLE_EQ(state.energy, 1.0 / (2.0 * kK));
   EXPECT_TRUE(state.moment.isApprox((-kTip).cross(force.spring)));
@@ -211,7 +211,7 @@ TEST_F(AModuleLaw, OfAForceAnswersThatForce) {
 TEST_F(AModuleLaw, SaysWhatIsNoForce) {
   EXPECT_EQ(fault_of(kMean), "");
   EXPECT_EQ(fault_of(kForce), "");
-  script = {.weight_scale = 1e306};  // the depths of 1 mm leave the force finite
+  script = {.weight_scale = 1e306};  // with depths of 1 mm the force stays finite
   EXPECT_EQ(fault_of(kMean), "");
   for (const Script& wrong :
        {Script{.weights_forgotten = 1}, Script{.weight_scale = kNaN}, Script{.weight_scale = kInfinity}}) {
@@ -254,7 +254,7 @@ TEST_F(AModuleLaw, DoesNotWriteBeyondItsWeights) {
   const HapbenchModule table =
       law_with([](void*, const HapbenchPose*, HapbenchContacts* contacts, HapbenchForce*, char*) {
         std::fill_n(contacts->weight, contacts->n, 0.25);
-        volatile double* anywhere = contacts->weight;  // what a compiler cannot see through
+        volatile double* anywhere = contacts->weight;  // hides the access from the compiler
         anywhere[place] = 0.0;
         return 0;
       });
@@ -302,7 +302,7 @@ fs::path module(const std::string& name) {
   return fs::path(HAPBENCH_TEST_MODULES) / (name + ".so");
 }
 
-/// Behind the file's name.
+/// Returns the problem of a module file, without the file's name.
 std::string problem_of_file(const fs::path& file) {
   const auto error = test::input_error_of([&] { load_module(file); });
   if (!error) return "";
@@ -402,7 +402,7 @@ TEST(OwnParameters, AreWrittenWithTheirAlgorithmCheckedAndInTheSchema) {
   EXPECT_FALSE(rendering_of(R"({"algorithm": "mean"})").contains("parameters"));
   const std::string given = R"({"algorithm": "hostile", "parameters": {"hostile": {"bias": 0.5}}})";
   EXPECT_EQ(rendering_of(given)["parameters"], Json::parse(R"({"hostile": {"gain": 1.0, "bias": 0.5}})"));
-  // Another algorithm's, if given: a comparison changes the algorithm.
+  // Parameters of another algorithm are allowed, because a comparison changes the algorithm.
   const std::string others = R"({"algorithm": "mean", "parameters": {"hostile": {"bias": 0.5}}})";
   EXPECT_EQ(rendering_of(others)["parameters"]["hostile"]["bias"], 0.5);
   const Scenario scenario = with_algorithm(scenario_with(others).scenario, "hostile");

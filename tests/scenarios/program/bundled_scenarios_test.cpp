@@ -21,7 +21,7 @@
 #include "tests/scenarios/support/program.hpp"
 #include "tests/support/scale.hpp"
 
-/// Every scenario that comes with the program, run by the program, and the numbers on record.
+/// Tests every bundled scenario, run by the program, against stored numbers.
 namespace hapbench::bundled_scenarios_test {
 namespace {
 
@@ -35,16 +35,17 @@ using test::read_file;
 //
 //     column count last largest hash
 //
-// `count` numbers, the first digits of the last number and of the number with the largest magnitude, and a hash of all
-// numbers. The hash shows that a change of the code has changed no number; the digits show in a diff what has moved. No
-// text is in them. They hold for every processor and compiler.
+// A column line gives the count of the numbers, the first digits of the last number and of the number with the largest
+// magnitude, and a hash of all numbers. The hash shows that a change of the code has changed no number. The digits show
+// in a diff which numbers have changed. Texts are not included. The numbers are the same on every processor and with
+// every compiler.
 //
 // This renews the record after a change that is meant to change numbers, to be committed with it:
 //
 //     HAPBENCH_RENEW_NUMBERS=1 build/release/bin/program_test --gtest_filter='*OnRecord*'
 
-/// By file and column the text that is stored of the numbers of the column. Files of one name in several folders of a
-/// result count as one file. summary.json has its groups of metrics in place of columns and, of a single run, the
+/// Stored text of the numbers of each column, by file and column. Files with the same name in several folders of a
+/// result count as one file. For summary.json, groups of metrics replace the columns; a single run also has the
 /// state_hash.
 using RecordedNumbers = std::map<std::string, std::map<std::string, std::string>>;
 using NumbersByName = std::map<std::string, RecordedNumbers>;
@@ -89,8 +90,8 @@ void renew(bool of_commands, const NumbersByName& found) {
   test::write_plainly(record_file(), text);
 }
 
-/// The first four digits of a number, as in "-1.234e-03". They are cut off its shortest text that reads back as the
-/// same number, and not rounded, so that every compiler prints the same digits.
+/// Returns the first four digits of a number, such as "-1.234e-03". The digits are cut off the shortest text that reads
+/// back as the same number, and not rounded, so that every compiler prints the same digits.
 std::string first_digits(double number) {
   std::array<char, 32> buffer{};
   const auto [end, error] =
@@ -104,7 +105,7 @@ std::string first_digits(double number) {
   return text;
 }
 
-/// The numbers of a column, one after the other.
+/// Collects the numbers of a column.
 class ColumnNumbers {
  public:
   void add(double number) {
@@ -113,9 +114,9 @@ class ColumnNumbers {
     last_ = number;
     if (count_ == 1 || std::abs(number) > std::abs(largest_)) largest_ = number;
   }
-  /// The text on record: count, last number, largest number, hash.
+  /// Returns the stored text: count, last number, largest number, hash.
   std::string text() const {
-    // Half of the hash: a change that it does not see has a chance of 2^-32.
+    // Half of the hash: the probability that it misses a change is 2^-32.
     const std::string hash = hash_text(hash_.value()).substr(0, 8);
     if (count_ == 0) return "0 - - " + hash;
     return fmt::format("{} {} {} {}", count_, first_digits(last_), first_digits(largest_), hash);
@@ -149,7 +150,7 @@ void add_numbers(ColumnNumbers& numbers, const Json& json) {
   for (const Json& value : json) add_numbers(numbers, value);
 }
 
-/// "file column" with the text on record, for all of a name.
+/// Returns the stored texts of a name by "file column".
 std::map<std::string, std::string> flat(const NumbersByName& numbers, const std::string& name) {
   std::map<std::string, std::string> all;
   const auto found = numbers.find(name);
@@ -159,7 +160,7 @@ std::map<std::string, std::string> flat(const NumbersByName& numbers, const std:
   return all;
 }
 
-/// What differs, a line each.
+/// Returns the differences, one line for each difference.
 std::string differences(const NumbersByName& found, const NumbersByName& record) {
   std::string text;
   NumbersByName names = found;
@@ -179,7 +180,7 @@ std::string differences(const NumbersByName& found, const NumbersByName& record)
   return text;
 }
 
-/// The numbers of a directory of results: of all CSV files, and of the metrics in files summary.json.
+/// Returns the numbers of a directory of results: from all CSV files, and the metrics from the files summary.json.
 RecordedNumbers numbers_below(const fs::path& directory) {
   RecordedNumbers numbers;
   std::map<std::string, NumbersByColumn> columns_by_file;
@@ -199,8 +200,9 @@ RecordedNumbers numbers_below(const fs::path& directory) {
   return numbers;
 }
 
-/// Compares numbers by name with those on record; fails where any differs, is missing or, among names that do or do not
-/// contain a colon as `of_commands` says, is left over, and names its file and column. `some`: names may be left over.
+/// Compares numbers by name with the stored numbers. Fails if a number differs or is missing. Also fails if stored
+/// names are left over, among names with a colon (`of_commands` true) or without. The failure names file and column.
+/// `some`: names may be left over.
 void expect_recorded(bool of_commands, const NumbersByName& found, bool some = false) {
   ASSERT_FALSE(found.empty());
   if (std::getenv(kRenew) != nullptr) {
@@ -216,8 +218,9 @@ void expect_recorded(bool of_commands, const NumbersByName& found, bool some = f
       << kRenew << "=1, and say in the commit which change and why.";
 }
 
-/// Arguments that make a scenario of many steps a matter of milliseconds; none for the others. The tasks of the thesis
-/// touch the block within these steps. Under sanitizers, where brute force takes 0.6 s a step, it is an eighth of them.
+/// Returns arguments that shorten a scenario of many steps to milliseconds; empty for other scenarios. The tasks of the
+/// thesis touch the block within these steps. With sanitizers, where brute force takes 0.6 s per step, the number of
+/// steps is an eighth.
 std::vector<std::string> shortened(const Scenario& scenario) {
   const std::int64_t steps = 1500 / static_cast<std::int64_t>(test::sanitized(8));
   if (scenario.time.steps <= steps) return {};
@@ -231,8 +234,8 @@ std::vector<std::string> shortened(const Scenario& scenario) {
   return arguments;
 }
 
-/// The scenarios that are run in full: all of them. Under AddressSanitizer one of 10^5 steps takes minutes and shows
-/// nothing that its first steps do not.
+/// Returns the scenarios that are run in full: all scenarios. With AddressSanitizer, scenarios of 10^5 steps are left
+/// out, because they take minutes and their first steps find the same errors.
 std::vector<BundledScenario> scenarios_in_full() {
   std::vector<BundledScenario> scenarios = bundled_scenarios();
   constexpr std::int64_t kMostSanitizedSteps = 10'000;
@@ -243,14 +246,14 @@ std::vector<BundledScenario> scenarios_in_full() {
   return scenarios;
 }
 
-/// In one process.
+/// Runs the scenarios in full in one process.
 ProgramRun run_in_full(const std::vector<BundledScenario>& scenarios, const fs::path& out) {
   std::vector<std::string> arguments = {"run", "--out", out.string()};
   for (const BundledScenario& bundled : scenarios) arguments.push_back(bundled.file.string());
   return test::hapbench(arguments);
 }
 
-/// The runs are made once for all tests of the suite.
+/// Makes the runs once for all tests of the suite.
 class BundledScenarios : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -289,7 +292,7 @@ TEST_F(BundledScenarios, HaveTheNumbersOnRecord) {
   expect_recorded(false, numbers, in_full_.size() < bundled_scenarios().size());
 }
 
-/// Warnings, each once, without the file that a warning about a field names.
+/// Returns the distinct warnings, without the file that a warning about a field names.
 std::set<std::string> warnings_in(const std::string& err) {
   static const std::regex file(R"(warning: /.*?\.json: )");
   std::set<std::string> warnings;
@@ -299,15 +302,15 @@ std::set<std::string> warnings_in(const std::string& err) {
   return warnings;
 }
 
-/// The summary without what brute force counts differently.
+/// Returns the summary without the counts that brute force changes.
 std::string summary_without_work(Json summary) {
   summary.erase("work");
   return summary.dump();
 }
 
-// Another process, the scenario that the run wrote, the scalar build and brute force in place of skips: none of them
-// changes a byte. Scenarios of many steps are shortened; but for a soak it is every eighth, since brute force takes its
-// time.
+// Another process, the scenario that the run wrote, the scalar build, and brute force instead of skips do not change a
+// byte. Scenarios of many steps are shortened; except in a soak test, only every eighth of them is tested, because
+// brute force is slow.
 TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEffectiveScenarios) {
   const fs::path first = *directory_ / "first", again = *directory_ / "again",
                  effective = *directory_ / "effective" / "scenes";
@@ -339,7 +342,8 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
       EXPECT_EQ(run.status, 0) << bundled.name << ": " << run.err;
       warnings.merge(warnings_in(run.err));
     }
-    // Under the scenario's name, which becomes the directory's, and as deep, since paths in it are relative.
+    // The effective scenario has the scenario's name, because it becomes the name of the directory, and the same depth,
+    // because its paths are relative.
     arguments.push_back((effective / (bundled.name + ".json")).string());
     fs::create_hard_link(out / "scenario.effective.json", arguments.back());
   }
@@ -359,12 +363,12 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
     tested_again += b["work"]["points_tested"].get<std::uint64_t>();
     skipped += a["work"]["steps_skipped"].get<std::uint64_t>();
   }
-  // There was something to skip.
+  // Check that the skips had an effect.
   EXPECT_LT(20 * tested_first, tested_again);
   EXPECT_GT(skipped, 0u);
 }
 
-// The results of commands besides `run`, and of every algorithm on scenes of every kind.
+// Tests the results of commands other than `run`, and of every algorithm on scenes of every kind.
 TEST(Commands, HaveTheNumbersOnRecord) {
   const char* kShort = "time={\"step_s\":0.0005,\"steps\":600}";
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
@@ -402,7 +406,7 @@ TEST(Commands, HaveTheNumbersOnRecord) {
     const fs::path out = directory / name;
     arguments.insert(arguments.end(), {"--out", out.string(), "--quiet"});
     const ProgramRun run = test::hapbench(arguments);
-    // 3: a run that diverges, as summation does in places.
+    // Status 3: a run that diverges, which happens with summation.
     EXPECT_TRUE(run.status == 0 || run.status == 3) << name << ": " << run.err;
     numbers[name] = numbers_below(out);
   }

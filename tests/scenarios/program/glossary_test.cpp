@@ -8,11 +8,11 @@
 
 #include "scenarios/input/text_lines.hpp"
 
-/// The entries of scenarios/GLOSSARY.md, as `hapbench describe` finds them.
+/// Tests the entries of scenarios/GLOSSARY.md, as `hapbench describe` finds them.
 namespace hapbench::glossary_test {
 namespace {
 
-/// The letters and digits of a name in lower case, by which the entries are ordered.
+/// Returns the letters and digits of a name in lower case; the entries are ordered by this text.
 std::string letters_of(const std::string& name) {
   std::string letters = lower_case(name);
   std::erase_if(letters, [](unsigned char c) { return std::isalnum(c) == 0; });

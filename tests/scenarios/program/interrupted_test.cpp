@@ -15,7 +15,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-/// Commands that are killed or stopped while they compute, and sweeps that go on.
+/// Tests commands that are killed or stopped while they compute, and sweeps that are continued.
 namespace hapbench::interrupted_test {
 namespace {
 
@@ -25,7 +25,7 @@ using test::hapbench;
 using test::ProgramRun;
 using test::RunningProgram;
 
-/// A run of minutes, killed once it has begun to write.
+/// A run that takes minutes and is killed when it has begun to write.
 class KilledRun : public testing::Test {
  protected:
   void kill_a_run() const {
@@ -55,7 +55,7 @@ TEST_F(KilledRun, LeavesNoFileUnderAFinalNameAndIsCleanedUpByTheNext) {
   const auto before = test::files_below(out_);
   std::size_t temporaries = 0;
   kill_a_run();
-  fs::remove(out_ / ".run.lock");  // the next command removes the lock of the killed one
+  fs::remove(out_ / ".run.lock");  // the next command removes the lock of the killed command
   auto after = test::files_below(out_);
   std::erase_if(after, [&](const auto& file) {
     const bool is_temporary = fs::path(file.first).filename().string().starts_with('.') && file.first.ends_with(".tmp");
@@ -73,7 +73,7 @@ TEST(FailedWrite, LeavesTheResultsOfAnEarlierRun) {
   const std::string out = (directory / "out").string();
   EXPECT_EQ(hapbench({"run", "poke_plane", "--out", out}).status, 0);
   const auto before = test::files_below(out);
-  // trajectory.csv does not fit, as on a full disk.
+  // trajectory.csv is larger than the file limit, as on a full disk.
   const ProgramRun again =
       hapbench({"run", "poke_plane", "--set", "rendering.algorithm=mean", "--out", out}, {.file_limit = 50'000});
   EXPECT_EQ(again.status, 1) << again.err;
@@ -100,18 +100,18 @@ TEST(FailedWrite, OfAFolderThatAnotherRunWritesTo) {
   EXPECT_TRUE(fs::is_empty(directory / "out"));
 }
 
-/// A program that reads a pipe to which nobody writes, and so does not ask whether to stop.
+/// A program that reads a pipe without a writer, and therefore does not check for a stop.
 class Stopped : public testing::Test {
  protected:
   void SetUp() override {
     const fs::path pipe = directory_ / "scenario.json";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     reader_.emplace(test::hapbench_program(), Words{"validate", pipe.string()});
-    // The writing end cannot be opened before the program has opened the reading one.
+    // The writing end cannot be opened before the program has opened the reading end.
     ASSERT_TRUE(reader_->runs_until([&] { return (writer_ = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0; }));
   }
   void TearDown() override { ::close(writer_); }
-  /// Standard error but for lines of progress, of which one is due when the program ends itself.
+  /// Returns standard error without progress lines. A progress line is due when the program ends itself.
   std::string said() {
     std::string text;
     for (const std::string& line : test::lines_of(reader_->err()))
@@ -136,7 +136,7 @@ TEST_F(Stopped, WithinTwoSecondsWhereverItIs) {
 TEST_F(Stopped, NotAtOnceByASignalThatIsDeliveredTwice) {
   const auto first = std::chrono::steady_clock::now();
   reader_->send(SIGTERM);
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // two of the same kind that are pending would be merged
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // two pending signals of the same kind would be merged
   reader_->send(SIGTERM);
   if (std::chrono::steady_clock::now() - first > std::chrono::milliseconds(100)) GTEST_SKIP() << "the machine is busy";
   EXPECT_EQ(reader_->wait(), -SIGTERM);
@@ -153,7 +153,8 @@ TEST_F(Stopped, AtOnceByASecondSignal) {
 /// Commands that Ctrl-C ends while they compute.
 class InterruptedCommand : public testing::Test {
  protected:
-  /// Starts a command that takes minutes and sends it the signal once it has made its directory and had time to begin.
+  /// Starts a command that takes minutes. Sends the signal when the command has created its directory and has had time
+  /// to begin. Returns the exit status.
   int status_after(int signal, Words words) const {
     words.insert(words.end(), {"--out", out_.string()});
     RunningProgram program(test::hapbench_program(), words);
@@ -181,10 +182,10 @@ TEST_F(InterruptedCommand, EndsWith130AndLeavesWhatWasThereBefore) {
   EXPECT_EQ(test::files_below(out_), before);
 }
 
-/// Sweeps that are killed and go on; every way to end one is in batch/sweep_test.cpp.
+/// Sweeps that are killed and continued; batch/sweep_test.cpp tests all other interruptions.
 class KilledSweep : public testing::Test {
  protected:
-  /// Runs of some milliseconds, 180 of them or more.
+  /// Returns the arguments of a sweep of at least 180 runs of some milliseconds.
   Words words(const std::string& out, const Words& more = {}, const char* jobs = "2") const {
     Words words = {"sweep",  "single_spring",
                    "--set",  "record.trajectory=false",
@@ -195,9 +196,9 @@ class KilledSweep : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
-  /// Rows of the table that is under way.
+  /// Returns the number of rows of the unfinished table.
   std::size_t rows() const { return TableFile::rows_in_progress(directory_ / "out/sweep.csv"); }
-  /// Kills a sweep. False when it ended before, since a busy machine let the test wait for longer than it takes.
+  /// Kills a sweep. Returns false if the sweep ended first, because a busy machine delayed the test.
   bool is_killed() const {
     RunningProgram sweep(test::hapbench_program(), words("out"));
     return sweep.runs_until([&] { return rows() >= 10; }) && sweep.kill();
@@ -214,7 +215,7 @@ TEST_F(KilledSweep, GoesOnToTheSameBytes) {
   }
   EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
   const std::size_t done = rows();
-  // The next command removes the lock of the killed one.
+  // The next command removes the lock of the killed command.
   fs::remove(directory_ / "out/.sweep.csv.lock");
   const auto left = test::files_below(directory_ / "out");
   const ProgramRun refused = hapbench(words("out"));

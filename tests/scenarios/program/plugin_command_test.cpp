@@ -7,7 +7,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-/// Laws from outside in the program.
+/// Tests the program with external laws.
 namespace hapbench::plugin_command_test {
 namespace {
 
@@ -33,7 +33,7 @@ class PluginCommand : public testing::Test {
 };
 
 TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
-  // Before the command and behind it.
+  // The option may stand before or after the command.
   const ProgramRun described = hapbench({"--module", plugin("depth_weighted"), "describe", "depth_weighted"});
   EXPECT_EQ(described.status, 0) << described.err;
   EXPECT_NE(described.out.find("depth_weighted.so, hash "), std::string::npos);
@@ -57,7 +57,7 @@ TEST_F(PluginCommand, ComparesTheLawsWithOurs) {
   ASSERT_EQ(run.status, 0) << run.err;
   const Json json = run.json();
   ASSERT_EQ(json.size(), 3u);
-  // With power 0 it is the mean to the last bit.
+  // With power 0 the law equals the mean to the last bit.
   EXPECT_EQ(json[1]["state_hash"], json[0]["state_hash"]);
   EXPECT_LE(json[2]["metrics"]["ratio_max"].get<double>(), 1.0 + 1e-12);
   EXPECT_FALSE(summary("a/mean")["provenance"].contains("plugin"));
@@ -86,7 +86,7 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
       << both.err;
 }
 
-/// It fails even where the scenario expects that a run diverges.
+/// The command fails even if the scenario expects a run that diverges.
 TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   const EnvironmentVariable how("HOSTILE", "contacts");
   const std::string source =
@@ -97,7 +97,7 @@ TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
     const ProgramRun refused = hapbench({name, "plane_wiped_round", "--set", source});
     EXPECT_EQ(refused.status, 2) << name;
     const bool names_file = refused.err.find("allowed: with --module ") != std::string::npos;
-    // limit refuses a tool on a prescribed path before it reads the library.
+    // limit rejects a tool on a prescribed path before it reads the library.
     const bool refuses_before = name == std::string("sweep") || name == std::string("limit");
     EXPECT_TRUE(names_file || refuses_before) << name << refused.err;
   }
@@ -109,7 +109,8 @@ TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   EXPECT_NE(run.err.find("a law or source of contacts from outside failed once"), std::string::npos) << run.err;
 }
 
-/// The proxy finds its contacts itself: neither its force nor its metrics are those of a module, and compare says so.
+/// The proxy finds its contacts itself. Neither its force nor its metrics use the contacts of a module, and compare
+/// reports this.
 TEST_F(PluginCommand, LeavesContactsOfAModuleOutWhereTheLawFindsItsOwn) {
   const std::string sphere =
       R"(rendering.contact_source={"type":"plugin","file":")" + plugin("sphere") + R"(","config":{"radius_m":0.002}})";
@@ -176,7 +177,7 @@ TEST_F(PluginCommand, SweepsCarryThePluginAlong) {
   ASSERT_EQ(with({"--shard", "0/2"}).status, 0);
   const Json description = Json::parse(read_file(directory_ / "s/sweep.0_of_2.json"));
   EXPECT_EQ(description["plugins"].size(), 1u);
-  // The same law from other bytes is another sweep.
+  // The same law in a file with other bytes makes another sweep.
   fs::remove(mine);
   fs::copy_file(plugin("depth_weighted"), mine);
   fs::resize_file(mine, fs::file_size(mine) + 1);

@@ -10,11 +10,11 @@
 #include "scenarios/program/run_program.hpp"
 #include "tests/results/files.hpp"
 
-/// Several programs in one process, such as a Python interpreter, share nothing.
+/// Several programs in one process, such as in a Python interpreter, share nothing.
 namespace hapbench::program_context_test {
 namespace {
 
-/// What a command prints for a host. Precondition: it succeeds.
+/// Returns the output of a command for a host. Precondition: the command succeeds.
 std::string text_of(const ProgramArguments& words) {
   CapturedOutput output;
   ProgramContext context{.program = "/some/where/hapbench", .captured = &output};

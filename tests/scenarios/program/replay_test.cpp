@@ -29,7 +29,8 @@ const char* const kScene = R"({
   "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 2000, "damping_ratio": 0.2}
 })";
 
-/// Into the hole, round its wall, with a gap of 50 ms and a fault, out and in again.
+/// Returns a log: the handle moves into the hole and around its wall, with a gap of 50 ms and a fault, and out and in
+/// again.
 std::string recorded(const std::string& scenario) {
   HapbenchMount mount = HAPBENCH_MOUNT_INIT;
   mount.max_force = 5.0;

@@ -18,7 +18,7 @@ using test::hapbench;
 using test::lines_of;
 using test::ProgramRun;
 
-// hapbench run: files, tables, times. How runs end and what standard error says is in tests/data/golden/ends.txt.
+// hapbench run: files, tables, times. tests/data/golden/ends.txt has the ends of runs and the texts on standard error.
 
 using Names = std::vector<std::string>;
 
@@ -44,7 +44,7 @@ TEST_F(RunCommand, WritesWhatTheScenarioRecords) {
   EXPECT_EQ(test::names_below(out()),
             (Names{"columns.json", "contact_trace.csv", "contacts.csv", "ratios.csv", "scenario.effective.json",
                    "stiffness_tensor.csv", "summary.json", "timing.json"}));
-  // Another run into the same directory leaves no file that is not its own.
+  // Another run into the same directory leaves only its own files.
   json["record"] = Json::object();
   EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);
   EXPECT_EQ(test::names_below(out()),
@@ -53,12 +53,12 @@ TEST_F(RunCommand, WritesWhatTheScenarioRecords) {
 
 TEST_F(RunCommand, ShowsSevenColumnsAndARowForEachScenario) {
   const auto lines = lines_of(hapbench({"run", "single_spring", "single_damper", "--out", out()}).out);
-  ASSERT_EQ(lines.size(), 11u);
+  ASSERT_EQ(lines.size(), 12u);
   EXPECT_EQ(words_of(lines[2]).size(), 7u) << lines[2];
   EXPECT_EQ(lines[3].find("single_spring  summation  completes"), 0u) << lines[3];
   EXPECT_EQ(lines[4].find("single_damper  summation  completes"), 0u) << lines[4];
   EXPECT_EQ(lines[6].find("99 % of the time steps are computed within "), 0u) << lines[6];
-  EXPECT_EQ(lines[8], "diagnosis of single_damper: damping (0.998)");
+  EXPECT_EQ(lines[8], "diagnosis of single_damper: damping (0.998 > 0.5)");
   EXPECT_EQ(lines.back(), "results in " + out());
   const auto wide = lines_of(hapbench({"run", "single_spring", "--wide", "--out", out()}).out);
   EXPECT_EQ(words_of(wide[2]).size(), 14u) << wide[2];
@@ -82,14 +82,14 @@ TEST_F(RunCommand, ThatDivergesKeepsWhatWasRecorded) {
   const Json s = summary(), divergence = s["divergence"];
   EXPECT_EQ(s["outcome"], "diverges");
   EXPECT_GT(divergence["magnitude"], divergence["bound"]);
-  // All rows before the one that diverged are there.
+  // All steps before the step that diverged are written.
   const auto step = divergence["step"].get<std::size_t>();
   const auto rows = lines_of(test::read_file(directory_ / "out/trajectory.csv"));
   EXPECT_EQ(rows.size(), 1 + step);
   EXPECT_EQ(s["steps"], step);
   EXPECT_EQ(test::cells_of(rows.back())[0], std::to_string(step - 1));
   EXPECT_NEAR(divergence["time_s"].get<double>(), 0.0005 * static_cast<double>(step), 1e-12);
-  // In the first row.
+  // Divergence in the first step.
   hapbench({"run", "single_spring", "--out", out(), "--set", "bounds.position_m=1e-9"});
   EXPECT_EQ(summary()["divergence"]["step"], 0);
   EXPECT_EQ(summary()["metrics"]["final_position_m"], nullptr);
@@ -144,39 +144,41 @@ TEST_F(Latency, IsPartOfTheJsonAndOfNoOtherFile) {
   const ProgramRun run = hapbench({"run", "single_spring", "--out", out("a"), "--latency", "--json"});
   EXPECT_EQ(run.json()[0]["step_latency"], json_file("a/timing.json")["step_latency"]);
   EXPECT_FALSE(summary("a").contains("step_latency"));
-  // The same as a scenario that says so itself; but for times, the results are those without.
+  // The option gives the same result as the field of the scenario. Except for times, the results equal the results
+  // without the option.
   hapbench({"run", "single_spring", "--out", out("b"), "--set", "record.timing=true"});
   test::expect_same_files(directory_ / "a", directory_ / "b", {"timing.json"});
   hapbench({"run", "single_spring", "--out", out("c")});
   EXPECT_EQ(test::read_file(directory_ / "a/trajectory.csv"), test::read_file(directory_ / "c/trajectory.csv"));
 }
 
-// Hostile input, given to the real program: exit status 2, one line on standard error that names file and place,
-// nothing written, soon, in bounded memory. The wording for ordinary mistakes is in tests/data/golden/refused_*.txt,
-// refusals of every field in tests/scenarios/scene/scenario_schema_test.cpp, of texts that are no JSON in
-// tests/scenarios/input/json_file_test.cpp.
+// Tests hostile input with the real program: exit status 2, one line on standard error that names file and position, no
+// output files, short time and bounded memory. tests/data/golden/refused_*.txt has the texts for ordinary mistakes,
+// tests/scenarios/scene/scenario_schema_test.cpp the errors of every field, tests/scenarios/input/json_file_test.cpp
+// texts that are no JSON.
 
-/// Processor time within which bad input must be refused; it takes less than a tenth of it as people run the program.
-/// Code that is not optimised or is sanitized is up to thirty times slower.
+/// Processor time within which bad input must be rejected. The optimized program takes less than a tenth of it; code
+/// that is not optimized or is sanitized is up to thirty times slower.
 #if defined(__OPTIMIZE__) && !HAPBENCH_TEST_SANITIZED
 constexpr double kMostSeconds = 10.0;
 #else
 constexpr double kMostSeconds = 100.0;
 #endif
-/// Address space it may take: the largest file read is 64 MiB, and 16 bytes a value of it are a gigabyte.
+/// Maximum address space of the program: the largest file read has 64 MiB, and 16 bytes for each value of it are a
+/// gigabyte.
 constexpr std::size_t kMostMemory = HAPBENCH_TEST_SANITIZED ? 0 : std::size_t{3} << 30;
 
 struct BadInput {
   std::string name;
-  std::string (*scenario)();                            ///< makes the text of the scenario file
-  std::string says;                                     ///< in the message, behind the scenario's file
-  std::pair<std::string, std::string (*)()> file = {};  ///< name and text of a file beside the scenario
+  std::string (*scenario)();                            ///< returns the text of the scenario file
+  std::string says;                                     ///< expected text of the message after the scenario's file
+  std::pair<std::string, std::string (*)()> file = {};  ///< name and text of a file next to the scenario
 };
 void PrintTo(const BadInput& input, std::ostream* out) {  // NOLINT: GoogleTest's name
   *out << input.name;
 }
 
-/// The minimal scenario of a plane with `value`, JSON or not, at the pointer.
+/// Returns the minimal scenario of a plane with `value`, which may be invalid JSON, at the pointer.
 std::string with(const std::string& pointer, const std::string& value) {
   Json json = test::minimal_scenario("plane");
   json[Json::json_pointer(pointer)] = "@@";
@@ -199,7 +201,7 @@ std::string mesh() {
               std::string(R"({"type": "mesh", "scale": 0.001, "file": "m.)") + std::string({kExtension...}) + "\"}");
 }
 
-/// A PLY header of a binary mesh of three vertices.
+/// Returns a PLY header of a binary mesh with three vertices.
 std::string ply_header(const std::string& faces, const std::string& list = "property list uchar int vertex_indices\n") {
   return "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
          "z\nelement face " +

@@ -47,7 +47,7 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-/// Each line of the text behind a mark, without blanks at its end.
+/// Returns each line of the text after a mark, without blanks at its end.
 std::string marked(const std::string& text, const std::string& mark) {
   std::string result;
   for (const std::string& line : test::lines_of(text)) {
@@ -57,7 +57,7 @@ std::string marked(const std::string& text, const std::string& mark) {
   return result;
 }
 
-/// Adds the paths of all values, as "rows[].value", which programs that read the JSON rely on.
+/// Adds the paths of all values, such as "rows[].value", on which programs that read the JSON rely.
 void add_keys(const Json& json, const std::string& path, std::set<std::string>& keys) {
   if (json.empty() || !json.is_structured()) keys.insert(path);
   for (const auto& [key, value] : json.items())
@@ -78,7 +78,7 @@ std::string keys_of(const std::string& text) {
   return lines;
 }
 
-/// A session with the answers of the program that was built.
+/// Runs a session and records the answers of the built program.
 class Session {
  public:
   Session() {

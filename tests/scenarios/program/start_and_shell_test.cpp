@@ -13,7 +13,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 #include "tests/support/meshes.hpp"
 
-/// hapbench new and shell, and effective scenarios: files that are read again.
+/// Tests hapbench new, point-shell export and effective scenarios: files that are read again.
 namespace hapbench::start_and_shell_test {
 namespace {
 
@@ -35,10 +35,10 @@ TEST_F(NewCommand, WritesScenariosOfEveryKindThatRunAtOnceAndTouch) {
   for (const Json& entry : kinds) {
     const std::string kind = entry["kind"].get<std::string>(), file = path(kind + ".json");
     std::vector<std::string> arguments = {"new", kind, "--out", file};
-    const std::string source = kind == "mesh" || kind == "tool" ? "cube.obj"
-                               : kind == "shell"                ? "shell.csv"
-                                                                : "stroke.csv";
-    if (kind == "mesh" || kind == "tool" || kind == "shell" || kind == "stroke")
+    const std::string source = kind == "mesh" || kind == "tool" || kind == "fidelity" ? "cube.obj"
+                               : kind == "shell"                                      ? "shell.csv"
+                                                                                      : "stroke.csv";
+    if (kind == "mesh" || kind == "tool" || kind == "fidelity" || kind == "shell" || kind == "stroke")
       arguments.insert(arguments.end(), {"--from", data(source)});
     if (source == "cube.obj") arguments.insert(arguments.end(), {"--extent", "10mm"});
     const ProgramRun written = hapbench(arguments);
@@ -52,7 +52,7 @@ TEST_F(NewCommand, WritesScenariosOfEveryKindThatRunAtOnceAndTouch) {
   }
 }
 
-/// A rod along x.
+/// Writes a rod along x.
 void write_rod(const fs::path& file, double length, double thickness) {
   TriangleSoup rod = test::cube(0.5);
   for (Vec3& corner : rod.vertices) corner = corner.cwiseProduct(Vec3(length, thickness, thickness));
@@ -138,7 +138,7 @@ TEST_F(NewCommand, NamesTheClockOfAStrokeThatNoRunCanRecord) {
   }
 }
 
-/// An open sheet of 8 x 8 mm with a hump, its normals up or down.
+/// An open sheet of 8 x 8 mm with a hump; its normals point up or down.
 class NewOnASheet : public NewCommand {
  protected:
   NewOnASheet() {
@@ -149,7 +149,7 @@ class NewOnASheet : public NewCommand {
     test::write_plainly(directory_ / "up.obj", test::obj_text(up));
     test::write_plainly(directory_ / "down.obj", test::obj_text(test::reversed(up)));
   }
-  /// The scenario that is written, after it ran and touched.
+  /// Returns the written scenario after checking that it runs and touches.
   Json made(std::vector<std::string> words, std::string* said = nullptr) const {
     words.insert(words.begin(), "new");
     words.insert(words.end(), {"--out", path("made.json")});
@@ -171,11 +171,11 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
   const Json turned = made({"bur", "--from", path("down.obj"), "--extent", "8mm"}, &said);
   EXPECT_EQ(turned["environment"]["flip_normals"], true);
   EXPECT_NE(said.find("its normals point away from side z and are inverted"), std::string::npos) << said;
-  // Without that the tool starts behind the surface.
+  // Without reversed normals, the tool starts behind the surface.
   const std::string behind = hapbench({"validate", path("made.json"), "--set", "environment.flip_normals=false"}).err;
   EXPECT_NE(behind.find("1.5 mm behind the surface"), std::string::npos) << behind;
   EXPECT_EQ(hapbench({"validate", path("made.json")}).err.find("behind"), std::string::npos);
-  // So does one whose shank goes through the surface, its tip 0.2 mm behind it.
+  // The same holds for a tool whose shank passes through the surface, with its tip 0.2 mm behind the surface.
   const auto at = turned["initial"]["position_m"].get<std::array<double, 3>>();
   Vec3 touching(at[0], at[1], at[2]);
   touching.z() -= 0.0013;
@@ -186,7 +186,7 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
                                        .err;
     EXPECT_EQ(said_of_it.find("behind the surface") != std::string::npos, !flip) << said_of_it;
   }
-  // Those that run it ask the same of a tool that begins inside.
+  // Commands that run the scene ask the same question about a tool that begins inside.
   for (const char* command : {"run", "compare"}) {
     const std::string err = hapbench({command, path("made.json"), "--set", "environment.flip_normals=false", "--set",
                                       "time.steps=10", "--set", "expect={}", "--out", path("out")})
@@ -205,7 +205,7 @@ TEST_F(NewOnASheet, StartsWhereItIsTold) {
       made({"mesh", "--from", path("down.obj"), "--extent", "8mm", "--side=-z", "--at", "0.002,-0.001,0.0006"});
   EXPECT_FALSE(below["environment"].contains("flip_normals"));
   const auto start = below["initial"]["position_m"].get<std::array<double, 3>>();
-  // One point is kept in each cube of 0.1 mm: its diagonal.
+  // One point is kept in each cube of 0.1 mm; the tolerance is its diagonal.
   EXPECT_NEAR(start[0], 0.002, 1.8e-4);
   EXPECT_NEAR(start[1], -0.001, 1.8e-4);
   EXPECT_LT(start[2], -0.0005);
@@ -232,7 +232,7 @@ TEST_F(NewOnASheet, ComesFromEverySideOfAClosedBody) {
 }
 
 TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
-  // Along x, 0.1 mm below the hump's top, in metres.
+  // A stroke along x, 0.1 mm below the top of the hump, in metres.
   test::write_plainly(
       directory_ / "stroke.csv",
       "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,-0.002,0,0.0009,0,0,-1\n1,0.002,0,0.0009,0,0,-1\n");
@@ -242,7 +242,7 @@ TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
   EXPECT_EQ(json["motion"]["position"]["file"], "stroke.csv");
 }
 
-/// What validate warns of in the bundled scene of a tooth, 10 mm long, with these fields.
+/// Returns the warnings of validate about the bundled scene of a tooth, 10 mm long, with these fields.
 std::string warnings_of_tooth(std::vector<std::string> fields) {
   std::vector<std::string> words = {"validate", "mesh_molar"};
   for (const std::string& field : fields) words.insert(words.end(), {"--set", field});
@@ -253,7 +253,7 @@ std::string warnings_of_tooth(std::vector<std::string> fields) {
 
 TEST(ValidateCommand, NamesASizeThatNoHandWorksOn) {
   const std::string size = "usual environments are 1 mm ... 1 m long: is environment.scale right?";
-  // Millimetres for metres, and a tool to match.
+  // Millimetres instead of metres, with a tool of the same scale.
   const std::string large =
       warnings_of_tooth({"environment.scale=1", "environment.spacing_m=0.15", "tool.diameter_m=1", "tool.length_m=10"});
   EXPECT_NE(large.find(size), std::string::npos) << large;
@@ -271,7 +271,7 @@ TEST(ValidateCommand, NamesPointsThatTheToolFeelsOneByOne) {
   EXPECT_EQ(warnings_of_tooth({"environment.spacing_m=0.00016"}).find("apart"), std::string::npos);
 }
 
-/// A warning of a bundled scene would be a false one.
+/// A warning about a bundled scene would be a false alarm.
 TEST(ValidateCommand, FindsNoUnitsWrongInBundledScenes) {
   for (const test::NamedScenario& scenario : test::bundled_scenario_files()) {
     const ProgramRun run = test::hapbench_in_process({"validate", scenario.name});
@@ -301,10 +301,10 @@ TEST_F(ShellCommand, WritesTheEnvironmentsPointsExactlyAsCsv) {
 }
 
 TEST_F(ShellCommand, WritesWhatARunReadsAsTheSameEnvironment) {
-  // The hole through a file gives the same run, bit for bit.
+  // The hole, exported to a file, gives bitwise the same run.
   ASSERT_EQ(hapbench({"validate", "peg_in_hole_2d_mean", "--points", path("hole.csv")}).status, 0);
   ASSERT_EQ(hapbench({"run", "peg_in_hole_2d_mean", "--out", path("analytic")}).status, 0);
-  // Only the environment changes: what else depends on its type is in the effective scenario.
+  // Only the environment changes: the effective scenario already has all other values that depend on its type.
   Json json = Json::parse(test::read_file(directory_ / "analytic/scenario.effective.json"));
   json["environment"] = {{"type", "point_shell"}, {"file", "hole.csv"}, {"grid_m", 0.0001}};
   test::write_plainly(directory_ / "scene.json", json.dump());
@@ -315,14 +315,14 @@ TEST_F(ShellCommand, WritesWhatARunReadsAsTheSameEnvironment) {
             Json::parse(test::read_file(directory_ / "analytic/summary.json"))["state_hash"]);
 }
 
-/// The text without the files that its lines name in front of a JSON pointer.
+/// Returns the text without the files that its lines name before a JSON pointer.
 std::string without_files(const std::string& text) {
   return std::regex_replace(text, std::regex("[^\n]*\\.json: /"), "/");
 }
 
-/// Scenarios with files, records of every kind and odd settings run, then their effective scenarios, from a directory
-/// that a link leads to. The paths in these are written differently; everything else is the same, the hash of the
-/// scenario included.
+/// Runs scenarios with files, all records and unusual settings, then their effective scenarios from a directory that a
+/// link leads to. The paths in the effective scenarios are written differently; everything else is the same, including
+/// the hash of the scenario.
 TEST(EffectiveScenario, ReproducesTheRunFromAnotherDirectory) {
   const test::TemporaryDirectory directory;
   fs::create_directory(directory / "my scenes");

@@ -11,7 +11,7 @@
 #include "scenarios/program/text.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 
-/// Tables, digits and the words for fields. What they look like is in tests/data/golden.
+/// Tests tables, digits and the names of fields. tests/data/golden has the printed texts.
 namespace hapbench::text_test {
 namespace {
 
@@ -54,7 +54,7 @@ TEST(Fitted, BreaksWideLinesAtBlanksAndKeepsTheirIndent) {
   EXPECT_EQ(fitted("a  b\n\n", 80), "a  b\n\n");
 }
 
-/// A warning is merged only with equal texts: each law has its own number.
+/// Only equal texts are merged: here each law has its own number.
 TEST(RunWarnings, QuoteEachLawsOwnNumber) {
   const auto run = [](const char* law, const char* text) {
     Result result;
@@ -80,13 +80,36 @@ TEST(Deserved, EndsWithTheLeadingDigitOfTheTolerance) {
   EXPECT_EQ(deserved(1.23456e-6, 2e-9), "1.235e-06");
 }
 
-TEST(Deserved, HasItsUsualDigitsWithoutAToleranceOrBeneathIt) {
+TEST(Deserved, HasItsUsualDigitsWithoutATolerance) {
   EXPECT_EQ(deserved(1.0 / 3.0, {}, 3), "0.333");
   EXPECT_EQ(deserved(1.0 / 3.0, 0.0, 3), "0.333");
   EXPECT_EQ(deserved(1.0 / 3.0, std::nan(""), 3), "0.333");
-  EXPECT_EQ(deserved(0.5, 2.0), "0.5");
-  EXPECT_EQ(deserved(0.0, 1e-3), "0");
   EXPECT_EQ(deserved(std::nan(""), 1e-3), "-");
+}
+
+/// The cases of test_a_number_below_its_error_is_a_bound in tests/scripts/ranking_test.py: the page agrees.
+TEST(Deserved, IsABoundIfTheToleranceIsNotSmaller) {
+  EXPECT_EQ(deserved(0.0730, 0.37), "<= 0.5");
+  EXPECT_EQ(deserved(0.0730, 0.93), "<= 2");
+  EXPECT_EQ(deserved(0.98, 0.99), "<= 2");
+  EXPECT_EQ(deserved(0.0, 0.2), "<= 0.2");
+  EXPECT_EQ(deserved(0.1, 0.2), "<= 0.3") << "0.1 + 0.2 is a little more than 0.3 in floating point";
+  EXPECT_EQ(deserved(-0.1, 0.2), "0 +- 0.3");
+  EXPECT_EQ(deserved(7.3e-5, 3.7e-4), "<= 0.0005");
+  EXPECT_EQ(short_text(7.3e-5, 3.7e-4, 1e3), "<= 0.5");
+  EXPECT_EQ(short_text(0.0, 0.0, 1.0), "0");
+}
+
+TEST(WithSpread, EndsWithTheSecondDigitOfTheLargerError) {
+  EXPECT_EQ(with_spread(1.23456, 0.0567, {}), "1.235 +- 0.057");
+  EXPECT_EQ(with_spread(1.23456, 0.0567, 0.3), "1.23 +- 0.06");
+  EXPECT_EQ(with_spread(1234.56, 56.7, {}), "1235 +- 57");
+  EXPECT_EQ(with_spread(12345.6, 567.0, {}), "12350 +- 570");
+  EXPECT_EQ(with_spread(0.01, 0.4, {}), "0.01 +- 0.40");
+  EXPECT_EQ(with_spread(7.3456e-6, 1.2e-7, {}), "7.35e-06 +- 1.2e-07");
+  EXPECT_EQ(with_spread(1.5, 0.0, {}), "1.5 +- 0");
+  EXPECT_EQ(with_spread(1.5, {}, 0.1), "1.5");
+  EXPECT_EQ(with_spread(0.056, 2e-5, 0.37), "<= 0.5") << "the spread says nothing of an error that all seeds share";
 }
 
 TEST(Deserved, DigitsAreNeverNone) {
@@ -106,7 +129,7 @@ std::vector<const ModelInfo*> all_models() {
   return models;
 }
 
-/// Parameters are documented with the models and enforced where scenarios are described.
+/// The models document the parameters, and the descriptions of scenarios enforce their ranges.
 TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
   EXPECT_FALSE(find_algorithm("shaped_stiffness")->info->parameters.empty());
   const std::vector<ScenarioField> fields = scenario_fields();

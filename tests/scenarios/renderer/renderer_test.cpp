@@ -1,5 +1,5 @@
-// hapbench_renderer.h: what opening refuses, the bits of the engine, the protection of the hand, wrong use, and the
-// log.
+// Tests hapbench_renderer.h: errors of opening, bitwise equality with the engine, protection of the hand, wrong use,
+// and the log.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ namespace {
 constexpr double kPeriod = 0.001;  // [s]
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A plane at z = 0 under a round drill of 1 mm. Without damping, its force is a function of the position.
+/// A plane at z = 0 below a round drill of 1 mm. Without damping, the force is a function of the position.
 const char* const kPlane = R"({
   "name": "plane",
   "time": {"step_s": 0.001, "steps": 100},
@@ -69,13 +69,13 @@ std::string error_of(const HapbenchSetup& setup) {
   return error.data();
 }
 
-/// A loop with a clock of its own.
+/// A haptic loop with its own clock.
 struct Loop {
   explicit Loop(const HapbenchSetup& setup) : renderer(opened(setup)) {
     input.time_ns = 1'000'000'000;
     input.handle = {{0, 0, 0.002}, {1, 0, 0, 0}};
   }
-  /// One call, `seconds` after the last, at a height.
+  /// Makes one call, `seconds` after the last call, at a height.
   HapbenchOutput at(double z, double seconds = kPeriod) {
     input.handle.position[2] = z;
     return call(seconds);
@@ -87,7 +87,7 @@ struct Loop {
     EXPECT_EQ(status, output.status);
     return output;
   }
-  /// Calls in the air until the force is at its full height.
+  /// Makes calls in free air until the gain of the force is 1.
   void engage() {
     HapbenchOutput output{};
     for (int i = 0; i < 200 && output.status != HAPBENCH_ON; ++i) output = at(0.002);
@@ -158,7 +158,7 @@ TEST(OpenRenderer, ReportsWhatItUsesAndIgnores) {
   EXPECT_EQ(hapbench_renderer_period(renderer.get()), 0.002);
 }
 
-/// The poses of a scripted run are fed to a renderer: the same forces, to the last bit, once the force is on.
+/// Feeds the poses of a scripted run to a renderer. Once the gain is 1, the forces must be bitwise equal.
 void expect_forces_of(const Json& scene, const std::string& what) {
   const std::string text = scene.dump();
   const Scenario scenario = read_scenario(scene, ".").scenario;
@@ -209,7 +209,7 @@ TEST(Renderer, HasTheBitsOfTheEngineAlongAScript) {
 }
 
 TEST(Renderer, HasTheBitsOfTheEngineWithAVirtualMass) {
-  // A hand pushes down and sideways with more than the input force limit; every integrator.
+  // A hand pushes down and sideways with more than the input-force limit, with every integrator.
   for (const IntegratorEntry* integrator : kIntegrators) {
     Json scene = Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 600},
@@ -256,7 +256,7 @@ TEST(Renderer, WaitsForFourCallsAndRampsUp) {
     EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
     EXPECT_EQ(output.call, static_cast<std::uint64_t>(i));
   }
-  // ramp_s is 0.1 s: 100 calls, the gain grows by 0.01 in each.
+  // ramp_s is 0.1 s: the gain grows by 0.01 in each of 100 calls.
   double last = 0.0;
   for (int i = 1; i <= 100; ++i) {
     const HapbenchOutput output = loop.at(kInside);
@@ -282,7 +282,7 @@ TEST(Renderer, StartsInsideTheObjectWithoutForce) {
     ASSERT_EQ(norm(output.force), 0.0);
     ASSERT_GT(output.contacts, 0u);
   }
-  // Three calls outside do not suffice; the count begins anew.
+  // Three calls outside are not enough; then the count starts again.
   for (int i = 0; i < 3; ++i) loop.at(0.002);
   EXPECT_EQ(loop.at(-0.001).status, static_cast<unsigned>(HAPBENCH_WAITING));
   for (int i = 0; i < 4; ++i) EXPECT_EQ(loop.at(0.002).status, static_cast<unsigned>(HAPBENCH_WAITING));
@@ -294,7 +294,7 @@ TEST(Renderer, LetsTheForceFallAfterAGap) {
   loop.engage();
   const double before = loop.at(kInside).force[2];
   ASSERT_GT(before, 0.05);
-  // 50 ms of the ramp of 100 ms have passed, so half of the force is left, whatever the pose is now.
+  // 50 ms of the ramp of 100 ms have passed, so half of the force is left, whatever the present pose is.
   const HapbenchOutput gap = loop.at(-0.003, 0.05);
   EXPECT_EQ(gap.status, static_cast<unsigned>(HAPBENCH_STALE));
   EXPECT_NEAR(gap.force[2], 0.5 * before, 1e-9);
@@ -314,7 +314,7 @@ TEST(Renderer, LetsTheForceFallAfterAGap) {
   const HapbenchOutput late = loop.at(-0.003, 2.0);
   EXPECT_EQ(late.status, static_cast<unsigned>(HAPBENCH_STALE));
   EXPECT_EQ(norm(late.force), 0.0);
-  // 10 ms, the longest allowed time, is no gap.
+  // 10 ms, the longest allowed time, is not a gap.
   loop.engage();
   EXPECT_EQ(loop.at(0.002, 0.01).status, static_cast<unsigned>(HAPBENCH_ON));
 }
@@ -340,7 +340,7 @@ TEST(Renderer, LatchesAFaultUntilItIsRearmed) {
     EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_FAULT)) << words;
     EXPECT_EQ(output.reason, reason);
     EXPECT_EQ(norm(output.force), 0.0);
-    // A fault ends at the call in which the bit is set, and not again while it stays set.
+    // A fault ends at the call in which the bit is set; a bit that stays set does not end a later fault.
     loop.input.has |= HAPBENCH_REARM;
     EXPECT_EQ(loop.at(0.002).status, static_cast<unsigned>(HAPBENCH_WAITING)) << words;
     loop.input.handle.position[0] = kNaN;
@@ -400,12 +400,12 @@ TEST(Renderer, KeepsTheToolWhileTheClutchIsPressed) {
   for (int i = 0; i < 110; ++i) output = loop.at(0.0103);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
   EXPECT_EQ(norm(output.force), 0.0);
-  // Released 10 mm higher, the tool is where it was: in contact, so that the renderer waits.
+  // After the release 10 mm higher, the tool is at its previous position: in contact, so the renderer waits.
   loop.input.has = 0;
   output = loop.at(0.01 + kInside);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
   EXPECT_GT(output.contacts, 0u);
-  // 2 mm above the plane in the moved frame, and back: the same force.
+  // 2 mm above the plane in the moved frame, and back, gives the same force.
   for (int i = 0; i < 200; ++i) output = loop.at(0.012);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_ON));
   EXPECT_NEAR(loop.at(0.01 + kInside).force[2], before, 1e-6 * before);
@@ -427,13 +427,13 @@ TEST(Renderer, LimitsTheForceAndItsRate) {
   output = slow.at(kInside);
   EXPECT_EQ(output.limited, static_cast<unsigned>(HAPBENCH_MAX_FORCE_RATE));
   EXPECT_NEAR(norm(output.force), 0.01, 1e-12);
-  // The smaller limit of mount and scenario: force_max_N is 50 N.
+  // The smaller limit of mount and scenario holds: force_max_N is 50 N.
   EXPECT_NE(std::string(hapbench_renderer_inspect(slow.renderer.get())).find("largest force: 50 N"), std::string::npos);
 }
 
 TEST(Renderer, MountsTheDevice) {
-  // The device's y axis is the world's z axis; 1 mm of the device are 2 mm of the world, 3 mm higher; the tip is 0.1 m
-  // below the handle, in the handle's frame along its own -y.
+  // The device's y axis is the world's z axis. 1 mm of the device is 2 mm of the world, 3 mm higher. The tip is 0.1 m
+  // below the handle, along -y of the handle's frame.
   HapbenchSetup setup = setup_of(kPlane);
   setup.flags = HAPBENCH_TORQUE;
   const double s = std::sqrt(0.5);
@@ -498,7 +498,7 @@ TEST(Renderer, HoldsTheSetPointDuringAFault) {
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_FAULT));
   for (int i = 0; i < 3; ++i) EXPECT_EQ(output.set_position[i], last.set_position[i]);
   EXPECT_EQ(norm(output.set_velocity), 0.0);
-  // Rearmed, the mass starts at rest where the handle is.
+  // After rearming, the mass starts at rest at the handle.
   loop.input.hand_force[1] = 0.0;
   for (int i = 0; i < 110; ++i) loop.pushed(0.01, 0.0);
   loop.input.has |= HAPBENCH_REARM;
@@ -512,18 +512,18 @@ TEST(Renderer, HoldsTheSetPointDuringAFault) {
 TEST(Renderer, MovesTheHandleOfAClutchedMassWithoutContact) {
   AdmittanceLoop loop;
   HapbenchOutput output{};
-  // Onto the plane.
+  // Push the tool onto the plane.
   for (int i = 0; i < 150; ++i) output = loop.pushed(0.0, 0.0);
   for (int i = 0; i < 3000 && output.contacts == 0; ++i) output = loop.pushed(0.0, -0.05);
   ASSERT_GT(output.contacts, 0u);
   const double touching = output.set_position[2];
-  // Clutched, the same push moves the handle on down, through where the plane would be.
+  // While the clutch is pressed, the same push moves the handle further down, through the position of the plane.
   loop.input.has |= HAPBENCH_CLUTCH;
   for (int i = 0; i < 400; ++i) output = loop.pushed(0.0, -0.05);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
   EXPECT_EQ(output.contacts, 0u);
   EXPECT_LT(output.set_position[2], touching - 0.005);
-  // Released, the set-point does not jump, and the tool is at the plane again.
+  // After the release, the set-point does not jump, and the tool is at the plane again.
   const HapbenchOutput clutched = output;
   loop.input.has = HAPBENCH_HAND_FORCE;
   output = loop.pushed(0.0, 0.0);
@@ -551,7 +551,7 @@ TEST(Renderer, RefusesTheResultOfAFailingLaw) {
     EXPECT_EQ(output.reason, static_cast<unsigned>(HAPBENCH_ALGORITHM_FAILED));
     EXPECT_NEAR(output.force[2], 0.99 * before, 1e-9);
     EXPECT_NE(std::string(hapbench_renderer_fault(loop.renderer.get())).find("hostile"), std::string::npos);
-    // Rearmed at once, the force goes on falling.
+    // After immediate rearming, the force continues to fall.
     loop.input.has = HAPBENCH_REARM;
     const HapbenchOutput rearmed = loop.at(0.002);
     EXPECT_EQ(rearmed.status, static_cast<unsigned>(HAPBENCH_RAMPING));
@@ -561,7 +561,7 @@ TEST(Renderer, RefusesTheResultOfAFailingLaw) {
   }
 }
 
-/// Inputs that touch, press, slide, clutch, fault and wait.
+/// Returns inputs that touch, press, slide, clutch, cause faults and wait.
 std::vector<HapbenchInput> busy_inputs(std::size_t n) {
   std::vector<HapbenchInput> inputs(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -690,7 +690,7 @@ TEST(LoopLog, IsReplayedBitForBit) {
   const std::vector<HapbenchOutput> again = replayed(*renderer, log);
   const ReplayComparison compared = compare_outputs(again, log.outputs);
   EXPECT_EQ(compared.equal, inputs.size()) << "first other: " << compared.first_other;
-  // A recorded digit that is changed is found.
+  // A change of a recorded digit is detected.
   LoopLog changed = log;
   changed.outputs[100].force[2] = std::nextafter(changed.outputs[100].force[2], 1.0);
   EXPECT_EQ(compare_outputs(again, changed.outputs).first_other, 100u);

@@ -22,8 +22,8 @@ namespace {
 using test::bundled;
 using test::rows_of;
 
-// Bundled scenarios against closed forms: bilateral springs against the linear recurrence that they are (one
-// spring-damper under the integrator is (x, v) <- A (x, v) with the matrix A of Eq. A.2), and ten minutes in contact.
+// Compares bundled scenarios with closed forms: bilateral springs with the linear recurrence (x, v) <- A (x, v) of one
+// spring-damper under the integrator, with the matrix A of Eq. A.2; and ten minutes in contact.
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -31,7 +31,7 @@ struct State {
   double x, v;
 };
 
-/// The right-hand side of Eq. A.2, in the order in which the thesis prints it.
+/// Returns the right-hand side of Eq. A.2, in the order in which the thesis prints it.
 State after_one_step(const State& s, double K, double B, double M, double dt) {
   return {(1.0 - K * dt * dt / M) * s.x + (dt - B * dt * dt / M) * s.v, -K * dt / M * s.x + (1.0 - B * dt / M) * s.v};
 }
@@ -41,9 +41,10 @@ TEST(OneSpringDamper, FollowsEquationA2ToRounding) {
   const auto rows = rows_of(bundled("single_spring", {"time.steps=2000", "initial.velocity_m_per_s=[0.5,0,0]"}));
   ASSERT_EQ(rows.size(), 2000u);
   State expected{1e-3, 0.5};
-  // Each step either side makes a handful of roundings of the current state; with the modulus rho = sqrt(1 - B dt / M)
-  // = 0.83 of the eigenvalues an error made k steps ago is worth k rho^k of it, at most 2. A factor of 4 is for powers
-  // of A being larger than those of its eigenvalues. In all 8 * 2 * 4 units of the largest state.
+  // In each step, both sides make a few roundings of the current state. With the modulus rho = sqrt(1 - B dt / M) =
+  // 0.83 of the eigenvalues, an error made k steps ago has grown to k rho^k of its size, at most 2. A factor of 4
+  // allows for powers of A that are larger than the powers of its eigenvalues. Together 8 * 2 * 4 units of the largest
+  // state.
   const double x_tolerance = 64 * kEpsilon * 1e-3, v_tolerance = 64 * kEpsilon * 1e-3 / dt;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     ASSERT_NEAR(rows[k].tool.pose.position.x(), expected.x, x_tolerance) << k;
@@ -51,11 +52,12 @@ TEST(OneSpringDamper, FollowsEquationA2ToRounding) {
     ASSERT_EQ(rows[k].tool.pose.position.tail<2>(), Eigen::Vector2d::Zero()) << k;
     expected = after_one_step(expected, K, B, M, dt);
   }
-  EXPECT_LT(std::abs(expected.x), 1e-100);  // and comes to rest
+  EXPECT_LT(std::abs(expected.x), 1e-100);  // the mass comes to rest
 }
 
-/// Steady response x_k of the integrator's spring-damper, (M/dt²)(x_(k+1) - 2 x_k + x_(k-1)) + (B/dt)(x_k - x_(k-1)) +
-/// K x_k = F_k, to F_k = mean + amplitude sin(w k dt): a geometric sequence answers a geometric sequence.
+/// Returns the steady response x_k of the integrator's spring-damper, (M/dt²)(x_(k+1) - 2 x_k + x_(k-1)) + (B/dt)(x_k -
+/// x_(k-1)) + K x_k = F_k, to F_k = mean + amplitude sin(w k dt): the response to a geometric sequence is a geometric
+/// sequence.
 double steady_response(double K, double B, double M, double dt, const Profile::Sine& force, double k) {
   const double angle = 2.0 * std::numbers::pi / force.period_s * dt;
   const std::complex<double> z = std::polar(1.0, angle);
@@ -74,24 +76,24 @@ TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
   const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
   const auto& force = std::get<Profile::Sine>(std::get<ForceHandFields>(scenario.hand).force[2].shape());
   const double expected = steady_response(K, B, M, scenario.time.step, force, 1'199'999.0);
-  // The transient is gone, e^(-100 000). Rounding of position and force, 1e-16 of 0.3 mm each, is forgotten within a
-  // hundred steps; the phase of the sine, 5386 rad, is known to 1e-12, which is 1e-12 of its 0.05 mm.
+  // The transient has decayed, e^(-100 000). Rounding of position and force, 1e-16 of 0.3 mm each, decays within a
+  // hundred steps. The phase of the sine, 5386 rad, is known to 1e-12, which changes the position by 1e-12 of 0.05 mm.
   EXPECT_NEAR(number_of(report.metrics, "final_position_m.z").value(), expected, 1e-15);
   const auto& bound = scenario.expect.metrics.at("final_position_m.z");
   EXPECT_NEAR(0.5 * (*bound.min + *bound.max), expected, 1e-14) << "the file's bounds are about the closed form";
 
-  // Energy made in a step is the rounding of the ledger's sums of terms up to 3 mJ: 1e-18 J, 1.2 million times.
+  // The energy created in a step is rounding of the ledger's sums, with terms up to 3 mJ: 1e-18 J, 1.2 million times.
   EXPECT_LE(number_of(report.metrics, "energy.created_sum_J").value(), 1.2e-12);
 }
 
-// Scenes of dry friction against their closed forms.
+// Compares scenes of dry friction with closed forms.
 
 std::string number(const char* field, double value) {
   return std::string(field) + "=" + std::to_string(value);
 }
 
-/// Points of the wall stand at y = 0, +-0.1, ... mm, as deep in the peg as their distance from its axis falls short of
-/// the radius, and `mean` gives each 1/n: the loads add up to K times their mean depth.
+/// The points of the wall lie at y = 0, +-0.1, ... mm. Their depth in the peg is the radius minus their distance from
+/// the peg's axis. `mean` gives each point the weight 1/n, so the loads add up to K times the mean depth.
 TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
   for (const double gap : {0.00085, 0.0009, 0.00096}) {
     double sum = 0.0, n = 0.0;
@@ -101,7 +103,7 @@ TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
     }
     for (const double mu : {0.1, 0.3, 0.5}) {
       SCOPED_TRACE(testing::Message() << gap << " " << mu);
-      const double slips_at = mu * 20000.0 * sum / n / 0.6;  // the push grows by 0.6 N/s
+      const double slips_at = mu * 20000.0 * sum / n / 0.6;  // the push increases by 0.6 N/s
       const auto rows =
           rows_of(bundled("peg_jams_dry", {number("environment.gap_m", gap), number("rendering.friction.mu", mu),
                                            number("time.duration_s", slips_at + 0.05)}));
@@ -109,9 +111,10 @@ TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
       for (const StepRecord& row : rows) {
         if (row.force.friction == Friction::slides && slipped == 0.0) slipped = row.time;
       }
-      // The bristle's damper bears 0.6 N/s B_t / K_t, less than 1 mN, or 2 ms; with it and a row of the ramp:
+      // The bristle's damper bears 0.6 N/s B_t / K_t, less than 1 mN, or 2 ms. The tolerance is this time plus a step
+      // of the ramp.
       EXPECT_NEAR(slipped, slips_at, 0.003);
-      // It creeps by what the bristle gives, mu N / K_t, and then goes.
+      // Until then, the peg creeps by the deflection of the bristle, mu N / K_t; afterwards it moves.
       const double until = slips_at - 0.005;
       for (const StepRecord& row : rows) {
         if (row.time < until) {
@@ -123,9 +126,9 @@ TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
   }
 }
 
-/// A peg pushed into a taper of the half angle w and let go stays iff mu > sin w / cos^2 w: its loads N push it out by
-/// N sin w, and friction, whose P has cos^2 w along the way out, holds mu N cos^2 w. Coulomb on each face would hold
-/// from tan w on: the bristle of the whole tool never holds more.
+/// A peg that is pushed into a taper of half angle w and then released stays if and only if mu > sin w / cos^2 w. The
+/// loads N push it out with N sin w. Friction holds mu N cos^2 w, because its projector P has cos^2 w along the exit
+/// direction. Coulomb friction on each face would hold from tan w on: the bristle of the whole tool never holds more.
 TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
   for (const double w : {0.1, 0.2, 0.4}) {
     const double locks = std::sin(w) / (std::cos(w) * std::cos(w));
@@ -145,9 +148,9 @@ TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
   }
 }
 
-/// Drawn by a spring whose end goes at V, the block slips when the spring pulls with mu N, goes by V (1 - cos w t), and
-/// so comes to stand every 2 pi sqrt(M/k). Damped by nothing but the bristle while it sticks, it slips on at once: one
-/// coefficient of friction has no further rest.
+/// A spring whose end moves at the speed V pulls the block. The block slips when the spring force is mu N, moves with
+/// the velocity V (1 - cos w t), and therefore comes to rest every 2 pi sqrt(M/k). While it sticks, only the bristle
+/// damps it, so it slips again at once: with a single friction coefficient it does not stay at rest.
 TEST(StickSlip, HasThePeriodOfSpringAndMass) {
   for (const double k : {100.0, 200.0, 400.0}) {
     for (const double mass : {0.05, 0.1}) {
@@ -166,7 +169,8 @@ TEST(StickSlip, HasThePeriodOfSpringAndMass) {
         ASSERT_LE(v, 2.05 * V);
       }
       ASSERT_GT(stands.size(), 5u);
-      // Each is known to a row; the bristle's give, mu N / K_t of the spring's way mu N / k, shifts the first.
+      // Each time is known to a step. The deflection of the bristle, mu N / K_t, is a fraction of the spring's stretch
+      // mu N / k and shifts the first time.
       EXPECT_NEAR(stands.front(), slips_at + period, 0.02 * slips_at + 0.001);
       EXPECT_NEAR((stands.back() - stands.front()) / static_cast<double>(stands.size() - 1), period,
                   0.001 / static_cast<double>(stands.size() - 1) + 1e-4 * period);
@@ -179,19 +183,20 @@ TEST(StickSlip, HasThePeriodOfSpringAndMass) {
   }
 }
 
-// The guarantees of the proxy, over whole runs.
+// Tests the guarantees of the proxy over whole runs.
 
 LoadedScenario with_algorithm(const char* scenario, const char* algorithm) {
   const std::vector<std::string> overrides = {std::string("rendering.algorithm=") + algorithm};
   return load_scenario(find_scenario(scenario), overrides);
 }
 
-/// The rounding of a proxy's place, and what a move of a millimetre at most may violate (kViolationTolerance).
+/// Rounding of the proxy's position, plus the violation (kViolationTolerance) that a move of at most a millimetre
+/// allows.
 constexpr double kOutside = 1e-9;
-/// Deeper than this, the drill's proxy leaves slowly [m]: a step at kRecoverySpeed.
+/// Depth above which the drill's proxy leaves slowly [m]: the motion in a step at kRecoverySpeed.
 constexpr double kRecovery = 1e-5;
 
-/// Looks for points in the proxy by brute force. Its place follows from the spring: p + f_spring / K.
+/// Finds points in the proxy by brute force. The spring gives the position of the proxy: p + f_spring / K.
 class PointsInProxy final : public Observer {
  public:
   PointsInProxy(const PointShell& shell, const SimulationParts& parts, double K)
@@ -220,10 +225,10 @@ class PointsInProxy final : public Observer {
   }
 
   double algorithm_dt = 1.0;
-  bool cleared = false;  ///< no point was inside once
+  bool cleared = false;  ///< true once no point was inside the proxy
   std::uint64_t steps_until_clear = 0, most_passes = 0;
-  double deepest = 0.0;  ///< since then [m]
-  double fastest = 0.0;  ///< proxy that leaves slowly [m/s]
+  double deepest = 0.0;  ///< largest depth since then [m]
+  double fastest = 0.0;  ///< largest speed of a proxy that leaves slowly [m/s]
   double stiffest = 0.0, largest_force = 0.0;
 
  private:
@@ -252,10 +257,10 @@ PointsInProxy watch(const char* name, std::int64_t steps) {
 struct Run {
   const char* scenario;
   std::int64_t steps;
-  double allowed = kOutside;  ///< [m]
+  double allowed = kOutside;  ///< allowed depth of a point in the proxy [m]
 };
-/// In a corner, patches may leave no room where the points do; they are at most this deep then, and share it with the
-/// points: a tenth of the spacing.
+/// In a corner, patches may leave no room although the points do. The depth of the patches is then at most a tenth of
+/// the spacing, and is shared with the points.
 constexpr double kShared = 1e-5;
 class ProxyOverAWholeRun : public testing::TestWithParam<Run> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, ProxyOverAWholeRun,
@@ -270,14 +275,14 @@ TEST_P(ProxyOverAWholeRun, NeitherEntersTheShellNorGetsStifferThanOneSpringNorTa
   const PointsInProxy points =
       watch(GetParam().scenario, GetParam().steps / static_cast<std::int64_t>(test::sanitized(16)));
   EXPECT_TRUE(points.cleared);
-  // The hands of the pegs start up to 22 um deep, and leave by 10 um a step.
+  // At the start, the hands of the pegs are up to 22 um deep; the proxies leave by 10 um per step.
   EXPECT_LE(points.steps_until_clear, 10u);
   EXPECT_LE(points.deepest, GetParam().allowed);
   EXPECT_LE(points.stiffest, 1.0 + 1e-12);
   EXPECT_LE(points.most_passes, 10u);
 }
 
-/// 0.4 mm deep in both walls of a hole as wide as the peg, which tilted fits nowhere.
+/// The peg is 0.4 mm deep in both walls of a hole of the same width; the tilted peg fits nowhere.
 TEST(ProxyInATightHole, LeavesSlowly) {
   const PointsInProxy points = watch("peg_in_hole_2d_shaped_stiffness", 2'000);
   // A move is only nearly proportional to the depths.

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using test::bundled;
 using test::rows_of;
 
-// Runs whose contacts come late, from a file, or from a library of the user's own.
+// Tests runs with late contacts, with contacts from a file, and with contacts from a library of the user.
 
 using Rows = std::vector<StepRecord>;
 
@@ -40,16 +40,16 @@ std::vector<std::string> late(std::int64_t every, std::int64_t delay, const char
           std::string("rendering.contacts.between=") + between};
 }
 
-// Linear contacts of a plane are fresh.
+// Linear contacts of a plane equal contacts that are found in every step.
 
 TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
-  // The tool is in contact from row 6 on, and what was found in row 7 serves from row 11 on.
+  // The tool is in contact from step 6 on, and the contacts found in step 7 are used from step 11 on.
   constexpr std::size_t kInContact = 11;
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
     const std::vector<std::string> pressed = {
         "rendering.algorithm=" + std::string(algorithm.info->name),
-        // The exit along the normal: other depths of points at the rim do not follow the tool.
+        // The exit along the normal: with other depth models, the depths of points at the rim do not follow the tool.
         "rendering.depth_model=normal_projection", R"(hand={"type":"none"})", "time.duration_s=0.05",
         R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,
            "z_m":{"type":"ramp","start":1e-6,"rate_per_s":-4e-4}})"};
@@ -57,14 +57,14 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
     overrides.insert(overrides.end(), pressed.begin(), pressed.end());
     const auto fresh = rows_of(bundled("poke_plane", pressed)), linear = rows_of(bundled("poke_plane", overrides));
     ASSERT_EQ(fresh.size(), linear.size());
-    // Not of a model with a memory of the steps, nor of depths to the nearest side.
+    // Does not hold for a model with a memory of the steps, nor for depths to the nearest side.
     const bool depths_are_the_normals =
         algorithm.fixed_depth_model.empty() || algorithm.fixed_depth_model == "normal_projection";
     for (std::size_t k = 0; k < fresh.size(); ++k) {
       if (k < 4) {
         EXPECT_EQ(linear[k].force.spring, Vec3(Vec3::Zero()));
       } else if (k >= kInContact && depths_are_the_normals) {
-        // Solvers of the laws stop at 1e-6 of the force and better.
+        // The solvers of the laws stop at 1e-6 of the force or less.
         ASSERT_NEAR((linear[k].force.spring - fresh[k].force.spring).norm(), 0.0, 1e-6 * fresh[k].force.spring.norm())
             << k;
       }
@@ -72,7 +72,7 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
   }
 }
 
-/// The contacts of every row, by way of the held ones: a chance of 1e-300 loses none.
+/// Multi-rate contacts in every step, through held contacts: a dropout probability of 1e-300 loses no query.
 TEST(MultiRateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
@@ -89,7 +89,7 @@ TEST(MultiRateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
   }
 }
 
-// A trace.
+// Contacts from a trace.
 
 class Trace : public testing::Test {
  protected:
@@ -102,8 +102,8 @@ class Trace : public testing::Test {
 
 TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
-    if (!algorithm.reported_depth_model.empty()) continue;  // it finds its points itself
-    // A trace knows nothing of the law: other tools and motions are tried with one.
+    if (!algorithm.reported_depth_model.empty()) continue;  // the algorithm finds its points itself
+    // A trace does not depend on the law, so other tools and motions are tested with one law.
     std::vector<const char*> scenes = {"plane_wiped_round"};
     if (std::string_view(algorithm.info->name) == "shaped_stiffness")
       scenes.insert(scenes.end(), {"cone_in_cone", "stroke_in_hole"});
@@ -124,7 +124,7 @@ TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
   }
 }
 
-// A library.
+// Contacts from a library.
 
 TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
   const ModulePermission permission(true);
@@ -195,10 +195,11 @@ TEST(ContactPlugin, SaysWhatItMisses) {
   EXPECT_NE(said(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
 }
 
-// Skipped work must not change results: with every skip off, a run writes the same bytes, but for the counted work.
-// The bundled scenarios are tested in tests/scenarios/program/bundled_scenarios_test.cpp.
+// Skipped work must not change results: without skips, a run writes the same bytes, except the counts of work.
+// tests/scenarios/program/bundled_scenarios_test.cpp tests the bundled scenarios.
 
-/// summary.json without the counted work, which goes out in `work`; still text, so that every digit counts.
+/// Returns summary.json without the counts of work, as text, so that every digit is compared. Writes the counts to
+/// `work`.
 std::string summary_without_work(const fs::path& file, Json& work) {
   Json summary = Json::parse(test::read_file(file));
   work = summary["work"];
@@ -229,7 +230,7 @@ class WithAndWithoutSkips : public testing::Test {
   std::uint64_t skipped_ = 0;
 };
 
-// Free air, touch and free air again, through every algorithm with and without damping and friction.
+// Free air, contact and free air again, for every algorithm with and without damping and friction.
 TEST_F(WithAndWithoutSkips, EveryAlgorithmGivesTheSameBytes) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     for (const char* friction : {"0", "5"}) {

@@ -32,9 +32,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The outcomes of runs that miss or lose their object, whether they were expected, and the warnings about them.
+// Tests the outcomes of runs that miss or lose their object, whether these outcomes were expected, and their warnings.
 
-/// A tool of 1 mm above a plane of 10 mm, which a hand pushes.
+/// Returns a tool of 1 mm that a hand pushes above a plane of 10 mm.
 Json above_plane() {
   return Json::parse(R"({
     "time": {"step_s": 0.0005, "steps": 100},
@@ -44,7 +44,7 @@ Json above_plane() {
   })");
 }
 
-/// The run of that scene with a patch.
+/// Returns the result of this scene, changed by a patch.
 Result run_of(const char* patch) {
   Json json = above_plane();
   json.merge_patch(Json::parse(patch));
@@ -69,7 +69,7 @@ TEST(Outcome, AScriptMayLeadTheToolAway) {
   EXPECT_EQ(run_of(led).end.outcome, Outcome::completes);
 }
 
-/// The tip centre is in the environment's box all the time, 1 mm from the wall of a hole of 2 mm.
+/// The tip centre is inside the environment's box all the time, 1 mm from the wall of a hole of 2 mm.
 TEST(Outcome, NoContactIsMeasuredToTheSurface) {
   const char* const in_hole =
       R"({"hand": null, "initial": {"position_m": [0, 0, -0.001]}, "tool": {"diameter_m": 0.0006},
@@ -96,12 +96,12 @@ TEST(Outcome, NoContactTellsTheLikelyCause) {
            {R"({"hand": null, "initial": null,
                "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": 0.003}}})",
             "; is motion.position right?"},
-           // 1.5 mm above the plane and 1 mm/s down, for 0.05 s.
+           // The tool starts 1.5 mm above the plane and moves down at 1 mm/s for 0.05 s.
            {R"({"hand": null, "initial": null,
                "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0,
                                        "z_m": {"type": "waypoints", "points": [[0, 0.0015], [1, 0.0005]]}}}})",
             "; it was approaching at the end and would touch 1.5 s later: is time.steps too small?"},
-           // A tenth as fast, even a run that is a hundred times as long would not do.
+           // At a tenth of this speed, even a run that is a hundred times as long would not reach the plane.
            {R"({"hand": null, "initial": null,
                "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0,
                                        "z_m": {"type": "waypoints", "points": [[0, 0.0015], [1, 0.0014]]}}}})",
@@ -114,7 +114,7 @@ TEST(Outcome, NoContactTellsTheLikelyCause) {
   }
 }
 
-/// What is said of those that are not met is in tests/data/golden/ends.txt.
+/// tests/data/golden/ends.txt has the texts about expectations that are not met.
 TEST(Expectation, IncludesItsBoundsAndMayBoundEveryMetric) {
   Result run;
   run.metrics = all_metrics();
@@ -149,13 +149,13 @@ TEST(Drag, PressesWithItsForceAndLagsAsItsSpringSays) {
     Json json = scene();
     json["rendering"]["algorithm"] = algorithm;
     const StepRecord last = test::rows_of(read_scenario(json, "").scenario).back();
-    // On a plane every contact has one gradient, and with normal projection one depth, also at the rim of the tip, so
-    // that all laws are one spring K and one damper B = 62.6 N s/m, whichever points come and go. Along the
-    // normal, s^2 + (B + 50) / M s + K / M has the roots -221 and -905 /s: after 2.5 s nothing is left but rounding,
-    // which is that of a depth of 0.05 mm times K.
+    // On a plane all contacts have the same gradient and, with normal projection, the same depth, also at the rim of
+    // the tip. All laws are therefore one spring K and one damper B = 62.6 N s/m, whichever points are in contact.
+    // Along the normal, s^2 + (B + 50) / M s + K / M has the roots -221 and -905 /s. After 2.5 s only rounding is left:
+    // the rounding of a depth of 0.05 mm times K.
     EXPECT_NEAR(last.force.rendered.z(), 1.0, 1e-10) << algorithm;
-    // Within the surface friction (5 + 10 F) N s/m is what the spring has to overcome; the roots are -15 and -195 /s,
-    // exp(-15.4 * 2.5) = 2e-17.
+    // Tangentially, the spring must overcome the friction (5 + 10 F) N s/m; the roots are -15 and -195 /s, exp(-15.4 *
+    // 2.5) = 2e-17.
     const double moving_point = -0.002 + 0.001 * last.time;
     EXPECT_NEAR(moving_point - last.tool.pose.position.x(), (5.0 + 10.0) * 0.001 / 300.0, 1e-12) << algorithm;
     EXPECT_NEAR(last.tool.velocity.x(), 0.001, 1e-12) << algorithm;
@@ -169,8 +169,9 @@ std::string warnings_of(const Result& report) {
   return text;
 }
 
-/// Paths that return on themselves or to one side, of two to four legs. A tool that lags behind the moving point by a
-/// fraction of its width follows all of them, whatever its displacement is. Under strong dry friction none is followed.
+/// Paths of two to four legs that turn back on themselves or to one side. A tool that lags behind the moving point by a
+/// fraction of its width follows all of these paths, whatever its displacement is. Under strong dry friction it follows
+/// none of them.
 TEST(Drag, IsJudgedAlongItsPathAlsoWhereThePathReturns) {
   const std::vector<Json> paths = {
       {{-0.002, 0, 0}, {0.002, 0, 0}, {-0.002, 0, 0}},
@@ -193,7 +194,7 @@ TEST(Drag, IsJudgedAlongItsPathAlsoWhereThePathReturns) {
       const Result followed = run_scenario(checked(read_scenario(json, "")), std::nullopt, false);
       EXPECT_EQ(followed.end.outcome, Outcome::completes) << device["type"] << " " << i << warnings_of(followed);
       json["rendering"]["friction"] = {{"type", "dry"}, {"mu", 20}};
-      json["rendering"]["stiffness_N_per_m"] = 20000;  // the hand stretches the contact by 300 / 20000 of its way
+      json["rendering"]["stiffness_N_per_m"] = 20000;  // the hand stretches the contact by 300 / 20000 of its path
       const Result held = run_scenario(checked(read_scenario(json, "")), std::nullopt, false);
       EXPECT_TRUE(held.end.outcome == Outcome::stuck || held.end.outcome == Outcome::not_dragged)
           << device["type"] << " " << i << " " << outcome_name(held.end.outcome);
@@ -205,7 +206,7 @@ TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
   Json json = scene();
   json["hand"]["direction"] = {0, 0, 1};
   json["tool"] = {{"diameter_m", 0.0005}};
-  Json to_and_fro = scene();  // both points are nearest to one place
+  Json to_and_fro = scene();  // both points have the same nearest position on the surface
   to_and_fro["hand"].erase("direction");
   to_and_fro["hand"]["path_m"] = {{-0.002, 0, 0.003}, {-0.002, 0, 0}};
   to_and_fro["tool"] = json["tool"];
@@ -223,21 +224,22 @@ TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
   EXPECT_TRUE(scene_facts(read_scenario(scene(), "")).warnings.empty());
 }
 
-/// A drill turned into the wall of its hole about its resting tip: the axis of its shank is in the wall in the end,
-/// while the tip centre and the core behind it have always been in the hole.
+/// A drill rotates about its resting tip into the wall of its hole. At the end, the axis of its shank is in the wall,
+/// but the tip centre and the core behind it have always been in the hole.
 TEST(Outcome, OfAShankThatIsInside) {
   const LoadedScenario loaded = load_scenario(find_scenario("pure_rotation"), {});
   const Result report = run_scenario(checked(loaded), std::nullopt, false);
   EXPECT_EQ(report.end.outcome, Outcome::went_through);
   EXPECT_TRUE(report.unmet.empty());
-  // By 0.2 rad the shank only presses on the rim.
+  // At 0.2 rad the shank only presses on the rim.
   const std::vector<std::string> half = {"motion.orientation.tilt_rad=0.2", "expect={}"};
   EXPECT_EQ(run_scenario(checked(load_scenario(find_scenario("pure_rotation"), half)), std::nullopt, false).end.outcome,
             Outcome::completes);
   EXPECT_NE(warnings_of(report).find("a part of the tool was 0.86"), std::string::npos) << warnings_of(report);
 }
 
-// What is said of a run that has a fault, and that it is not said of one that is as like it as can be without.
+// Tests the diagnosis of runs with a fault, and that the diagnosis does not report the fault for very similar runs
+// without it.
 
 using Words = std::vector<std::string>;
 
@@ -252,7 +254,7 @@ Result run(const Scene& scene) {
   return run_scenario(checked(load_scenario(find_scenario(scene.name), overrides)), std::nullopt, false, nullptr, true);
 }
 
-/// What the rule finds; null where it is silent.
+/// Returns the finding of the rule; null if the rule finds nothing.
 const Diagnosed* finding(const Result& run, std::string_view rule) {
   const auto found = std::ranges::find(*run.diagnosis, rule, &Diagnosed::rule);
   return found == run.diagnosis->end() ? nullptr : &*found;
@@ -326,7 +328,7 @@ TEST(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout) {
   all.push_back({"force_sign",
                  {"recorded_wipe", {"motion.position.file=" + fs::absolute(directory / "reversed.csv").string()}},
                  {"recorded_wipe"}});
-  // A law that returns NaN, and the same law that returns the mean.
+  // Loads a law that returns NaN, and the same law that returns the mean.
   load_module(fs::canonical(HAPBENCH_TEST_MODULES) / "hostile.so");
   std::set<std::string> tested = {"fault"};
   const Scene hostile = {"single_spring", {"rendering.algorithm=hostile"}};
@@ -356,8 +358,8 @@ TEST(Diagnosis, IsSilentWhereNothingIsWrong) {
   }
 }
 
-/// An undamped spring of 20 000 N/m and 0.1 kg swings at 71.2 Hz; half a turn more or less in the last quarter, of half
-/// a second, is 1 Hz.
+/// An undamped spring of 20 000 N/m and 0.1 kg oscillates at 71.2 Hz. The last quarter takes half a second, so an error
+/// of half an oscillation is 1 Hz.
 TEST(Diagnosis, TellsTheFrequencyOfABuzz) {
   const Result result = run({"single_spring", {"rendering.damping_ratio=0.0005", "time.steps=4000"}});
   const Diagnosed* buzz = finding(result, "buzz");
@@ -367,7 +369,7 @@ TEST(Diagnosis, TellsTheFrequencyOfABuzz) {
   EXPECT_NEAR(std::stod(frequency[1]), 71.2, 1.5);
 }
 
-/// A law is no remedy for itself.
+/// A law in use is not a remedy for itself.
 TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
   const LoadedScenario loaded = load_scenario(find_scenario("drag_molar"), {});
   const auto tool = make_tool(loaded.scenario, loaded.files);
@@ -383,12 +385,13 @@ TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
   }
 }
 
-/// A run as a rule might misread it, with the advice that would be wrong.
+/// A run that a rule might misinterpret, with the advice that would be wrong.
 struct Trap {
   const char* rule;
   Scene scene;
   std::vector<std::pair<const char*, double>> metrics;
-  const char *right, *wrong;  ///< what the advice contains, and what it does not; `right` empty: the rule is silent
+  const char *right, *wrong;  ///< text that the advice contains, and text that it does not contain; empty `right`: the
+                              ///< rule finds nothing
   Outcome outcome = Outcome::completes;
   const char* fault = "";
   RunObservations observations = {};
@@ -434,18 +437,18 @@ std::vector<Trap> traps() {
   const std::vector<std::pair<const char*, double>> buzz = {{kMean, 1.0}, {"force_rms_above_30Hz_N", 0.5}};
   const Scene passive = {"peg_in_hole_2d_shaped_stiffness"};  // nothing presses this tool
   return {
-      // A law that fails is not the matter of the step, nor a hand that runs away of K.
+      // The time step is not the cause if a law fails, and K is not the cause if a hand drives the tool away.
       {"fault", kMolar, {}, "correct the law", "time.step_s", Outcome::diverges, "gives a force that is not finite"},
       {"diverged", kMolar, {}, "without contact", "smaller K", Outcome::diverges},
       {"edge", kMolar, {{"ratio_max", 1e9}}, "", "smaller K", Outcome::diverges, "gives a force that is not finite"},
-      // No K helps a tool that starts inside, and no hand a script.
+      // No K helps a tool that starts inside, and changing the hand does not help a tool that a script moves.
       {"sank", kMolar, {}, "initial.position_m", "larger K", Outcome::went_through, "", inside()},
       {"sank", kLed, {}, "motion.position", "larger K", Outcome::went_through},
       {"lost", kOmegaMolar, {}, "device.coulomb_N", "initial.position_m", Outcome::no_contact, "", held()},
       {"lost", kLed, {}, "motion.position", "hand's direction", Outcome::no_contact},
       {"stuck", {"impedance_at_wall"}, {}, "device.coulomb_N", "rendering.friction", Outcome::stuck},
       {"stuck", {"drag_molar_dry"}, {}, "rendering.friction", "device.coulomb_N", Outcome::stuck},
-      // What flies apart makes long steps; a script is no slow hand.
+      // A tool that is thrown away makes long steps; a slower hand does not help a tool that a script moves.
       {"step", kMolar, {}, "", "", Outcome::diverges, "", long_step()},
       {"step", kLed, {}, "motion.position", "slower hand", Outcome::completes, "", long_step()},
       // A script makes the same contacts at any K.
@@ -474,7 +477,7 @@ std::vector<Trap> traps() {
        Outcome::completes,
        "",
        contact(50)},
-      // In equilibrium a force is the hand's.
+      // In equilibrium, the force balances the hand's force.
       {"saturated", kOmegaMolar, {}, "smaller hand force", "smaller K", Outcome::completes, "", contact(50)},
       {"damping",
        {"drag_molar", {"rendering.damping_N_s_per_m=1e4"}},
@@ -530,7 +533,7 @@ TEST(Diagnosis, AdvisesNothingThatIsWrongInTheScene) {
   }
 }
 
-/// 0.8 N of dry friction against 100 N/m and 4.5 mm: the handle never leaves its place.
+/// 0.8 N of dry friction against 100 N/m and 4.5 mm: the handle does not move.
 TEST(Diagnosis, NamesTheFrictionThatHoldsTheHandle) {
   const Result result = run({"impedance_at_wall", {"device.coulomb_N=0.8", "hand.stiffness_N_per_m=100"}});
   ASSERT_EQ(result.end.outcome, Outcome::no_contact);
@@ -540,7 +543,7 @@ TEST(Diagnosis, NamesTheFrictionThatHoldsTheHandle) {
   EXPECT_NE(finding(result, "lost")->attempt.find("device.coulomb_N"), std::string::npos);
 }
 
-/// A step in which the tool flies past the tooth is not the fault of where it started.
+/// If the tool flies past the tooth in a long step, the start position is not the cause.
 TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   const Result leaps = run({"mesh_molar", {"time.step_s=1", "time.steps=5"}});
   ASSERT_NE(finding(leaps, "lost"), nullptr);
@@ -554,7 +557,7 @@ TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   EXPECT_EQ(far.warnings[0].text.find("time.step_s"), std::string::npos) << far.warnings[0].text;
 }
 
-/// Only who asks pays for it. Others are warned where numbers are not the law's doing.
+/// The diagnosis is computed only on request. Other runs have a warning if the numbers are not an effect of the law.
 TEST(Diagnosis, OfARunThatNobodyDiagnosesIsAWarning) {
   for (const auto& [override, rule] : {std::pair("rendering.friction.mu_f_s_per_m=1000", "friction"),
                                        {R"(rendering.reduction={"threshold":0.9})", "reduction"}}) {

@@ -28,7 +28,7 @@ using test::lines_of;
 using test::read_file;
 using test::TemporaryDirectory;
 
-// record.pose, record.torque and the roll of a script, through the files that a run writes.
+// Tests record.pose, record.torque and a scripted roll, through the files that a run writes.
 
 /// A table that a run recorded, by column names.
 struct Table {
@@ -46,13 +46,13 @@ struct Table {
 
 struct Place {
   const char* environment;
-  double height;  ///< of the tip at first [m]
+  double height;  ///< initial height of the tip [m]
 };
 constexpr Place kPlane = {R"({"type": "plane", "size_m": 0.004, "spacing_m": 0.0002})", 0.0001};
 constexpr Place kSlot = {
     R"({"type": "slot", "gap_m": 0.0011, "depth_m": 0.005, "length_m": 0.004, "spacing_m": 0.0002})", -0.0006};
 
-/// A drill that leans and is pushed into its environment by script.
+/// Returns a drill that leans and that a script pushes into its environment.
 Json pressed_drill(const Place& place, std::string_view algorithm) {
   Json json = Json::parse(R"({
     "time": {"step_s": 0.0005, "steps": 40},
@@ -69,12 +69,12 @@ Json pressed_drill(const Place& place, std::string_view algorithm) {
 }
 
 struct Contact {
-  Vec3 place, gradient;  ///< from the tip centre; u_i
+  Vec3 place, gradient;  ///< position relative to the tip centre [m]; gradient u_i
   double depth, weight;
 };
 
-/// The share of a contact in the force of laws without weighted springs, as the documentation of SpringState defines
-/// it.
+/// Returns the force of one contact for laws without weighted springs, as the documentation of SpringState defines it.
+/// The forces of all contacts sum to the force of the law.
 std::optional<Vec3> unweighted_share(std::string_view algorithm, const RenderingConfig& r, const Vec3& spring,
                                      std::size_t n, const Contact& c) {
   const double K = r.stiffness, K_vc = r.virtual_coupling.value_or(K);
@@ -88,7 +88,7 @@ std::optional<Vec3> unweighted_share(std::string_view algorithm, const Rendering
   return std::nullopt;
 }
 
-/// A law that is in neither list may define its shares by itself.
+/// Laws with weighted springs. A law that is in neither list may define the forces of its contacts itself.
 constexpr std::string_view kWeighted[] = {
     "summation",         "mean",  "shaped_stiffness", "tandpasta", "exact_shaping", "continuous_normal_projection",
     "normal_projection", "proxy", "merged_shaping",   "mcneely"};
@@ -105,7 +105,7 @@ void expect_torques(std::string_view algorithm, const Place& place) {
   for (std::size_t k = 0; k < rows.rows(); ++k) {
     const Vec3 spring = rows.vector(k, {"fspring_x_N", "fspring_y_N", "fspring_z_N"});
     Vec3 tip = rows.vector(k, {"px_m", "py_m", "pz_m"});
-    // The points hold the proxy.
+    // The points act on the proxy.
     if (algorithm == "proxy") tip += spring / rendering.stiffness;
     std::vector<Contact> of_row;
     for (; next < contacts.rows() && contacts.number(next, "step") == static_cast<double>(k); ++next) {
@@ -114,7 +114,7 @@ void expect_torques(std::string_view algorithm, const Place& place) {
                         contacts.number(next, "depth_m"), contacts.number(next, "weight")});
     }
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-    double magnitude = 0.0;  // of the rounded numbers
+    double magnitude = 0.0;  // magnitude of the rounded numbers
     for (const Contact& c : of_row) {
       const auto unweighted = unweighted_share(algorithm, rendering, spring, of_row.size(), c);
       const Vec3 f = unweighted.value_or(-rendering.stiffness * c.weight * c.depth * c.gradient);
@@ -123,11 +123,11 @@ void expect_torques(std::string_view algorithm, const Place& place) {
       torque += c.place.cross(f);
       magnitude += f.norm() + rendering.stiffness * c.depth + spring.norm();
     }
-    // A hundred sums, and for least_squares a residual times 1 / eps = 100.
+    // A hundred sums; for least_squares, the rounding of a residual is multiplied by 1 / eps = 100.
     const double rounding = 1e-12 * magnitude;
     const Vec3 written = rows.vector(k, {"tx_Nm", "ty_Nm", "tz_Nm"});
     if (!is_known && (force - spring).norm() > rounding) continue;
-    // A sum of gradients that cancel has no direction, and no force.
+    // A sum of gradients that cancel has no direction and gives no force.
     if (spring != Vec3::Zero()) {
       ASSERT_LE((force - spring).norm(), rounding) << k;
     }
@@ -147,12 +147,12 @@ TEST(LostTorque, IsTheSumOverTheContactsOfArmTimesShareForEveryAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
     expect_torques(algorithm.info->name, kPlane);
-    // In a slot that is too narrow the proxy makes a compromise, whose shares have tests of their own.
+    // In a slot that is too narrow, the proxy takes a compromise; the forces of its contacts have their own tests.
     if (std::string_view(algorithm.info->name) != "proxy") expect_torques(algorithm.info->name, kSlot);
   }
 }
 
-/// Everything but the columns of the quaternion, which are the last, and what names the scenario.
+/// Returns all bytes except the columns of the quaternion, which are the last columns, and the name of the scenario.
 std::map<std::string, std::string> bytes_without_pose(const std::filesystem::path& directory) {
   std::map<std::string, std::string> files;
   for (const char* name : {"contacts.csv", "energy.csv"}) files[name] = read_file(directory / name);
@@ -200,9 +200,9 @@ TEST(Pose, IsThatOfTheScript) {
   }
 }
 
-// Tools and environments of every type, from the fields of a scenario.
+// Tests tools and environments of every type, created from the fields of a scenario.
 
-/// A plane that the tool is pressed on.
+/// Returns a plane onto which the tool is pressed.
 Json scene(const std::string& tool, const std::string& algorithm = "shaped_stiffness") {
   Json json = test::minimal_scenario("plane");
   json["time"]["steps"] = 200;
@@ -236,7 +236,8 @@ TEST(ScenarioTool, WithoutATypeIsTheCylinderOfThatType) {
   }
 }
 
-/// The tool's frame at its tip, on whichever face of the cube that is; with it the box lies behind the tip centre.
+/// The tool's frame has its origin at the tip, whichever face of the cube has the tip; in this frame the box lies
+/// behind the tip centre.
 TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
   for (const auto& [place, axis] : {std::pair{"[0.0005, 0, 0]", "[2, 0, 0]"},
                                     {"[0, -0.0005, 0]", "[0, -1, 0]"},
@@ -250,7 +251,7 @@ TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
       low = low.cwiseMin(vertex);
       high = high.cwiseMax(vertex);
     }
-    // Rounding of places of 1 mm by a turn: some units in the last place, 2e-19.
+    // Rounding of positions of 1 mm by a rotation: some units in the last place, 2e-19.
     EXPECT_LT((low - Vec3(-0.0005, -0.0005, 0.0)).norm(), 1e-18) << axis << ": " << low.transpose();
     EXPECT_LT((high - Vec3(0.0005, 0.0005, 0.001)).norm(), 1e-18) << axis << ": " << high.transpose();
   }
@@ -263,7 +264,7 @@ TEST(ScenarioTool, ThatLiesOddlyInItsFrameIsNamed) {
   EXPECT_EQ(frame_problem({Vec3(0, -0.001, -0.001), Vec3(0.009, 0.001, 0.001)}),
             "is longer across its axis than along it");
   EXPECT_EQ(frame_problem({wide + low, 2.0 * wide + 2.0 * low}), "is 9.11 mm away from its tip centre");
-  // A wheel is wider than it is long on purpose.
+  // A wheel is intentionally wider than long.
   EXPECT_EQ(frame_problem({Vec3(-0.002, -0.002, 0), Vec3(0.002, 0.002, 0.0005)}), "");
 }
 
@@ -297,7 +298,7 @@ TEST(ScenarioTool, IsInTheSummaryUnlessItIsACylinder) {
             tool_json(*tool_of(kHourglass)));
 }
 
-/// A small block, changed by a merge patch.
+/// Returns a small block, changed by a merge patch.
 Scenario block_scenario(const char* patch = "{}") {
   Json json = Json::parse(R"({"time": {"step_s": 0.0005, "steps": 20}, "environment": {"type": "block_with_hole",
     "size_m": [0.006, 0.005, 0.004], "hole_diameter_m": 0.002, "hole_depth_m": 0.002, "grid_m": 0.0002}})");
@@ -311,7 +312,7 @@ TEST(MakeShell, OfABlockListsVerticesOnceOrForEachCell) {
   const auto per_cell = make_shell(scenario);
   EXPECT_GT(shared->size(), 1000u);
   EXPECT_EQ(per_cell->size(), 4 * shared->size());
-  // Cubes between multiples of the grid's spacing would give other cells.
+  // Cubes between multiples of the grid's spacing would give different cells.
   const auto& block = std::get<BlockEnvironment>(scenario.environment);
   const IsoSurface surface = marching_cubes(density_field(block.block, block.grid, block.density), {.cells = true});
   EXPECT_EQ(per_cell->cell_of_points(), points_by_cell(surface, block.grid).cells);

@@ -25,8 +25,8 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-/// Scenes made to fool: soft, thin, inverted, open, tiny, huge, stuck, too fast. The truth about each is known from its
-/// geometry, and neither an outcome nor a class nor a depth may say otherwise.
+/// Tests difficult scenes: soft, thin, inverted, open, tiny, huge, stuck, too fast. The true result of each scene
+/// follows from its geometry. Outcome, motion class and depth must agree with it.
 namespace hapbench::truth_test {
 namespace {
 
@@ -35,15 +35,16 @@ namespace fs = std::filesystem;
 constexpr double kRadius = 0.0005;
 constexpr double kUnknown = -1.0;
 
-/// The true depth of the tool with its tip centre at p; kUnknown where nobody can know.
+/// Returns the true depth of the tool with its tip centre at p; kUnknown if the depth is not defined.
 using Truth = std::function<double(const Vec3& p)>;
 
-/// A ball over the plane z = 0, whose shank points away from it.
+/// A ball above the plane z = 0; the shank points away from the plane.
 double ball_in_plane(const Vec3& p) {
   return std::max(0.0, kRadius - p.z());
 }
-/// In a plate 0.2 mm thick below z = 0, wider than the tool's way, the depth is that of the tool's height nearest to
-/// the plate's middle; the tool reaches from the ball's lowest point to the shank's end.
+/// The plate is 0.2 mm thick, below z = 0, and wider than the tool's path. The depth is the depth at the height of the
+/// tool that is nearest to the middle of the plate. The tool extends from the lowest point of the ball to the end of
+/// the shank.
 double ball_in_plate(const Vec3& p) {
   const double neck = 0.3 * 2.0 * kRadius, end = std::sqrt(kRadius * kRadius - neck * neck) + 20.0 * neck;
   const double height = std::clamp(-0.0001, p.z() - kRadius, p.z() + end);
@@ -52,10 +53,10 @@ double ball_in_plate(const Vec3& p) {
 
 struct Case {
   const char* name;
-  std::vector<std::string> changes;  ///< path=value of a ball pressed on a plane
-  std::vector<Outcome> outcomes;     ///< those that are true
+  std::vector<std::string> changes;  ///< overrides path=value of a ball pressed onto a plane
+  std::vector<Outcome> outcomes;     ///< outcomes that are true
   Truth depth = ball_in_plane;
-  double tolerance = 1e-9;  ///< of the depth [m]
+  double tolerance = 1e-9;  ///< tolerance of the depth [m]
 };
 
 void write(const std::string& name, const TriangleSoup& soup) {
@@ -107,11 +108,11 @@ const std::string kDrag =
 
 const std::string kNoHand = R"(hand={"type":"none"})";
 const std::string kLed = R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,"z_m":0})";
-/// A script's height over time, after kLed.
+/// Returns the height that a script gives over time, for use after kLed.
 std::string led(const std::string& points) {
   return R"(motion.position.z_m={"type":"waypoints","points":)" + points + "}";
 }
-/// A hand's spring whose target follows points over time.
+/// Returns a hand's spring whose target follows points over time.
 std::string spring(const std::string& x, const std::string& z) {
   const auto way = [](const std::string& points) { return R"({"type":"waypoints","points":)" + points + "}"; };
   return R"(hand={"type":"impedance","stiffness_N_per_m":300,"damping_N_s_per_m":6,"target":{"y_m":0,"x_m":)" + way(x) +
@@ -125,14 +126,14 @@ double flat_in_plane(const Vec3& p) {
   return std::max(0.0, -p.z());
 }
 
-/// A ball in the cone about z with its apex at z = -3 mm: the wall's normal leans by the half angle from the
+/// A ball in the cone about z with its apex at z = -3 mm. The wall's normal is inclined by the half angle from the
 /// horizontal.
 double ball_in_cone(const Vec3& p) {
   const double rho = p.head<2>().norm(), z = p.z() + 0.003;
   return std::max(0.0, kRadius - (std::sin(0.5) * z - std::cos(0.5) * rho));
 }
 
-/// Beside the plane there is nothing to be inside of.
+/// Beside the plane there is no inside.
 double beside(const Vec3&) {
   return kUnknown;
 }
@@ -301,7 +302,7 @@ class ScenesMadeToFool : public testing::Test {
   }
 };
 
-/// Of each row that the run recorded, and the largest of the run.
+/// Checks the depth in each recorded step, and the largest depth of the run.
 void expect_true_depths(const Case& c, const MemoryTable& rows, std::optional<double> max) {
   const std::size_t columns = rows.columns().size();
   std::size_t inside = 0;
@@ -323,7 +324,8 @@ void expect_true_depths(const Case& c, const MemoryTable& rows, std::optional<do
   }
 }
 
-/// How deep the tool is in a run, from every row or, with 0, from those that a run without a record looks at.
+/// Returns the depths of the tool in a run: from every `every`-th step or, if `every` is 0, from the steps that a run
+/// without a record evaluates.
 InsideDepths depths_of(const LoadedScenario& loaded, std::uint64_t every) {
   const Scenario& scenario = loaded.scenario;
   SimulationParts parts = assemble(scenario, loaded.files, make_shell(scenario, loaded.files), {});
@@ -334,7 +336,7 @@ InsideDepths depths_of(const LoadedScenario& loaded, std::uint64_t every) {
   return inside.depths();
 }
 
-/// `exact`: of a run that looked at every row. Without a record few are looked at.
+/// `exact`: metrics of a run that evaluated every step. Without a record, few steps are evaluated.
 void expect_seen_without_record(const LoadedScenario& loaded, const MetricList& exact) {
   const InsideDepths few = depths_of(loaded, 0);
   const auto max = number_of(exact, "inside_max_m"), settled = number_of(exact, "inside_settled_m");
@@ -373,7 +375,7 @@ TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepthAlsoWithoutARecord) {
   }
 }
 
-/// Where no row is deeper than half the wall is thick, and a drag that ends deep beside its way.
+/// Scenes in which no step is deeper than half the wall's thickness, and a drag that ends deep beside its path.
 TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   const Case cases[] = {
       {"led sideways through a plate, its tip below",
@@ -405,8 +407,8 @@ TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   }
 }
 
-/// A drill that spins in a hole: its edge is in the wall by a fiftieth of its width, which a coarser search does not
-/// see.
+/// A drill that rotates in a hole: its edge is in the wall by a fiftieth of its width. A coarser search would miss this
+/// depth.
 TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
   const std::vector<std::string> changes = {"time.steps=400",
                                             "expect={}",

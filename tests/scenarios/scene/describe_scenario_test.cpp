@@ -13,8 +13,8 @@
 namespace hapbench::describe_scenario_test {
 namespace {
 
-// The values that a scenario has where its file says nothing, those of the thesis for that kind of scene (Tables A.1,
-// A.2, B.1).
+// Tests the default values of a scenario, which are the values of the thesis for the kind of scene (Tables A.1, A.2,
+// B.1).
 
 struct Expected {
   const char* pointer;
@@ -34,7 +34,7 @@ void expect_fields(const Json& json, std::initializer_list<Expected> fields) {
   }
 }
 
-/// The minimal scenario of an environment, changed by a JSON merge patch (RFC 7386).
+/// Returns the minimal scenario of an environment, changed by a JSON merge patch (RFC 7386).
 Json patched(const std::string& environment, const char* patch) {
   Json json = test::minimal_scenario(environment);
   json.merge_patch(Json::parse(patch));
@@ -71,7 +71,7 @@ TEST(Duration, BecomesARoundedNumberOfSteps) {
   Json json = test::minimal_scenario("springs");
   json["time"] = {{"step_s", 1.0 / 2048.0}, {"duration_s", 1.0}};
   EXPECT_EQ(effective(json)["time"], Json::parse(R"({"step_s": 0.00048828125, "steps": 2048, "stop_when": []})"));
-  json["time"] = {{"step_s", 0.0005}, {"duration_s", 0.1}};  // 0.1 / 0.0005 is not 200 to the last bit
+  json["time"] = {{"step_s", 0.0005}, {"duration_s", 0.1}};  // 0.1 / 0.0005 is not exactly 200
   EXPECT_EQ(effective(json)["time"]["steps"], 200);
 }
 

@@ -16,19 +16,19 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-/// Valid files with a few bytes changed at random. Whatever they have become, they are read or refused: no crash, no
-/// other exception, and nothing half right comes through.
+/// Valid files with a few bytes changed at random. Each changed file must be accepted or rejected: no crash, no other
+/// exception, and no partly read content.
 namespace hapbench::fuzz_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// How the mutants of one kind of file fared.
+/// Counts of accepted and rejected mutants of one kind of file.
 struct Tally {
   std::size_t accepted = 0, refused = 0;
 };
 
-/// Calls `read` with mutants of the texts; it returns normally or throws an InputError of one line.
+/// Calls `read` with mutants of the texts. `read` must return normally or throw an InputError of one line.
 template <class Read>
 Tally fuzz(const std::vector<std::string>& texts, std::size_t mutants, std::uint64_t seed, Read read) {
   Random random(seed);
@@ -50,7 +50,7 @@ Tally fuzz(const std::vector<std::string>& texts, std::size_t mutants, std::uint
   return tally;
 }
 
-/// Both happen often, or the mutants would show little.
+/// Checks that both happen often, because otherwise the mutants would test little.
 void expect_mixture(const Tally& tally) {
   const std::size_t total = tally.accepted + tally.refused;
   EXPECT_GT(tally.accepted, total / 50);
@@ -64,7 +64,7 @@ TEST(Fuzz, ScenarioTextsAreReadOrRefused) {
   expect_mixture(fuzz(texts, test::cases(40'000), 1, [](const std::string& text) {
     const Json json = parse_json(text);
     const Json effective = effective_scenario(read_scenario(json, "").scenario, "");
-    // An accepted text is a scenario: its effective form reads as itself.
+    // An accepted text is a scenario: reading its effective form gives the same scenario.
     EXPECT_EQ(effective_scenario(read_scenario(effective, "").scenario, ""), effective) << text;
   }));
 }
@@ -111,7 +111,7 @@ TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
   const Tally tally = fuzz({GetParam().text}, test::cases(2000), 6, [](const std::string& mutant) {
     const std::clock_t start = std::clock();
     const auto points = MeshFile(mutant, GetParam().name, {}).points();
-    // Of the processor's time, which a busy machine does not lengthen: a mutant takes some milliseconds.
+    // Processor time, which does not depend on the load of the machine: a mutant takes some milliseconds.
     EXPECT_LT(std::clock() - start, 30 * CLOCKS_PER_SEC);
     EXPECT_FALSE(points.empty());
     for (const SurfacePoint& point : points) {
@@ -119,7 +119,7 @@ TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
       EXPECT_NEAR(point.normal.norm(), 1.0, 1e-12);
     }
   });
-  // A byte more or less makes most binary files another size than they declare.
+  // A byte more or less changes the size of most binary files to a size that they do not declare.
   EXPECT_GT(tally.accepted, 0u);
   EXPECT_GT(tally.refused, tally.accepted / 4);
 }

@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "extends" and `--set path=value`. What is refused of files that extend others is in
-// tests/data/golden/refused_scenarios.txt.
+// Tests "extends" and `--set path=value`. tests/data/golden/refused_scenarios.txt has the errors of files that extend
+// other files.
 
 constexpr const char* kBase = R"({
   "name": "the base", "description": "springs",
@@ -88,14 +88,14 @@ TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
   const LoadedScenario loaded = load_scenario(write("mine.json", R"({"extends": "between/middle.json", "seed": 3})"));
   EXPECT_EQ(loaded.scenario.seed, 3);
   EXPECT_TRUE(checked(loaded).file_warnings().empty());
-  // The effective scenario names it from where it stands, and extends nothing.
+  // The effective scenario names the file relative to its own folder, and extends nothing.
   const Json effective = effective_scenario(loaded.scenario, directory_.path());
   EXPECT_EQ(effective["environment"]["file"], "there/data/cube.obj");
   EXPECT_FALSE(effective.contains("extends"));
 }
 
 TEST_F(Extends, AnotherTimeStepReplacesTheSamplesOfADelayInSeconds) {
-  // As an effective scenario has them: 0.0023 s are 4.6 steps of 0.0005 s.
+  // As in an effective scenario: 0.0023 s are 4.6 steps of 0.0005 s.
   write("base.json", R"({"time": {"step_s": 0.0005, "steps": 20}, "environment": {"type": "plane"},
     "device": {"type": "impedance", "handle_mass_kg": 0.1, "delay_s": 0.0023, "delay_samples": 4.6}})");
   const auto samples = [&](const std::string& text) {
@@ -104,7 +104,7 @@ TEST_F(Extends, AnotherTimeStepReplacesTheSamplesOfADelayInSeconds) {
   };
   EXPECT_EQ(samples(R"({"extends": "base.json"})"), 0.0023 / 0.0005);
   EXPECT_EQ(samples(R"({"extends": "base.json", "time": {"step_s": 0.001}})"), 0.0023 / 0.001);
-  // What the file gives itself stays.
+  // Values of the file itself are kept.
   EXPECT_EQ(samples(R"({"extends": "base.json", "time": {"step_s": 0.001}, "device": {"delay_samples": 3}})"), 3.0);
 }
 
@@ -131,7 +131,7 @@ class Override : public testing::Test {
   Json with(const std::vector<std::string>& overrides) const {
     return effective_scenario(load_scenario(file_, overrides).scenario, directory_.path());
   }
-  /// The refusal, without the file that stands before it.
+  /// Returns the message of the error, without the file before it.
   std::string refusal(const std::string& override) const {
     SCOPED_TRACE(override);
     const auto error = test::input_error_of([&] { with({override}); });
@@ -152,28 +152,28 @@ TEST_F(Override, SetsWhatItsPathLeadsTo) {
   } kCases[] = {
       {{"time.steps=7"}, "/time/steps", "7"},
       {{"rendering.reduction.threshold=0.5"}, "/rendering/reduction/threshold", "0.5"},
-      // Entries of lists, by their index.
+      // Entries of lists, by index.
       {{"environment.groups.1.count=9"}, "/environment/groups/1/count", "9"},
       {{"environment.groups.1.count=9"}, "/environment/groups/0/count", "2"},
       {{"environment.groups.0.direction.2=4"}, "/environment/groups/0/direction", "[1.0, 0.0, 4.0]"},
-      // Objects that are not there are created.
+      // Missing objects are created.
       {{"rendering.limits.max_force_N=30"}, "/rendering/limits/max_force_N", "30.0"},
       {{"record.every=5"}, "/record/every", "5"},
-      // JSON of every kind.
+      // JSON values of every kind.
       {{"rendering.reduction=null"}, "/rendering/reduction", "null"},
       {{"rendering.local_average=false"}, "/rendering/local_average", "false"},
       {{"initial.position_m=[0.001, 0, -2e-3]"}, "/initial/position_m", "[0.001, 0.0, -0.002]"},
       {{R"(environment={"type":"plane"})"}, "/environment/type", "\"plane\""},
       {{"time.steps=1e3"}, "/time/steps", "1000"},
-      // Anything else is a text.
+      // Every other value is a text.
       {{"rendering.algorithm=mean"}, "/rendering/algorithm", "\"mean\""},
       {{R"(rendering.algorithm="mean")"}, "/rendering/algorithm", "\"mean\""},
       {{"description=a = b, c"}, "/description", "\"a = b, c\""},
       {{"description="}, "/description", "\"\""},
-      // A later one wins.
+      // A later override takes precedence.
       {{"time.steps=7", "time.steps=8"}, "/time/steps", "8"},
       {{R"(rendering={"iterations":9})", "rendering.damping_ratio=0"}, "/rendering/iterations", "9"},
-      // The field that says the same is removed.
+      // The field with the same meaning is removed.
       {{"time.duration_s=1"}, "/time/steps", "2000"},
       {{"time.duration_s=1", "time.steps=8"}, "/time/steps", "8"},
   };
@@ -191,10 +191,10 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
   const double step = with({}).at("time").at("step_s").get<double>();
   EXPECT_EQ(delays({}), std::pair(0.0023, 0.0023 / step));
   EXPECT_EQ(delays({"time.step_s=0.001"}), std::pair(0.0023, 0.0023 / 0.001));
-  // One replaces the other.
+  // One field replaces the other field.
   EXPECT_EQ(delays({"device.delay_samples=3"}), std::pair(-1.0, 3.0));
   EXPECT_EQ(delays({"device.delay_samples=3", "device.delay_s=0.001"}), std::pair(0.001, 0.001 / step));
-  // The effective scenario has both and can be read again, also with another step.
+  // The effective scenario has both fields and can be read again, also with another time step.
   const std::string both = "device=" + with({device}).at("device").dump();
   EXPECT_EQ(with({both}), with({device}));
   EXPECT_EQ(with({both, "time.step_s=0.0003"}), with({device, "time.step_s=0.0003"}));
@@ -218,11 +218,11 @@ TEST_F(Override, IsCheckedLikeTheFile) {
       {"rendering.mass_kg=heavy", "/rendering/mass_kg: got \"heavy\"; allowed: a number > 0"},
       {"rendering.mass_kg=1e999", "/rendering/mass_kg: got \"1e999\""},
       {"seed.x=1", "/seed: got {\"x\":1}; allowed: an integer"},
-      {"time.stop_when.0=leaves_hole", "/time/stop_when: got {"},  // absent: an object is made
+      {"time.stop_when.0=leaves_hole", "/time/stop_when: got {"},  // missing: an object is created
       {"environment.groups.2.count=1", "environment.groups.2.count: got list index \"2\"; allowed: 0 ... 1"},
       {"environment.groups.-1=1", "environment.groups.-1: got list index \"-1\"; allowed: 0 ... 1"},
       {"environment.groups.99999999999999999999=1", "environment.groups.99999999999999999999: got list index"},
-      {"=5", "--set: got \"=5\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000"},
+      {"=5", "--set: got \"=5\"; allowed: path=value, such as rendering.stiffness_N_per_m=40000"},
   };
   for (const auto& [override, message] : kRefusals)
     EXPECT_EQ(refusal(override).find(message), 0u) << override << ": " << refusal(override);
@@ -238,7 +238,7 @@ TEST_F(Override, NestedDeeplyIsRefused) {
             std::string::npos);
 }
 
-// The effective scenario: with every default filled in, a file that means the same.
+// The effective scenario: a file with all defaults filled in and the same meaning.
 
 std::string content_hash(const Scenario& scenario) {
   return scenario_hash(effective_scenario(scenario, {}), NamedFiles(scenario));
@@ -246,7 +246,7 @@ std::string content_hash(const Scenario& scenario) {
 
 void expect_fixed_point(const Scenario& scenario, const fs::path& directory) {
   const Json effective = effective_scenario(scenario, directory);
-  // Through text, as the file is.
+  // Through text, as in a file.
   const LoadedScenario again = read_scenario(parse_json(json_text(effective)), directory);
   EXPECT_EQ(json_text(effective_scenario(again.scenario, directory)), json_text(effective));
   for (const auto& [kind, pointer, text] : again.warnings) {

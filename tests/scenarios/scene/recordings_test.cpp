@@ -10,7 +10,7 @@
 namespace hapbench::recordings_test {
 namespace {
 
-// Refusals of recorded motions are in tests/data/golden/refused_files.txt.
+// tests/data/golden/refused_files.txt has the errors of recorded motions.
 
 const std::string kHeader = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n";
 
@@ -38,7 +38,7 @@ TEST(MotionFile, HasItsAxesNormalised) {
     EXPECT_THROW(read(std::string("0,0,0,0,") + axis + "\n"), InputError) << axis;
 }
 
-/// A quarter of a turn about x takes the axis from -z to y.
+/// A quarter turn about x rotates the axis from -z to y.
 TEST(MotionFileOfQuaternions, TurnsTheToolsFrameIntoTheWorlds) {
   const RecordedMotion motion =
       parse_stroke(kQuaternions + "0,1,2,3,1,0,0,0\n1,1,2,3,0.7072,0.7072,0,0\n", kFile).motion;
@@ -52,7 +52,7 @@ TEST(MotionFileOfQuaternions, TurnsTheToolsFrameIntoTheWorlds) {
 
 const std::string kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m\n";
 
-/// The message with which a trace of these rows is refused; empty when it is read.
+/// Returns the message of the error of a trace with these rows; empty if the trace is accepted.
 std::string refusal(const std::string& rows) {
   try {
     parse_contact_trace(kTraceHeader + rows, "t.csv");

@@ -12,7 +12,7 @@
 namespace hapbench::relation_warnings_test {
 namespace {
 
-/// The warnings about a bundled scenario with these overrides, without the file in front.
+/// Returns the warnings about a bundled scenario with these overrides, without the file before them.
 std::vector<std::string> warnings_with(std::vector<std::string> overrides) {
   std::vector<std::string> warnings;
   for (const Warning& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)
@@ -51,7 +51,7 @@ TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
   EXPECT_TRUE(warnings(R"({"type": "impedance", "target": {"x_m": 0, "y_m": 0, "z_m": 0}})", kDelay).empty());
 }
 
-/// A device of millimetres or grams in place of metres and kilograms; presets and light or heavy devices are usual.
+/// A device in millimetres or grams instead of metres and kilograms; presets and light or heavy devices are usual.
 TEST(ImpedanceDevice, WarnsOfNumbersThatNoDeviceHas) {
   const auto warnings = [](const std::string& fields) {
     return warnings_with({R"(device={"type":"impedance",)" + fields + "}"});

@@ -25,15 +25,14 @@ namespace {
 
 using test::NamedScenario;
 
-// The typed reader and the JSON Schema it emits say the same about every document, judged by a validator that is not
-// ours.
+// Tests that the reader and its JSON Schema agree about every document. An independent validator evaluates the schema.
 
 const test::SchemaValidator& schema() {
   static const test::SchemaValidator validator(scenario_schema());
   return validator;
 }
 
-/// The reader's objection; none when it accepts.
+/// Returns the error of the reader; empty if it accepts the document.
 std::optional<InputError> objection_to(const Json& document) {
   try {
     read_scenario(document, "");
@@ -43,7 +42,8 @@ std::optional<InputError> objection_to(const Json& document) {
   }
 }
 
-/// The scenarios written for tests first: every field is in one of them, while bundled ones resemble each other.
+/// Returns valid scenarios, first the scenarios written for tests: they contain every field, while bundled scenarios
+/// are similar to each other.
 std::vector<NamedScenario> valid_scenarios() {
   std::vector<NamedScenario> all = test::rich_scenarios();
   for (const auto& more : {test::minimal_scenarios(), test::bundled_scenario_files()}) {
@@ -52,7 +52,7 @@ std::vector<NamedScenario> valid_scenarios() {
   return all;
 }
 
-/// How many mutants of the i-th of them to look at.
+/// Returns the number of mutants to test of the i-th scenario.
 std::size_t mutants_of(std::size_t i) {
   return test::cases(i < test::rich_scenarios().size() ? 4000 : 300);
 }
@@ -72,7 +72,7 @@ TEST(ScenarioSchema, AcceptsEveryValidScenarioAndItsEffectiveForm) {
 }
 
 TEST(ScenarioSchema, HasAnExampleInTheTestsForEveryField) {
-  // Otherwise the mutations below could not reach it.
+  // A field that is missing here could not be changed by the mutations below.
   std::set<std::string> seen, known;
   for (const NamedScenario& scenario : valid_scenarios()) {
     for (const std::string& at : test::pointers_in(scenario.json)) {
@@ -87,8 +87,8 @@ TEST(ScenarioSchema, HasAnExampleInTheTestsForEveryField) {
       known.insert(pointer.back());
     }
   }
-  seen.insert("extends");  // what is read in memory extends nothing; the tests below have it
-  seen.insert("config");   // of a library, which tests/data cannot hold; the tests of its sources have it
+  seen.insert("extends");  // a document in memory extends nothing; the tests below test "extends"
+  seen.insert("config");  // a field of a library, which tests/data cannot contain; the tests of contact sources test it
   for (const std::string& field : known) EXPECT_TRUE(seen.contains(field)) << field;
 }
 
@@ -109,7 +109,7 @@ TEST(ScenarioSchema, AcceptsFilesThatExtendOthersAsTheyStand) {
   EXPECT_FALSE(accepts(R"({"environment": {"type": "plane"}})"));
 }
 
-/// Expects schema and reader to agree on a mutant; `objection` is the reader's.
+/// Checks that schema and reader agree on a mutant; `objection` is the error of the reader.
 void expect_agreement(const test::Mutation& mutant, const std::optional<InputError>& objection,
                       const std::string& name) {
   const bool accepted = schema().accepts(mutant.document);
@@ -121,7 +121,8 @@ void expect_agreement(const test::Mutation& mutant, const std::optional<InputErr
   const std::string message = objection->what();
   EXPECT_EQ(message.find_first_of("\n\r"), std::string::npos) << name << " " << mutant.change;
   EXPECT_NE(message.find("allowed"), std::string::npos) << name << " " << mutant.change << ": " << message;
-  // The place is in the document, unless it is a field left at its default that contradicts what was given.
+  // The pointer exists in the document, unless it refers to a field with its default value that contradicts given
+  // fields.
   EXPECT_TRUE(!wrong_shape || mutant.document.contains(Json::json_pointer(objection->place()))) << message;
 }
 
@@ -138,14 +139,15 @@ TEST(ScenarioSchema, RejectsExactlyTheMutantsWhoseShapeTheReaderRefuses) {
       if (objection) ++(objection->kind() == InputError::Kind::shape ? refused : related);
     }
   }
-  // The mutants are neither all good nor all bad, or the test would show little.
+  // Some mutants are valid and some are invalid, because otherwise the test would show little.
   EXPECT_GT(refused, total / 2);
   EXPECT_LT(refused, total * 9 / 10);
   EXPECT_GT(related, total / 1000);
 }
 
 TEST(ScenarioSchema, RejectsNothingThatTheReaderAcceptsAfterManyChanges) {
-  // With several things wrong the reader may meet a contradiction first; acceptance still means the same to both.
+  // With several faults, the reader may find a contradiction first; both must still agree whether the document is
+  // accepted.
   Random random(7);
   const std::size_t per_scenario = test::cases(150);
   for (const NamedScenario& scenario : valid_scenarios()) {

@@ -89,7 +89,7 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
 }  // namespace
 
 Json ProgramRun::json() const {
-  const Json json = Json::parse(out, nullptr, false);
+  Json json = Json::parse(out, nullptr, false);
   EXPECT_FALSE(json.is_discarded()) << "no JSON: " << out << err;
   return json;
 }

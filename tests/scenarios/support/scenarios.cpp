@@ -43,6 +43,7 @@ std::vector<NamedScenario> rich_scenarios() {
           "azimuth_rad": {"type": "sine", "mean": 0, "amplitude": 1, "period_s": 2, "phase_rad": 0.5},
           "roll_rad": {"type": "ramp", "start": 0.1, "rate_per_s": -2}},
         "position": {"type": "prescribed", "x_m": {"type": "ramp", "start": 0, "rate_per_s": 1e-4}, "y_m": 0,
+          "shift_m": [1e-4, 0, 0],
           "z_m": {"type": "waypoints", "points": [[0, 0.001], [1.5, -0.001], [2, 0]], "interpolation": "cosine"}}},
       "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "contact_source": "own",
         "local_average": true,

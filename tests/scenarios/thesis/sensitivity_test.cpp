@@ -2,72 +2,134 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
+#include <string>
 #include <vector>
 
-#include "sim/core/random.hpp"
+#include "scenarios/thesis/assumptions.hpp"
+#include "scenarios/thesis/ledger.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::sensitivity_test {
 namespace {
 
-using Bins = std::vector<std::size_t>;
-using Values = std::vector<double>;
-
-Values uniform(std::size_t count, std::uint64_t seed) {
-  Random random(seed);
-  Values values(count);
-  for (double& value : values) value = random.uniform();
-  return values;
+SetFinding found(Verdict verdict, const std::string& number = "1") {
+  return {std::string(verdict_name(verdict)), number, "", {}};
 }
 
-TEST(EqualCountBins, CutTheValuesInOrder) {
-  EXPECT_EQ(equal_count_bins(Values{3, 1, 2, 4}, 2), (Bins{1, 0, 0, 1}));
-  EXPECT_EQ(equal_count_bins(Values{5, 5, 5}, 3), (Bins{0, 1, 2}));
-  EXPECT_TRUE(equal_count_bins(Values{}, 3).empty());
+JudgedClaim judged(const std::string& id, const std::string& reach) {
+  JudgedClaim claim;
+  claim.claim.id = id;
+  claim.claim.place = "3.3";
+  claim.finding.verdict = Verdict::replicated;
+  claim.reach = reach;
+  return claim;
 }
 
-TEST(FirstOrderIndex, IsTheFormulasByHand) {
-  // Means 0.25 and 1 about 0.625: SST = 1.875, SSB = 2 * 4 * 0.375^2 = 1.125, SSW = 0.75 with 8 - 2 degrees of freedom.
-  const Bins bin = {0, 0, 0, 0, 1, 1, 1, 1};
-  const Values y = {0, 0, 0, 1, 1, 1, 1, 1};
-  EXPECT_NEAR(first_order_index(bin, y), (1.125 - 0.75 / 6.0) / 1.875, 1e-15);
-  EXPECT_EQ(first_order_index(bin, Values{0, 0, 0, 0, 1, 1, 1, 1}), 1.0);
-  EXPECT_TRUE(std::isnan(first_order_index(bin, Values(8, 1.0)))) << "nothing changes";
-  EXPECT_TRUE(std::isnan(first_order_index(Bins{0, 1}, Values{0, 1}))) << "every bin has one point";
-}
-
-TEST(DecidingInput, IsTheOneThatDecidesOrNone) {
-  constexpr std::size_t kPoints = 96;
-  std::vector<Bins> bins;
-  std::vector<Values> inputs;
-  for (std::uint64_t i = 0; i < 10; ++i) {
-    inputs.push_back(uniform(kPoints, 100 + i));
-    bins.push_back(equal_count_bins(inputs.back(), 6));
+class Sensitivity : public testing::Test {
+ protected:
+  /// A record with cases "ASSUMPTION VALUE" of one claim.
+  SensitivityRecord record(const std::vector<std::pair<std::string, Verdict>>& cases) const {
+    SensitivityRecord made;
+    made.begin("T9", "reach", found(Verdict::replicated), complete_ > 0 ? complete_ : cases.size());
+    for (const auto& [assumption, verdict] : cases) made.add("T9", assumption, "2", found(verdict));
+    return made;
   }
-  Values y(kPoints);
-  for (std::size_t i = 0; i < kPoints; ++i) y[i] = inputs[7][i] < 0.3 ? 1.0 : 0.0;
-  const auto deciding = deciding_input(bins, y, 1);
-  ASSERT_TRUE(deciding);
-  EXPECT_EQ(deciding->input, 7u);
-  EXPECT_GT(deciding->index, 0.8);
-  EXPECT_FALSE(deciding_input(bins, Values(kPoints, 1.0), 1)) << "y never changes";
+  std::string robustness(const std::vector<std::pair<std::string, Verdict>>& cases) const {
+    const JudgedClaim claim = judged("T9", "reach");
+    return robustness_of(claim, record(cases).entry("T9", "reach")).text();
+  }
+  std::size_t complete_ = 0;  ///< number of cases of a complete entry; 0: as many as it has
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Sensitivity, NamesTheAssumptionsThatChangeTheVerdict) {
+  using enum Verdict;
+  EXPECT_EQ(robustness({}), "robust");
+  EXPECT_EQ(robustness({{"a", replicated}, {"b", not_judged}}), "robust") << "what is not judged changes nothing";
+  EXPECT_EQ(robustness({{"a", replicated}, {"b", qualitatively}, {"b", not_replicated}}), "sensitive to b");
+  EXPECT_EQ(robustness({{"a", qualitatively}, {"b", qualitatively}}), "depends on several: a, b");
 }
 
-TEST(DecidingInput, RaisesFalseAlarmsAtItsLevelOnly) {
-  constexpr std::size_t kPoints = 64, kTrials = 300;
-  std::vector<Bins> bins;
-  for (std::uint64_t i = 0; i < 10; ++i) bins.push_back(equal_count_bins(uniform(kPoints, 500 + i), 4));
-  std::size_t alarms = 0;
-  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
-    Values y = uniform(kPoints, 9000 + trial);
-    for (double& value : y) value = value < 0.4 ? 1.0 : 0.0;
-    if (deciding_input(bins, y, trial, 0.05, 99)) ++alarms;
+TEST_F(Sensitivity, WithoutAllCasesIsNotSampledUnlessSeveralAssumptionsChangeTheVerdict) {
+  using enum Verdict;
+  complete_ = 5;
+  EXPECT_EQ(robustness({{"a", replicated}}), "not sampled");
+  EXPECT_EQ(robustness({{"a", qualitatively}}), "not sampled");
+  EXPECT_EQ(robustness({{"a", qualitatively}, {"b", qualitatively}}), "depends on several: a, b");
+}
+
+TEST_F(Sensitivity, OfAClaimWithoutAssumptionsIsExactAndWithoutARecordNotSampled) {
+  JudgedClaim claim = judged("T9", "");
+  EXPECT_EQ(robustness_of(claim, {}).text(), "exact");
+  claim.reach = "reach";
+  EXPECT_EQ(robustness_of(claim, {}).text(), "not sampled");
+  const Json entry = record({{"a", Verdict::qualitatively}}).entry("T9", "reach");
+  claim.claim.timing = true;
+  EXPECT_EQ(robustness_of(claim, entry).text(), "not sampled") << "times depend on the machine";
+}
+
+TEST_F(Sensitivity, IsKeptInAFileAndContinued) {
+  const SensitivityRecord made = record({{"a", Verdict::qualitatively}});
+  test::write_plainly(directory_ / "record.json", made.text());
+  SensitivityRecord read(directory_ / "record.json");
+  EXPECT_EQ(read.text(), made.text());
+  read.begin("T9", "reach", found(Verdict::replicated), 1);
+  EXPECT_TRUE(read.has("T9", "a", "2"));
+  EXPECT_FALSE(read.has("T9", "a", "3"));
+  EXPECT_TRUE(read.entry("T9", "other assumptions").is_null());
+  // Another verdict, another number or other assumptions: the cases are made anew.
+  for (const auto& [reach, recorded] : {std::pair("reach", found(Verdict::qualitatively)),
+                                        {"reach", found(Verdict::replicated, "2")},
+                                        {"other assumptions", found(Verdict::replicated)}}) {
+    SensitivityRecord changed(directory_ / "record.json");
+    changed.begin("T9", reach, recorded, 1);
+    EXPECT_FALSE(changed.has("T9", "a", "2")) << reach;
   }
-  // Binomial with p = 0.05: 15 of 300 on average, standard deviation 3.8.
-  EXPECT_LE(alarms, 15u + 4 * 4);
-  EXPECT_GE(alarms, 1u) << "the level is not that of something else";
+  SensitivityRecord empty = made;
+  empty.keep_only({});
+  EXPECT_TRUE(empty.entry("T9", "reach").is_null());
+  EXPECT_TRUE(SensitivityRecord(directory_ / "none.json").entry("T9", "reach").is_null());
+  test::write_plainly(directory_ / "record.json", R"({"claims": [{"id": "T9"}]})");
+  EXPECT_TRUE(test::input_error_of([&] { SensitivityRecord broken(directory_ / "record.json"); }));
+}
+
+TEST_F(Sensitivity, CasesAreThoseThatCanChangeAClaimAndThatTheRecordLacks) {
+  const Json file = {{"assumptions",
+                      {{{"id", "rule.a"}, {"value", 1}, {"range", {0, 2}}},
+                       {{"id", "b"},
+                        {"value", "x"},
+                        {"options", {"x", "y"}},
+                        {"fields", {{{"scenarios", {"task2_*"}}, {"path", "seed"}}}}},
+                       {{"id", "hand"},
+                        {"value", 1},
+                        {"range", {0.5, 2}},
+                        {"calibrated", {{"scenario", "task2_x"}, {"raw", 9}}},
+                        {"fields", {{{"scenarios", {"task2_*"}}, {"path", "seed"}}}}}}}};
+  test::write_plainly(directory_ / "assumptions.json", file.dump());
+  const Assumptions assumptions(directory_ / "assumptions.json");
+  const auto judge = [](const Measured&, const PublishedNumbers&) { return Finding(); };
+  std::vector<Claim> claims = {{.id = "costly", .judge = judge, .costly = true},
+                               {.id = "rule", .rule = "at least <rule.a>", .judge = judge},
+                               {.id = "time", .judge = judge, .timing = true}};
+  SensitivityRecord record;
+  for (const Claim& claim : claims) record.begin(claim.id, "reach", found(Verdict::replicated), 1);
+  record.add("rule", "rule.a", "0", found(Verdict::replicated));
+  std::string text;
+  for (const SensitivityCase& one : missing_cases(record, assumptions, claims, {{"task2_x"}, {}, {"task2_x"}}))
+    for (const Claim& claim : one.claims)
+      text += assumptions.all()[one.assumption].id + " " + one.value + " " + claim.id + "; ";
+  EXPECT_EQ(text, "rule.a 2 rule; b y costly; ") << "inputs have no cases, and cheap claims come first";
+}
+
+TEST_F(Sensitivity, GoesIntoTheLedgerWhileItIsAboutTheSameAssumptions) {
+  const SensitivityRecord made = record({{"a", Verdict::qualitatively}, {"b", Verdict::replicated}});
+  const auto ledger = [&](const JudgedClaim& claim) { return ledger_json({claim}, {}, made).at("claims").at(0); };
+  const Json same = ledger(judged("T9", "reach"));
+  EXPECT_EQ(same.at("robustness"), "sensitive to a");
+  EXPECT_EQ(same.at("cases_tried"), 2);
+  EXPECT_EQ(same.at("cases_moved").size(), 1u);
+  EXPECT_EQ(ledger(judged("T9", "other")).at("robustness"), "not sampled");
 }
 
 }  // namespace

@@ -61,9 +61,9 @@ TEST(LambdaMax, IsTheLargestEigenvalue) {
   for (std::size_t i = 0; i < test::cases(10000); ++i) {
     const Mat3 Q = test::random_rotation(random);
     Vec3 eigenvalues(random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0));
-    if (i % 2 == 0) eigenvalues = {1.0, 1.0, random.uniform()};  // the largest is double
+    if (i % 2 == 0) eigenvalues = {1.0, 1.0, random.uniform()};  // the largest eigenvalue is double
     const Mat3 S = Q * eigenvalues.asDiagonal() * Q.transpose();
-    // Building S and the iteration each move eigenvalues by a few roundings of the norm.
+    // Building S and the iteration change eigenvalues by a few roundings of the norm.
     EXPECT_NEAR(lambda_max(S), eigenvalues.maxCoeff(), 32 * kEps * eigenvalues.cwiseAbs().maxCoeff());
   }
 }
@@ -125,10 +125,10 @@ TEST(SpringSource, HasTheContactsOfItsKindOfSprings) {
   }
 }
 
-// Contacts that come late, against their definition written down anew: from all poses of a run, without rings and
-// buffers.
+// Compares late contacts with an independent implementation of their definition, which uses all poses of a run, without
+// ring buffers.
 
-/// Contacts that are a function of the pose, in number, too.
+/// Contacts that are a function of the pose; their number also depends on the pose.
 class PoseSource final : public ContactSource {
  public:
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override {
@@ -160,7 +160,7 @@ std::vector<ToolPose> random_way(std::uint64_t seed, std::size_t rows, bool roll
   return way;
 }
 
-/// Q of MultiRateContacts: the smallest turn between the axes, then the difference of roll.
+/// Returns Q of MultiRateContacts: the shortest rotation between the axes, then the difference of the rolls.
 Mat3 smallest_turn(const ToolPose& from, const ToolPose& to) {
   const Vec3 across = from.axis.cross(to.axis);
   const double angle = std::atan2(across.norm(), from.axis.dot(to.axis));
@@ -175,7 +175,7 @@ TEST(TurnMatrix, IsTheSmallestTurnFollowedByTheRoll) {
     const ToolPose from{{}, random.direction(), random.uniform(-3.0, 3.0)};
     const ToolPose near{{}, (from.axis + 1e-7 * random.direction()).normalized(), from.roll};
     const ToolPose to = i % 2 == 0 ? near : ToolPose{{}, random.direction(), random.uniform(-3.0, 3.0)};
-    // The product of matrices of rounded unit vectors, and of a turn by up to pi from an angle.
+    // Rounding of a product of matrices of unit vectors, and of a rotation by an angle up to pi.
     EXPECT_TRUE(turn_matrix(from, to).isApprox(smallest_turn(from, to), 1e-12));
     EXPECT_EQ(turn_matrix(from, {Vec3::Ones(), from.axis, from.roll}), Mat3(Mat3::Identity()));
     const Mat3 over = turn_matrix(from, {{}, -from.axis, from.roll});
@@ -184,7 +184,7 @@ TEST(TurnMatrix, IsTheSmallestTurnFollowedByTheRoll) {
   }
 }
 
-/// The rows of the queries that serve, from the rows of those that are not lost; -1 before the first.
+/// Returns, for each step, the step of the query whose contacts are used; -1 before the first query returns.
 std::vector<std::int64_t> rows_that_serve(const MultiRateSchedule& late, const std::set<std::int64_t>& lost,
                                           std::size_t rows) {
   std::vector<std::int64_t> serve(rows, -1);
@@ -212,7 +212,7 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
   const auto& [late, rolls] = GetParam();
   constexpr std::size_t kRows = 300;
   const std::vector<ToolPose> way = random_way(7, kRows, rolls);
-  // Which queries are lost: one number each after the first.
+  // Draw which queries are lost: one random number for each query after the first query.
   std::set<std::int64_t> lost;
   Random random(42);
   for (std::int64_t q = late.every; late.dropout > 0.0 && q < static_cast<std::int64_t>(kRows); q += late.every)
@@ -256,7 +256,7 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
         ++next;
       }
       EXPECT_EQ(contacts.size(), next);
-      // Within the step: the same query.
+      // A second query within the step gives the same contacts.
       ContactBuffer before = contacts;
       source.contacts_at(now, contacts);
       EXPECT_EQ(before.size(), contacts.size());
@@ -268,7 +268,7 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
   EXPECT_EQ(dropped > 0, late.linear);
 }
 
-/// Springs that pull keep their negative depths, so linear contacts of springs are the fresh ones.
+/// Springs that pull keep their negative depths, so linear contacts of springs equal contacts found in every step.
 TEST(MultiRateContacts, OfSpringsThatPullAreFreshWhenLinear) {
   const auto springs = std::make_shared<SpringSet>();
   Random random(1);

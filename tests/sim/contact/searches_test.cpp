@@ -21,7 +21,7 @@ using test::SearchPair;
 constexpr double kInf = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
 const Cylinder kDrill(0.0005, 0.01, Tip::flat);
 
-/// The search must answer exactly as brute force does, whatever the tool did before: same points, same order, same
+/// The search must give exactly the result of brute force, whatever the tool did before: same points, same order, same
 /// bits.
 TEST(NeighbourListQuery, FindsWhatBruteForceFindsAtPosesOfEveryKindOfTool) {
   for (const test::ToolKind& kind : test::tool_kinds()) {
@@ -29,7 +29,7 @@ TEST(NeighbourListQuery, FindsWhatBruteForceFindsAtPosesOfEveryKindOfTool) {
     const auto make_tool = [&](Random& random, double size) { return kind.make(random, 0.5 * size).shape; };
     test::WalkTotals totals;
     test::expect_agreement_with_brute_force(Random(13), make_tool, totals);
-    // The walks touch something, and lists are used more than once.
+    // Check that the walks touch points, and that lists are used more than once.
     EXPECT_GT(totals.contacts, totals.poses / 2);
     EXPECT_LT(totals.lists_rebuilt, totals.poses / 2);
   }
@@ -49,7 +49,7 @@ TEST(NeighbourListQuery, SurvivesAnEmptyShellAndPosesThatAreNotFinite) {
 }
 
 TEST(NeighbourListQuery, HoldsToItsInequalityWhenTheToolTurnsAboutItsTip) {
-  // The bottom end, 10 mm from the tip, sweeps furthest: a list that ignored rotation would miss these points.
+  // The bottom end, 10 mm from the tip, moves farthest: a list that ignored rotation would miss these points.
   std::vector<SurfacePoint> arc;
   for (int k = 0; k < 360; ++k) {
     const double a = k * std::numbers::pi / 180.0;
@@ -77,7 +77,7 @@ std::vector<SurfacePoint> at(const std::vector<Vec3>& positions) {
   return points;
 }
 
-/// Whether a shell of the one point reports it.
+/// Returns true if a search over a shell of this one point reports the point.
 bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& position) {
   const PointShell shell(at({position}), 0.0);
   const auto query = make_contact_query(shell, tool, Skips::off);
@@ -90,18 +90,19 @@ class ShellQueryForTip : public testing::TestWithParam<Tip> {};
 INSTANTIATE_TEST_SUITE_P(BothTips, ShellQueryForTip, testing::Values(Tip::flat, Tip::round),
                          [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
 
-// Poses along the coordinate axes and dyadic sizes: all coordinates below are exact, so the closed set is exact too.
+// Poses along the coordinate axes and dyadic sizes: all coordinates below are exact, so it is exactly known which
+// points belong to the closed set.
 constexpr double kRadius = 0x5p-13;  // 0.61 mm, a multiple of 5 for the point (3, 4) on the circle
 constexpr double kLength = 0x1p-7;
 // One unit in the last place of the coordinates, which are below 1/2; the radius is far above it.
 constexpr double kOut = 0x1p-53;
 const Vec3 kPosition(0x3p-4, -0x5p-4, 0x1p-4);
 
-/// Places (s, a, b): s along the axis, a and b across it.
+/// Returns points (s, a, b): s along the axis, a and b perpendicular to it.
 std::vector<Vec3> on_cylinder() {
   std::vector<Vec3> places;
   for (const double s : {0.0, -kLength / 2, -kLength}) {
-    // 0.6 and 0.8 radii are 3 and 4 units of 2^-13: exact.
+    // 0.6 and 0.8 radii are 3 and 4 units of 2^-13, which are exact.
     for (const auto& [a, b] : {std::pair(1.0, 0.0), {0.0, -1.0}, {0.6, 0.8}, {0.0, 0.0}})
       places.push_back({s, a * kRadius, b * kRadius});
   }
@@ -141,7 +142,8 @@ std::size_t marked_near(const PointShell& shell, const ToolShape& tool, const To
   });
 }
 
-/// The largest number of points of a random shell that the tool has near it over some poses, relative to the bound.
+/// Returns the largest number of points of a random shell that the tool has near it over some poses, divided by the
+/// bound.
 double worst_part_of_bound(const ToolShape& tool, double size, Random& random) {
   const double margin = random.uniform(0.0, 0.3) * tool.half_width();
   const PointShell shell(test::random_shell(random, size), 0.0);
@@ -166,7 +168,7 @@ TEST(MostPoints, BoundWhatAnyToolHasNearItAnywhere) {
     const Cylinder drill{size * random.uniform(0.01, 0.2), size * random.uniform(0.02, 3.0), tip};
     tightest = std::max(tightest, worst_part_of_bound(drill, size, random));
   }
-  // The walks meet points; the thirtieth of them that a sanitized build makes need not.
+  // The walks touch points; the thirtieth of the walks in a sanitized build need not.
   EXPECT_TRUE(tightest > 0.1 || HAPBENCH_TEST_SANITIZED != 0) << tightest;
 }
 

@@ -70,7 +70,7 @@ TEST(Profile, HasTheValuesOfItsShape) {
   const struct {
     const char* name;
     Profile profile;
-    std::vector<std::pair<double, double>> values;  ///< exact: at the time, the value
+    std::vector<std::pair<double, double>> values;  ///< exact values: time and value
   } kCases[] = {
       {"zero by default", {}, {{0.0, 0.0}, {123.0, 0.0}}},
       {"constant", -2.5, {{-1e9, -2.5}, {0.0, -2.5}, {0.3, -2.5}, {1e9, -2.5}}},
@@ -91,7 +91,7 @@ TEST(Profile, CosineWaypointsFollowHalfACosineOnEachLeg) {
   const Profile profile = Profile::Shape(Waypoints{{{2.0, 1.0}, {4.0, 5.0}}, kCosine});
   for (int k = 0; k <= 20; ++k) {
     const double s = k / 20.0;
-    // A leg of length 4 evaluated in a handful of operations on numbers below 8.
+    // A segment of length 4, evaluated in a few operations on numbers below 8.
     EXPECT_NEAR(profile(2.0 + 2.0 * s), 3.0 - 2.0 * std::cos(std::numbers::pi * s), 1e-14) << s;
   }
 }
@@ -103,7 +103,8 @@ TEST(Profile, RateIsTheTimeDerivativeOfEveryShape) {
                               Profile::Shape(Waypoints{{{0.0, 0.0}, {1.0, 8.0}, {3.0, 4.0}}, kCosine})};
   for (const Profile& profile : profiles) {
     for (const double t : {-1.0, 0.3, 0.7, 1.4, 2.2, 5.0}) {
-      // Third derivatives stay below 4 pi^3 = 125: the central difference errs by less than 25 h^2 and 1e-15 / h.
+      // Third derivatives are below 4 pi^3 = 125, so the error of the central difference is below 25 h^2 plus 1e-15 /
+      // h.
       const double h = 1e-5;
       EXPECT_NEAR(profile.rate(t), (profile(t + h) - profile(t - h)) / (2.0 * h), 25 * h * h + 1e-9) << t;
     }
@@ -114,7 +115,7 @@ TEST(Profile, RateIsTheTimeDerivativeOfEveryShape) {
 
 constexpr double kInf = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A function with its stated error [ulp] and a range of arguments; with powers, from 2^low to 2^high of either sign.
+/// A function with its stated error [ulp] and a range of arguments; for powers, from 2^low to 2^high with both signs.
 struct Case {
   const char* name;
   double (*ours)(double);
@@ -152,7 +153,8 @@ double error_in_ulp(double ours, long double reference) {
   return static_cast<double>(std::abs(ours - reference) / (std::nextafter(size, kInf) - size));
 }
 
-/// The reference has 11 bits more where long double is x87's; its own error of one of its ulp is 0.0005 of ours.
+/// Returns true if long double is x87's: the reference then has 11 bits more, and its own error of one ulp is 0.0005
+/// ulp of ours.
 bool has_reference() {
   return std::numeric_limits<long double>::digits >= 64;
 }
@@ -206,7 +208,7 @@ TEST(Math, PowersOfTenAreExact) {
   EXPECT_EQ(math::pow(9.0, 0.5), 3.0);
 }
 
-/// Of long times at high frequencies; 1e-15 is the stated absolute error.
+/// Large angles occur at long times and high frequencies; 1e-15 is the stated absolute error.
 TEST(Math, LargeAnglesKeepAnAbsoluteError) {
   if (!has_reference()) GTEST_SKIP() << "long double is no wider than double";
   Random random(3);
@@ -225,7 +227,7 @@ TEST(Math, ZerosInfinitiesAndOtherDomainsAreAsInTheStandard) {
   };
   for (const double y : special) {
     for (const double x : special) {
-      // At the ends of the range, where the quotient is 0 or 1, both round alike.
+      // At the ends of the range, where the quotient is 0 or 1, both functions round equally.
       EXPECT_TRUE(same(math::atan2(y, x), std::atan2(y, x))) << y << " " << x;
       if (!std::isnan(x) && !std::isnan(y)) {
         EXPECT_TRUE(same(math::hypot(y, x), std::hypot(y, x)) || std::abs(y) == 1e308) << y << " " << x;
@@ -257,8 +259,8 @@ TEST(Math, SineAndCosineTogetherAreTheSameBits) {
   EXPECT_TRUE(std::signbit(math::sine_cosine(-0.0).sine) && std::isnan(math::sine_cosine(kInf).cosine));
 }
 
-/// Every compiler and instruction set gives these bits; the value was computed by g++ 12 for AVX-512 and by clang 14
-/// without optimisation for SSE2.
+/// Every compiler and instruction set gives these bits. The value was computed by g++ 12 for AVX-512 and by clang 14
+/// without optimization for SSE2.
 TEST(Math, GivesTheSameBitsEverywhere) {
   Random random(4);
   Hash64 hash;

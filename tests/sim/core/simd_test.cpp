@@ -1,4 +1,4 @@
-// Built twice, with the vector type and with the plain loops, so that both obey the same rules.
+// Built twice, with the vector type and with plain loops, so that both follow the same rules.
 #include "sim/core/simd_check.hpp"
 
 #include <gtest/gtest.h>

@@ -59,7 +59,7 @@ TEST(ShellBounds, AreThoseOfThePointsWithoutThePadding) {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-// Random sizes, most of which are no multiple of the spacing.
+// Returns a hole of random size; most sizes are no multiple of the spacing.
 Hole2d random_hole(Random& random) {
   return {random.uniform(1e-4, 2e-3), random.uniform(1e-4, 1e-2), random.uniform(2e-5, 5e-4),
           random.uniform(1e-4, 4e-3)};
@@ -72,8 +72,8 @@ Slot random_slot(Random& random) {
           random.uniform(5e-5, 5e-4)};
 }
 
-// Longest allowed distance of neighbours: the spacing, 1e-9 of it forgiven by design, and the rounding of two
-// coordinates of at most 1 cm.
+// Returns the longest allowed distance of neighbours: the spacing, plus a tolerance of 1e-9 of the spacing, plus the
+// rounding of two coordinates of at most 1 cm.
 double longest(double spacing) {
   return spacing * (1.0 + 1e-9) + 4 * kEps * 0.01;
 }
@@ -115,7 +115,7 @@ TEST(Hole2dShell, FollowsTheProfileFromLeftToRightInStepsOfAtMostTheSpacing) {
       EXPECT_LE(step, longest(hole.spacing));
       length += step;
     }
-    // Steps that never turn back add up to the length of the profile.
+    // Intervals that never turn back add up to the length of the profile.
     const double profile = 2 * hole.mouth + 2 * hole.depth + hole.width;
     EXPECT_NEAR(length, profile, 4 * kEps * static_cast<double>(points.size()) * profile);
     EXPECT_EQ(points.front().position, Vec3(-hole.width / 2 - hole.mouth, 0, 0));
@@ -214,9 +214,9 @@ TEST(BlockWithHole, TheSurfaceIsAsFarAwayAsTheDistanceSaysAndTheSignIsMembership
                           !(rho < 0.001 && p.z() > -0.005);
     ASSERT_EQ(d < 0.0, material) << p.transpose();
     inside += material ? 1 : 0;
-    // Walking down the gradient by |d| must end on the surface: the distance is not an underestimate. The gradient is a
-    // central difference over 1e-7 m, off by up to 1e-7 / |d| near medial axes, where it may fail: there the surface is
-    // reached in another direction, so points with a gradient that is not unit are left out.
+    // A step of length |d| against the gradient must end on the surface: the distance is not an underestimate. The
+    // gradient is a central difference over 1e-7 m, with an error of up to 1e-7 / |d| near medial axes. There the
+    // surface lies in another direction, so points whose gradient is not a unit vector are left out.
     constexpr double h = 1e-7;
     Vec3 gradient;
     for (int k = 0; k < 3; ++k) {

@@ -30,8 +30,8 @@ TEST(Solid, BelowAPlaneIsTheDepthAtAnyDepth) {
   }
 }
 
-/// The distance to points close together on the surface, with their spacing as the tolerance: the least distance to a
-/// surface of dense points is at most half a diagonal of their squares too large.
+/// Returns the smallest distance to dense points on the surface, with the tolerance: this distance is at most half a
+/// diagonal of the squares between the points too large.
 template <class Shape>
 void expect_distances_to_points(Shape shape, double reach, bool planar) {
   const auto solid = make_solid(shape);
@@ -52,7 +52,7 @@ void expect_distances_to_points(Shape shape, double reach, bool planar) {
     }
     EXPECT_LE(std::abs(phi.value), nearest + 1e-12);
     EXPECT_GE(std::abs(phi.value), nearest - 0.75 * shape.spacing) << q.transpose();
-    // Off an edge the sign is that of its mean normal, too.
+    // Beside an edge, the sign also follows from the mean normal of the edge.
     if (nearest > 2.0 * shape.spacing) {
       EXPECT_EQ(phi.value > 0.0, point->normal.dot(q - point->position) > 0.0) << q.transpose();
     }
@@ -91,7 +91,7 @@ TEST(Solid, OfAClosedMeshHasItsExactDistance) {
       EXPECT_NEAR(solid->gradient(q, 1e-6).dot(test_gradient(*soup, q)), 1.0, 1e-6) << q.transpose();
       EXPECT_TRUE(solid->at(q).known);
     }
-    // A line along edges and through vertices crosses the surface as one beside it.
+    // A line along edges and through vertices crosses the surface like a line beside it.
     EXPECT_NEAR(solid->at(soup->vertices[0] - Vec3(0, 0, 1)).value,
                 test::exact_distance(*soup, soup->vertices[0] - Vec3(0, 0, 1)), 1e-12);
   }
@@ -106,7 +106,7 @@ TEST(Solid, OfPartsThatOverlapIsInsideInBoth) {
 
 TEST(Solid, OfAnOpenSheetIsUnknownBeyondItsBorder) {
   const auto solid = solid_of(test::sheet(10, 10, [](int i, int j) { return Vec3(0.001 * i, 0.001 * j, 0.0); }));
-  const double up = solid->at({0.005, 0.005, 0.001}).value;  // the sheet's winding decides
+  const double up = solid->at({0.005, 0.005, 0.001}).value;  // the winding of the sheet decides
   EXPECT_NEAR(std::abs(up), 0.001, 1e-15);
   for (const double z : {0.02, -0.02}) {
     EXPECT_NEAR(solid->at({0.0052, 0.0047, z}).value, std::copysign(1.0, up) * z, 1e-15);
@@ -178,7 +178,7 @@ TEST(Inside, OfAToolOverABorderIsNeverNothing) {
   EXPECT_EQ(search.depth(pose).value_or(1.0), 0.0);
 }
 
-/// The deepest of the nodes of a grid that lie in the tool, and of points on its surface.
+/// Returns the depth of the deepest grid node in the tool.
 double dense_depth(const test::DefinedTool& tool, const ToolPose& pose, const Solid& solid, double step) {
   const Box box = tool.shape->box_near(pose, 0.0, solid.region());
   const Vec3 low = box.min.cwiseMax(solid.region().min), high = box.max.cwiseMin(solid.region().max);
@@ -202,9 +202,9 @@ struct Place {
   double tilt;
 };
 
-/// Tools of every kind pressed into every kind of solid, against a dense sample of the tool: the answer is the depth of
-/// some point of the tool, so that the sample's deepest is at most the tolerance deeper, and it lies within half a
-/// diagonal of the sample's grid of a sample that is in the tool, or nearly so.
+/// Tools of every kind are pressed into every kind of solid and compared with a dense sample of the tool. The result is
+/// the depth of a point of the tool, so the deepest sample is deeper by at most the tolerance. The deepest point has a
+/// sample in or near the tool within half a diagonal of the grid.
 TEST(Inside, AgreesWithADenseSampleOfTheTool) {
   const TriangleSoup box = test::cube(0.001, {0.0, 0.0, -0.001});
   const TriangleSoup plate = test::cube(0.001, {0.0, 0.0, 0.0});
@@ -237,11 +237,11 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
         continue;
       }
       EXPECT_LE(sample, *depth + InsideSearch::kTolerance * (width + *depth)) << kind.name << " in " << place.name;
-      // A point of the tool may have no sample of the tool within half a diagonal only at sharp edges.
+      // Only at sharp edges, a point of the tool may have no sample in the tool within half a diagonal.
       EXPECT_LE(*depth, sample + 2.0 * std::sqrt(3.0) * step) << kind.name << " in " << place.name;
       most = std::max(most, sample - *depth);
       deep += *depth > 0.0 ? 1 : 0;
-      // Neither here nor at a pose from which this one is not far may the bound be lower.
+      // The bound must not be lower, neither at this pose nor at a nearby pose for which it must hold.
       InsideBound bound(*tool.shape, *place.solid);
       EXPECT_GE(std::max(0.0, bound.at(pose, 0.0, 0.0, 0.0, true)), *depth - 1e-12)
           << kind.name << " in " << place.name;
@@ -255,7 +255,7 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
           << kind.name << " in " << place.name;
       EXPECT_GE(std::max(0.0, bound.coarse_bound_at(beside, moved, turned)), *depth - 1e-12)
           << kind.name << " in " << place.name;
-      // A bound that is known already spares the search, not the answer.
+      // A known depth shortens the search but does not change the result.
       EXPECT_EQ(search.depth(pose, *depth).value_or(-1.0), *depth) << kind.name << " in " << place.name;
     }
   }
@@ -263,8 +263,9 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
   RecordProperty("largest_shortfall_um", std::to_string(1e6 * most));
 }
 
-/// A round tip lies in one ball, a tenth of the tolerance larger for rounding; a leaning flat one touches a ball about
-/// a place behind it along the normal, where two of the tried ones may be a factor of two apart.
+/// A round tip lies in one ball, which is enlarged by a tenth of the tolerance for rounding. A leaning flat tip touches
+/// a ball whose centre is behind it along the normal; the radii of two neighbouring candidate balls may differ by a
+/// factor of two.
 TEST(Inside, HasATightBoundOverAMesh) {
   const TriangleSoup cube = test::cube(0.004, {0.0, 0.0, -0.004});
   const auto solid = make_solid(cube.vertices, cube.triangles);
@@ -287,8 +288,35 @@ TEST(Inside, OfAMeshToolIsThatOfItsMesh) {
   for (const double tilt : {0.0, 0.3}) {
     ToolPose pose = at({0.0, 0.0, -0.0001});
     pose.axis = {-std::sin(tilt), 0.0, -std::cos(tilt)};
-    // The lowest corner of the mesh; its 48 sides have one at the front.
+    // The lowest corner of the mesh; one of its 48 corners is at the front.
     EXPECT_NEAR(search.depth(pose).value_or(0.0), 0.0001 + 0.0005 * std::sin(tilt), grid->error_bound()) << tilt;
+  }
+}
+
+/// A known distance nearby bounds the search and changes no bit of the result, also at a point of the surface.
+TEST(Solid, KnownDistanceNearbyChangesNothing) {
+  const TriangleSoup sphere = test::sphere(0.004, 3);
+  TriangleSoup open = sphere;
+  open.triangles.resize(open.triangles.size() / 2);
+  std::vector<SurfacePoint> points;
+  for (const Vec3& v : sphere.vertices) points.push_back({v, v.normalized()});
+  std::vector<std::unique_ptr<const Solid>> solids;
+  solids.push_back(solid_of(sphere));
+  solids.push_back(solid_of(open));
+  solids.push_back(make_solid(points));
+  solids.push_back(make_solid(BlockWithHole{}));
+  Random random(5);
+  for (const auto& solid : solids) {
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 near = i % 4 == 0 ? sphere.vertices[static_cast<std::size_t>(i) % sphere.vertices.size()]
+                                   : random_point(random, 0.006);
+      const Vec3 q = i % 3 == 0 ? near : Vec3(near + random_point(random, i % 2 == 0 ? 1e-5 : 0.003));
+      const KnownDistance known{near, solid->at(near).value};
+      const SurfaceDistance alone = solid->at(q), helped = solid->at(q, &known);
+      EXPECT_EQ(alone.value, helped.value);
+      EXPECT_EQ(alone.known, helped.known);
+      EXPECT_EQ(solid->gradient(q, 1e-6), solid->gradient(q, 1e-6, &known));
+    }
   }
 }
 

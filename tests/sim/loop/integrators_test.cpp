@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-/// Calls check(system) with random spring-dampers on either side of the stability limits.
+/// Calls check(system) with random spring-dampers on both sides of the stability limits.
 template <class Check>
 void for_random_systems(const IntegratorEntry* integrator, Check check) {
   Random random(1);
@@ -31,7 +31,8 @@ void for_random_systems(const IntegratorEntry* integrator, Check check) {
   }
 }
 
-/// The matrix of (x, dt v) over a step of M x'' = -lambda (K x + B x'), as the headers of the integrators say.
+/// Returns the matrix of (x, dt v) over a step of M x'' = -lambda (K x + B x'), as the headers of the integrators
+/// define it.
 Eigen::Matrix2d step_of(const SpringDamper& s) {
   using Matrix = Eigen::Matrix2d;
   const double k = s.lambda * s.K * s.dt * s.dt / s.M, b = s.lambda * s.B * s.dt / s.M, c = 1.0 - 0.5 * b;
@@ -44,13 +45,13 @@ Eigen::Matrix2d step_of(const SpringDamper& s) {
   }
   if (s.integrator == &kImplicitEuler) return (I - G).inverse();
   if (s.integrator == &kImplicitMidpoint) return (I - 0.5 * G).inverse() * (I + 0.5 * G);
-  return I + G + G2 / 2.0 + G2 * G / 6.0 + G2 * G2 / 24.0;  // rk4, and event where contacts stay
+  return I + G + G2 / 2.0 + G2 * G / 6.0 + G2 * G2 / 24.0;  // rk4, and event while the contacts stay the same
 }
 
 TEST(IntegratorTable, AStepIsTheMatrixOfItsFormula) {
   for (const IntegratorEntry* entry : kIntegrators) {
     IntegratorEntry stepped = *entry;
-    stepped.step_matrix = nullptr;  // the matrix is then built from the integrator
+    stepped.step_matrix = nullptr;  // the matrix is then computed from steps of the integrator
     for_random_systems(entry, [&](SpringDamper system) {
       const Eigen::Matrix2d expected = step_of(system), scale = Eigen::Vector2d(1.0, system.dt).asDiagonal();
       for (const IntegratorEntry* way : {entry, static_cast<const IntegratorEntry*>(&stepped)}) {
@@ -68,13 +69,13 @@ TEST(IntegratorTable, MarginsArePositiveExactlyWhereAStepIsStable) {
     if (entry->stability_margin == nullptr) continue;
     for_random_systems(entry, [&](const SpringDamper& system) {
       const double margin = entry->stability_margin(system);
-      if (std::abs(margin) < 1e-9) return;  // on the limit itself, to rounding
+      if (std::abs(margin) < 1e-9) return;  // on the limit itself, up to rounding
       EXPECT_EQ(margin > 0.0, system.is_stable()) << entry->info.name << " " << system.K << " " << system.B;
     });
   }
 }
 
-/// A step a little below a limit is stable, a little above it is not; without a limit every step is stable.
+/// A step slightly below a limit is stable, a step slightly above it is not; without a limit every step is stable.
 TEST(IntegratorTable, DampersAloneAreStableUpToTheirLimits) {
   constexpr double kMargin = 1e-6;
   for (const IntegratorEntry* entry : kIntegrators) {
@@ -88,7 +89,7 @@ TEST(IntegratorTable, DampersAloneAreStableUpToTheirLimits) {
   }
 }
 
-/// A mass on a linear spring-damper, the same in every direction.
+/// A mass on a linear spring-damper that is equal in all directions.
 class SpringField final : public ForceField {
  public:
   SpringField(double stiffness, double damping) : K(stiffness), B(damping) {}
@@ -132,8 +133,8 @@ class OneSidedSpring final : public ForceField {
   bool touches_ = false;
 };
 
-/// How much faster than it came a mass leaves the spring, as a share, and when it is where it started, in half periods
-/// of contact after it touched.
+/// Returns the relative change of the speed of a mass that bounces on the spring, and the duration of the contact in
+/// half periods.
 std::pair<double, double> bounce(const IntegratorEntry& integrator, double dt, double tolerance) {
   constexpr double kSpeed = 0.2, kGap = 4.13e-4;
   OneSidedSpring field;
@@ -143,24 +144,25 @@ std::pair<double, double> bounce(const IntegratorEntry& integrator, double dt, d
   double time = 0.0;
   for (; tool.velocity.x() > 0.0 || tool.pose.position.x() > -kGap; time += dt)
     integrator.step(tool, field.force_at(0.0, tool.pose.position, tool.velocity), kMass, dt, field, tolerance);
-  const double late = (-kGap - tool.pose.position.x()) / -tool.velocity.x();  // since it passed the start
+  // Time since the mass passed the start position.
+  const double late = (-kGap - tool.pose.position.x()) / -tool.velocity.x();
   const double contact = time - late - kGap / kSpeed - kGap / -tool.velocity.x();
   return {-tool.velocity.x() / kSpeed - 1.0,
           contact / (std::numbers::pi * std::sqrt(kMass / OneSidedSpring::kStiffness))};
 }
 
-/// Contact lasts half a period, and the tool leaves as fast as it came. In steps of 0.1 ms w h is 0.045: Runge-Kutta
-/// loses (w h)^6 / 144 of the energy in each of 70 steps, 4e-9, and is late by (w h)^4 / 120 = 3e-8.
+/// Contact lasts half a period, and the tool leaves with the speed of its arrival. With steps of 0.1 ms, w h is 0.045:
+/// Runge-Kutta loses (w h)^6 / 144 of the energy in each of 70 steps, 4e-9, and is late by (w h)^4 / 120 = 3e-8.
 TEST(Event, FindsContactOnAndOffWithinAStep) {
   const auto [gain, duration] = bounce(kEvent, 1e-4, 1e-12);
   EXPECT_NEAR(gain, 0.0, 1e-8);
   EXPECT_NEAR(duration, 1.0, 1e-7);
   EXPECT_GT(std::abs(bounce(kRk4, 1e-4, 1e-12).first), 1e-7) << "blind for the events";
-  // Where it may be late by a step, it is Runge-Kutta.
+  // If the tolerance is a whole step, the integrator equals Runge-Kutta.
   EXPECT_EQ(bounce(kEvent, 1e-4, 1e-4), bounce(kRk4, 1e-4, 1e-4));
 }
 
-/// Holds a Jacobian that no step asks to be evaluated elsewhere.
+/// Holds a constant Jacobian; the implicit integrators evaluate no force within the step.
 class HeldJacobian final : public ForceField {
  public:
   explicit HeldJacobian(ForceJacobian jacobian) : jacobian_(std::move(jacobian)) {}
@@ -174,7 +176,7 @@ class HeldJacobian final : public ForceField {
 TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    // Friction on a law whose S exceeds 1: D = B S + f (I - S) of both signs, as large as one likes.
+    // Friction on a law whose S exceeds 1: D = B S + f (I - S) with both signs and arbitrary size.
     Mat3 S = Mat3::Zero();
     for (int j = 0; j < 3; ++j) {
       const Vec3 u = random.direction();
@@ -187,7 +189,7 @@ TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
     const Vec3 force = 1e3 * random.direction(), v = tool.velocity;
     HeldJacobian field(jacobian);
     kImplicitEuler.step(tool, force, kMass, 0.0005, field, kEventTolerance);
-    // Never more than twice what the explicit step would make of the same impulse.
+    // The velocity change is at most twice the change by the explicit step with the same impulse.
     const Vec3 impulse = 0.0005 * (force - 0.0005 * (jacobian.stiffness * v));
     ASSERT_TRUE(tool.velocity.allFinite());
     ASSERT_LE((tool.velocity - v).norm(), 2.0 * impulse.norm() / kMass * (1.0 + 1e-12));
@@ -203,7 +205,7 @@ TEST(LinearlyImplicit, AnswersAnInfiniteJacobianWithTheExplicitStep) {
   }
 }
 
-// ---- In the step loop.
+// ---- Integrators in the step loop.
 
 SimulationConfig config_of(const IntegratorEntry* integrator, std::uint64_t steps) {
   SimulationConfig config;
@@ -231,7 +233,7 @@ TEST(IntegratorInTheLoop, MovesTheToolAsItDoesAlone) {
   }
 }
 
-/// Notes what it is asked for.
+/// Records the states at which it is evaluated.
 class Witness final : public ForceAlgorithm {
  public:
   Witness(std::vector<ToolState>& seen, double cutoff) : seen_(&seen), cutoff_(cutoff) {}
@@ -252,7 +254,7 @@ class Witness final : public ForceAlgorithm {
 
 const Orientation kTurn{{0, 0, 1}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 3.0}), {}};
 
-/// The states that an algorithm sees of a tool that tilts from -z towards -x, about y, at 3 rad/s.
+/// Returns the states that an algorithm receives from a tool that tilts from -z towards -x, about y, at 3 rad/s.
 std::vector<ToolState> seen_of_a_turn(const IntegratorEntry* integrator, std::uint64_t steps, double cutoff) {
   std::vector<ToolState> seen;
   SimulationParts parts = test::fake_parts(test::weightless);
@@ -263,7 +265,7 @@ std::vector<ToolState> seen_of_a_turn(const IntegratorEntry* integrator, std::ui
 }
 
 TEST(IntegratorInTheLoop, SeesTheAxisAndTheTurnOfItsTime) {
-  // Where in a step each asks for the force, first in the row.
+  // Times within a step at which each integrator evaluates the force, the start of the step first.
   const std::pair<const IntegratorEntry*, std::vector<double>> integrators[] = {
       {&kVelocityVerlet, {0.0, 1.0}}, {&kRk4, {0.0, 0.5, 0.5, 1.0}}, {&kEvent, {0.0, 0.5, 0.5, 1.0, 1.0}}};
   for (const auto& [integrator, parts] : integrators) {
@@ -274,14 +276,14 @@ TEST(IntegratorInTheLoop, SeesTheAxisAndTheTurnOfItsTime) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const double t = (static_cast<double>(i / forces) + parts[i % forces]) * SimulationConfig{}.dt;
       EXPECT_LE((seen[i].pose.axis - tool_axis(kTurn, 0.1 + 3.0 * t, 0.0)).norm(), 4 * kEps);
-      // Turns of 1e-3 rad are known to eps / 1e-3.
+      // Rotations of 1e-3 rad are known to eps / 1e-3.
       const double rate = i == 0 ? 0.0 : 3.0;
       EXPECT_NEAR(seen[i].angular_velocity.norm(), rate, 1e-11) << i;
     }
   }
 }
 
-/// The step response of a first-order low-pass, at every time an integrator asks.
+/// Step response of a first-order low-pass, at every time at which an integrator evaluates the force.
 TEST(IntegratorInTheLoop, SeesTheTurnThroughTheLowPassOfTheAlgorithm) {
   constexpr double kCutoff = 40.0;
   const double dt = SimulationConfig{}.dt;

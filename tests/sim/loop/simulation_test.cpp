@@ -50,7 +50,7 @@ TEST(Simulation, RowKIsAtTimeKDtAndRowZeroIsTheInitialState) {
   SimulationConfig config = config_of(5000);
   config.dt = 1.0 / 3000.0;
   Simulation(config, fake_parts(spring), {&recorder}).run();
-  // A product, not a sum of steps: no drift.
+  // The time is a product, not a sum of steps, so it does not drift.
   for (std::size_t k = 0; k < recorder.rows.size(); ++k) {
     EXPECT_EQ(recorder.rows[k].step, k);
     EXPECT_EQ(recorder.rows[k].time, static_cast<double>(k) * config.dt);
@@ -119,7 +119,7 @@ TEST(Simulation, EndsWithTheRowInWhichTheHandHasFinishedItsTask) {
   SimulationParts parts = fake_parts(test::weightless);
   parts.hand = std::make_unique<Worker>();
   Recorder recorder;
-  Simulation simulation(config_of(10), std::move(parts), {&recorder});  // owns the task that the rows name
+  Simulation simulation(config_of(10), std::move(parts), {&recorder});  // owns the task to which the records point
   const SimulationResult result = simulation.run();
   EXPECT_EQ(result.ending, Ending::completed);
   EXPECT_EQ(result.rows, 4u) << "two targets, two samples each";
@@ -127,7 +127,7 @@ TEST(Simulation, EndsWithTheRowInWhichTheHandHasFinishedItsTask) {
 }
 
 TEST(Simulation, TheRatioIsComputedExactlyWhenAnObserverWantsIt) {
-  // FakeAlgorithm answers S = 2 I, so every ratio is 2.
+  // FakeAlgorithm returns S = 2 I, so every ratio is 2.
   for (const bool wanted : {false, true}) {
     SimulationParts parts = fake_parts(test::weightless);
     parts.source = std::make_unique<test::FakeSource>(3);
@@ -153,7 +153,7 @@ TEST(Simulation, PreparesItsAlgorithmOnceAndComputesOncePerRow) {
   EXPECT_EQ(calls.reset, resets + 1);
 }
 
-/// The thesis's 2-D peg, where everything a run is made of takes part.
+/// Returns the thesis's 2-D peg, which uses all parts of a run.
 SimulationParts peg(const RenderingConfig& rendering) {
   test::Setting setting;
   setting.tool = {0.0005, 0.005, Tip::round};
@@ -176,7 +176,7 @@ TEST(Simulation, ResetReproducesTheRunBitForBit) {
   const std::uint64_t first = hash.value(), queries = simulation.source().work().queries,
                       iterations = simulation.algorithm().work().iterations;
 
-  // Also from the middle of a run.
+  // A reset from the middle of a run also restarts it.
   for (const int interrupted_after : {0, 1, 500}) {
     simulation.reset();
     for (int k = 0; k < interrupted_after; ++k) simulation.step();
@@ -205,7 +205,7 @@ std::vector<StepRecord> run_along(std::array<Profile, 3> path, test::FakeAlgorit
   Recorder recorder;
   Simulation simulation(config, std::move(parts), {&recorder});
   simulation.run();
-  // The second run of the same object must not remember the first.
+  // The second run of the same object must not depend on the first run.
   simulation.reset();
   recorder.rows.clear();
   simulation.run();
@@ -219,7 +219,7 @@ TEST(PrescribedMotion, PutsToolAndHandleWhereTheScriptSaysWithTheBackwardDiffere
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto& [position, axis, roll] = rows[k].tool.pose;
     EXPECT_EQ(position, Vec3(path[0](rows[k].time), path[1](rows[k].time), path[2](rows[k].time)));
-    const std::size_t to = std::max<std::size_t>(k, 1);  // row 0 has the velocity of row 1
+    const std::size_t to = std::max<std::size_t>(k, 1);  // step 0 has the velocity of step 1
     const Vec3 moved = rows[to].tool.pose.position - rows[to - 1].tool.pose.position;
     EXPECT_EQ(rows[k].tool.velocity, Vec3(moved / SimulationConfig{}.dt));
     EXPECT_EQ(rows[k].handle.position, position);
@@ -227,7 +227,7 @@ TEST(PrescribedMotion, PutsToolAndHandleWhereTheScriptSaysWithTheBackwardDiffere
   }
 }
 
-// The tool's turn about its own axis.
+// Tests the rotation of the tool about its own axis.
 
 const double kDt = SimulationConfig{}.dt;
 
@@ -238,7 +238,7 @@ Profile ramp(double start, double rate) {
 const Orientation kSpun{{0, 0, 1}, {1, 0, 0}, ramp(0.3, 2.0), ramp(-1.0, 5.0), ramp(0.5, 30.0)};
 const Orientation kLed{{0, 0, 1}, {1, 0, 0}, ramp(0.3, 2.0), ramp(-1.0, 5.0), 0.5};
 
-/// Independent of axis and roll.
+/// Returns the rotation, computed independently of axis and roll.
 Mat3 rotation(const Orientation& o, double t) {
   return (Eigen::AngleAxisd(o.azimuth(t), Vec3::UnitZ()) * Eigen::AngleAxisd(o.tilt(t), Vec3::UnitY()) *
           Eigen::AngleAxisd(o.roll(t), -Vec3::UnitZ()))
@@ -252,7 +252,7 @@ class WantsRoll final : public Observer {
   std::vector<StepRecord> rows;
 };
 
-/// Reads the angular velocity, unfiltered, and answers nothing.
+/// Reads the angular velocity without a filter, and renders no force.
 class ReadsTurn final : public ForceAlgorithm {
  public:
   void prepare(const Scene&) override {}
@@ -278,7 +278,7 @@ std::vector<StepRecord> rows_of(std::shared_ptr<const ToolShape> tool, const Ori
 }
 
 const auto kCylinder = std::make_shared<const Cylinder>();
-/// It is not round.
+/// Returns a tool that is not a solid of revolution.
 std::shared_ptr<const ToolShape> cube() {
   return std::make_shared<const MeshTool>(test::grid_of(test::cube(0.0005), 0.0001));
 }
@@ -295,7 +295,7 @@ TEST(Roll, IsRecordedOfEveryToolAndInThePoseOfThoseThatAreNotRound) {
   }
 }
 
-/// Turns of 1e-3 rad are known to 1e-16 / 1e-3.
+/// Rotations of 1e-3 rad are known to 1e-16 / 1e-3.
 TEST(Roll, IsInTheAngularVelocityWhereItIsScriptedOrTheToolIsNotRound) {
   const auto expect_whole = [](const std::vector<StepRecord>& rows, const Orientation& script) {
     for (std::size_t k = 1; k < rows.size(); ++k) {
@@ -313,7 +313,7 @@ TEST(Roll, IsInTheAngularVelocityWhereItIsScriptedOrTheToolIsNotRound) {
   }
 }
 
-/// A weightless tool that rises at 1 m/s along `up` from 10.5 steps below height 0.
+/// Returns a weightless tool that rises at 1 m/s along `up` from 10.5 steps below height 0.
 SimulationConfig rising(const Vec3& up) {
   SimulationConfig config;
   config.steps = 100;
@@ -330,7 +330,7 @@ TEST(StopConditions, LeavesTheHoleAtTheFirstRowAboveHeightZeroWhichIsRecorded) {
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
     SimulationConfig config = rising(up);
     config.stop_when = {{Ending::left_hole, up}};
-    // Row 11 is half a step above; a stop on the last row is still a stop.
+    // At step 11 the tool is half a step above; a stop in the last step is still a stop.
     for (const std::uint64_t steps : {100u, 12u}) {
       config.steps = steps;
       Recorder recorder;
@@ -377,7 +377,7 @@ SimulationConfig at_rest(std::uint64_t steps) {
   return config;
 }
 
-/// No force before the tool has been asked `steps` times, then the given one.
+/// Returns a law without force for the first `steps` calls, then with the given force.
 test::FakeAlgorithm::Law after(int steps, const Vec3& force) {
   return [=, k = 0](const ToolState&) mutable { return k++ < steps ? Vec3(Vec3::Zero()) : force; };
 }
@@ -407,7 +407,7 @@ TEST(Divergence, IsReportedForEachQuantityThatLeavesItsBound) {
     const char* quantity;
     std::uint64_t step;
     double magnitude, bound;
-  } kCases[] = {{{0, 0, 3}, 0.0, "position", 2, 0.75, 0.5},  // 0.375 m a step
+  } kCases[] = {{{0, 0, 3}, 0.0, "position", 2, 0.75, 0.5},  // 0.375 m per step
                 {{0, 0, 5}, 0.0, "velocity", 0, 5.0, 4.0},
                 {{0, 0, 0}, 17.0, "rendered force", 0, 17.0, 16.0}};
   for (const auto& c : kCases) {
@@ -429,7 +429,7 @@ TEST(Divergence, IsReportedForEachQuantityThatLeavesItsBound) {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kStep = 0.001, kMass = 0.2, kK = 5000.0;
 
-/// One spring and damper along x under leapfrog, observed for `rows` rows; the tool afterwards.
+/// Simulates one spring-damper along x under leapfrog, observed for `rows` steps; returns the final state of the tool.
 ToolState run_spring(ObservedEnergy& observed, double damping, double position, double velocity, int rows) {
   ToolState tool{{{position, 0, 0}, {0, 0, -1}}, {velocity, 0, 0}};
   for (int k = 0; k < rows; ++k) {
@@ -442,7 +442,7 @@ ToolState run_spring(ObservedEnergy& observed, double damping, double position, 
   return tool;
 }
 
-/// Work is what the force adds to the kinetic energy, so E_n - E_0 is what the tool has lost.
+/// Work is the kinetic energy that the force adds, so E_n - E_0 is the energy that the tool has lost.
 TEST(ObservedEnergy, IsWhatALoneToolHasLost) {
   ObservedEnergy observed(kStep);
   const ToolState end = run_spring(observed, 20.0, 0.003, 0.4, 300);
@@ -450,7 +450,8 @@ TEST(ObservedEnergy, IsWhatALoneToolHasLost) {
   EXPECT_NEAR(observed.energy(), given - 0.5 * kMass * end.velocity.squaredNorm(), 300 * 10 * kEpsilon * given);
 }
 
-/// Half of a turn belongs to the row before, half to the row after: the trapezoidal rule.
+/// Trapezoidal rule: half of a rotation is assigned to the moment of the previous step, half to the moment of the next
+/// step.
 TEST(ObservedEnergy, AMomentThatAppearsOrGoesCountsForHalfATurn) {
   ObservedEnergy observed(kStep);
   double angle = 0.0;
@@ -472,7 +473,7 @@ TEST(ObservedEnergy, AMomentThatAppearsOrGoesCountsForHalfATurn) {
   EXPECT_NEAR(observed.energy(), 0.4, 1e-15);
 }
 
-/// A moment after a rest is turned against from the row before, as without the short cut.
+/// After steps of rest, the work of a moment uses the rotation since the previous step, as without the short cut.
 TEST(ObservedEnergy, ARowOfRestIsARowWithoutForceAndMoment) {
   ObservedEnergy resting(kStep), asked(kStep);
   for (int k = 0; k < 30; ++k) {

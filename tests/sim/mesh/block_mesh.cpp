@@ -4,8 +4,8 @@
 
 #include "sim/mesh/marching_cubes.hpp"
 
-/// Prints the mesh that marching cubes makes of a block with a hole: numbers of vertices and faces, then both.
-/// block_mesh SIZE_X SIZE_Y SIZE_Z HOLE_DIAMETER HOLE_DEPTH SPACING signed_distance|binary
+/// Prints the mesh that marching cubes computes for a block with a hole: numbers of vertices and faces, then the
+/// vertices and faces.
 int main(int count, char** arguments) {
   using namespace hapbench;
   if (count != 8) return 2;

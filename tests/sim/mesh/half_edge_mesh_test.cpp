@@ -35,7 +35,7 @@ std::string refusal_of(const TriangleSoup& soup) {
   return "";
 }
 
-/// Every triangle with vertices of its own, as STL has them.
+/// Returns the triangles with separate vertices for each triangle, as in STL.
 TriangleSoup exploded(const TriangleSoup& soup) {
   TriangleSoup loose;
   for (const Triangle& t : soup.triangles) {
@@ -76,7 +76,7 @@ TEST(MeshFromTriangles, WeldsEqualPositions) {
   TriangleSoup loose = exploded(cube());
   ASSERT_EQ(loose.vertices.size(), 36u);
   EXPECT_EQ(mesh_from_triangles(loose).mesh.n_vertices(), 8u);
-  // Zeros of both signs are the same place; the next number after 1 is another.
+  // Zeros of both signs are the same position; the next double after 1 is another position.
   for (Vec3& v : loose.vertices) v.z() += 1.0;
   for (std::size_t i = 0; i < loose.vertices.size(); i += 2) {
     if (loose.vertices[i].z() == 0.0) loose.vertices[i].z() = -0.0;
@@ -92,7 +92,7 @@ TEST(MeshFromTriangles, LeavesOutUnusedVerticesAndTrianglesWithEqualCorners) {
   TriangleSoup soup = together({{{9, 9, 9}}, {}}, cube());
   soup.triangles.push_back({1, 1, 2});
   soup.vertices.push_back(soup.vertices[1]);
-  soup.triangles.push_back({1, 3, 9});  // 9 is where 1 is
+  soup.triangles.push_back({1, 3, 9});  // vertex 9 is at the position of vertex 1
   const auto [mesh, found] = mesh_from_triangles(soup);
   EXPECT_EQ(mesh.n_vertices(), 8u);
   EXPECT_EQ(found.degenerate_triangles, 2u);
@@ -118,7 +118,7 @@ TEST(MeshFromTriangles, CutsTheSurfaceAlongEdgesWithMoreThanTwoFaces) {
     EXPECT_EQ(mesh.n_faces(), c.soup.triangles.size());
     EXPECT_EQ(mesh.n_vertices(), c.vertices);
   }
-  // Triangles that touch the cube do not bend its normals.
+  // Triangles that touch the cube do not change its normals.
   const auto expected = vertices_with_normals(mesh_from_triangles(cube()).mesh);
   const auto points = vertices_with_normals(mesh_from_triangles(winged).mesh);
   for (const SurfacePoint& e : expected) {
@@ -189,7 +189,7 @@ TEST(MeshFromTriangles, HoldsWhateverTrianglesThereAre) {
       EXPECT_TRUE(message.starts_with("is not orientable") || message.starts_with("has no faces")) << message;
     }
   }
-  // A large share of the meshes has edges with more than two triangles, after equal triangles were left out.
+  // A large fraction of the meshes has edges with more than two triangles, after equal triangles were removed.
   EXPECT_GT(crowded, held / 6);
 }
 
@@ -201,7 +201,7 @@ TEST(MeshFromTriangles, RefusesSurfacesWithOneSide) {
 }
 
 TEST(MeshFromTriangles, GivesEachFanAtAPointItsOwnVertex) {
-  // Two cubes that touch in a corner.
+  // Two cubes that touch at a corner.
   const auto [mesh, found] = mesh_from_triangles(together(cube(), cube(1.0, {2, 2, 2})));
   expect_nothing_found(found);
   EXPECT_EQ(mesh.n_vertices(), 16u);
@@ -235,7 +235,7 @@ TEST(MeshFromTriangles, TurnsClosedPartsOutwards) {
   EXPECT_EQ(enclosed_volume(one.mesh), 8.0);
   const CheckedMesh two = mesh_from_triangles(together(cube(), reversed(cube(1.0, {900, 0, 0}))));
   EXPECT_EQ(two.findings.inverted_parts, 1u);
-  EXPECT_NEAR(enclosed_volume(two.mesh), 16.0, 1e-9);  // terms up to 1e3^3 / 6 cancel to rounding
+  EXPECT_NEAR(enclosed_volume(two.mesh), 16.0, 1e-9);  // terms up to 1e3^3 / 6 cancel up to rounding
 }
 
 TEST(MeshFromTriangles, KeepsCavitiesAndTurnsThemWithWhatIsAroundThem) {
@@ -252,7 +252,7 @@ TEST(MeshFromTriangles, KeepsCavitiesAndTurnsThemWithWhatIsAroundThem) {
 
 TEST(MeshFromTriangles, KeepsTheWindingOfOpenSurfaces) {
   TriangleSoup open = cube();
-  open.triangles.erase(open.triangles.begin() + 2, open.triangles.begin() + 4);  // the top
+  open.triangles.erase(open.triangles.begin() + 2, open.triangles.begin() + 4);  // the top face
   for (const bool turned : {false, true}) {
     const auto [mesh, found] = mesh_from_triangles(turned ? reversed(open) : open);
     EXPECT_EQ(found.open_edges.size(), 4u);
@@ -297,7 +297,7 @@ double longest_edge(const HalfEdgeMesh& mesh) {
   return longest;
 }
 
-/// Triangles around one vertex; many of them slivers.
+/// Returns triangles around one vertex, many of them slivers.
 HalfEdgeMesh random_fan(Random& random) {
   const double flatness = std::pow(10.0, random.uniform(-3.0, 0.0));
   const auto triangles = static_cast<int>(1 + random.below(4));
@@ -323,7 +323,7 @@ TEST(Refine, LeavesNoLongerEdgeAndTheSameSurface) {
   EXPECT_NEAR(enclosed_volume(mesh) / volume, 1.0, 3e-11);
 }
 
-/// Every handle: the order of points, and with it the last digits of a force, follows from them.
+/// Compares every handle, because the handles determine the order of points, and with it the last digits of a force.
 TEST(Refine, SplitsAsOpenMeshDoes) {
   using Base = OpenMesh::TriMesh_ArrayKernelT<HalfEdgeMeshTraits>;
   Random random(7);
@@ -377,7 +377,7 @@ TEST(RefinedFaceCount, StopsCountingWhereNobodyWouldRefine) {
 TEST(Refine, NormalsOnASphereAreWithinTheAngleOfItsFacets) {
   constexpr double kRadius = 0.005;
   HalfEdgeMesh mesh = mesh_from_triangles(test::sphere(kRadius, 4)).mesh;
-  double widest = 0.0;  // circumscribed circle of a facet
+  double widest = 0.0;  // largest radius of the circumscribed circles of the facets
   for (const auto face : mesh.faces()) {
     double product = 1.0;
     for (auto edge = mesh.cfe_iter(face); edge.is_valid(); ++edge) product *= mesh.calc_edge_length(*edge);
@@ -386,8 +386,9 @@ TEST(Refine, NormalsOnASphereAreWithinTheAngleOfItsFacets) {
   refine(mesh, 0.0002);
   const auto points = vertices_with_normals(mesh);
   ASSERT_GT(points.size(), 5000u);
-  // A facet's normal is the sphere's at the centre of its circle, and so within asin(r / R) of the sphere's at any
-  // other place of the facet; the mean of normals within a cone lies in it too.
+  // A facet's normal is the sphere's normal at the centre of its circumscribed circle. Its angle to the sphere's normal
+  // at any other point of the facet is therefore at most asin(r / R). The mean of normals within a cone lies in the
+  // cone too.
   const double angle = std::asin(widest / kRadius);
   double worst = 0.0;
   for (const SurfacePoint& p : points)

@@ -26,10 +26,10 @@ IsoSurface surface_of(const DensityField& field) {
   return marching_cubes(field, {.triangles = true, .cells = true});
 }
 
-/// Each edge of a closed, consistently wound surface is used once in each direction; where its triangles form one fan
-/// about each vertex, the surface is a manifold.
+/// Checks that each edge of the surface is used once in each direction, so that the surface is closed and consistently
+/// wound. If the triangles around each vertex also form one fan, the surface is a manifold.
 void expect_closed_manifold(const IsoSurface& surface) {
-  std::map<Edge, std::uint32_t> opposite;  // of each directed edge, the corner opposite to it
+  std::map<Edge, std::uint32_t> opposite;  // for each directed edge, the corner opposite to it
   std::vector<std::size_t> triangles(surface.vertices.size());
   for (const auto& t : surface.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -56,7 +56,7 @@ long euler_characteristic_of(const IsoSurface& surface) {
   return static_cast<long>(surface.vertices.size()) - faces * 3 / 2 + faces;
 }
 
-/// A small block, so that the sanitizers finish too; the spacing of the thesis's.
+/// Returns a small block, so that tests with sanitizers finish, with the spacing of the thesis's block.
 BlockWithHole small_block() {
   BlockWithHole block;
   block.size = {0.004, 0.005, 0.004};
@@ -76,14 +76,14 @@ TEST_P(MarchingCubesOfDensity, BlockIsClosedHasNoHandlesAndTheRightVolume) {
   const BlockWithHole block = small_block();
   const IsoSurface surface = surface_of(density_field(block, 0.0001, GetParam()));
   expect_closed_manifold(surface);
-  EXPECT_EQ(euler_characteristic_of(surface), 2);  // a blind hole is a dent
-  // Edges of the block and of the hole, 65 mm in all, are bevelled by g^2/8 = 1.25e-3 mm^2: 0.08 of 74 mm^3, 0.1 %. The
-  // binary wall wobbles by less than a cell either way.
+  EXPECT_EQ(euler_characteristic_of(surface), 2);  // a blind hole does not change the topology
+  // Edges of the block and of the hole, 65 mm in total, are bevelled by g^2/8 = 1.25e-3 mm^2: 0.08 of 74 mm^3, 0.1 %.
+  // The binary wall deviates by less than a cell in either direction.
   EXPECT_NEAR(enclosed_volume(test::half_edge_mesh(surface)) / exact_volume(block), 1.0, 0.005);
 }
 
 TEST_P(MarchingCubesOfDensity, NormalsAreThoseOfTheMesh) {
-  // OpenMesh sums the same unit normals in another order: up to a dozen terms, each right to a few roundings.
+  // OpenMesh sums the same unit normals in another order: up to a dozen terms, each exact to a few roundings.
   IsoSurface surface = surface_of(density_field(small_block(), 0.0002, GetParam()));
   const std::vector<SurfacePoint> expected = vertices_with_normals(test::half_edge_mesh(surface));
   std::erase_if(surface.vertices, [](const SurfacePoint& vertex) { return vertex.normal.isZero(0.0); });
@@ -102,7 +102,7 @@ bool same(const IsoSurface& a, const IsoSurface& b) {
 }
 
 TEST(MarchingCubes, NarrowBandFindsWhatAFullSweepFinds) {
-  // The same field, once exact and once scaled down so that no node is ever stepped over.
+  // Compare the same field, once exact and once scaled down so that no node is skipped.
   const BlockWithHole block = small_block();
   DensityField field = density_field(block, 0.0002, Density::signed_distance);
   const IsoSurface band = surface_of(field);
@@ -153,7 +153,7 @@ Coordinates coordinates(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-/// A surface with its cells, and what is made of it.
+/// A surface with its cells, and the results computed from it.
 struct Surface : IsoSurface {
   explicit Surface(const DensityField& field)
       : IsoSurface(marching_cubes(field, {.cells = true})), spacing(field.spacing) {}
@@ -162,7 +162,7 @@ struct Surface : IsoSurface {
   double spacing;
 };
 
-/// The numbers of the cells that list each position.
+/// Returns the numbers of the cells that list each position.
 std::map<Coordinates, std::multiset<std::uint32_t>> cells_of_positions(const ShellPoints& shell) {
   std::map<Coordinates, std::multiset<std::uint32_t>> cells;
   for (std::size_t i = 0; i < shell.points.size(); ++i) {
@@ -171,7 +171,7 @@ std::map<Coordinates, std::multiset<std::uint32_t>> cells_of_positions(const She
   return cells;
 }
 
-/// How many cells have so many points.
+/// Returns the number of cells for each number of points in a cell.
 std::map<std::size_t, std::size_t> histogram(const ShellPoints& shell) {
   std::map<std::uint32_t, std::size_t> sizes;
   for (const std::uint32_t cell : shell.cells) ++sizes[cell];
@@ -190,8 +190,9 @@ TEST(PointsByCell, OfTheThesisBlockAreAtMostFiveInACellAndFourForEachVertex) {
 }
 
 TEST(PointsByCell, ListEachVertexOnceForEachCellAroundItsEdge) {
-  // The surface crosses the edge of a vertex, so it cuts all four cells around that edge. Two vertices of noise may lie
-  // at one place, in the corner where their edges meet; then the sets of their cells are equally many times four.
+  // The surface crosses the edge of a vertex, so it cuts all four cells around this edge. In a noise field, two
+  // vertices may lie at the same position, in the corner where their edges meet; each position is then listed for a
+  // multiple of four cells.
   for (std::uint64_t seed = 1; seed <= test::cases(30); ++seed) {
     const Surface surface(test::noise(seed));
     const ShellPoints shell = surface.shell();
@@ -235,7 +236,7 @@ TEST(PointsByCell, AreTheMeshsVerticesCellAfterCell) {
   ASSERT_EQ(shell.points.size(), shell.cells.size());
   for (std::size_t i = 0; i < shell.points.size(); ++i) {
     ASSERT_EQ(shell.points[i].normal, normals.at(coordinates(shell.points[i].position)));
-    // Consecutive, without a gap, as the local average numbers cells.
+    // The numbers are consecutive, without a gap, as the local average numbers cells.
     ASSERT_TRUE(shell.cells[i] == next || shell.cells[i] + 1 == next) << i;
     if (shell.cells[i] == next) ++next;
   }
@@ -243,14 +244,14 @@ TEST(PointsByCell, AreTheMeshsVerticesCellAfterCell) {
   EXPECT_EQ(PointShell(shell.points, 0.0002, shell.cells).cell_of_points(), shell.cells);
 }
 
-/// The definition of surface_shell.
+/// Returns the result of the definition of surface_shell.
 PointShell vertices_in_grid_order(const DensityField& field) {
   std::vector<SurfacePoint> vertices = marching_cubes(field).vertices;
   std::erase_if(vertices, [](const SurfacePoint& vertex) { return vertex.normal.isZero(0.0); });
   return {in_grid_order(vertices, field.spacing), field.spacing};
 }
 
-/// Every bit of every column, padding included.
+/// Compares every bit of every column, including the padding.
 void expect_same(const PointShell& a, const PointShell& b) {
   ASSERT_EQ(a.size(), b.size());
   ASSERT_EQ(a.padded_size(), b.padded_size());
@@ -265,7 +266,7 @@ void expect_same(const PointShell& a, const PointShell& b) {
 
 TEST(SurfaceShell, IsTheVerticesInTheOrderOfTheirGridWhateverTheNumberOfThreads) {
   for (const Density density : {Density::signed_distance, Density::binary}) {
-    // 71 nodes along x, more than a word of them.
+    // 71 nodes along x, more than the nodes of one word.
     const DensityField field = density_field({{0.0067, 0.005, 0.004}, 0.002, 0.002}, 0.0001, density);
     const PointShell expected = vertices_in_grid_order(field);
     ASSERT_GT(expected.size(), 10'000u);
@@ -280,7 +281,8 @@ TEST(SurfaceShell, LeavesOutVerticesWithoutANormal) {
   std::size_t without = 0;
   for (std::uint64_t seed = 1; seed <= test::cases(30); ++seed) {
     DensityField field = test::noise(seed);
-    // The vertices around an outside node of distance 0 lie in it, and a triangle of three of them has no area.
+    // The vertices around an outside node with the distance 0 lie in the node, and a triangle of three such vertices
+    // has no area.
     field.signed_distance = [noise = field.signed_distance](const Vec3& p) { return std::min(noise(p), 0.0); };
     const PointShell shell = surface_shell(field);
     without += marching_cubes(field).vertices.size() - shell.size();

@@ -43,8 +43,8 @@ bool is_fan(const DividedPolygon& divided) {
   return true;
 }
 
-/// The triangles have the polygon's area and none is reversed. Each edge is used as often in one direction as in the
-/// other, together with the reversed sides of the polygon.
+/// Checks that the triangles have the polygon's area and that none is reversed. Also checks that each edge is used
+/// equally often in both directions, together with the reversed sides of the polygon.
 void expect_covered(const Polygon& polygon) {
   const DividedPolygon divided = polygon_test::divided(polygon);
   const Vec3 area = area_vector(polygon);
@@ -73,7 +73,7 @@ Polygon rotated(Polygon polygon, std::size_t by) {
   return polygon;
 }
 
-/// An L: 24 mm^2 less the notch of 6 mm^2.
+/// An L-shaped polygon: 24 mm^2 minus the notch of 6 mm^2.
 const Polygon kL = {{6, 2, 0}, {6, 4, 0}, {0, 4, 0}, {0, 0, 0}, {3, 0, 0}, {3, 2, 0}};
 
 TEST(Polygon, IsAFanIfItIsConvex) {
@@ -86,7 +86,7 @@ TEST(Polygon, IsAFanIfItIsConvex) {
       polygon.push_back(turn * Vec3(3.0 * std::cos(a), std::sin(a), 0.0) + Vec3(5, 6, 7));
     }
     EXPECT_TRUE(is_fan(divided(polygon))) << n;
-    // Corners on the sides, and in single precision far from the origin.
+    // Corners on the sides, and single precision far from the origin.
     Polygon with_middles;
     for (std::size_t i = 0; i < n; ++i) {
       with_middles.push_back(polygon[i]);
@@ -114,7 +114,7 @@ TEST(Polygon, IsCoveredOnceIfItHasReflexCorners) {
   const Polygon with_middles = {{6, 2, 0}, {6, 3, 0}, {6, 4, 0}, {3, 4, 0}, {0, 4, 0}, {0, 2, 0},
                                 {0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {3, 1, 0}, {3, 2, 0}, {4, 2, 0}};
   const Polygon ring = {
-      {0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},  // an outline, and a hole behind a bridge
+      {0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},  // an outline, and a hole connected by a bridge
       {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}};
   const Polygon star_with_touch = {{0, 0, 0}, {4, 0, 0}, {2, 2, 0}, {4, 4, 0}, {0, 4, 0}, {2, 2, 0}};
   const Polygon dart = {{0, 0, 0}, {2, 1, 0}, {0, 2, 0}, {1, 1, 0}};
@@ -179,7 +179,7 @@ TEST(Polygon, IsRefusedIfItIsClearlyNotPlanar) {
   Polygon bent = kL;
   bent[4].z() = 3.0;
   EXPECT_NE(refusal_of(bent).find("is not planar"), std::string::npos);
-  // Quadrilaterals of a curved surface are read as ever.
+  // Quadrilaterals of a curved surface are still accepted.
   const DividedPolygon curved = divided({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.2}, {0, 1, 0}});
   EXPECT_TRUE(is_fan(curved));
   EXPECT_NEAR(curved.unevenness, 0.034, 0.002);

@@ -9,10 +9,10 @@
 namespace hapbench::target_task_test {
 namespace {
 
-constexpr double kStep = 1.0 / 1024;  // sums of it are exact
+constexpr double kStep = 1.0 / 1024;  // sums of this step are exact
 constexpr int kSecond = 1024;
 
-/// One target in the origin, the thesis's times.
+/// Returns rules with one target at the origin and the thesis's times.
 TargetRules one_target() {
   TargetRules rules;
   rules.places = {Vec3(0, 0, 0)};
@@ -56,7 +56,7 @@ TEST(TargetTask, ALowForceDoesWhatTheThresholdSays) {
   }
 }
 
-/// A gauge whose grace is a whole number of samples.
+/// Returns rules with a gauge whose grace time is a whole number of samples.
 TargetRules with_gauge(double cutoff, double grace) {
   TargetRules rules = one_target();
   rules.gauge = Gauge{cutoff, grace};
@@ -68,7 +68,7 @@ TEST(ForceGauge, ShowsAStepAsAFirstOrderLowPassDoes) {
   TargetTask task(with_gauge(cutoff, 0.1), 1);
   for (int i = 1; i <= kSecond; ++i) {
     task.advance(kOff, 2.0, 2.0, kStep);
-    // 1024 roundings of a number of at most 2, each forgotten with the low-pass.
+    // 1024 roundings of a number of at most 2; the low-pass reduces each of them with time.
     ASSERT_NEAR(task.reading(), 2.0 * -std::expm1(-2.0 * pi * cutoff * i * kStep), 1e-13) << i;
   }
 }
@@ -76,7 +76,7 @@ TEST(ForceGauge, ShowsAStepAsAFirstOrderLowPassDoes) {
 TEST(ForceGauge, ADropoutBreaksTheHoldIfItIsLongerThanTheGrace) {
   constexpr int kGrace = 100;
   for (const int dropout : {1, 50, kGrace, kGrace + 1, 2 * kGrace}) {
-    TargetTask task(with_gauge(1e6, kGrace * kStep), 1);  // a low-pass so fast that the gauge shows what it is given
+    TargetTask task(with_gauge(1e6, kGrace * kStep), 1);  // the low-pass is so fast that the gauge shows its input
     advance(task, 500, kOn, 2.0);
     advance(task, dropout, kOn, 0.0);
     while (!task.finished()) advance(task, 1, kOn, 2.0);
@@ -116,7 +116,7 @@ TEST(Threshold, IsCheckedWhateverTheGaugeShows) {
   EXPECT_FALSE(task.active());
   for (int i = 0; i < kSecond - 1; ++i) task.advance(kOn, 0.0, 1.0, kStep);
   EXPECT_TRUE(task.active());
-  // A single sample breaks the hold, whatever the gauge's grace.
+  // A single sample interrupts the hold, whatever the grace time of the gauge is.
   task.advance(kOn, 2.0, 0.999, kStep);
   for (int i = 0; i < kSecond - 1; ++i) task.advance(kOn, 0.0, 1.0, kStep);
   EXPECT_FALSE(task.finished());
@@ -193,7 +193,7 @@ TEST(TargetTask, EveryPlaceComesEquallyOftenInAnOrderOfTheSeed) {
     EXPECT_EQ(order_of(TargetTask(rules, seed)), order);
     orders.push_back(order);
   }
-  // 15! / 5!^3 = 756 756 orders: twenty equal pairs are out of the question.
+  // There are 15! / 5!^3 = 756 756 orders, so twenty equal pairs are practically impossible.
   std::sort(orders.begin(), orders.end());
   EXPECT_EQ(std::unique(orders.begin(), orders.end()), orders.end());
 }

@@ -6,7 +6,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_kinds.hpp"
 
-/// Compares the answers of every kind of tool with the definition of its body in long double.
+/// Compares the results of every kind of tool with the definition of its body in long double.
 namespace hapbench::every_tool_test {
 namespace {
 
@@ -27,14 +27,14 @@ class EveryTool : public testing::TestWithParam<test::ToolKind> {
 INSTANTIATE_TEST_SUITE_P(EveryKind, EveryTool, testing::ValuesIn(test::tool_kinds().begin(), test::tool_kinds().end()),
                          [](const auto& kind) { return kind.param.name; });
 
-/// Coordinates of up to 1 m are rounded to 1e-16 of themselves, a few times over.
+/// Rounding error of coordinates up to 1 m: 1e-16 of their size, a few times.
 constexpr double kRounding = 4e-15;
 
 double slack_at(const DefinedTool& tool, const ToolPose& pose, const Vec3& point) {
   return static_cast<double>(tool.slack(pose, point.cast<long double>()));
 }
 
-/// Contacts with random normals, half of them on the surface.
+/// Returns contacts with random normals, half of them on the surface.
 ContactBuffer contacts_around(const DefinedTool& tool, const ToolPose& pose, Random& random, std::size_t n) {
   ContactBuffer contacts(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -44,7 +44,7 @@ ContactBuffer contacts_around(const DefinedTool& tool, const ToolPose& pose, Ran
   return contacts;
 }
 
-/// The marks of the contacts' points by one of the tool's tests.
+/// Returns the marks of the contacts' points that a test of the tool sets.
 template <class Mark>
 std::vector<bool> marked(const ContactBuffer& contacts, Mark mark) {
   const PackRange all{0, contacts.padded_size() / simd::lanes};
@@ -55,7 +55,7 @@ std::vector<bool> marked(const ContactBuffer& contacts, Mark mark) {
   return found;
 }
 
-/// The contacts that a search would find and pass to a depth model.
+/// Returns the contacts that a search would find and pass to a depth model.
 ContactBuffer colliding(const ToolShape& tool, const ToolPose& pose, ContactBuffer contacts) {
   ContactBuffer in(contacts.size());
   for (std::size_t i = contacts.size(); i < contacts.padded_size(); ++i) contacts.x[i] = PointShell::kFarAway;
@@ -95,7 +95,7 @@ TEST_P(EveryTool, HasDepthsThatAreDistancesToItsSurface) {
       ASSERT_GE(in.depth[i], 0.0);
       ASSERT_NEAR(in.depth[i], std::max(0.0, slack_at(tool, pose, in.point(i))), kRounding);
       ASSERT_NEAR(in.gradient(i).norm(), 1.0, 4 * std::numeric_limits<double>::epsilon());
-      // Only the shortest way out ends on the surface after that distance.
+      // Only along the gradient does the path of length `depth` end on the surface.
       const Vec3L out = in.point(i).cast<long double>() + in.depth[i] * in.gradient(i).cast<long double>();
       ASSERT_NEAR(static_cast<double>(tool.slack(pose, out)), 0.0, 2 * kRounding);
     }
@@ -110,7 +110,7 @@ TEST_P(EveryTool, HasExitsWhereRaysFirstGoOut) {
     std::vector<double> exits(in.size());
     tool.shape->exit_distances(pose, in, exits.data());
     for (std::size_t i = 0; i < in.size(); ++i) {
-      // The exit of a point on a cylinder's surface is the thesis's choice and has tests of its own.
+      // The exit of a point on a cylinder's surface is the thesis's choice; other tests check it.
       if (slack_at(tool, pose, in.point(i)) < kRounding) continue;
       ++rays;
       const auto slack_after = [&](long double d) {
@@ -124,7 +124,7 @@ TEST_P(EveryTool, HasExitsWhereRaysFirstGoOut) {
     }
   });
   EXPECT_GT(rays, cases(1000));
-  // Some rays of a hollow body pass through the air at a corner.
+  // Some rays through a hollow body pass through the air at a corner.
   EXPECT_LE(back_in, rays / 500);
 }
 
@@ -139,7 +139,7 @@ TEST_P(EveryTool, MarksAsNearWhateverLiesWithinTheMargin) {
     const std::vector<bool> near = marked(contacts, [&](auto points, auto ranges, auto marks) {
       tool.shape->mark_near(pose, margin + kRounding, points, ranges, marks);
     });
-    // Around some of the points, as a search asks for its grid.
+    // A box around some of the points, as a search requests it for its grid.
     const Box bounds{contacts.point(0).cwiseMin(contacts.point(1)), contacts.point(0).cwiseMax(contacts.point(1))};
     const Box box = tool.shape->box_near(pose, margin + kRounding, bounds);
     const ToolShape::Grown grown = tool.shape->grown(margin + kRounding);
@@ -222,7 +222,7 @@ TEST_P(EveryTool, KeepsPointsOutByConstraintsIfItIsConvex) {
     ++convex;
     ContactBuffer contacts(8);
     for (std::uint32_t i = 0; i < 8; ++i) {
-      // Flush with the tip, with the bottom or with nothing; wanting to move there, so that faces take the place of
+      // The face may be flush with the tip, the bottom or no surface. A move towards the surface makes faces replace
       // edges.
       const Vec3 normal =
           random.below(3) == 0 ? random.direction() : Vec3((random.below(2) == 0 ? 1.0 : -1.0) * pose.axis);
@@ -239,7 +239,7 @@ TEST_P(EveryTool, KeepsPointsOutByConstraintsIfItIsConvex) {
   EXPECT_GE(moves, convex);
 }
 
-/// Everything that a tool answers about contacts: depths, gradients, exits, constraints, foremost places.
+/// Returns all results of a tool about contacts: depths, gradients, exits, constraints and support points.
 std::vector<double> answers(const DefinedTool& tool, const ToolPose& pose, const ContactBuffer& contacts,
                             const Vec3& move, double slack) {
   ContactBuffer in = colliding(*tool.shape, pose, contacts);

@@ -108,7 +108,7 @@ TEST_P(GridOfMesh, KnowsTheForemostPlaceInEveryDirection) {
 TEST(SignedDistanceGrid, FindsThePlaceOfAForemostEdgeOrFaceThatIsAbreast) {
   const auto grid = grid_of(test::cube(1.0), 0.1);
   EXPECT_LT((grid->hull().foremost({0, 0, 1}, {0.3, -0.2, 4.0}) - Vec3(0.3, -0.2, 1.0)).norm(),
-            0.001);  // two passes over its corners
+            0.001);  // tolerance of two passes over the corners
   EXPECT_LT((grid->hull().foremost(Vec3(0, 1, 1).normalized(), {0.3, 3.0, 4.0}) - Vec3(0.3, 1, 1)).norm(), 1e-9);
 }
 
@@ -122,7 +122,7 @@ TEST(SignedDistanceGrid, SuggestsSome128NodesAlongAnEdge) {
   }
 }
 
-/// The message with which a mesh is refused; empty if it is accepted.
+/// Returns the message of the error for a mesh; empty if the mesh is accepted.
 std::string refusal(const TriangleSoup& soup, double spacing = 0.1) {
   try {
     grid_of(soup, spacing);
@@ -164,7 +164,7 @@ TEST(SignedDistanceGrid, RefusesMeshesThatPassThroughThemselves) {
   EXPECT_NE(overlap.find("2 times, and so "), std::string::npos) << overlap;
   const std::string hollow = refusal(test::together(test::cube(), test::reversed(test::cube(0.5, {3, 0, 0}))));
   EXPECT_NE(hollow.find("-1 times"), std::string::npos) << hollow;
-  // A cavity is none.
+  // A cavity is no self-intersection, so the mesh is accepted.
   EXPECT_EQ(refusal(test::together(test::cube(), test::reversed(test::cube(0.5)))), "");
 }
 
@@ -202,7 +202,7 @@ ContactBuffer contacts_at(const std::vector<Vec3>& points) {
   return contacts;
 }
 
-/// phi_h at a point of the world.
+/// Returns phi_h at a point in the world frame.
 double field(const MeshTool& tool, const ToolPose& pose, const Vec3& point) {
   ContactBuffer contacts = contacts_at({point});
   tool.shortest_depths(pose, contacts);
@@ -241,10 +241,11 @@ TEST_P(MeshToolOf, IsWithinItsBoundOfTheExactDistance) {
     const double error = field(tool_, kHome, x) - exact;
     worst = std::max(worst, std::abs(error));
     ASSERT_LE(std::abs(error), grid_.error_bound()) << x.transpose();
-    // By Jensen's inequality, up to the rounding of distances that are found by different arithmetic.
+    // By Jensen's inequality, up to the rounding of distances that are computed by other operations.
     ASSERT_TRUE(!tool_.convex() || error >= -1e-12) << error;
   }
-  // The bound is no guess: edges and middles of walls come within a factor of three of it.
+  // The bound is not too large: at edges and in the middle of walls, the error is within a factor of three of the
+  // bound.
   EXPECT_GT(worst, grid_.error_bound() / 6.0);
 }
 
@@ -269,7 +270,7 @@ TEST_P(MeshToolOf, FindsInEverySearchTheContactsOfBruteForceAndGivesThemDepths) 
       ASSERT_TRUE(test::same_contacts(all, of_list)) << "shell " << s << ", pose " << k;
       contacts += all.size();
       if (k % 50 != 0) continue;
-      // The field's sign is what decides, to the bit.
+      // The sign of the field decides, to the last bit.
       ContactBuffer points(shell.size());
       for (std::size_t i = 0; i < shell.size(); ++i) {
         points.push(static_cast<std::uint32_t>(i), shell.point(i).position, shell.point(i).normal);
@@ -283,7 +284,7 @@ TEST_P(MeshToolOf, FindsInEverySearchTheContactsOfBruteForceAndGivesThemDepths) 
     }
     rebuilt += by_list->work().lists_rebuilt;
   }
-  // The walks touch something, and the lists are used more than once.
+  // Check that the walks touch points, and that the lists are used more than once.
   EXPECT_GT(contacts, poses);
   EXPECT_LT(rebuilt, poses / 2);
 }
@@ -348,9 +349,10 @@ TEST_P(MeshToolOf, HasTheGradientOfItsField) {
     }
     const Vec3 u = gradient(tool_, pose, x);
     ASSERT_NEAR(u.norm(), 1.0, 1e-14);
-    // The error of the difference, 1e-16 / step and the step itself, over the gradient's length.
+    // The error of the difference, 1e-16 / step plus the step itself, divided by the gradient's length.
     ASSERT_TRUE(slope.norm() < 0.1 || (slope.normalized() - u).norm() < 1e-6);
-    // Continuous: a thousandth of a spacing turns it by no more than a few of those over its length.
+    // Continuity: a displacement by a thousandth of a spacing rotates the gradient by at most a few thousandths,
+    // divided by its length.
     const Vec3 beside = gradient(tool_, pose, x + 1e-3 * GetParam().spacing * random.direction());
     ASSERT_TRUE(slope.norm() < 0.5 || (beside - u).norm() < 0.02);
   }
@@ -371,11 +373,11 @@ TEST_P(MeshToolOf, LeavesItsBodyAtTheExitDistance) {
     tool_.exit_distances(pose, contacts, &exit);
     ASSERT_GE(exit, 0.0);
     ASSERT_NEAR(field(tool_, pose, x + exit * u), 0.0, 1e-9);
-    // Every place before is inside, but for holes below the shortest way.
+    // Every position before the exit is inside, except in holes that are shorter than the smallest step.
     for (double t = 0.0; t < exit - GetParam().spacing / 8.0; t += GetParam().spacing / 4.0) {
       ASSERT_LE(field(tool_, pose, x + t * u), 0.0) << t << " of " << exit;
     }
-    // From there the surface is at hand.
+    // At the exit, the surface is close.
     ContactBuffer there = contacts_at({x + exit * u});
     there.set_gradient(0, gradient(tool_, pose, x + exit * u));
     tool_.exit_distances(pose, there, &exit);
@@ -419,12 +421,12 @@ TEST_P(MeshToolOf, KeepsPointsOutOfConvexBodiesByItsConstraints) {
     tool_.surface_constraints(pose, wanted, 0.0, contacts);
     const double depth = contacts.depth[0];
     const Vec3 m = contacts.gradient(0);
-    // A move that only just keeps the constraint keeps the point out.
+    // A move that exactly satisfies the constraint keeps the point out.
     Vec3 move = tool_.half_width() * random.direction();
     move -= (depth + m.dot(move)) * m;
     const ToolPose moved{pose.position + move, pose.axis, pose.roll};
     ASSERT_GE(field(tool_, moved, x), -1e-12) << depth;
-    // And it is no further away than it seems.
+    // The point is not farther away than the constraint states.
     ASSERT_LE(-depth, field(tool_, pose, x) + 1e-12);
   }
 }

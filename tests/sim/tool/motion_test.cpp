@@ -22,7 +22,7 @@ TEST(ToolPose, TurnsTheShortWayBeforeItRolls) {
     const Vec3 axis = random.direction();
     const double roll = random.uniform(-3.0, 3.0);
     const Mat3 shortest = Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitZ(), axis).toRotationMatrix();
-    // Quaternions lose digits where the turn is nearly half a turn.
+    // Quaternions lose digits if the rotation is nearly half a turn.
     const double tolerance = 1e-14 / (1.0 - axis.z());
     EXPECT_LE((ToolPose{Vec3::Zero(), axis}.rotation() - shortest).norm(), tolerance);
     const Mat3 rolled = Eigen::AngleAxisd(roll, axis) * shortest;
@@ -145,7 +145,7 @@ Quaterniond random_orientation(Random& random) {
   return Quaterniond(test::random_rotation(random));
 }
 
-/// A few roundings of unit quaternions and of the rotations they are turned into and out of.
+/// A few roundings of unit quaternions and of the conversions between quaternions and rotations.
 constexpr double kQuaternion = 1e-14;
 
 TEST(RecordedMotion, TurnsFromSampleToSampleAtConstantRateTheShortWay) {
@@ -159,14 +159,14 @@ TEST(RecordedMotion, TurnsFromSampleToSampleAtConstantRateTheShortWay) {
     for (const double t : {0.0, 0.3, 1.0, 1.9, 2.0, 5.0}) {
       const double part = std::min(0.5 * t, 1.0);
       const Mat3 expected = Eigen::AngleAxisd(part * whole.angle(), whole.axis()) * from.toRotationMatrix();
-      // Towards half a turn, the short way is that of the rounding of the sum of two nearly opposite quaternions.
+      // Near half a turn, rounding of the sum of two nearly opposite quaternions decides which is the shorter arc.
       ASSERT_LE((rotation(motion, t) - expected).norm(), kQuaternion / (1.0 - whole.angle() / 3.1416)) << i << " " << t;
     }
   }
 }
 
 TEST(RecordedMotion, SamplesOfAnOrientationHaveItsAxis) {
-  // Not as a list in braces: g++ 14 takes the axis of its one element for uninitialised.
+  // Not as a list in braces, because g++ 14 then warns that the axis of its only element is uninitialised.
   const RecordedMotion motion(std::vector(1, oriented(0.0, Quaterniond(0.5, 0.5, 0.5, 0.5))));
   EXPECT_LE((motion.samples()[0].axis - Vec3(-1, 0, 0)).norm(), kQuaternion);
   EXPECT_TRUE(motion.scripts_roll());

@@ -17,7 +17,7 @@ namespace {
 
 using test::cases;
 
-// Properties of cylinders alone; EveryTool tests those of any tool.
+// Tests properties of cylinders only; EveryTool tests the properties of all tools.
 
 TEST(LargestSquareWithin, IsTheLastSquareWhoseRootDoesNotExceedTheRadius) {
   Random random(3);
@@ -42,7 +42,7 @@ TEST(CylinderConstraints, OnTheAxisTakeSomeNearestPlace) {
   EXPECT_EQ(contacts.gradient(1), Vec3(-Vec3::UnitZ()));
 }
 
-/// How many of the first sixteen places of the columns are inside.
+/// Returns how many of the first sixteen points of the columns are inside.
 std::size_t inside(const ToolShape& tool, const ToolPose& pose, const ContactBuffer& contacts) {
   ContactBuffer found(16);
   tool.push_inside(pose,
@@ -150,7 +150,7 @@ TEST(Meridian, KnowsWhetherTheBodyIsConvex) {
 }
 
 TEST(Meridian, CutsTheSectionAtCornersThatTurnInwards) {
-  // A shank, a cone and a head: two corners inwards, with one of them a step.
+  // A shank, a cone and a head: two corners turn inwards, one of them at a step.
   const Meridian meridian({{-9, 1}, {-4, 1}, {-3, 2}, {-3, 3}, {-1, 3}, {0, 2}}, Tip::flat);
   ASSERT_EQ(meridian.parts.size(), 3u);
   EXPECT_EQ(meridian.parts[2].low, -3);
@@ -176,7 +176,7 @@ TEST(BurProfile, HasTheDiameterTheLengthAndTheShankItIsAskedFor) {
     EXPECT_EQ(p[0].rho, 0.0002);
     EXPECT_EQ(p[1].rho, 0.0002);
     EXPECT_NEAR(p[1].s - p[0].s, 0.004, 1e-17);
-    // The neck cuts a little off a ball.
+    // The neck cuts a small part off the ball.
     const double cut = family == BurFamily::ball ? 0.0005 - std::sqrt(0.0005 * 0.0005 - 0.0002 * 0.0002) : 0.0;
     const double foremost = bur.tip == Tip::round ? p.back().rho : p.back().s;
     EXPECT_NEAR(foremost - p[1].s, length_of(family) - cut, 1e-17);
@@ -196,8 +196,8 @@ TEST(BurProfile, KeepsAThousandthOfTheDiameterToItsArcs) {
     EXPECT_NEAR(std::hypot(a.s, a.rho), 0.0005, 1e-18);
     EXPECT_GE(std::hypot(0.5 * (a.s + b.s), 0.5 * (a.rho + b.rho)), 0.0005 - 1e-6);
   }
-  // Smooth: from the shank on no corner of pear and flame but the tip's, the shank's and the flame's waist turns by
-  // more than a chord does.
+  // Smooth profile: after the shank, no corner of pear and flame turns by more than the angle of a chord, except the
+  // corners of the tip, of the shank and of the flame's largest diameter.
   for (const BurFamily family : {BurFamily::pear, BurFamily::flame}) {
     const BurProfile bur = bur_profile(family, 0.001, 0.003, 0.0004);
     for (std::size_t i = 2; i + 1 < bur.profile.size(); ++i) {

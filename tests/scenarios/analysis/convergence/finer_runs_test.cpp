@@ -17,9 +17,10 @@
 namespace hapbench::finer_runs_test {
 namespace {
 
-/// A flat tip of radius 0.5 mm in a plane whose points are 0.4 mm apart: 5 of them lie within, 21 of those that are
-/// 0.2 mm apart and 69 at 0.1 mm. The 10/N rule is min(N, 10) springs stiff, and N springs in series with K_vc = 40 K
-/// are 40 N / (40 + N): 5 and 4.44 for 5 points, 10 and 13.8 for 21, 10 and 25.3 for 69.
+/// A flat tip of radius 0.5 mm in a plane touches 5 points at a spacing of 0.4 mm, 21 points at 0.2 mm and 69 points at
+/// 0.1 mm. The 10/N rule renders the stiffness of min(N, 10) springs. N springs in series with K_vc = 40 K render 40
+/// N / (40 + N). So the two laws render 5 and 4.44 springs for 5 points, 10 and 13.8 for 21 points, 10 and 25.3 for 69
+/// points.
 TEST(FinerRuns, LeaveNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
   constexpr double kDepth = 2e-5, kOne = 1000.0 * kDepth;  // [m], [N]
   const Json scene = {
@@ -42,16 +43,16 @@ TEST(FinerRuns, LeaveNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
   }
   EXPECT_EQ(significant_order_text(numbers, laws), "no significant order: virtual_coupling ~ mcneely");
   EXPECT_NEAR(*numbers[0].value, 5.0 * kOne, 1e-12);
-  // No order is seen: the largest difference, and at most as much again for the last one.
+  // No order is observed: the error is the largest difference, plus at most the same amount for the last level.
   EXPECT_GE(*known[0].spacing, 5.0 * kOne - 1e-9);
   EXPECT_LE(*known[0].spacing, 10.0 * kOne);
   EXPECT_GE(*known[1].spacing, (25.3 - 4.45) * kOne);
   EXPECT_EQ(known[0].step, 0.0) << "the motion is prescribed";
-  EXPECT_EQ(finer.refined(0), "time.step_s 0.0005, 0.00025, 0.000125; environment.spacing_m 4e-04, 2e-04, 1e-04");
+  EXPECT_EQ(finer.refined(0), "time.step_s 0.0005, 0.00025, 0.000125; environment.spacing_m 0.0004, 0.0002, 0.0001");
 }
 
-/// A drill is pushed onto a plane: its largest speed is that of the last row before the landing. At the first levels it
-/// changes by 2e-6 m/s, at the next ones by 5e-4, because the landing moves to another row.
+/// A drill is pushed onto a plane. Its largest speed is the speed in the last step before the landing. At the first
+/// levels this speed changes by 2e-6 m/s, at the next levels by 5e-4 m/s, because the landing moves to another step.
 TEST(FinerRuns, ErrorOfAnExtremeHoldsTheValuesOfFinerLevels) {
   const std::vector<std::string> laws = {"mean"};
   const Comparison comparison = planned({.scenarios = {find_scenario("poke_plane")}, .algorithms = laws});

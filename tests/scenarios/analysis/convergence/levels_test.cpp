@@ -37,7 +37,7 @@ Study convergence_study(const Json& json, std::size_t count = 5, const std::stri
 constexpr double kStep = 1e-3, kStiffness = 1000.0, kMass = 0.1, kStart = 1e-3;
 constexpr int kSteps = 40;
 
-/// A mass on one spring that holds from both sides.
+/// Returns a mass on one bilateral spring.
 Json spring(double zeta, const char* integrator) {
   return {{"time", {{"step_s", kStep}, {"steps", kSteps}}},
           {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}},
@@ -67,7 +67,7 @@ TEST(Converge, KnowsTheFormalOrderOfEveryIntegrator) {
 /// Amplitudes of leapfrog on an undamped spring are x0 / sqrt(1 - (w h / 2)^2): order 2.
 TEST(Converge, FindsSecondOrderInTheAmplitudeOfAnUndampedSpring) {
   Json scene = spring(0.0, "leapfrog");
-  scene["time"]["steps"] = 4000;  // 64 periods, so that the rows come near to the peaks
+  scene["time"]["steps"] = 4000;  // 64 periods, so that some steps are close to the peaks
   const Study study = convergence_study(scene);
   const auto levels = study.levels_of("force_max_N");
   const Convergence c = convergence_of(study.levels, levels, {.smooth = false, .either_sign = false});
@@ -76,8 +76,9 @@ TEST(Converge, FindsSecondOrderInTheAmplitudeOfAnUndampedSpring) {
   EXPECT_NEAR(*c.extrapolated, kStiffness * kStart, *c.errors.back());
 }
 
-/// The fastest row is the last before the landing. At some step of the row the landing moves to another one, and the
-/// largest speed by what the tool gains in a row: the spread over the choice of rows tells.
+/// The largest speed occurs in the last step before the landing. At some time step the landing moves to another counted
+/// step, and the largest speed changes by the speed gained in one step. The spread over the choices of counted steps
+/// shows this.
 TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   Json scene = {{"time", {{"step_s", 1e-3}, {"steps", 200}}},
                 {"environment", {{"type", "springs"}, {"bilateral", false}}},
@@ -93,7 +94,7 @@ TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   const Study study = convergence_study(scene, 4);
   const auto levels = study.levels_of("speed_max_m_per_s");
   EXPECT_EQ(levels.front().spread, 0.0) << "every row counts";
-  // 1 m/s^2 over a row of 1 ms; the last row before the landing lies up to a row before it.
+  // 1 m/s^2 over a step of 1 ms; the last counted step before the landing is up to one step before it.
   const double gain = 1e-3;
   for (std::size_t i = 1; i < levels.size(); ++i) {
     EXPECT_GT(levels[i].spread, 0.5 * gain) << i;
@@ -104,8 +105,8 @@ TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   EXPECT_NEAR(*levels.back().result, landing_speed, *c.errors.back());
 }
 
-/// All levels are measured at the same times: a prescribed motion gives the same force steps, whatever the step, and
-/// none that a quarter of the step makes a quarter of.
+/// All levels are measured at the same times. For a prescribed motion, the force steps therefore do not depend on the
+/// time step; a time step of a quarter would otherwise give a quarter of the force step.
 TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
   Json scene = spring(0.2, "leapfrog");
   scene["motion"] = {{"position",
@@ -118,7 +119,7 @@ TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
   for (const char* metric : {"force_max_N", "force_step_max_N", "force_reversals"}) {
     const auto levels = study.levels_of(metric);
     const double first = *levels.front().result;
-    // Times are products of two roundings each, over a period of 2 pi 1e-3 m.
+    // Times are products with two roundings each, over a period of 2 pi 1e-3 m.
     for (const LevelResult& level : levels) EXPECT_NEAR(*level.result, first, 1e-12 * first) << metric;
     EXPECT_NE(study.of(metric).reason.find("rounding"), std::string::npos) << study.of(metric).reason;
   }

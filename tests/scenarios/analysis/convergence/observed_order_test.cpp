@@ -12,13 +12,13 @@
 
 #include "scenarios/scene/metric_sections.hpp"
 
-/// Observed orders of sequences whose order is known, and of sequences without an order. Roache's formulas on a
-/// recurrence are in tests/known_answers.
+/// Tests observed orders of sequences with known order, and of sequences without an order. tests/known_answers tests
+/// Roache's formulas on a recurrence.
 
 namespace hapbench::observed_order_test {
 namespace {
 
-/// Levels h = 1, 1/r, … of a result f(h).
+/// Returns the levels h = 1, 1/r, … of a result f(h).
 std::vector<LevelResult> levels_of(const std::function<double(double)>& f, std::size_t count = 5, double ratio = 2.0) {
   std::vector<LevelResult> levels;
   double h = 1.0;
@@ -38,7 +38,8 @@ Convergence judged(const std::vector<LevelResult>& levels, double formal_order, 
   return convergence_of({{}, ratio, formal_order}, levels);
 }
 
-/// No order, for a reason with these words; and then none of the numbers that only an order gives.
+/// Checks that there is no order, with a reason that contains these words, and that numbers that require an order are
+/// empty.
 void expect_no_order(const Convergence& c, const std::string& said) {
   EXPECT_NE(c.reason.find(said), std::string::npos) << c.reason;
   EXPECT_FALSE(c.order || c.extrapolated || c.gci || c.asymptotic) << c.reason;
@@ -50,10 +51,10 @@ TEST(ObservedOrder, IsThatOfAPureErrorTerm) {
       const Convergence c =
           judged(levels_of([p](double h) { return 3.0 - 0.25 * std::pow(h, p); }, 3, ratio), 4.0, ratio);
       ASSERT_TRUE(c.order) << p << " " << ratio << ": " << c.reason;
-      // The differences are known to 3 * 2.2e-16 * 2; the smallest of them is 0.25 (10^-1 - 10^-2)^... = 2e-9 at p = 4.
+      // The differences are known to 3 * 2.2e-16 * 2; the smallest difference is 2e-9, at p = 4.
       EXPECT_NEAR(*c.order, p, 1e-6);
       EXPECT_NEAR(*c.extrapolated, 3.0, 1e-13);
-      // The error of the finest level, with Roache's factor.
+      // The expected error of the finest level, with Roache's factor.
       const double error = 0.25 * std::pow(ratio, -2.0 * p);
       EXPECT_NEAR(*c.gci, 1.25 * error / (3.0 - error), 1e-6 * error + 1e-13);
       EXPECT_NEAR(*c.errors.back(), 1.25 * error, 1e-6 * error + 1e-13);
@@ -71,10 +72,10 @@ TEST(ObservedOrder, IsNotStatedWhereTheDifferencesShowNone) {
   const double ulp = std::nextafter(1.0, 2.0) - 1.0;
   const std::pair<std::vector<double>, const char*> kCases[] = {
       {{1.0, 1.2, 1.1, 1.15, 1.125}, "change sign"},
-      {{2.0, 1.0, 1.4, 1.2, 1.1}, "change sign"},  // the last three alone would have order 1
+      {{2.0, 1.0, 1.4, 1.2, 1.1}, "change sign"},  // the last three results alone would have order 1
       {{1.0, 1.1, 1.3, 1.7}, "do not shrink"},
       {{1.0, 1.1, 1.2, 1.3}, "do not shrink"},
-      {{1.0, 1.01, 1.2, 1.344}, "do not shrink"},  // the last three alone would have order 0.4
+      {{1.0, 1.01, 1.2, 1.344}, "do not shrink"},  // the last three results alone would have order 0.4
       {{2.0, 1.125, 1.015625, 1.001953125}, "more than twice the formal order 1"},
       {{2.0, 2.0, 2.0}, "rounding"},
       {{0.0, 0.0, 0.0}, "rounding"},
@@ -90,7 +91,7 @@ TEST(ObservedOrder, IsNotStatedWhereContactsSwitch) {
   EXPECT_TRUE(judged(levels, 1.0).order) << "the coarse levels do not count";
   levels[4].contacts[1].second = 21.5;
   const Convergence c = judged(levels, 1.0);
-  expect_no_order(c, "contacts change between the last levels (colliding_mean is 21 at");
+  expect_no_order(c, "contacts change between the last 3 levels (colliding_mean is 21 at");
   EXPECT_EQ(c.band, std::pair(1.0625, 1.25));
   EXPECT_NEAR(*c.errors[0], 1.0 - 0.0625, 1e-12);
 }
@@ -119,7 +120,7 @@ TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
 
 constexpr MetricTraits kExtreme{.smooth = false, .either_sign = false};
 
-/// A speed before a landing: it looks of first order for some levels, until the landing moves to another row.
+/// A speed before a landing: for some levels it looks of first order, until the landing moves to another step.
 TEST(ObservedOrder, OfExtremesNeedsFiveLevelsAndCountsTheirScatter) {
   const std::vector<double> halving = {1.0 + 1.0 / 4, 1.0 + 1.0 / 8, 1.0 + 1.0 / 16, 1.0 + 1.0 / 32, 1.0 + 1.0 / 64};
   for (const std::size_t count : {std::size_t{3}, std::size_t{4}}) {
@@ -127,7 +128,8 @@ TEST(ObservedOrder, OfExtremesNeedsFiveLevelsAndCountsTheirScatter) {
     levels.back().spread = 0.5;
     const Convergence c = convergence_of({{}, 2.0, 1.0}, levels, kExtreme);
     expect_no_order(c, "needs five levels");
-    // The errors hold what the levels beyond add at first order, and the spread; here the limit is 1.
+    // The errors include the difference that levels beyond the finest level would add at first order, and the spread;
+    // here the limit is 1.
     EXPECT_NEAR(*c.errors.front(), halving.front() - 1.0 + 0.5, 1e-12) << count;
     EXPECT_NEAR(c.band->first, halving[count - 1] - 0.5, 1e-12);
     EXPECT_NEAR(c.band->second, halving[count - 3] + 0.5, 1e-12);
@@ -139,7 +141,7 @@ TEST(ObservedOrder, OfExtremesNeedsFiveLevelsAndCountsTheirScatter) {
   EXPECT_NEAR(*five.errors.back(), 1.0 / 16 - 1.0 / 64, 1e-12) << "at least the range of the last three levels";
   levels.back().spread = 0.5;
   EXPECT_NEAR(*convergence_of({{}, 2.0, 1.0}, levels, kExtreme).errors.back(), 0.5 + 1.0 / 16 - 1.0 / 64, 1e-12);
-  // All five levels have to agree, not four of them.
+  // All five levels must agree, not only four of them.
   levels.front().result = 0.9;
   EXPECT_TRUE(judged(levels, 1.0).order);
   expect_no_order(convergence_of({{}, 2.0, 1.0}, levels, kExtreme), "change sign");

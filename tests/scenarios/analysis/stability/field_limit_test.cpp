@@ -13,7 +13,8 @@
 namespace hapbench::field_limit_test {
 namespace {
 
-// Limits of springs by theory and by runs, of fields beside K, and under bounds on metrics are in tests/known_answers.
+// tests/known_answers tests limits of springs by theory and by runs, limits of fields other than K, and bounds on
+// metrics.
 
 using Words = std::vector<std::string>;
 
@@ -36,7 +37,7 @@ FieldLimit ask(const Asked& asked, const char* algorithm = "summation") {
   return field_limit(question);
 }
 
-/// A flat tip without damping and friction under 1 N bounces for ever: a run that seems to die out does so by chance.
+/// A flat tip without damping and friction under 1 N bounces forever. A run that seems to decay does so by chance.
 TEST(FieldLimit, OfWhatNeverRestsIsNone) {
   const FieldLimit limit = ask({"poke_plane",
                                 "rendering.stiffness_N_per_m",
@@ -46,11 +47,11 @@ TEST(FieldLimit, OfWhatNeverRestsIsNone) {
   EXPECT_FALSE(limit.end.value) << *limit.end.value;
 }
 
-/// 2000 steps, within which a decay of a tenth in a quarter tells stable from vibrating 0.1 % below the limit.
+/// 2000 steps: a decay by a tenth in a quarter of the run separates stable from vibrating runs 0.1 % below the limit.
 const Words kLong = {"time.steps=2000"};
 
-/// The handle, 0.1 kg without friction, on an undamped spring behind a delay is unstable at every K, if slowly at small
-/// ones: K = 1 N/m grows by 0.1 % a second.
+/// A handle of 0.1 kg without friction, on an undamped spring with a delay, is unstable at every K, but slowly at small
+/// K: at K = 1 N/m the amplitude grows by 0.1 % per second.
 const Words kSlow = {"time={\"step_s\":0.001,\"steps\":1000}",
                      R"(device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0,"delay_samples":1})",
                      "rendering.damping_N_s_per_m=0"};
@@ -62,7 +63,7 @@ TEST(FieldLimit, IsNoneWhereGrowthIsSlow) {
   EXPECT_FALSE(limit.theory);
 }
 
-/// A heavy handle that taps a wall bounces below 30 Hz in every stable run, so that no contact lasts.
+/// A heavy handle that taps a wall bounces below 30 Hz in every stable run, so no contact lasts.
 TEST(FieldLimit, HasNoLinearLimitIfContactsComeAndGo) {
   const Words device = {R"(device={"type":"impedance","handle_mass_kg":3,"viscous_N_s_per_m":0.2,"delay_samples":3})"};
   const FieldLimit limit = ask({.scenario = "tap_wall",
@@ -83,7 +84,7 @@ TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
   EXPECT_EQ(*limit.theory, 5.0);
 }
 
-/// A passive hand on a handle with dry friction is stable, although it sticks and slips.
+/// A passive hand on a handle with dry friction is stable, although the handle sticks and slips.
 TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
   const Words rubbing = {R"(device={"type":"impedance","handle_mass_kg":0.136,"coulomb_N":0.25,"delay_samples":1})",
                          "time.step_s=0.00035"};
@@ -93,7 +94,7 @@ TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
   EXPECT_FALSE(limit.unstable_alone);
 }
 
-/// What is asked about hand and device alone has no points, and yet a stage that merges the points of a cell.
+/// The test of hand and device without contact has no points, but still has a stage that merges the points of a cell.
 TEST(FieldLimit, OfASceneWithLocalAverageIsOne) {
   const Asked asked{"tap_corner", "rendering.stiffness_N_per_m", {"time.steps=200"}, Range{1e6, 1e8, true}};
   Asked averaged = asked;

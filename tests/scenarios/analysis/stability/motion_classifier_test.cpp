@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kSteps = 4000;
 
-/// What a classifier makes of a tool whose velocity at row k is given.
+/// Returns the class that a classifier gives to a tool with this velocity at step k.
 MotionClass class_by(MotionClassifier classifier, const std::function<Vec3(double k)>& velocity) {
   StepRecord record;
   for (record.step = 0; record.step < kSteps; ++record.step) {
@@ -22,7 +22,7 @@ MotionClass class_by(MotionClassifier classifier, const std::function<Vec3(doubl
   return classifier.motion_class(Ending::completed);
 }
 
-/// The class of a motion along x.
+/// Returns the class of a motion along x.
 MotionClass class_of(const std::function<double(double k)>& velocity) {
   return class_by(MotionClassifier(kSteps), [&](double k) { return Vec3(velocity(k), 0.0, 0.0); });
 }
@@ -35,7 +35,7 @@ TEST(MotionClassifier, OfNoMotionAndOfCreepingIsStable) {
   EXPECT_EQ(class_of([](double k) { return 1.0 + 0.001 * k; }), MotionClass::stable) << "falls, but does not oscillate";
 }
 
-// An encoder makes jumps of the velocity of a handle that creeps.
+// An encoder makes the measured velocity of a slowly moving handle jump.
 TEST(MotionClassifier, OfAHandleThatMovesTheToolTakesItsOwnVelocity) {
   MotionClassifier classifier(kSteps);
   StepRecord record;
@@ -48,9 +48,9 @@ TEST(MotionClassifier, OfAHandleThatMovesTheToolTakesItsOwnVelocity) {
   EXPECT_EQ(classifier.motion_class(Ending::completed), MotionClass::stable);
 }
 
-/// An oscillation that changes by the factor `per_step` in every step. The amplitude of the fourth quarter is that of
-/// the first times per_step^(3/4 kSteps), up to the phase at the beginning of a quarter, a period of 10 rows: 1 % of
-/// it.
+/// Returns the class of an oscillation whose amplitude changes by the factor `per_step` in every step. The amplitude of
+/// the fourth quarter is the amplitude of the first quarter times per_step^(3/4 kSteps). The phase at the beginning of
+/// a quarter, with a period of 10 steps, changes this by up to 1 %.
 MotionClass class_of_oscillation(double per_step) {
   return class_of([&](double k) { return std::pow(per_step, k) * std::cos(0.2 * std::numbers::pi * k); });
 }
@@ -66,7 +66,7 @@ TEST(MotionClassifier, SeparatesClassesByWhatIsLostInAQuarter) {
   EXPECT_EQ(class_of_oscillation(1.0 + 1.2 * (growth - 1.0)), MotionClass::diverged);
 }
 
-/// The class of a tool that a hand moves to and fro, 20 mm/s at 1 Hz, and that vibrates besides.
+/// Returns the class of a tool that a hand moves back and forth, 20 mm/s at 1 Hz, and that also vibrates.
 MotionClass class_of_moved_tool(double amplitude, double frequency) {
   constexpr double kStep = 0.0005, kTurn = 2.0 * std::numbers::pi * kStep;
   return class_by(MotionClassifier::of_moved_tool(kSteps, kStep, kSteps), [&](double k) {
@@ -81,7 +81,8 @@ TEST(MotionClassifier, OfAMovedToolSeesWhatNoHandDoesAndWhatOneFeels) {
   EXPECT_EQ(class_of_moved_tool(0.01, 3.0), MotionClass::stable) << "a hand does that, too";
 }
 
-/// The class of a tool that a hand leads to a place in a quarter of the run and that swings there at 12 Hz.
+/// Returns the class of a tool that a hand moves to a position in a quarter of the run, where the tool oscillates at 12
+/// Hz.
 MotionClass class_of_swinging_tool(double amplitude, double decay, double still) {
   constexpr double kStep = 0.0005, kTurn = 2.0 * std::numbers::pi * kStep;
   return class_by(MotionClassifier::of_moved_tool(kSteps, kStep, still), [&](double k) {
@@ -117,7 +118,7 @@ TEST(MotionClassifier, IsAtRestOnlyAfterManyQuietRows) {
   see(1.0, 1);
   see(1e-13, 199);
   EXPECT_FALSE(classifier.at_rest());
-  see(1e-11, 1);  // not quiet enough: counting begins again
+  see(1e-11, 1);  // not slow enough: counting starts again
   see(1e-13, 199);
   EXPECT_FALSE(classifier.at_rest());
   see(1e-13, 1);

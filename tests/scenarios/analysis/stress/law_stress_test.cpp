@@ -14,7 +14,7 @@ namespace hapbench::law_stress_test {
 namespace {
 
 TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
-  // scripts/reproduce sends 200 000, scripts/test --all a million.
+  // scripts/reproduce tests 200 000 sets, scripts/test --all a million sets.
   const std::uint64_t count = test::cases(50'000);
   const auto all = stress_laws(count, 1, {2, ""});
   ASSERT_EQ(all.size(), algorithms().size());
@@ -23,19 +23,21 @@ TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
     EXPECT_GT(c.in_contact, count * 9 / 10) << c.algorithm;
     EXPECT_EQ(c.non_finite, 0u) << c.algorithm << ", first in set " << c.first_bad.value_or(0);
     EXPECT_EQ(c.out_of_bound, 0u) << c.algorithm << ", first in set " << c.first_bad.value_or(0);
-    // n_ext overflows wherever there is a reduction.
+    // n_ext overflows for every algorithm that may use the reduction.
     EXPECT_EQ(c.points_dropped > 0, find_algorithm(c.algorithm)->may_reduce) << c.algorithm;
     EXPECT_EQ(c.largest_share.has_value(), find_algorithm(c.algorithm)->force_bound != nullptr) << c.algorithm;
   }
 }
 
 TEST(LawStress, ReachesTheBoundsThatCanBeReached) {
-  // Parallel springs of one depth: all of the sum, of the mean, of a shaped direction; coupled ones, s / (1 + s^2) at s
-  // = 1.
+  // Parallel springs of equal depth reach the bound of the sum, of the mean and of a shaped direction. Coupled laws
+  // reach s / (1 + s^2) at s = 1.
   for (const StressCounts& c : stress_laws(20'000, 2, {2, ""})) {
     if (!c.largest_share) continue;
-    if (c.algorithm == "tandpasta" || c.algorithm == "original_averaging") continue;  // worst cases of rounding
-    if (c.algorithm == "proxy") continue;  // its bound is how far it can move in a step, which nothing makes it do
+    // The bounds of these laws are worst cases of rounding.
+    if (c.algorithm == "tandpasta" || c.algorithm == "original_averaging") continue;
+    // The bound of the proxy is its largest motion in a step, which no set reaches.
+    if (c.algorithm == "proxy") continue;
     EXPECT_GT(*c.largest_share, 0.9) << c.algorithm;
     EXPECT_LE(*c.largest_share, 1.0 + 1e-9) << c.algorithm;
   }

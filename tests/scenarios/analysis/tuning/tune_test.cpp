@@ -29,14 +29,14 @@ TuneQuestion question(const char* scene, const Words& overrides) {
   return question;
 }
 
-/// Three percent: the search ends at half a percent of K, and the runs near the edge need a strip of less than
-/// 1 % below it to tell decay from vibration in 4000 steps (run_stability.hpp).
+/// Three per cent: the search ends at half a per cent of K. Near the limit, the runs need a range of less than 1 %
+/// below it to separate decay from vibration in 4000 steps (run_stability.hpp).
 constexpr double kWithin = 0.03;
 
-/// A hand on the handle, whose loop is stable up to twice K with the worst hand of the family. That K is the largest
-/// over damping ratios is a known answer of a handle without a hand.
+/// A hand holds a handle whose loop is stable up to twice K with the worst of the typical hands. A known answer for a
+/// handle without a hand tests that this K is the largest over damping ratios.
 TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
-  constexpr double kMass = 0.1;  // of the scene, by which zeta counts
+  constexpr double kMass = 0.1;  // mass of the scene, by which zeta is defined
   const Words device = {
       R"(device={"type":"impedance","handle_mass_kg":0.3,"viscous_N_s_per_m":0.5,"delay_samples":1.5})",
       "time.steps=4000",
@@ -55,7 +55,8 @@ TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
   EXPECT_NEAR(K / worst_hand_stability_limit(loop), 1.0, kWithin);
 }
 
-/// The least edge of the loop of the virtual mass at a wall and its servo, over the scene's own hand and the family's.
+/// Returns the smallest limit of the loop of virtual mass, wall and servo, over the scene's own hand and the typical
+/// hands.
 double worst_edge_at_wall(const Scenario& scenario, double zeta, double mass) {
   AdmittanceLoop loop;
   loop.servo = std::get<AdmittanceDeviceConfig>(scenario.device).servo;
@@ -71,9 +72,9 @@ double worst_edge_at_wall(const Scenario& scenario, double zeta, double mass) {
   return least;
 }
 
-/// A wall that only pushes lets go of a tool that is damped less, and the bounces do not die out within the run: from
-/// 0.5 on the answer is the edge of the worst hand, at the best zeta and mass. Four seconds, so that the landing, which
-/// dies out slowly near the edge, is a small part of what is judged.
+/// A tool with little damping bounces off a wall that only pushes, and the bounces do not decay within the run. From
+/// zeta = 0.5 on, the result is the limit of the worst hand at the best zeta and mass. The run takes four seconds, so
+/// that the landing, which decays slowly near the limit, is a small part of the judged steps.
 TEST(Tune, OfTheDeviceAtAWallIsTheEdgeOfTheWorstHand) {
   TuneQuestion asked = question("device_at_wall", {"device.force_limit_N=null", "time.steps=8000"});
   asked.threads = 2;
@@ -103,7 +104,7 @@ TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
   ASSERT_TRUE(quiet.choice) << quiet.why;
   EXPECT_LE(quiet.choice->worst.at("force_rms_above_30Hz_N"), 0.7 * buzz);
   EXPECT_LE(quiet.choice->stiffness, 1.01 * free.choice->stiffness);
-  // What the choice is said to give is what a run gives.
+  // The metrics reported for the choice are the metrics of a run.
   const Result run = run_scenario(checked(load_scenario(asked.scenario, quiet.overrides)), std::nullopt, false);
   for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(number_of(run.metrics, name), value) << name;
 }
@@ -123,7 +124,7 @@ TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {
   EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice) << none.relax;
 }
 
-/// True if a grid of K and zeta has a trial that keeps all constraints.
+/// Returns true if a grid of K and zeta has a trial that keeps all constraints.
 bool grid_is_feasible(const TuneQuestion& asked, const std::string& algorithm) {
   Trials trials(asked, algorithm);
   const Range stiffnesses = trials.ranges().stiffness, zetas = *trials.ranges().damping_ratio;
@@ -133,11 +134,11 @@ bool grid_is_feasible(const TuneQuestion& asked, const std::string& algorithm) {
   return false;
 }
 
-/// A looser bound never makes a question infeasible, and what a grid finds, tune finds.
+/// A looser bound never makes a question infeasible, and tune finds a setting if a grid finds a setting.
 TEST(Tune, IsFeasibleIfAGridIsAndForEveryLooserBound) {
   struct Bounds {
     const char* scene;
-    std::vector<double> depths, vibrations;  // from tight to loose
+    std::vector<double> depths, vibrations;  // from tight to loose bounds
   };
   for (const Bounds& bounds :
        {Bounds{"impedance_at_wall", {1e-4, 4e-4}, {0.002, 0.02}}, {"tap_wall", {1e-4, 6e-4}, {0.01, 0.1}}}) {
@@ -162,7 +163,8 @@ TEST(Tune, IsFeasibleIfAGridIsAndForEveryLooserBound) {
   }
 }
 
-/// 0.8 N of dry friction hold the handle against a hand of 100 N/m that pulls by 4.5 mm: this hand never touches.
+/// 0.8 N of dry friction hold the handle against a hand of 100 N/m that pulls by 4.5 mm: with this hand the tool never
+/// touches.
 TEST(Tune, NamesTheRunThatFailsAndTheOptionThatLeavesItOut) {
   TuneQuestion asked = question("impedance_at_wall", {"device.coulomb_N=0.8"});
   asked.threads = 2;
@@ -176,7 +178,7 @@ TEST(Tune, NamesTheRunThatFailsAndTheOptionThatLeavesItOut) {
   EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
 }
 
-/// A device whose force has steps of 1 kN renders none of the few newtons of the law.
+/// A device with a force resolution of 1 kN renders nothing of the law's force of a few newtons.
 TEST(Tune, RecommendsNoStiffnessThatRendersNothing) {
   TuneQuestion asked = question("impedance_at_wall", {"device.force_step_N=1000"});
   const std::string law = "shaped_stiffness";  // must outlive the trials

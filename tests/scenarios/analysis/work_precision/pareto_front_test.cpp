@@ -13,7 +13,7 @@ using Indices = std::vector<std::size_t>;
 
 TEST(ParetoFront, HasThePointsThatNoOtherBeats) {
   EXPECT_EQ(pareto_front(Points{}), Indices{});
-  // Point 1 is beaten by 0 in both, point 4 costs as much as 2 and is worse.
+  // Point 1 is worse than point 0 in both cost and error. Point 4 costs as much as point 2 and has a larger error.
   const Points points = {{1, 10}, {2, 20}, {3, 5}, {9, 1}, {3, 6}};
   EXPECT_EQ(pareto_front(points), (Indices{0, 2, 3}));
   EXPECT_EQ(pareto_front(Points{{2, 1}, {2, 1}}), Indices{0}) << "of equal points the first";

@@ -15,7 +15,7 @@ namespace {
 constexpr double kStep = 1e-3, kStiffness = 1000.0, kMass = 0.1, kStart = 1e-3;
 constexpr int kSteps = 64;
 
-/// A mass on one bilateral spring without damping: x(t) = x_0 cos(omega t).
+/// Returns a mass on one bilateral spring without damping: x(t) = x_0 cos(omega t).
 ScenarioText oscillator() {
   return {test::data_directory() / "oscillator.json",
           Json{{"time", {{"step_s", kStep}, {"steps", kSteps}}},
@@ -90,7 +90,7 @@ TEST(WorkPrecision, TreatsEveryLawAsAProblem) {
 }
 
 TEST(WorkPrecision, StatesNoErrorOfATrajectoryThatCannotBePredicted) {
-  // Any growth of the shift is more than the error asked for.
+  // Any growth of the shift is more than the requested error.
   const auto problems = study({"integrator.type=leapfrog"}, 1e-12);
   EXPECT_FALSE(problems[0].is_predictable);
   EXPECT_GT(problems[0].grown_shift, 0.1 * kInitialShift);

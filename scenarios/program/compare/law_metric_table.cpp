@@ -1,0 +1,59 @@
+#include "scenarios/program/compare/law_metric_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string>
+
+#include "scenarios/program/digits.hpp"
+#include "scenarios/program/run_table.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Returns the heading of a metric in the table of runs, or its name and a factor of 1.
+RunHeading heading_of(const std::string& metric) {
+  const auto* known = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
+  return known == std::end(kRunHeadings) ? RunHeading{metric.c_str(), metric.c_str()} : *known;
+}
+
+std::string metric_text(const RankingEntry& entry, double factor) {
+  if (!entry.mean) return "-";
+  const auto scaled = [factor](const std::optional<double>& number) {
+    return number ? std::optional(factor * *number) : std::nullopt;
+  };
+  return with_spread(factor * *entry.mean, scaled(entry.spread), scaled(entry.tolerance));
+}
+
+}  // namespace
+
+Table law_metric_table(const Ranking& ranking) {
+  const bool has_failures = std::ranges::count(ranking.failed, true) > 0;
+  const bool several = ranking.scenarios.size() > 1;
+  Table table{.caption = fmt::format("mean{} of each metric",
+                                     ranking.seeds > 1 ? fmt::format(" and spread over {} seeds", ranking.seeds) : "")};
+  if (several) table.columns.push_back({"scenario", false});
+  table.columns.push_back({"algorithm", false});
+  if (has_failures) table.columns.push_back({"failed\nruns"});
+  for (const std::string& metric : ranking.metrics)
+    table.columns.push_back({.title = heading_of(metric).title, .unit = metric_unit(metric)});
+  table.columns.push_back({"mean\nrank"});
+  for (std::size_t s = 0; s < ranking.scenarios.size(); ++s) {
+    for (const LawRankingEntry& law : ranking.laws) {
+      const auto found = std::ranges::find(ranking.algorithms, law.algorithm);
+      const auto a = static_cast<std::size_t>(found - ranking.algorithms.begin());
+      auto& row = table.rows.emplace_back();
+      if (several) row.push_back(ranking.scenarios[s]);
+      row.push_back(law.algorithm);
+      if (has_failures) row.push_back(std::to_string(ranking.failures(s, a)));
+      for (std::size_t m = 0; m < ranking.metrics.size(); ++m)
+        row.push_back(metric_text(ranking.at(s, a, m), heading_of(ranking.metrics[m]).factor));
+      row.push_back(law.mean_rank ? significant(*law.mean_rank, 3) : "-");
+    }
+  }
+  return table;
+}
+
+}  // namespace hapbench

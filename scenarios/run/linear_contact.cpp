@@ -1,0 +1,278 @@
+#include "scenarios/run/linear_contact.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/scene_loop.hpp"
+#include "sim/core/hash.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kPositionStep = 1e-8;   // step of the differences in position [m]; a ten-thousandth of the smallest
+                                         // tools and depths
+constexpr double kVelocityStep = 1e-4;   // step of the differences in velocity [m/s]; dampers are linear
+constexpr double kRelativeError = 1e-7;  // relative error of the differences; smaller entries count as zero
+
+/// Returns the scenario without the parts that the linear theory leaves out.
+Scenario without_nonlinear_parts(Scenario scenario) {
+  scenario.rendering.dry_friction.reset();
+  scenario.rendering.force_stage.reset();
+  scenario.rendering.passivity_controller = false;
+  if (auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device)) admittance->sensor.noise = 0.0;
+  return scenario;
+}
+
+/// Sets entries that are below the error of the differences to zero.
+Mat3 without_noise(const Mat3& M, double largest) {
+  return (M.array().abs() > kRelativeError * largest).select(M, 0.0);
+}
+
+/// The parts of a scenario at rest, evaluated at poses of the tool.
+class RestingTool {
+ public:
+  RestingTool(const Scenario& scenario, const NamedFiles& files, const std::shared_ptr<const PointShell>& shell,
+              const ContactState& near)
+      : parts_(assemble(scenario, files, shell, {})),
+        contacts_(parts_.source->capacity()),
+        time_(near.time),
+        axis_(near.pose.axis),
+        roll_(near.pose.roll),
+        admittance_(std::get_if<AdmittanceDeviceConfig>(&scenario.device)) {
+    parts_.hand->reset();
+    parts_.source->follow(&row_);
+    parts_.source->reset();
+    parts_.algorithm->prepare({.capacity = parts_.source->capacity(),
+                               .tool = parts_.tool.get(),
+                               .shell = parts_.shell.get(),
+                               .springs = parts_.springs.get(),
+                               .dt = scenario.time.step,
+                               .schedule = parts_.source->schedule(),
+                               .row = &row_,
+                               .input = &input_,
+                               .position_is_free = true,
+                               .handle_moves_tool = handle_moves_tool(scenario.device)});
+    parts_.algorithm->reset();
+    parts_.device->reset({{scenario.initial.position, Vec3::Zero()}, Vec3::Zero()});
+    approach(scenario.initial.position, near.pose.position);
+  }
+
+  bool touches() const { return !force_.S.isZero(0.0) || !force_.spring.isZero(0.0); }
+  const Vec3& position() const { return position_; }
+
+  /// Moves the tool to the equilibrium and returns true. If the search does not converge, moves it to its last pose in
+  /// contact.
+  bool find_equilibrium() {
+    constexpr int kIterations = 40;
+    constexpr double kLargestStep = 0.1;              // largest step, in half widths of the tool
+    constexpr double kConverged = 1e-10;              // step below which the search ends [m]: the error of the
+                                                      // derivatives times the first steps
+    if (parts_.hand->task() != nullptr) return true;  // a subject corrects its force; the pose of the run counts
+    for (int i = 0; i < kIterations; ++i) {
+      const Vec3 before = position_;
+      const LinearContact here = linearised();
+      const Mat3 slope = here.rendered.stiffness + here.input * here.hand.stiffness;
+      const Eigen::JacobiSVD<Eigen::Matrix3d> svd(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      Vec3 step = Vec3::Zero();
+      for (Eigen::Index k = 0; k < 3; ++k)
+        if (const double s = svd.singularValues()[k]; s > 1e-6 * svd.singularValues()[0] && s > 0.0)
+          step += svd.matrixU().col(k).dot(total_force()) / s * svd.matrixV().col(k);
+      const double longest = kLargestStep * parts_.tool->half_width();
+      if (const double length = step.norm(); length > longest) step *= longest / length;
+      place(before + step);
+      if (!touches() || !force_.rendered.allFinite()) {
+        place(before);
+        return false;
+      }
+      if (step.norm() < kConverged) return true;
+    }
+    return false;
+  }
+
+  /// Returns the linearisation at the current pose.
+  LinearContact linearised() {
+    LinearContact contact;
+    const Vec3 at = position_;
+    const RenderedForce here = force_;
+    const std::uint64_t set = contact_set_;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const Vec3 step = kPositionStep * Vec3::Unit(i);
+      const auto [above, same_above] = force_at(at + step, set);
+      const auto [below, same_below] = force_at(at - step, set);
+      // Use a one-sided difference if a contact appears or vanishes on the other side.
+      if (same_above == same_below)
+        contact.rendered.stiffness.col(i) = -(above - below) / (2.0 * kPositionStep);
+      else
+        contact.rendered.stiffness.col(i) = same_above ? Vec3(-(above - here.rendered) / kPositionStep)
+                                                       : Vec3(-(here.rendered - below) / kPositionStep);
+      contact.rendered.damping.col(i) =
+          -(moving(at, kVelocityStep * Vec3::Unit(i)) - moving(at, -kVelocityStep * Vec3::Unit(i))) /
+          (2.0 * kVelocityStep);
+    }
+    place(at);
+    contact.rendered.assumed = parts_.algorithm->jacobian();
+    contact.rendered.stiffness =
+        without_noise(contact.rendered.stiffness, contact.rendered.stiffness.cwiseAbs().maxCoeff());
+    contact.rendered.damping = without_noise(contact.rendered.damping, contact.rendered.damping.cwiseAbs().maxCoeff());
+    contact.hand = parts_.hand->impedance();
+    contact.input = input_slope();
+    return contact;
+  }
+
+ private:
+  /// Moves the tool from its initial position to `to` in small steps, so that a proxy and a dragging hand follow.
+  void approach(const Vec3& from, const Vec3& to) {
+    constexpr int kSteps = 128;
+    for (int i = 0; i <= kSteps; ++i) place(from + (to - from) * (static_cast<double>(i) / kSteps));
+  }
+
+  /// Computes the forces on a tool that rests at `position`.
+  void place(const Vec3& position) {
+    position_ = position;
+    moving(position, Vec3::Zero());
+    contact_set_ = 0;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      Hash64 hash;
+      hash.word(contacts_.index[i]);
+      contact_set_ += hash.value();
+    }
+    hold(position);
+  }
+
+  /// Returns the rendered force on a tool with this position and velocity.
+  Vec3 moving(const Vec3& position, const Vec3& velocity) {
+    ++row_;
+    const ToolState tool{{position, axis_, roll_}, velocity};
+    parts_.source->contacts_at(tool.pose, contacts_);
+    parts_.algorithm->compute(tool, contacts_, force_);
+    return force_.rendered;
+  }
+
+  /// Returns the rendered force at a position, and true if the contacts at this position are the contacts with the hash
+  /// `set`.
+  std::pair<Vec3, bool> force_at(const Vec3& position, std::uint64_t set) {
+    place(position);
+    return {force_.rendered, contact_set_ == set};
+  }
+
+  /// Computes the hand's force. On an admittance device, it displaces the handle from the tool: the servo and the
+  /// structure carry it.
+  void hold(const Vec3& position) {
+    HandleState handle{position, Vec3::Zero()};
+    const ToolPose pose{position, axis_, roll_};
+    constexpr int kIterations = 8;  // each iteration reduces the error by the ratio of hand stiffness to servo
+                                    // stiffness
+    for (int i = 0; i < (admittance_ != nullptr ? kIterations : 1); ++i) {
+      hand_ = parts_.hand->force(time_, {handle, pose, force_.rendered, force_.spring});
+      if (admittance_ != nullptr && admittance_->servo.stiffness > 0.0)
+        handle.position =
+            position + hand_ * (1.0 / admittance_->servo.stiffness + 1.0 / admittance_->mechanics.structure_stiffness);
+    }
+    measured_ = parts_.device->measure(hand_);
+    input_ = measured_.input;
+  }
+
+  /// Returns the sum of the forces on the tool at rest [N].
+  Vec3 total_force() const { return force_.rendered + (parts_.device->moves_tool() ? hand_ : input_); }
+
+  /// Returns the derivative of the input force with respect to the hand's force, by differences.
+  Mat3 input_slope() {
+    if (parts_.device->moves_tool()) return Mat3::Identity();
+    constexpr double kForceStep = 1e-6;  // [N]
+    Mat3 slope;
+    for (Eigen::Index i = 0; i < 3; ++i)
+      slope.col(i) = (parts_.device->measure(hand_ + kForceStep * Vec3::Unit(i)).input -
+                      parts_.device->measure(hand_ - kForceStep * Vec3::Unit(i)).input) /
+                     (2.0 * kForceStep);
+    return without_noise(slope, 1.0);
+  }
+
+  SimulationParts parts_;
+  ContactBuffer contacts_;
+  double time_;
+  Vec3 axis_;
+  double roll_;
+  const AdmittanceDeviceConfig* admittance_;  ///< null for other devices
+  std::uint64_t row_ = 0;
+  Vec3 position_ = Vec3::Zero();
+  RenderedForce force_;
+  std::uint64_t contact_set_ = 0;  ///< hash of the rendered contacts
+  Vec3 hand_ = Vec3::Zero(), input_ = Vec3::Zero();
+  MeasuredForce measured_;
+};
+
+/// linear_contact() of a scenario whose files are known to be usable.
+std::optional<ContactAtRest> contact_at_rest(const Scenario& scenario, const NamedFiles& files,
+                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
+  const Scenario linear = without_nonlinear_parts(scenario);
+  RestingTool tool(linear, files, shell, near);
+  if (!tool.touches()) return std::nullopt;
+  const bool is_equilibrium = tool.find_equilibrium();
+  LinearContact contact = tool.linearised();
+  if (!contact.rendered.stiffness.allFinite() || !contact.rendered.damping.allFinite()) return std::nullopt;
+  // A hand that is attached to the handle moves with it between the samples: it is part of the device.
+  if (std::holds_alternative<MassSpringDamperHandFields>(linear.hand) && handle_moves_tool(linear.device))
+    contact.hand = {};
+  return ContactAtRest{contact, is_equilibrium};
+}
+
+}  // namespace
+
+std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
+                                            const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
+  return contact_at_rest(scenario.scenario(), scenario.files(), shell, near);
+}
+
+LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to) {
+  const double K = to.stiffness / from.stiffness,
+               B = normal_damping(from) > 0.0 ? normal_damping(to) / normal_damping(from) : 1.0;
+  LinearForce& rendered = contact.rendered;
+  rendered = {
+      K * rendered.stiffness, B * rendered.damping, {K * rendered.assumed.stiffness, B * rendered.assumed.damping}};
+  return contact;
+}
+
+std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
+                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
+  constexpr double kStep = 1.1, kMax = 2.0, kMin = 1e-9;  // of the search, in units of the scenario's K
+  const double K = scenario.scenario().rendering.stiffness;
+  if (!(K > 0.0) || !has_linear_loop(scenario.scenario())) return std::nullopt;
+  const auto at_K = contact_at_rest(scenario.scenario(), scenario.files(), shell, near);
+  if (!at_K) return std::nullopt;
+  LinearContact known =
+      at_K->contact;  // the last contact that was found, with the stiffness and damping of `rendering`
+  RenderingConfig rendering = scenario.scenario().rendering;
+  bool has_equilibrium = at_K->is_equilibrium;
+  Scenario at = scenario.scenario();
+  const auto is_stable = [&](double stiffness) {
+    at.rendering.stiffness = stiffness;
+    const auto found = has_equilibrium ? contact_at_rest(at, scenario.files(), shell, near) : std::nullopt;
+    has_equilibrium = found && found->is_equilibrium;
+    known = has_equilibrium ? found->contact : scaled(known, rendering, at.rendering);
+    rendering = at.rendering;
+    const std::vector<Eigen::MatrixXd> loop = contact_loop(at, known);
+    return !loop.empty() && is_stable_loop(loop);
+  };
+  // Walk from K towards the limit: up while the loop is stable, otherwise down to a stable stiffness.
+  const bool is_stable_at_K = is_stable(K);
+  double last = K, next = K;
+  do {
+    last = next;
+    next = is_stable_at_K ? std::min(last * kStep, kMax * K) : last / kStep;
+    if (next == last) return std::numeric_limits<double>::infinity();
+    if (next < kMin * K) return 0.0;
+  } while (is_stable(next) == is_stable_at_K);
+  // Bisect between the two.
+  double stable = std::min(last, next), unstable = std::max(last, next);
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (stable + unstable);
+    (is_stable(middle) ? stable : unstable) = middle;
+  }
+  return stable;
+}
+
+}  // namespace hapbench

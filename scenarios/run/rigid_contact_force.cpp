@@ -1,0 +1,64 @@
+#include "scenarios/run/rigid_contact_force.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <vector>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/shared_cache.hpp"
+#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/motions.hpp"
+#include "sim/contact/rigid_contact.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Follows the prescribed path and returns the force in every step.
+ReferenceForce computed(const Scenario& scenario, const NamedFiles& files) {
+  const auto& tool = std::get<CylinderFields>(scenario.tool);
+  RigidContact contact(files.at(kEnvironmentFile).mesh().triangles(), {tool.diameter / 2.0, tool.length});
+  const auto motion = make_motion(scenario, files);
+  const Vec3 start = motion->position_at(0.0);
+  const SurfaceDistance height = make_solid(scenario, files)->at(start);
+  if (height.value <= 0.0 || !contact.start(start, motion->axis_at(0.0))) {
+    fail_at(
+        "/reference_force",
+        fmt::format("type \"rigid_contact\": the tool touches the mesh in the first step ({}); allowed: a path that "
+                    "begins outside, because the nearest free position is reached along the path",
+                    length_text(height.value)));
+  }
+  std::vector<ReferenceForce::Sample> samples;
+  const double K = scenario.rendering.stiffness;
+  for (std::int64_t step = 0; step < scenario.time.steps; ++step) {
+    const double time = static_cast<double>(step) * scenario.time.step;
+    const Vec3 position = motion->position_at(time), free = contact.follow(position, motion->axis_at(time));
+    if (contact.touched_far_end()) {
+      fail_at("/reference_force",
+              fmt::format("type \"rigid_contact\": the tool's far end touches the mesh at {:.4g} s; allowed: a longer "
+                          "tool.length_m, or a path on which only tip and side touch",
+                          time));
+    }
+    samples.push_back({time, K * (free - position)});
+  }
+  return ReferenceForce(std::move(samples), K * contact.error());
+}
+
+}  // namespace
+
+std::shared_ptr<const ReferenceForce> rigid_contact_force(const Scenario& scenario, const NamedFiles& files) {
+  // The fields that determine the force; neither law nor damping is among them.
+  const Json whole = effective_scenario(scenario, {});
+  Json content = {{"stiffness", scenario.rendering.stiffness}, {"mesh", files.at(kEnvironmentFile).hash()}};
+  for (const char* field : {"time", "environment", "tool", "motion"}) content[field] = whole.at(field);
+  const auto bytes = [&scenario](const ReferenceForce&) {
+    return sizeof(ReferenceForce::Sample) * static_cast<std::size_t>(scenario.time.steps);
+  };
+  return shared_cache().get<ReferenceForce>(
+      "rigid contact " + content.dump(),
+      [&] { return std::make_shared<const ReferenceForce>(computed(scenario, files)); }, bytes);
+}
+
+}  // namespace hapbench

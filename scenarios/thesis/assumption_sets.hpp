@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scenarios/thesis/assumptions.hpp"
+#include "scenarios/thesis/judging.hpp"
+#include "scenarios/thesis/published_numbers.hpp"
+
+/// Judges claims under other assumptions. An assumption set has one value for each assumption that the thesis leaves
+/// open (assumptions.hpp).
+namespace hapbench {
+
+/// One value for each assumption.
+struct AssumptionSet {
+  std::vector<std::string> values;   ///< values[assumption], as texts for --set
+  std::set<std::size_t> given = {};  ///< assumptions whose value is given, so that it is not calibrated
+};
+
+/// Reads assumption sets from a CSV file, with one row for each set and one column for each assumption that differs.
+/// Other assumptions have their recorded values, or calibrated values (calibrated()). Throws InputError for a column
+/// that is not an assumption, a number outside of the assumption's range, or a text that is not one of its options.
+std::vector<AssumptionSet> read_assumption_sets(const std::filesystem::path& file, const Assumptions& assumptions);
+
+/// Returns the assumptions whose values differ from the recorded values, as "servo.delay = 2, local.average = false".
+std::string difference_text(const AssumptionSet& set, const Assumptions& assumptions);
+
+/// Relative difference from the published number of raw points at which an input counts as calibrated.
+inline constexpr double kCalibrationTolerance = 0.03;
+
+/// An assumption set whose calibrated assumptions have the values that give the published numbers of raw points.
+struct CalibratedSet {
+  AssumptionSet set;
+  std::set<std::size_t> missed = {};  ///< assumptions that could not be calibrated within their range
+};
+
+/// Calibrates the inputs of a set, by secants in logarithms from the recorded value with at most 8 runs for each input.
+/// Calibrates only inputs whose scenario differs from the recorded scenario, and no given value. Throws InputError.
+CalibratedSet calibrated(AssumptionSet set, const Assumptions& assumptions);
+
+/// Share of the targets of appendix D that a reduced run has: 4 of 15 targets at each position, by each of the six
+/// subjects.
+inline constexpr const char* kReducedSubjects[] = {"hand.trials=1", "hand.task.targets_per_place=4"};
+
+/// Inputs with which the claims are judged.
+struct JudgingInputs {
+  const Assumptions& assumptions;
+  const PublishedNumbers& published;  ///< without the values of assumptions
+  bool reduced = false;               ///< true: experiments with subjects have kReducedSubjects
+};
+
+/// The verdict on a claim under an assumption set.
+struct SetFinding {
+  std::string verdict;                 ///< verdict_name(), or kNotMeasured
+  std::string number;                  ///< Finding::number; empty if the claim was not measured
+  std::string why;                     ///< Finding::why, or why the claim was not measured
+  std::vector<std::string> scenarios;  ///< names of the scenarios that were used
+};
+/// Verdict of a claim that could not be measured: a run diverged unexpectedly, or a field refuses the value.
+inline constexpr const char* kNotMeasured = "not measured";
+
+/// Judges the claims under a set. Runs each scenario once, when a claim first needs it. A claim that uses a scenario of
+/// a missed calibration is not judged. Writes results into `directory` and removes it at the end. Thread-safe if each
+/// call has its own directory. Throws IoError.
+std::vector<SetFinding> judge_set(const JudgingInputs& inputs, const CalibratedSet& calibrated,
+                                  const std::vector<Claim>& claims, const std::filesystem::path& directory);
+
+}  // namespace hapbench

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/scene/scenario.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/published_numbers.hpp"
+
+/// Assumptions: what the thesis leaves open, with the value that the bundled scenarios have. They are stored in
+/// results/reference/assumptions.json; assumptions.schema.json documents the format, and a test validates the file
+/// against it.
+namespace hapbench {
+
+/// A scenario field that an assumption sets.
+struct AssumedField {
+  std::vector<std::string> scenarios;  ///< names of bundled scenarios; '*' matches any characters
+  std::string path;                    ///< dotted, as in --set; '*' matches every index of a list
+  bool times = false;                  ///< true: the assumption's value multiplies the value in the scenario; false: it
+                                       ///< replaces this value
+};
+
+/// The quantity to which an assumption is calibrated: mean number of colliding points over the steps with contact of a
+/// scenario.
+struct Calibration {
+  std::string scenario = {};
+  double raw = 0.0;
+};
+
+/// One open assumption. Exactly one of `range` and `options` is given.
+struct Assumption {
+  std::string id = {};
+  std::string value = {};                               ///< recorded value as text for --set; the bundled scenarios
+                                                        ///< have this value
+  std::optional<std::pair<double, double>> range = {};  ///< smallest and largest plausible value of a number
+  bool logarithmic = false;                             ///< true: the middle of the range is the geometric mean
+  std::vector<std::string> options = {};                ///< plausible values of a text, as for --set
+  std::vector<AssumedField> fields = {};        ///< empty for a number that rules of claims read by the assumption's id
+  std::optional<Calibration> calibration = {};  ///< given: the value is an input that is calibrated, and not free
+  std::string text = {};                        ///< JSON text of the whole entry
+
+  /// Returns the plausible values other than the recorded value, as texts for --set: the other options, or the ends of
+  /// the range and, with `middle`, its middle. Omits a middle within a tenth of the range of the recorded value.
+  std::vector<std::string> other_values(bool middle = true) const;
+
+  /// Returns true if the assumption can change a claim: it sets a field of one of `scenarios`, or it has no fields and
+  /// the text of the claim's `rule` names it, such as <rule.easily>.
+  bool reaches(std::span<const std::string> scenarios, const std::string& rule) const;
+};
+
+/// All recorded assumptions.
+class Assumptions {
+ public:
+  /// Reads the file. Throws InputError with the JSON pointer of a assumption that lacks a key or has a wrong type.
+  explicit Assumptions(const std::filesystem::path& file);
+
+  const std::vector<Assumption>& all() const { return all_; }
+  /// Returns the FNV-1a hash of the file's JSON content as 16 hexadecimal digits. White space does not change it.
+  const std::string& hash() const { return hash_; }
+
+  /// Returns the recorded values, one for each assumption, as texts for --set.
+  std::vector<std::string> recorded_values() const;
+
+  /// Returns the overrides for load_scenario that apply `values`, one for each assumption, to a scenario. Assumptions
+  /// that set the same field are applied in order. Throws InputError if a assumption's path is not a field of a
+  /// scenario that the assumption names, or if a field to multiply is not a number.
+  std::vector<std::string> overrides(const Scenario& scenario, std::span<const std::string> values) const;
+
+  /// Returns `published` with the values of the assumptions without fields added, by the assumptions' ids.
+  PublishedNumbers with_numbers(PublishedNumbers published, std::span<const std::string> values) const;
+
+  /// Returns a hash of the assumptions that can change a claim (Assumption::reaches). Empty if there are none.
+  std::string reach(std::span<const std::string> scenarios, const std::string& rule) const;
+
+ private:
+  std::vector<Assumption> all_;
+  std::string hash_;
+};
+
+/// Returns the JSON Schema (draft 7) of assumptions.json, results/reference/assumptions.schema.json. Throws InputError.
+Json assumptions_schema();
+
+}  // namespace hapbench

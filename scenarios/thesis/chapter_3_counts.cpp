@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/force_law.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/statistics.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/scenario.hpp"
+#include "scenarios/scene/tools.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
+#include "sim/core/math.hpp"
+#include "sim/core/random.hpp"
+
+/// Claims of 3.3: the number of points before and after the reduction.
+namespace hapbench {
+namespace {
+
+// ---- T1, T2, T3: number of points in each step with contact. One case for each point density. The hands are
+// calibrated to the mean and standard deviation of the raw counts, so that the raw counts are inputs; the counts after
+// the reduction are results. Our hands also tap with more than the input limit. Steps within kAfterTap after such a
+// tap count for the means, but not for the bound of 15 points.
+
+constexpr double kAfterTap = 0.1;  ///< [s]
+
+Measured measure_counts(const Evidence& e, const std::string& task) {
+  Measured measured;
+  for (const std::string density : kDensities) {
+    const std::string name = task + "_" + density;
+    const auto table = e.table(name, "trajectory.csv");
+    std::vector<double> raw, reduced;
+    double outside = 0.0, tap = -kAfterTap;
+    for (std::size_t i = 0; i < table.at("colliding").size(); ++i) {
+      const double time = table.at("time_s")[i];
+      const Vec3 force{table.at("fmeas_x_N")[i], table.at("fmeas_y_N")[i], table.at("fmeas_z_N")[i]};
+      // Steps within kAfterTap of a force beyond the input limit do not count for the bound.
+      if (force.norm() > e.published["L1.measured"].mean) tap = time;
+      if (time >= tap + kAfterTap) outside = std::max(outside, table.at("rendered")[i]);
+      if (table.at("colliding")[i] == 0.0) continue;
+      raw.push_back(table.at("colliding")[i]);
+      reduced.push_back(table.at("rendered")[i]);
+    }
+    measured.push_back({density,
+                        {{"raw_mean", {mean_of(raw)}},
+                         {"raw_deviation", {standard_deviation(raw)}},
+                         {"reduced_mean", {mean_of(reduced)}},
+                         {"reduced_deviation", {standard_deviation(reduced)}},
+                         {"reduced_max", {e.number(name, "metrics.rendered_max")}},
+                         {"outside_taps", {outside}}}});
+  }
+  return measured;
+}
+
+Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& published) {
+  const double left = published["T1.reduced"].mean;
+  const bool one = std::ranges::all_of(counts, [&](const MeasuredCase& c) { return c["reduced_max"] == left; });
+  return {decide(one, false),
+          one ? "on a flat all gradients are equal, so one point is left" : "more than one point is left on the flat"};
+}
+
+/// Returns whether the mean and the spread of counts are near the published values of recording `one`. The thesis
+/// publishes two recordings of a task without errors. A value is near recording `one` if its difference from this
+/// recording is at most the difference between the two recordings.
+std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
+                               const PublishedNumber& other) {
+  const auto is_near = [](double value, double published, double elsewhere) {
+    return std::abs(value - published) <= std::abs(published - elsewhere);
+  };
+  return {is_near(c[counts + "_mean"], one.mean, other.mean),
+          is_near(c[counts + "_deviation"], one.spread, other.spread)};
+}
+
+/// Agreement of the counts of one density with a published recording, from section 3.3 or from appendix C.3.
+struct CountsAgree {
+  bool raw = false;    ///< true if mean and spread of the raw counts agree
+  bool mean = false;   ///< true if, in addition, the mean after the reduction agrees
+  bool whole = false;  ///< true if, in addition, the spread after the reduction agrees and no step exceeds the bound
+};
+
+/// Compares the counts of one density with both published recordings of a task: the counts of 3.3 and of appendix C.3
+/// differ. `bounded`: true if no step exceeds the published bound.
+CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, const std::string& task, bool bounded) {
+  CountsAgree agree;
+  for (const auto& [one, other] : {std::pair("", ".C3"), std::pair(".C3", "")}) {
+    const auto [raw_mean, raw_spread] =
+        nearness(c, "raw", published[task + ".raw" + one], published[task + ".raw" + other]);
+    const auto [mean_left, spread_left] =
+        nearness(c, "reduced", published[task + ".reduced" + one], published[task + ".reduced" + other]);
+    if (!raw_mean || !raw_spread) continue;
+    agree.raw = true;
+    agree.mean = agree.mean || mean_left;
+    agree.whole = agree.whole || (mean_left && spread_left && bounded);
+  }
+  return agree;
+}
+
+std::string agreement_text(const CountsAgree& agree, bool bounded, double bound) {
+  if (agree.whole) return "as published";
+  if (!agree.raw) return "the raw counts are not the published ones";
+  if (!agree.mean) return "another number is left than published";
+  return "the number left is as published, " +
+         (bounded ? std::string("its spread is not") : fmt::format("some rows keep {} or more", bound));
+}
+
+/// A density whose raw counts, which are an input, are not the published counts predicts nothing.
+Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& published, const std::string& task) {
+  const double bound = published["T3.reduced.bound"].at_most;
+  std::size_t inputs = 0, all = 0, means = 0;
+  std::string why;
+  for (const MeasuredCase& c : counts) {
+    const bool bounded = c["outside_taps"] < bound;
+    const CountsAgree agree = agreement(c, published, task, bounded);
+    inputs += agree.raw ? 1U : 0U;
+    all += agree.whole ? 1U : 0U;
+    means += agree.mean ? 1U : 0U;
+    append_item(why, fmt::format("{}: {}", c.name, agreement_text(agree, bounded, bound)));
+  }
+  return {inputs == 0 ? Verdict::not_judged : decide(all == counts.size(), means > 0), why};
+}
+
+}  // namespace
+
+std::vector<ClaimRule> chapter_3_counts() {
+  return {{"T1", [](const Evidence& e) { return measure_counts(e, "task1_flat"); }, judge_flat_reduction},
+          {"T2", [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
+          {"T3", [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }}};
+}
+
+}  // namespace hapbench

@@ -1,0 +1,215 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/force_law.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/batch/comparison.hpp"
+#include "scenarios/batch/statistics.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/named_files.hpp"
+#include "scenarios/scene/scenario.hpp"
+#include "scenarios/scene/tools.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
+#include "sim/core/math.hpp"
+#include "sim/core/random.hpp"
+
+/// Claims of 2.7, 3.5 and 4.5: the limit of the input force.
+namespace hapbench {
+namespace {
+
+// ---- L1: displacement of the tool into the flat as a function of the measured force.
+// deviation: rms difference, without the force limit, between the displacement and the ideal line of Fig. 6,
+//   (measured force - weight) / K, divided by the largest displacement.
+// onset: measured force from which the displacement is constant with the limit [N].
+// plateau_spread: (max - min) / mean of the displacement beyond the onset.
+
+/// Displacements of the tool (depth) and of the handle into the flat [m], and the measured force [N], in a step with
+/// contact.
+struct FlatRow {
+  double depth, handle, force;
+};
+
+/// Returns the steps with contact of a scenario on the flat.
+std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario) {
+  const auto table = e.table(scenario, "trajectory.csv");
+  std::vector<FlatRow> rows;
+  for (std::size_t i = 0; i < table.at("pz_m").size(); ++i)
+    if (table.at("colliding")[i] != 0.0)
+      rows.push_back({-table.at("pz_m")[i], -table.at("hz_m")[i], -table.at("fmeas_z_N")[i]});
+  return rows;
+}
+
+MeasuredValues measure_force_limit(const Evidence& e) {
+  const std::vector<FlatRow> off = rows_on_flat(e, "force_limit_off"), on = rows_on_flat(e, "force_limit_on");
+  // The plateau is the mean displacement in the last quarter. The onset is the force at which the displacement first
+  // reaches 99 % of the plateau.
+  double plateau = 0.0, onset = std::numeric_limits<double>::infinity();
+  const std::size_t last = on.size() / 4;
+  for (std::size_t i = on.size() - last; i < on.size(); ++i) plateau += on[i].depth / static_cast<double>(last);
+  for (const auto& [depth, handle, force] : on)
+    if (depth >= 0.99 * plateau) onset = std::min(onset, force);
+  // Find the spread of the plateau, from 0.2 N beyond the onset on.
+  double low = plateau, high = plateau;
+  for (const auto& [depth, handle, force] : on) {
+    if (force < onset + 0.2) continue;
+    low = std::min(low, depth);
+    high = std::max(high, depth);
+  }
+  // Compare the displacement without limit with the ideal line.
+  const double stiffness = e.load("force_limit_off").scenario.rendering.stiffness;
+  double squares = 0.0, deepest = 0.0;
+  for (const auto& [depth, handle, force] : off) {
+    const double difference = depth - (force - e.published["L1.offset"].mean) / stiffness;
+    squares += difference * difference / static_cast<double>(off.size());
+    deepest = std::max(deepest, depth);
+  }
+  return {
+      {"deviation", {std::sqrt(squares) / deepest}}, {"onset", {onset}}, {"plateau_spread", {(high - low) / plateau}}};
+}
+
+Finding judge_force_limit(const MeasuredCase& m, const PublishedNumbers& published) {
+  const bool proportional = m["deviation"] <= threshold(published, "proportional");
+  const bool onset = std::abs(m["onset"] - published["L1.measured"].mean) <= threshold(published, "onset");
+  const bool constant = m["plateau_spread"] <= threshold(published, "proportional");
+  return {decide(proportional && onset && constant, proportional && constant),
+          fmt::format("{} without the limit; {} with it; {}", proportional ? "proportional" : "not proportional",
+                      constant ? "constant" : "not constant", onset ? "onset as published" : "onset elsewhere")};
+}
+
+// ---- L4: stiffness at the handle [N/m]: change of force over displacement of the handle, from the first contact to
+// the largest force.
+
+MeasuredValues measure_felt_stiffness(const Evidence& e) {
+  MeasuredValues values;
+  for (const std::string limit : {"off", "on"}) {
+    const std::vector<FlatRow> rows = rows_on_flat(e, "force_limit_" + limit);
+    const FlatRow &touch = rows.front(), &hardest = rows.back();
+    values[limit] = {(hardest.force - touch.force) / (hardest.handle - touch.handle)};
+  }
+  return values;
+}
+
+Finding judge_felt_stiffness(const MeasuredCase& m, const PublishedNumbers& p) {
+  const double times = m["on"] / m["off"];
+  return {
+      decide(times >= threshold(p, "heavier"), times > 1.0),
+      fmt::format("{:.2g} times as stiff with the limit; what is left are servo and structure, which are ours", times)};
+}
+
+// ---- L2: the steps of task 2 in contact in which the hand's force is at the limit: the spring force f (the reaction)
+// [N], and the fraction of the steps in which f does not grow along the velocity v, <v, grad |f|> = -K <f, S v> / |f|
+// <= 0. At the limit the tool is near equilibrium, so that the sign of v is a matter of chance; if the tool moves only
+// where the reaction decreases, the reaction does not exceed the limit.
+
+MeasuredValues measure_saturated_motion(const Evidence& e) {
+  // The hand pushes with more than the input limit of 2 N during one rotation of the drill to and fro.
+  const LoadedScenario loaded =
+      e.load("task2_rotate_signed_distance",
+             {R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})", "time.duration_s=6"});
+  const double limit = input_force_limit(loaded.scenario.device).value();
+  std::vector<double> reactions;
+  double against = 0.0;
+  for_each_row(checked(loaded), [&](const StepRecord& row) {
+    const Vec3& spring = row.force.spring;
+    // Skip steps below the limit. The limiter scales the force to the limit, up to rounding.
+    if (row.hand.input.norm() < limit * (1.0 - 1e-12) || spring.norm() == 0.0) return;
+    if (row.tool.velocity.dot(-row.force.S * spring) <= 0.0) against += 1.0;
+    reactions.push_back(spring.norm());
+  });
+  const double nan = std::nan(""), rows = static_cast<double>(reactions.size());
+  std::ranges::sort(reactions);
+  const auto quantile = [&](double share) {
+    return reactions.empty() ? nan : reactions[static_cast<std::size_t>(share * (rows - 1.0))];
+  };
+  return {{"rows", {rows}},          {"limit", {limit}},       {"median", {quantile(0.5)}},
+          {"p99", {quantile(0.99)}}, {"max", {quantile(1.0)}}, {"against", {against / rows}}};
+}
+
+Finding judge_saturated_motion(const MeasuredCase& m, const PublishedNumbers& p) {
+  // With NaN a comparison is false.
+  const double most = threshold(p, "around") * m["limit"];
+  const bool held = m["p99"] <= most, median = m["median"] <= most;
+  return {decide(held, median), held ? "the reaction stays at the limit, whatever the hand pushes with"
+                                     : "the reaction exceeds the limit while the hand pushes on"};
+}
+
+// ---- L3: a tool shaken in free air. One case for each frequency.
+
+constexpr double kNormalShaking = 2.0;  ///< [Hz]
+constexpr double kFrequencies[] = {1.0, kNormalShaking, 3.0, 4.0, 6.0, 8.0};
+
+/// Result of shaking at one frequency.
+struct Shaking {
+  double apparent_mass = 0.0;  ///< amplitude of the hand's force divided by amplitude of the handle's acceleration [kg]
+  double force_max = 0.0;      ///< largest force of the hand in the last second [N]
+};
+
+/// Shakes the tool at a frequency [Hz], with or without the device's force limit. Computes the fundamental components
+/// of force and position over the last second, which contains an integer number of periods.
+Shaking shake(const Evidence& e, double frequency, bool limited) {
+  std::vector<std::string> overrides = {fmt::format("hand.target.x_m.period_s={}", 1.0 / frequency)};
+  if (!limited) overrides.push_back("device.force_limit_N=null");
+  const LoadedScenario loaded = e.load("shaking_in_free_air", overrides);
+  const double omega = 2.0 * std::numbers::pi * frequency;
+  const double start = loaded.scenario.time.step * static_cast<double>(loaded.scenario.time.steps) - 1.0;
+  Eigen::Vector2d force = Eigen::Vector2d::Zero(), position = force;
+  Shaking shaking;
+  for_each_row(checked(loaded), [&](const StepRecord& row) {
+    if (row.time < start) return;
+    const Eigen::Vector2d phase(math::cos(omega * row.time), -math::sin(omega * row.time));
+    force += row.hand_force.x() * phase;
+    position += row.handle.position.x() * phase;
+    shaking.force_max = std::max(shaking.force_max, row.hand_force.norm());
+  });
+  shaking.apparent_mass = force.norm() / (omega * omega * position.norm());
+  return shaking;
+}
+
+Measured measure_shaking(const Evidence& e) {
+  Measured measured;
+  for (const double frequency : kFrequencies) {
+    const Shaking with = shake(e, frequency, true), without = shake(e, frequency, false);
+    measured.push_back({fmt::format("{} Hz", frequency),
+                        {{"frequency", {frequency}},
+                         {"mass", {with.apparent_mass}},
+                         {"mass_unlimited", {without.apparent_mass}},
+                         {"force", {with.force_max}}}});
+  }
+  return measured;
+}
+
+Finding judge_shaking(const Measured& measured, const PublishedNumbers& published) {
+  const double limit = published["L1.threshold"].mean;
+  bool normal = false, heavier = false;
+  for (const MeasuredCase& m : measured) {
+    const double factor = m["mass"] / m["mass_unlimited"];
+    if (m["frequency"] == kNormalShaking)
+      normal = m["force"] < limit && std::abs(factor - 1.0) <= threshold(published, "same_mass");
+    heavier = heavier || factor >= threshold(published, "heavier");
+  }
+  return {decide(normal && heavier, heavier),
+          fmt::format("fast shaking {} like more mass; at {} Hz the force {}", heavier ? "feels" : "does not feel",
+                      kNormalShaking, normal ? "stays below the limit and nothing changes" : "reaches the limit")};
+}
+
+}  // namespace
+
+std::vector<ClaimRule> chapter_3_force_limit() {
+  return {single_case<measure_force_limit, judge_force_limit>("L1"),
+          single_case<measure_saturated_motion, judge_saturated_motion>("L2"),
+          {"L3", measure_shaking, judge_shaking},
+          single_case<measure_felt_stiffness, judge_felt_stiffness>("L4")};
+}
+
+}  // namespace hapbench

@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenarios/run/diagnosis.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
+
+/// Claims about all three tasks of 3.2: stability throughout, and small depths (abstract, 4.2, C.3).
+namespace hapbench {
+namespace {
+
+// ---- S2: one case for each task and density: completes (1 or 0), and the numbers of the diagnosis for vibration: buzz
+// (rms of the force above 30 Hz over the mean force) and pop (largest force step over the mean force), in settled
+// contact; disturbed: number of rules of the diagnosis for low vibration whose threshold is exceeded.
+
+Measured measure_stability(const Evidence& e) {
+  Measured measured;
+  for (const std::string task : kTasks) {
+    for (const std::string density : kDensities) {
+      const LoadedScenario loaded = e.load(task + "_" + density, {"record.ratio_iterations=[]"});
+      const Result run = run_scenario(checked(loaded), std::nullopt, false);
+      MeasuredCase& m = measured.emplace_back(MeasuredCase{task.substr(0, 5) + " " + density, {}});
+      m.values["completes"] = {run.end.outcome == Outcome::completes ? 1.0 : 0.0};
+      for (const char* rule : {"buzz", "pop"}) m.values[rule] = {0.0};
+      double disturbed = 0.0;
+      for (const Diagnosed& number : low_vibration_numbers(loaded, run)) {
+        if (number.rule == "buzz" || number.rule == "pop") m.values[number.rule] = {number.value};
+        if (number.value > number.threshold) disturbed += 1.0;
+      }
+      m.values["disturbed"] = {disturbed};
+    }
+  }
+  return measured;
+}
+
+Finding judge_stability(const Measured& measured, const PublishedNumbers&) {
+  std::size_t completed = 0, undisturbed = 0;
+  double buzz = 0.0, pop = 0.0;
+  for (const MeasuredCase& m : measured) {
+    completed += m["completes"] == 1.0 ? 1U : 0U;
+    undisturbed += m["completes"] == 1.0 && m["disturbed"] == 0.0 ? 1U : 0U;
+    buzz = std::max(buzz, m["buzz"]);
+    pop = std::max(pop, m["pop"]);
+  }
+  return {decide(undisturbed == measured.size(), completed == measured.size()),
+          fmt::format("{} of {} runs complete, {} without vibration or jumps that a hand would feel", completed,
+                      measured.size(), undisturbed),
+          "",
+          fmt::format("{} of {} runs complete; force above 30 Hz up to {:.2f} of the mean", completed, measured.size(),
+                      buzz)};
+}
+
+// ---- G3: largest depth of a contact in each task and density [m].
+
+Measured measure_depths(const Evidence& e) {
+  Measured measured;
+  for (const std::string task : kTasks)
+    for (const std::string density : kDensities)
+      measured.push_back(
+          {task.substr(0, 5) + " " + density, {{"depth", {e.number(task + "_" + density, "metrics.depth_max_m")}}}});
+  return measured;
+}
+
+Finding judge_depths(const Measured& measured, const PublishedNumbers& published) {
+  double deepest = 0.0;
+  for (const MeasuredCase& m : measured) deepest = std::max(deepest, m["depth"]);
+  const bool small = deepest < published["G1.negligible"].at_most;
+  return {decide(small, false),
+          small ? "the limit of the input force keeps the depths small" : "some contact is deeper", "",
+          fmt::format("at most {:.3f} mm", 1e3 * deepest)};
+}
+
+}  // namespace
+
+std::vector<ClaimRule> whole_tasks() {
+  return {{"S2", measure_stability, judge_stability}, {"G3", measure_depths, judge_depths}};
+}
+
+}  // namespace hapbench

@@ -1,0 +1,36 @@
+"""Where the program is, and the packages of its commands, which audit and plot need."""
+import os
+import sys
+from pathlib import Path
+
+_HERE = Path(__file__)
+_PACKAGE = _HERE.absolute().parent  # of pip, with program and files in it
+_PREFIX = _HERE.absolute().parents[4]  # of a build or of cmake --install
+
+
+def _program() -> Path:
+    return next(
+        (file for top in (_PACKAGE, _PREFIX) if (file := top / "bin" / "hapbench").is_file()),
+        _PREFIX / "bin" / "hapbench",
+    )
+
+
+PROGRAM = _program()
+
+
+def find_packages() -> None:
+    """Makes the packages of the commands importable, and names the program that belongs to this package."""
+    installed = (top / "share" / "hapbench" / "scripts" / "python" for top in (_PACKAGE, _PREFIX))
+    folders = (_HERE.resolve().parents[1], *installed)
+    folder = next((one for one in folders if (one / "hapbench_audit").is_dir()), None)
+    if folder is not None and str(folder) not in sys.path:
+        sys.path.append(str(folder))
+    if PROGRAM.is_file():
+        os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
+    use_this_python()
+
+
+def use_this_python() -> None:
+    """Makes the program run plot and report with this Python, if pip installed both together."""
+    if PROGRAM.is_relative_to(_PACKAGE):
+        os.environ.setdefault("HAPBENCH_PYTHON", sys.executable)

@@ -1,0 +1,143 @@
+"""The option --table of the program: tables as Markdown, LaTeX that compiles, and CSV."""
+import csv
+import io
+import json
+import re
+import shutil
+import unittest
+from functools import cache
+
+from fixture import PROGRAM, must, ran, scratch_folder
+
+NASTY = r'50 % of {a_b} & #1 ~ $x^2$ \y |q| <z> "w" --n [s] é µ ≤ λ'
+LAWS = "mean,least_squares,summation"  # some of which fail in the hole
+PEG = "peg_in_hole_2d_shaped_stiffness"
+SHORT = ("--set", "time.steps=300", "--set", "expect={}")
+
+
+def markdown_rows(text):
+    """The cells of a Markdown table, without the line of rules."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    rows = [[c.strip() for c in re.split(r"(?<!\\)\|", line)[1:-1]] for line in lines]
+    return rows[:1] + rows[2:]
+
+
+def setUpModule():
+    global ROOT
+    ROOT = scratch_folder(unittest)
+    scene = {"extends": "tap_wall", "name": NASTY, "time": {"steps": 300}, "expect": {}}
+    (ROOT / "nasty.json").write_text(json.dumps(scene), encoding="utf-8")
+
+
+# Command lines that print tables, with failures, missing values, errors and texts from outside.
+COMMANDS = {
+    "run": ("run", "nasty.json", "tap_wall", *SHORT),
+    "latency": ("run", "nasty.json", "--latency"),
+    "compare": ("compare", "nasty.json", "--algorithms", LAWS),
+    "seeds": (
+        "compare",
+        "tap_wall",
+        PEG,
+        *("--algorithms", LAWS, "--seeds", 2, "--jitter", 1e-6, "--set", "time.steps=300"),
+    ),
+    "errors": ("compare", "nasty.json", "--algorithms", "mean,proxy", "--errors", "--time"),
+    "limit": ("limit", "spring_stiffness"),
+    "devices": ("limit", "tap_wall", "--device", "touch,ideal", "--resolution", 0.1),
+    "tune": ("tune", "tap_wall", "--algorithms", "mean"),
+    "converge": ("converge", "nasty.json", "--levels", 3),
+    "over": ("converge", "tap_wall", "--over", "integrator.type=all", "--levels", 3, *SHORT),
+    "claims": ("describe", "claims"),
+    "terms": ("describe", "terms"),
+    "everything": ("describe", "--grep", "stiffness"),
+}
+
+
+@cache
+def printed(name, form):
+    return must(PROGRAM, *COMMANDS[name], "--table", form, cwd=ROOT, statuses=(0, 3))
+
+
+def csv_rows(name):
+    return list(csv.reader(io.StringIO(printed(name, "csv"))))
+
+
+class Tables(unittest.TestCase):
+    def test_standard_output_has_the_tables_and_nothing_else(self):
+        for name in COMMANDS:
+            for part in printed(name, "latex").split("\n\n"):
+                self.assertRegex(part, r"^% [^\n]*\n\\begin{tabular}", name)
+                self.assertRegex(part, r"\\end{tabular}\n?$", name)
+        for name in ("errors", "seeds", "claims"):
+            for part in printed(name, "csv").split("\n\n"):
+                rows = list(csv.reader(io.StringIO(part)))
+                self.assertEqual({len(row) for row in rows}, {len(rows[0])}, part)
+        for name in ("run", "seeds", "claims"):
+            rows = markdown_rows(printed(name, "markdown"))
+            self.assertEqual({len(row) for row in rows}, {len(rows[0])}, name)
+
+    def test_latex_compiles(self):
+        if not shutil.which("pdflatex"):
+            self.skipTest("no LaTeX (scripts/setup --check installs it)")
+        tables = [printed(name, "latex") for name in COMMANDS]
+        (ROOT / "tables.tex").write_text(
+            "\\documentclass{article}\n\\usepackage{booktabs,siunitx}\n\\begin{document}\n\\tiny\n"
+            + "\n\n\\clearpage\n".join(tables)
+            + "\\end{document}\n",
+            encoding="utf-8",
+        )
+        words = ("pdflatex", "-interaction=nonstopmode", "-halt-on-error", "tables.tex")
+        done = ran(*words, cwd=ROOT)
+        said = re.sub(r"(?s)^.*?(?=^!)", "", done.stdout, flags=re.M)
+        if "siunitx.sty' not found" in done.stdout or "booktabs.sty' not found" in done.stdout:
+            self.skipTest("no siunitx (scripts/setup --check installs it)")
+        self.assertEqual(done.returncode, 0, said[:2000])
+        self.assertNotRegex(done.stdout, "Missing character|Undefined|siunitx Error")
+
+    def test_names_are_those_of_the_scenario(self):
+        heads, *rows = csv_rows("run")
+        self.assertEqual(rows[0][heads.index("scenario")], NASTY)
+        row = markdown_rows(printed("run", "markdown"))[1]
+        self.assertEqual(re.sub(r"\\(.)", r"\1", row[0]), NASTY)
+
+    def test_a_comparison_over_seeds_is_one_table_of_laws_and_metrics(self):
+        heads, *rows = csv_rows("seeds")
+        self.assertEqual(heads[:3], ["scenario", "algorithm", "failed runs"])
+        self.assertEqual(len(rows), 2 * 3)
+        self.assertEqual({row[1] for row in rows}, set(LAWS.split(",")))
+        for head in heads[3:-1]:
+            self.assertRegex(head, r"\[[^]]+\]")
+        with (ROOT / "results/out/compare/ranking.csv").open(encoding="utf-8") as file:
+            ranking = list(csv.DictReader(file))
+        for row in rows:
+            for entry in ranking:
+                if (entry["scenario"], entry["algorithm"]) == (row[0], row[1]):
+                    self.assertEqual(row[2], entry["failed"])
+
+    def test_heads_have_units(self):
+        heads = csv_rows("limit")[0]
+        self.assertIn("quote [N/m]", heads)
+        self.assertIn("linear limit [N/m]", heads)
+        heads = csv_rows("converge")[0]
+        self.assertIn("time.step_s [s]", heads)
+
+    def test_claims_have_verdicts_and_numbers(self):
+        heads, *rows = csv_rows("claims")
+        self.assertEqual(heads[:2], ["claim", "summary"])
+        self.assertIn("T3", {row[0] for row in rows})
+        for name in ("verdict", "published", "measured"):
+            self.assertTrue(all(row[heads.index(name)] for row in rows if row[0] == "T3"))
+
+    def test_what_cannot_be_a_table_is_refused(self):
+        for words, said in (
+            (("run", "tap_wall", "--table", "html"), 'allowed: "markdown", "latex", "csv"'),
+            (("run", "tap_wall", "--table", "csv", "--json"), "--json"),
+            (("describe", "mean", "--table", "csv"), "allowed: with a list, such as claims"),
+            (("validate", "tap_wall", "--table", "csv"), "--table"),
+        ):
+            done = ran(PROGRAM, *words, cwd=ROOT)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn(said, done.stderr)
+
+    def test_several_csv_tables_are_announced(self):
+        done = ran(PROGRAM, *COMMANDS["latency"], "--table", "csv", cwd=ROOT)
+        self.assertIn("2 CSV tables", done.stderr)
