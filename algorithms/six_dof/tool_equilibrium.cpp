@@ -33,9 +33,6 @@ constexpr double kFlat = 1e-3;
 /// Passes after which second derivatives of the constraints are used in every second pass only: active sets that
 /// alternate under one model may converge under the other.
 constexpr int kManyPasses = 40;
-/// Stiffness of the directions that the holding points block, in units of the springs' stiffness along them.
-/// With a depth known to 1e-17 m it adds 1e-10 N to the residual at 20 000 N/m.
-constexpr double kStiffening = 1e3;
 
 }  // namespace
 
@@ -203,22 +200,27 @@ ToolEquilibrium::SecondOrder ToolEquilibrium::second_order(const PoseSprings& sp
   const auto is_positive = [](const Mat6& m) { return Eigen::LLT<Mat6>(m).info() == Eigen::Success; };
   second.hessian += curvature(pose);
   if (is_positive(second.hessian)) return second;
-  // Stiffen the directions along which the holding points allow no motion. This changes no move that keeps them in
-  // touch; what is still not positive is a descent of the energy along the constraints.
-  const Mat6 L = Eigen::LLT<Mat6>(model.hessian / springs.stiffness).matrixL();
+  // In y = L^T z, where the springs alone have the second derivatives K, keep the second derivatives along the moves
+  // that keep the holding points in touch, and take those of the springs across. What is still not positive is a
+  // descent of the energy along the constraints. Points may hold the tool by normals that differ by 1e-3 rad, as in a
+  // shallow notch, so that no finite stiffness across would tell.
+  const double K = springs.stiffness;
+  const Mat6 L = Eigen::LLT<Mat6>(model.hessian / K).matrixL();
   const Mat6 inverse = L.inverse();
+  nearest_point::ActiveSet<6> blocked;
   for (const Holding& h : holding()) {
-    const double length2 = (inverse * h.row).squaredNorm();
-    second.hessian += kStiffening * springs.stiffness / length2 * h.row * h.row.transpose();
+    const Vec6 row = (inverse * h.row).normalized();
+    const auto parts = blocked.split(row);
+    if (parts.remainder.squaredNorm() > nearest_point::kInSpan) blocked.add(h.index, row, parts, 0.0);
   }
-  if (is_positive(second.hessian)) return second;
-  // Make the descents stiff by as much as they descend, so that a pass moves away from a saddle and not towards it.
-  const Eigen::SelfAdjointEigenSolver<Mat6> axes(inverse * second.hessian * inverse.transpose());
-  const Mat6 turned_back = L * axes.eigenvectors();
-  const Vec6 stiffness = axes.eigenvalues().cwiseAbs().cwiseMax(kFlat * springs.stiffness);
-  second.hessian = turned_back * stiffness.asDiagonal() * turned_back.transpose();
+  const Mat6 across = blocked.projector(), along = Mat6::Identity() - across;
+  const Mat6 scaled = along * (inverse * second.hessian * inverse.transpose()) * along + K * across;
+  const Eigen::SelfAdjointEigenSolver<Mat6> axes(scaled);
+  // Make a descent stiff by as much as it descends, so that a pass moves away from a saddle and not towards it.
+  const Mat6 back = L * axes.eigenvectors();
+  second.hessian = back * axes.eigenvalues().cwiseAbs().cwiseMax(kFlat * K).asDiagonal() * back.transpose();
+  second.is_minimum = axes.eigenvalues()[0] > 0.0;
   second.descent = inverse.transpose() * axes.eigenvectors().col(0);
-  second.is_minimum = false;
   return second;
 }
 

@@ -134,17 +134,12 @@ def vector(row, prefix, suffix):
 class SixDof(unittest.TestCase):
     def test_an_independent_minimiser_finds_ten_random_poses(self):
         folder, random, compared = scratch_folder(unittest), np.random.default_rng(91), 0
-        for scene in ("six_dof_task2", "six_dof_edge"):
+        for scene in ("six_dof_task2", "six_dof_edge", "six_dof_peg", "six_dof_slot"):
             out, shell = folder / scene, folder / f"{scene}.csv"
             must(
                 PROGRAM,
                 *("run", scene, "--out", out, "--set", f"six_dof={json.dumps(SPRINGS)}"),
-                *(
-                    "--set",
-                    "six_dof.law=proxy",
-                    "--set",
-                    "record.trajectory=true",
-                ),
+                *("--set", "six_dof.law=proxy", "--set", "record.trajectory=true"),
                 statuses=(0, 3),
             )
             must(PROGRAM, "validate", scene, "--points", shell)
@@ -156,7 +151,7 @@ class SixDof(unittest.TestCase):
                 if row["reference_x_N"] and np.linalg.norm(vector(row, "reference", "_N")) > 0.05
             ]
             self.assertGreater(len(held), 20, scene)
-            for k in random.choice(held, 6, replace=False):
+            for k in random.choice(held, 4, replace=False):
                 tip, axis = vector(rows[k], "tool", "_m"), vector(rows[k], "tool_axis", "")
                 near = points[distances(points, tip, shortest_turn(DOWN, axis))[0] < NEAR]
                 problem = Problem(

@@ -486,6 +486,37 @@ TEST(SixDofDevice, AllocatesNothingAndRepeatsItself) {
   EXPECT_EQ(force(), first);
 }
 
+// Presses an upright drill 1.5 radii against points at the height of its force point, so that it does not turn. Returns
+// the tool's position at the end.
+Vec3 pressed_against(const std::vector<SurfacePoint>& points) {
+  const PointShell shell(points, 0.0);
+  const Cylinder tool(kRadius, kLength, Tip::flat);
+  const HandAndCoupling springs = with(kSprings, [](auto& s) { s.force_point = 0.005; });
+  SixDofDevice device(shell, tool, springs, Skips::on);
+  for (int k = -1; k <= 68; ++k)
+    EXPECT_TRUE(device.follow(intent_of(springs, {-1.1e-5 * k, 0.0, 0.0}, 0.0)).solved) << k;
+  return device.tool().position;
+}
+
+// On one point, the drill slides off sideways when the force exceeds K' r: from there on, the pose straight above the
+// point is a saddle. The drill goes around to the other side of the point, where the press still holds it.
+TEST(SixDofDevice, LeavesASaddle) {
+  const Vec3 position = pressed_against({{{-kRadius, 0.0, 0.005}, {1.0, 0.0, 0.0}}});
+  EXPECT_LE((position - Vec3(-2 * kRadius, 0.0, 0.005)).norm(), 1e-9);
+}
+
+// Two points 1 um apart are a notch. The drill rests in it at any force, because each point blocks one of both ways,
+// although their normals differ by 2e-3 rad only and the energy descends beyond a fraction of a micrometre.
+TEST(SixDofDevice, RestsInAShallowNotch) {
+  const double angle = 1e-3;
+  std::vector<SurfacePoint> points;
+  for (const double side : {1.0, -1.0}) {
+    const Vec3 normal(std::cos(angle), side * std::sin(angle), 0.0);
+    points.push_back({Vec3(0.0, 0.0, 0.005) - kRadius * normal, normal});
+  }
+  EXPECT_LE((pressed_against(points) - Vec3(0.0, 0.0, 0.005)).norm(), 1e-9);
+}
+
 // No room: a slot that is narrower than the tool.
 TEST(SixDofDevice, SaysThatThereIsNoRoom) {
   const PointShell shell(surface_points(Slot{.gap = 0.0009, .depth = 0.004, .length = 0.004}), 0.0);
