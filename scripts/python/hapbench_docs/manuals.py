@@ -188,9 +188,9 @@ def robustness(_old=""):
 
 
 def six_dof(_old=""):
-    """Tables of the study six_dof (its sweep.csv is stored as six_dof.csv): for each scene, hand and grip, the force and
-    torque of the device with torque, and the force error of each law with the energy that it creates in a cycle.
-    """
+    """The table of the study six_dof, whose sweep.csv is stored as six_dof.csv: for each scene and, in the edge and the slot,
+    each hand, grip and pivot, the force and torque of the device with torque, and the force error of each law with the
+    energy that it creates in a cycle."""
     with open(REFERENCE / "six_dof.csv", newline="", encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines))
     laws = list(dict.fromkeys(row["six_dof.law"] for row in rows))
@@ -213,11 +213,14 @@ def six_dof(_old=""):
             if key != "force_point_m"
         }
         names = {"hand": "K_phi {:g} N m/rad", "grip": "grip {:g} m", "pivot": "pivot {:g} m"}
+        if given and scene not in ("six_dof_edge", "six_dof_slot"):
+            continue
         shown = ", ".join(names[key].format(value) for key, value in given.items()) or "usual"
         first = next(iter(of_case.values()))
         value = lambda row, name: float(row["six_dof." + name] or "nan")  # noqa: E731
+        size = lambda error: f"{error:.2g}" if error >= 1e-6 else "< 1e-6"  # noqa: E731
         cells = [
-            f"{value(row, 'force_error_rms_N'):.2g}, {1e3 * value(row, 'work_J'):.2g}"
+            f"{size(value(row, 'force_error_rms_N'))}, {1e3 * value(row, 'work_J'):.2g}"
             + (
                 f" ({row['six_dof.law_unbalanced_steps']})"
                 if row["six_dof.law_unbalanced_steps"] != "0"

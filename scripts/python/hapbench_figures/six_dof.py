@@ -21,6 +21,7 @@ HAND, HAND_ROTATION, COUPLING, COUPLING_ROTATION = (
     20000.0,
     0.4,
 )  # of six_dof and the scenes
+SMALLEST = 1e-3  # smaller errors are drawn here [N]
 LEVER = 0.026  # from the force point to the edge of the plane, which is 4 mm above the tip [m]
 
 
@@ -103,40 +104,39 @@ def draw_cycle(ax, results, rows):
             **{key: value for key, value in style_of.items()},
         )
         shown += 1
-    for at, text in enumerate(("press", "turn", "release", "turn back")):
-        ax.text(
-            0.25 + 0.5 * at,
-            1.0,
-            text,
-            ha="center",
-            va="bottom",
-            fontsize=7,
-            transform=ax.get_xaxis_transform(),
-        )
+    top = 1.2 * ax.get_ylim()[1]
+    for at, text in enumerate(("press", "turn", "release", "turn\nback")):
+        ax.text(0.25 + 0.5 * at, 0.98 * top, text, ha="center", va="top", fontsize=7)
         ax.axvline(0.5 * at, color="#E6E6E6", lw=0.6)
     ax.set(
-        title="\nparallel slot: force in a cycle",
+        title="force in the slot",
         xlabel="time [s]",
         ylabel="force on the hand [N]",
-        ylim=(0, None),
+        ylim=(0, top),
     )
 
 
-def draw_by_scene(ax, rows, metric, scale, zero=None):
-    """A mark for each scene and law; `zero`: the metric of a device without any force."""
+def draw_by_scene(ax, rows, metric, scale, smallest=None):
+    """A mark for each scene and law; smaller values than `smallest` are marked there."""
     for i, law in enumerate(LAWS):
         at, values = [], []
         for k, scene in enumerate(SCENES):
-            row = chosen(rows, scene=scene, law=law)[0]
+            value = scale * chosen(rows, scene=scene, law=law)[0][metric]
             at.append(k + 0.13 * (i - 2))
-            values.append(scale * row[metric])
+            values.append(value if smallest is None else max(value, smallest))
         style_of, label = look(law)
-        ax.plot(at, values, **{**style_of, "ls": "none"}, label=label)
-    if zero:
-        for k, scene in enumerate(SCENES):
-            value = chosen(rows, scene=scene, law=LAWS[0])[0][zero]
-            ax.plot([k - 0.4, k + 0.4], [value, value], color=style.GREY, lw=1.2)
-    ax.set_xticks(range(len(SCENES)), SCENES.values())
+        ax.plot(at, values, **{**style_of, "ls": "none"}, label=label, clip_on=False)
+    ax.set_xticks(range(len(SCENES)), SCENES.values(), fontsize=7)
+    ax.margins(x=0.06)
+
+
+def draw_error(ax, rows):
+    """Force error of each law, and that of a device without any force."""
+    draw_by_scene(ax, rows, "force_error_rms_N", 1.0, SMALLEST)
+    for k, scene in enumerate(SCENES):
+        value = chosen(rows, scene=scene, law=LAWS[0])[0]["reference_force_rms_N"]
+        ax.plot([k - 0.4, k + 0.4], [value, value], color=style.GREY, lw=1.2)
+    ax.set(title="force error", ylabel="rms [N]", yscale="log", ylim=(SMALLEST, 10))
 
 
 def draw_grip(ax, rows):
@@ -158,7 +158,7 @@ def draw_grip(ax, rows):
             ax.plot(1e3 * (grip or 0.0), 100 * sign * error, **{**style_of, "ls": "none"})
     ax.axhline(0, color=style.GREY, lw=0.8)
     ax.set(
-        title="edge: grip beside the force point",
+        title="edge: other grips",
         xlabel="grip towards the tip [mm]",
         ylabel="force too large by [%]",
     )
@@ -199,12 +199,12 @@ def draw_pivot(ax, rows):
         title="what is not rendered",
         xlabel="pivot behind the tip [mm]",
         ylabel="lost torque, rms [mN m]",
-        ylim=(0, None),
+        xlim=(-4, 34),
+        ylim=(0, 14),
     )
-    other.set(ylabel="unresisted turn [deg], dashed", ylim=(0, None))
+    other.set(ylabel="unresisted turn [deg], dashed", ylim=(0, 7))
     other.grid(False)
     other.spines["right"].set_visible(True)
-    ax.legend(fontsize=6.5)
 
 
 def comparison(results):
@@ -214,21 +214,26 @@ def comparison(results):
     cycle, error, energy = axes[0]
     grip, pivot, legend = axes[1]
     draw_cycle(cycle, results, rows)
-    draw_by_scene(error, rows, "force_error_rms_N", 1.0, "reference_force_rms_N")
-    error.set(title="\nforce error", ylabel="rms [N]; 1 N is 2 mm", yscale="symlog")
-    error.set_yscale("symlog", linthresh=0.01)
+    draw_error(error, rows)
     draw_by_scene(energy, rows, "work_J", 1e3)
     energy.set_yscale("symlog", linthresh=0.1)
     energy.axhline(0, color=style.GREY, lw=0.8)
-    energy.set(title="\nenergy created in a cycle", ylabel="[mJ]")
+    energy.set(title="energy created", ylabel="work in the cycle [mJ]", ylim=(-10, 10))
     draw_grip(grip, rows)
     draw_pivot(pivot, rows)
     legend.axis("off")
-    legend.legend(*cycle.get_legend_handles_labels(), loc="center")
+    of_laws = {"loc": "upper center", "bbox_to_anchor": (0.5, 1.08), "title": "(a) to (d)"}
+    legend.add_artist(legend.legend(*cycle.get_legend_handles_labels(), **of_laws))
+    of_scenes = {"loc": "lower center", "bbox_to_anchor": (0.5, -0.1), "title": "(e)"}
+    legend.legend(*pivot.get_legend_handles_labels(), **of_scenes)
     counted = [row for row in chosen_everywhere(rows) if row["law_unbalanced_steps"] > 0]
     values = {
         "matched": 1e6
-        * max(row["force_error_max_N"] for row in chosen_everywhere(rows, "matched_proxy")),
+        * max(
+            row["force_error_max_N"]
+            for row in chosen_everywhere(rows, "matched_proxy")
+            if row["reference_jumps"] == 0
+        ),
         "unbalanced": "; ".join(
             f"{look(row['law'])[1]} {row['law_unbalanced_steps']:.0f} ({row['scene'].removeprefix('six_dof_')})"
             for row in counted
