@@ -58,6 +58,14 @@ AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcep
 /// computations per step.
 inline constexpr double kProxyMargin = 0.2;
 
+/// Speed at which a proxy leaves points that are inside it, in half widths of the tool per second. For a drill
+/// of 1 mm it is 0.02 m/s, the highest speed at which the simulated subjects move the drill.
+inline constexpr double kProxyRecoverySpeed = 40.0;
+
+/// Maximum number of passes of a proxy in a step; most steps need two. The first passes bring the proxy near its goal,
+/// the last makes the constraints exact at its final position.
+inline constexpr int kMaxProxyPasses = 64;
+
 /// Keeps a proxy of the tool out of an environment by linear constraints on its next move x: d_i + <u_i, x> <=
 /// 0, with depth d_i [m] and gradient u_i of contact i.
 class ProxyConstraints {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "algorithms/proxy/proxy_constraints.hpp"
+#include "algorithms/proxy/turning_proxy.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "sim/core/simd.hpp"
@@ -26,11 +27,16 @@ constexpr double kEqualPositions = 1e-3;
 /// length of the move is right to a few per cent, unless the tool itself pulls the proxy away.
 constexpr int kMaxShortenings = 3;
 
-constexpr AlgorithmParameter kDampingTime[] = {
+constexpr AlgorithmParameter kOwnParameters[] = {
     {"damping_time_s",
      {0.0, 10.0, "s"},
      0.0,
-     "time constant with which the directions used by damping and friction follow the contacts"}};
+     "time constant with which the directions used by damping and friction follow the contacts"},
+    {kRotationalStiffness,
+     {0.0, 1e12, "N m/rad", true},
+     std::numeric_limits<double>::infinity(),
+     "stiffness of the spring that turns the proxy to the tool; null: infinite, so that the proxy has the tool's "
+     "orientation"}};
 
 /// Calls `use(i)` for each contact that holds the proxy back, in order. Tests eight contacts at a time, because
 /// only about three of some hundred contacts near the proxy hold it. Precondition: the contacts are padded.
@@ -41,13 +47,6 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
     for (; holding != 0; holding &= holding - 1) use(i + static_cast<std::size_t>(std::countr_zero(holding)));
   }
 }
-
-/// Maximum number of passes in a step; most steps need two. The first passes bring the proxy near its goal. The last
-/// pass makes the constraints exact at the final position of the proxy.
-constexpr int kMaxPasses = 64;
-/// Speed at which a proxy leaves points that are inside it, in half widths of the tool per second. For a drill
-/// of 1 mm it is 0.02 m/s, the highest speed at which the simulated subjects move the drill.
-constexpr double kRecoverySpeed = 40.0;
 
 /// Constraint-based rendering with a proxy (Zilles and Salisbury, 1995, for a point). The proxy is a copy of
 /// the tool that never enters the environment. It follows the tool, and a spring pulls the tool to the proxy.
@@ -67,7 +66,7 @@ constexpr double kRecoverySpeed = 40.0;
 ///
 /// Points may be inside the proxy if the proxy was placed on them, or if walls leave no room for it. Moving the proxy
 /// out in one step would throw the tool out. The depths are therefore scaled so that the deepest point leaves at
-/// kRecoverySpeed. A proxy without points inside keeps the guarantee, however fast the tool rotates. Planes of
+/// kProxyRecoverySpeed. A proxy without points inside keeps the guarantee, however fast the tool rotates. Planes of
 /// springs have no inside.
 ///
 /// With multi-rate contacts (ContactSchedule), the proxy follows the tool and searches points only in steps in
@@ -86,7 +85,7 @@ class ProxyRendering final : public ForceAlgorithm {
  public:
   explicit ProxyRendering(const RenderingConfig& config)
       : K_(config.stiffness),
-        damping_time_(parameter_value(config, "proxy", kDampingTime[0])),
+        damping_time_(parameter_value(config, "proxy", kOwnParameters[0])),
         damping_and_limits_(config),
         skips_(config.skips) {}
 
@@ -98,7 +97,7 @@ class ProxyRendering final : public ForceAlgorithm {
       recovery_ = std::numeric_limits<double>::infinity();
     } else {
       constraints_ = std::make_unique<ShellConstraints>(*scene.shell, *scene.tool, skips_);
-      recovery_ = kRecoverySpeed * scene.tool->half_width() * scene.dt;
+      recovery_ = kProxyRecoverySpeed * scene.tool->half_width() * scene.dt;
     }
     near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
     schedule_ = scene.schedule;
@@ -285,13 +284,13 @@ class ProxyRendering final : public ForceAlgorithm {
     }
   }
 
-  /// Moves the proxy towards the tool in passes. Returns false if kMaxPasses passes were not enough.
+  /// Moves the proxy towards the tool in passes. Returns false if kMaxProxyPasses passes were not enough.
   bool follow(const ToolPose& tool) noexcept {
     const double margin = constraints_->margin();
     const double converged = kConverged * margin, same = kEqualPositions * margin;
     std::array<Vec3, kLongestCycle> recent;  // positions of the last passes
     recent.fill(Vec3::Constant(std::numeric_limits<double>::infinity()));
-    for (int pass = 0; pass < kMaxPasses; ++pass) {
+    for (int pass = 0; pass < kMaxProxyPasses; ++pass) {
       const ToolPose proxy{proxy_, tool.axis, tool.roll};
       const Vec3 wanted = tool.position - proxy_;
       constraints_->constraints_at(proxy, wanted, *near_contacts_);
@@ -378,7 +377,7 @@ class ProxyRendering final : public ForceAlgorithm {
 /// Bound of |f_spring| / K: a proxy placed on the tool moves by at most one margin in each pass, however deep
 /// the contacts are.
 double proxy_bound(const RenderingConfig&, const ToolShape& tool, std::size_t, double) {
-  return kMaxPasses * kProxyMargin * tool.half_width();
+  return kMaxProxyPasses * kProxyMargin * tool.half_width();
 }
 
 }  // namespace
@@ -391,7 +390,8 @@ AlgorithmEntry proxy_entry() {
           "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed "
           "distance of the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above "
           "the surface's flat patch about each point; f_spring = K (x - p), S = projector onto the span of the "
-          "active gradients",
+          "active gradients. With a finite rotational_stiffness k the proxy turns, too: (x, theta) = argmin "
+          "K/2 |x - p|^2 + k/2 |Log(phi^T theta)|^2 with no point inside it",
       .source =
           "not in the thesis; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 "
           "rejects",
@@ -402,11 +402,14 @@ AlgorithmEntry proxy_entry() {
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo,
-          .make = [](const RenderingConfig& config) { return std::make_unique<ProxyRendering>(config); },
+          .make = [](const RenderingConfig& config) -> std::unique_ptr<ForceAlgorithm> {
+            if (turns(config)) return make_turning_proxy(config, 0.0);
+            return std::make_unique<ProxyRendering>(config);
+          },
           .force_bound = proxy_bound,
           .may_reduce = false,
           .reported_depth_model = "surface_normal",
-          .algorithm_parameters = kDampingTime};
+          .algorithm_parameters = kOwnParameters};
 }
 
 }  // namespace hapbench

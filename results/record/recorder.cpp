@@ -15,6 +15,7 @@
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/inside_observer.hpp"
+#include "results/observe/six_dof_metrics.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "sim/contact/contact_buffer.hpp"
 
@@ -265,6 +266,30 @@ const ResultTable kForceReferenceTable = {
      {"force_error_x_N", "N", "x of the force error f - f_m"},
      {"force_error_y_N", "N", "y of f - f_m"},
      {"force_error_z_N", "N", "z of f - f_m"}}};
+const ResultTable kSixDofTable = {
+    "six_dof.csv",
+    "with record.six_dof: a 6-DOF device and the law on a 3-DOF device, one line per recorded time step; cells are empty "
+    "where there is no equilibrium",
+    {kStepColumn,
+     kTimeColumn,
+     {"reference_x_N", "N", "x of the force of the 6-DOF device on its handle"},
+     {"reference_y_N", "N", "y of the force of the 6-DOF device"},
+     {"reference_z_N", "N", "z of the force of the 6-DOF device"},
+     {"torque_x_Nm", "N m", "x of the torque of the 6-DOF device on its handle, about the force point"},
+     {"torque_y_Nm", "N m", "y of the torque of the 6-DOF device"},
+     {"torque_z_Nm", "N m", "z of the torque of the 6-DOF device"},
+     {"tool_x_m", "m", "x of the tip centre of the 6-DOF device's tool"},
+     {"tool_y_m", "m", "y of the tip centre of the 6-DOF device's tool"},
+     {"tool_z_m", "m", "z of the tip centre of the 6-DOF device's tool"},
+     {"tool_axis_x", "1", "x of the axis of the 6-DOF device's tool"},
+     {"tool_axis_y", "1", "y of the axis of the 6-DOF device's tool"},
+     {"tool_axis_z", "1", "z of the axis of the 6-DOF device's tool"},
+     {"handle_turn_x_rad", "rad", "x of the rotation vector by which the torque turns the 6-DOF device's handle"},
+     {"handle_turn_y_rad", "rad", "y of this rotation vector"},
+     {"handle_turn_z_rad", "rad", "z of this rotation vector"},
+     {"law_x_N", "N", "x of the force of the law on the handle of the 3-DOF device"},
+     {"law_y_N", "N", "y of the force of the law"},
+     {"law_z_N", "N", "z of the force of the law"}}};
 const ResultTable kTargetTable = {
     "targets.csv",
     "with a hand of type tracking: one line per target of every trial",
@@ -386,6 +411,21 @@ RowSource force_reference_rows(const ForceFidelityObserver& observer) {
       table.row(record.step, record.time, std::array<std::optional<double>, 6>{});
   };
   return {.columns = kForceReferenceTable.columns, .write = write};
+}
+
+RowSource six_dof_rows(const SixDofRow& row) {
+  const auto write = [&row](const StepRecord& record, TableWriter& table) {
+    using Cells = std::array<std::optional<double>, 3>;
+    const auto cells = [](bool known, const Vec3& v) {
+      return Cells{if_any(known, v.x()), if_any(known, v.y()), if_any(known, v.z())};
+    };
+    const bool solved = row.reference.has_value(), balanced = row.law.has_value();
+    const SixDofRow::Reference reference = row.reference.value_or(SixDofRow::Reference());
+    table.row(record.step, record.time, cells(solved, reference.force), cells(solved, reference.torque),
+              cells(solved, reference.tip), cells(solved, reference.axis), cells(solved, reference.handle_turn),
+              cells(balanced, row.law.value_or(SixDofRow::Law()).force));
+  };
+  return {.columns = kSixDofTable.columns, .write = write};
 }
 
 void write_target_table(const TableTarget& target, const std::vector<TargetRow>& rows, FileSet* together) {

@@ -15,6 +15,7 @@ namespace hapbench {
 class EnergyLedger;
 class ForceFidelityObserver;
 class IdealTrajectoryObserver;
+struct SixDofRow;
 class InsideObserver;
 struct TargetRow;
 
@@ -110,12 +111,16 @@ RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer);
 /// recorder observes after `observer`.
 RowSource force_reference_rows(const ForceFidelityObserver& observer);
 
+/// Returns the source of six_dof.csv: force and torque of a 6-DOF device, and the force of the law. `row` is the
+/// comparison of the recorded step. Precondition: the recorder observes after the observer that writes `row`.
+RowSource six_dof_rows(const SixDofRow& row);
+
 /// Writes targets.csv: one line for each target in `rows`, in the same order. `rows` are the results of all subjects
 /// and trials. Throws IoError.
 void write_target_table(const TableTarget& target, const std::vector<TargetRow>& rows, FileSet* together = nullptr);
 
 /// Documentation of the tables above, with all columns.
 extern const ResultTable kTrajectoryTable, kContactTable, kContactTraceTable, kStiffnessTable, kRatioTable,
-    kEnergyTable, kIdealTrajectoryTable, kForceReferenceTable, kTargetTable;
+    kEnergyTable, kIdealTrajectoryTable, kForceReferenceTable, kSixDofTable, kTargetTable;
 
 }  // namespace hapbench

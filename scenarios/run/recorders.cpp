@@ -12,6 +12,7 @@
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/scene/scenario.hpp"
+#include "scenarios/scene/six_dof_observer.hpp"
 
 namespace hapbench {
 namespace {
@@ -45,7 +46,9 @@ const RecorderEntry kRecorders[] = {
     {kIdealTrajectoryTable, &RecordFields::ideal_trajectory,
      [](const RecordedTrial& t) { return ideal_trajectory_rows(*t.sections.find<IdealTrajectoryObserver>()); }, true},
     {kForceReferenceTable, &RecordFields::force_reference,
-     [](const RecordedTrial& t) { return force_reference_rows(*t.sections.find<ForceFidelityObserver>()); }}};
+     [](const RecordedTrial& t) { return force_reference_rows(*t.sections.find<ForceFidelityObserver>()); }},
+    {kSixDofTable, &RecordFields::six_dof,
+     [](const RecordedTrial& t) { return six_dof_rows(t.sections.find<SixDofObserver>()->row()); }}};
 
 constexpr double kBytesPerNumber = 12.0;  // an estimate, because numbers have between one and seventeen digits
 constexpr double kContactsPerRow = 30.0;

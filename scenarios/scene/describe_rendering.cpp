@@ -1,6 +1,7 @@
 #include "scenarios/scene/describe_rendering.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -46,9 +47,16 @@ void algorithm_parameters(Fields& f, RenderingConfig& rendering, const Algorithm
   const std::vector<double> values = parameter_values(rendering, entry);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const AlgorithmParameter& parameter = entry.algorithm_parameters[i];
-    double value = values[i];
-    f.number(parameter.name, value, parameter.range, parameter.meaning);
-    if (f.reads() && f.given(parameter.name)) rendering.parameters[entry.info->name][parameter.name] = value;
+    // JSON has no infinite numbers: null stands for an infinite default.
+    std::optional<double> value;
+    if (std::isfinite(values[i])) value = values[i];
+    const auto number = [&](Fields& n, double& held) { n.number(held, parameter.range); };
+    if (std::isinf(parameter.initial))
+      if_not_null(f, parameter.name, value, parameter.meaning, number);
+    else
+      f.number(parameter.name, *value, parameter.range, parameter.meaning);
+    if (f.reads() && f.given(parameter.name))
+      rendering.parameters[entry.info->name][parameter.name] = value.value_or(parameter.initial);
   }
 }
 

@@ -134,6 +134,10 @@ static void describe(Fields& f, RecordFields& record) {
   f.boolean("force_reference", record.force_reference,
             "with reference_force, or a stroke with a measured force: write the reference force and the force error to "
             "force_reference.csv");
+  // Omitted where it is off, so that scenarios without a six_dof are written as before.
+  f.field("six_dof", "with six_dof: write the forces and torques of both devices to six_dof.csv; default: false",
+          record.six_dof ? Presence::no_default : Presence::omitted,
+          [&record](Fields& value) { value.boolean(record.six_dof); });
   for (const TrajectoryGroup& group : trajectory_groups())
     f.boolean(group.field, record.*group.is_wanted, group.effect);
 }
@@ -158,6 +162,39 @@ static void describe(Fields& f, MetricBound& bound) {
 static void describe(Fields& f, GivenForceFields& reference) {
   profiles(f, {"x_N", "y_N", "z_N"}, reference.force, "N",
            "component of the reference force on the tool, as a function of time");
+}
+
+static void describe(Fields& f, SixDofFields& fields) {
+  std::vector<std::string> laws = algorithm_names();
+  laws.emplace_back(kMatchedProxy);
+  const auto law = [&laws](Fields& l, std::string& name) {
+    if (name.empty()) name = laws.front();
+    l.choice(name, laws, "law");
+  };
+  std::optional<std::string> chosen;
+  if (!fields.law.empty()) chosen = fields.law;
+  f.if_any(
+      "law", chosen,
+      "law that the 3-DOF device renders: the name of an algorithm, or matched_proxy, the proxy with the rotational "
+      "stiffness K_r K_phi / (K_r + K_phi); default: rendering.algorithm",
+      law);
+  if (f.reads() && chosen) fields.law = *chosen;
+  constexpr NumberRange kTurning = {0.0, 1e12, "N m/rad", true};
+  constexpr NumberRange kAlongAxis = {-1.0, 1.0, "m"};
+  f.number("hand_stiffness_N_per_m", fields.hand, {0.0, 1e12, "N/m", true}, "K_h, stiffness of the hand at the grip");
+  f.number("hand_rotational_stiffness_N_m_per_rad", fields.hand_rotation, kTurning,
+           "K_phi, rotational stiffness of the hand about the grip");
+  f.number("coupling_rotational_stiffness_N_m_per_rad", fields.coupling_rotation, kTurning,
+           "K_r, rotational stiffness of the coupling of the 6-DOF device; its stiffness is "
+           "rendering.stiffness_N_per_m");
+  f.number("force_point_m", fields.force_point, {0.0, 1.0, "m"},
+           "distance from the tip centre back along the axis to the point at which the devices apply the force");
+  f.number("grip_m", fields.grip, kAlongAxis,
+           "distance from the force point to the grip, about which the hand yields; positive towards the tip");
+  f.number(
+      "pivot_m", fields.pivot, kAlongAxis,
+      "distance from the tip centre back along the axis to the point about which the intent turns; the scripted motion "
+      "of the tip is added to the turn");
 }
 
 static void describe(Fields& f, ExpectFields& expect) {
@@ -225,6 +262,10 @@ void describe(Fields& f, Scenario& scenario) {
                         "x: frictionless contact with the rigid triangles of the mesh"}},
                       Untyped::first);
       });
+  f.object_if_any(
+      "six_dof", scenario.six_dof,
+      "compare the law on a 3-DOF device with a 6-DOF device, both quasi-static and in the hand that this object "
+      "describes; the scripted motion is the intent of the hand. Adds the metrics of group six_dof");
   f.object("record", scenario.record, "what is written in addition to summary.json");
   f.object("metrics", scenario.metrics, "which steps count as landing and which as settled contact");
   f.object("expect", scenario.expect,

@@ -6,6 +6,7 @@
 #include "results/observe/energy.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/target_metrics.hpp"
+#include "scenarios/scene/six_dof_observer.hpp"
 
 namespace hapbench {
 namespace {
@@ -33,6 +34,11 @@ std::unique_ptr<MetricObserver> observe_ideal_trajectory(const Scenario* scenari
                                                    static_cast<std::uint64_t>(scenario->record.every));
 }
 
+std::unique_ptr<MetricObserver> observe_six_dof(const Scenario* scenario, std::size_t) {
+  if (scenario == nullptr) return std::make_unique<SixDofObserver>();
+  return std::make_unique<SixDofObserver>(*scenario);
+}
+
 std::unique_ptr<MetricObserver> observe_targets(const Scenario*, std::size_t target_positions) {
   return std::make_unique<TargetMetricsObserver>(target_positions);
 }
@@ -51,6 +57,7 @@ const SectionKind kSections[] = {
      observe_ideal_trajectory},
     {"fidelity", [](const Scenario&, bool has_reference) { return std::size_t{has_reference}; },
      make<ForceFidelityObserver>},
+    {"six_dof", [](const Scenario& s, bool) { return std::size_t{s.six_dof.has_value()}; }, observe_six_dof},
     {"torque", [](const Scenario& s, bool) { return std::size_t{s.record.torque}; }, make<LostTorqueObserver>},
     {"friction", [](const Scenario& s, bool) { return std::size_t{s.rendering.dry_friction.has_value()}; },
      make<FrictionObserver>},

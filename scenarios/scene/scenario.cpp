@@ -20,7 +20,7 @@ double drag_length(const DragHandFields& hand, double duration) {
 
 bool records_rows(const RecordFields& record) {
   return record.trajectory || !record.ratio_iterations.empty() || record.contacts || record.stiffness_tensor ||
-         record.energy || record.ideal_trajectory || record.force_reference;
+         record.energy || record.ideal_trajectory || record.force_reference || record.six_dof;
 }
 
 double trial_count(const HandFields& hand) {

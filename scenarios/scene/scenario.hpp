@@ -223,6 +223,7 @@ struct RecordFields : TrajectoryExtras {
   bool energy = false;
   bool ideal_trajectory = false;
   bool force_reference = false;
+  bool six_dof = false;
 };
 
 /// Returns true if a run records its time steps in any table.
@@ -236,6 +237,20 @@ struct GivenForceFields {
 /// K (x' - x) of frictionless contact with the rigid triangles of the mesh (sim/contact/rigid_contact.hpp).
 struct RigidContactFields {};
 using ReferenceForceFields = std::variant<GivenForceFields, RigidContactFields>;
+
+/// Value of SixDofFields::law for the proxy with the rotational stiffness that renders the force of a 6-DOF device.
+inline constexpr const char* kMatchedProxy = "matched_proxy";
+
+/// Comparison with a 6-DOF device (SixDofObserver): hand, coupling and three points on the tool's axis.
+struct SixDofFields {
+  std::string law;                 ///< name of an algorithm, or kMatchedProxy; empty: the scenario's algorithm
+  double hand = 500.0;             ///< K_h, stiffness of the hand [N/m]
+  double hand_rotation = 0.2;      ///< K_phi, rotational stiffness of the hand about the grip [N m/rad]
+  double coupling_rotation = 0.4;  ///< K_r, rotational stiffness of the 6-DOF coupling [N m/rad]
+  double force_point = 0.0;        ///< distance from the tip centre back to the force point [m]
+  double grip = 0.0;               ///< c, distance from the force point to the grip, towards the tip [m]
+  double pivot = 0.0;              ///< distance from the tip centre back to the point about which turns go [m]
+};
 
 /// Bounds of a metric. An empty bound is not checked.
 struct MetricBound {
@@ -273,6 +288,7 @@ struct Scenario {
   IntegratorFields integrator;
   DivergenceBounds bounds;
   std::optional<ReferenceForceFields> reference_force;
+  std::optional<SixDofFields> six_dof;
   RecordFields record;
   SettlingRule metrics;
   ExpectFields expect;

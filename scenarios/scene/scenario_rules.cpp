@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "algorithms/proxy/turning_proxy.hpp"
 #include "device_model/hands/drag_hand.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
@@ -57,6 +58,7 @@ bool is_zero(const Profile& profile) {
   return profile.is_constant() && profile(0.0) == 0.0;
 }
 
+constexpr const char* kTurningProxy = "/rendering/parameters/proxy/rotational_stiffness_N_m_per_rad";
 bool is_rigid_contact(const Scenario& s) {
   return s.reference_force && std::holds_alternative<RigidContactFields>(*s.reference_force);
 }
@@ -104,6 +106,31 @@ constexpr Rule kRules[] = {
      "got true; allowed: false, unless there is a reference_force or motion.position is of type \"file\"",
      [](const Scenario& s) {
        return s.record.force_reference && !s.reference_force && !is<RecordedPosition>(s.motion.position);
+     }},
+    {"/six_dof",
+     "contradicts motion.position of type \"free\"; allowed with a prescribed motion, the intent of the hand",
+     [](const Scenario& s) { return s.six_dof && is<FreePosition>(s.motion.position); }},
+    {"/six_dof",
+     "got it with springs or hole_2d, in which nothing holds a tool that turns in space; allowed: a surface",
+     [](const Scenario& s) {
+       return s.six_dof && (is<SpringsEnvironment>(s.environment) || is<Hole2d>(s.environment));
+     }},
+    {"/six_dof", "got it with contacts of contact_source \"{}\"; allowed: \"own\"",
+     [](const Scenario& s) { return s.six_dof && has_external_contacts(s); }},
+    {"/six_dof", "got stiffness_N_per_m 0 in rendering; allowed: a stiffness above 0, which is that of the coupling",
+     [](const Scenario& s) { return s.six_dof && s.rendering.stiffness == 0.0; }},
+    {"/record/six_dof", "got true; allowed: false, unless there is a six_dof",
+     [](const Scenario& s) { return s.record.six_dof && !s.six_dof; }},
+    {kTurningProxy, "got a number with springs, which act at the tip centre and turn nothing; allowed: null",
+     [](const Scenario& s) { return turns(s.rendering) && is<SpringsEnvironment>(s.environment); }},
+    {kTurningProxy, "got a number with multi-rate contacts (rendering.contacts); allowed: null",
+     [](const Scenario& s) { return turns(s.rendering) && s.rendering.late && s.rendering.late->any(); }},
+    {kTurningProxy, "got a number with rendering.angular_damping; allowed: null",
+     [](const Scenario& s) { return turns(s.rendering) && s.rendering.angular_damping; }},
+    {kTurningProxy, "got a number with a damping_time_s; allowed: null",
+     [](const Scenario& s) {
+       const auto own = s.rendering.parameters.find("proxy");
+       return turns(s.rendering) && own->second.contains("damping_time_s") && own->second.at("damping_time_s") > 0.0;
      }},
     {"/hand/type", "got \"push\", which pushes along z; allowed in the plane of \"hole_2d\": \"force\"",
      [](const Scenario& s) { return is<PushHandFields>(s.hand) && is<Hole2d>(s.environment); }},

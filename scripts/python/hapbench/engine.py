@@ -48,7 +48,7 @@ def run(
     `scenario`: a file, the name of a bundled one, or a dict; relative paths in a dict start from the working directory.
     `overrides`: fields as in --set, {"rendering.stiffness_N_per_m": 4e4}. `record`: what to keep
     beside the scenario's own choice: "contacts", "energy", "stiffness_tensor", "ideal_trajectory",
-    "force_reference", "timing". `progress`: None for a bar where standard error is a terminal,
+    "force_reference", "six_dof", "timing". `progress`: None for a bar where standard error is a terminal,
     False for none, or a function of (label, done, total). Ctrl-C ends it with KeyboardInterrupt.
     Raises ScenarioError."""
     overrides = {**(overrides or {}), **{f"record.{what}": True for what in record}}

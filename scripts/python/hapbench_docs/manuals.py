@@ -1,6 +1,7 @@
 """The manuals: where they are, the commands they document, their links, and their generated parts, which stand between
 `<!-- generated: NAME -->` and `<!-- /generated -->`: sessions, and tables of the ledger
 (claims.json) and of its robustness as results/reference holds them."""
+import csv
 import datetime
 import json
 import os
@@ -186,6 +187,56 @@ def robustness(_old=""):
     return "\n".join(lines)
 
 
+def six_dof(_old=""):
+    """The table of the study six_dof, whose sweep.csv is stored as six_dof.csv: for each scene and, in the edge and the slot,
+    each hand, grip and pivot, the force and torque of the device with torque, and the force error of each law with the
+    energy that it creates in a cycle."""
+    with open(REFERENCE / "six_dof.csv", newline="", encoding="utf-8") as lines:
+        rows = list(csv.DictReader(lines))
+    laws = list(dict.fromkeys(row["six_dof.law"] for row in rows))
+    lines = [
+        "| scene | hand, grip, pivot | F6 rms N | lost torque rms mN m | unresisted turn rad | "
+        + " | ".join(law.replace("_", " ") for law in laws)
+        + " |",
+        "|---|---|---|---|---|" + "---|" * len(laws),
+    ]
+    cases = dict.fromkeys((row["scenario"], row["six_dof"]) for row in rows)
+    for scene, fields in cases:
+        of_case = {
+            row["six_dof.law"]: row
+            for row in rows
+            if (row["scenario"], row["six_dof"]) == (scene, fields)
+        }
+        given = {
+            key.partition("_")[0]: value
+            for key, value in json.loads(fields).items()
+            if key != "force_point_m"
+        }
+        names = {"hand": "K_phi {:g} N m/rad", "grip": "grip {:g} m", "pivot": "pivot {:g} m"}
+        if given and scene not in ("six_dof_edge", "six_dof_slot"):
+            continue
+        shown = ", ".join(names[key].format(value) for key, value in given.items()) or "usual"
+        first = next(iter(of_case.values()))
+        value = lambda row, name: float(row["six_dof." + name] or "nan")  # noqa: E731
+        size = lambda error: f"{error:.2g}" if error >= 1e-6 else "< 1e-6"  # noqa: E731
+        cells = [
+            f"{size(value(row, 'force_error_rms_N'))}, {1e3 * value(row, 'work_J'):.2g}"
+            + (
+                f" ({row['six_dof.law_unbalanced_steps']})"
+                if row["six_dof.law_unbalanced_steps"] != "0"
+                else ""
+            )
+            for row in of_case.values()
+        ]
+        lines.append(
+            f"| {scene.removeprefix('six_dof_')} | {shown} | {value(first, 'reference_force_rms_N'):.2g} | "
+            f"{1e3 * value(first, 'lost_torque_rms_Nm'):.2g} | {value(of_case[laws[1]], 'unresisted_turn_max_rad'):.2g} | "
+            + " | ".join(cells)
+            + " |"
+        )
+    return "\n".join(lines)
+
+
 class Program:
     def __init__(self, file):
         if not file.is_file():
@@ -259,4 +310,9 @@ def processor():
 
 
 # The tables that need no program.
-MAKERS = {"main_results": main_results, "experiments": experiments, "robustness": robustness}
+MAKERS = {
+    "main_results": main_results,
+    "experiments": experiments,
+    "robustness": robustness,
+    "six_dof": six_dof,
+}

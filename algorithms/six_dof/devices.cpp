@@ -1,0 +1,211 @@
+#include "algorithms/six_dof/devices.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/depth/depth_model.hpp"
+#include "algorithms/proxy/turning_proxy.hpp"
+#include "algorithms/registry.hpp"
+#include "algorithms/six_dof/turns.hpp"
+#include "sim/tool/orientation.hpp"
+
+namespace hapbench::six_dof {
+namespace {
+
+constexpr int kMaxPasses = 100;
+constexpr int kMaxNewtonSteps = 60;
+/// Largest number of sub-steps of a step of the intent.
+constexpr double kMaxSubsteps = 64.0;
+/// A difference of forces [N] that a Newton step need not improve: the rounding of 20 000 N/m times 10 mm is 1e-13 N.
+constexpr double kExact = 1e-11;
+/// Step of the force for derivatives [N]. It moves the handle by 20 nm at 500 N/m.
+constexpr double kForceStep = 1e-5;
+/// Smallest fraction of a Newton step that the line search tries.
+constexpr double kSmallestStep = 1.0 / 1024.0;
+
+/// Largest number of calls of a law with a memory at one pose, and the factor by which its own motion must bring hand
+/// and device closer together to go on.
+constexpr int kMaxSettling = 20;
+constexpr double kStillMoves = 0.5;
+
+double in_series(double a, double b) noexcept {
+  return std::isinf(b) ? a : std::isinf(a) ? b : a * b / (a + b);
+}
+
+}  // namespace
+
+double HandAndCoupling::matched_rotation() const noexcept {
+  return in_series(coupling_rotation, hand_rotation);
+}
+
+SixDofDevice::SixDofDevice(const PointShell& shell, const ToolShape& tool, const HandAndCoupling& springs, Skips skips)
+    : springs_(springs), equilibrium_(shell, tool, springs.force_point, skips), jump_(kJump * tool.half_width()) {}
+
+void SixDofDevice::reset() noexcept {
+  equilibrium_.reset();
+  starts_ = was_solved_ = true;
+}
+
+PoseSprings SixDofDevice::springs_at(const Intent& intent) const noexcept {
+  return {.stiffness = in_series(springs_.coupling, springs_.hand),
+          .coupling_rotation = springs_.coupling_rotation,
+          .hand_rotation = springs_.hand_rotation,
+          .grip = springs_.grip,
+          .grip_target = intent.grip,
+          .target = intent.orientation};
+}
+
+void SixDofDevice::follow_in_parts(const Intent& intent, int bisections, Step& step) noexcept {
+  const CoupledPose before = tool_;
+  const auto outcome = equilibrium_.solve(springs_at(intent), tool_, kMaxPasses);
+  const bool far = outcome.moved > jump_;
+  if (outcome.solved && !(far && bisections > 0)) {
+    step.jumped |= far;
+    step.solved = true;
+    step.residual = std::max(step.residual, outcome.residual);
+    intent_ = intent;
+    return;
+  }
+  if (bisections == 0) {
+    step.solved = false;
+    intent_ = intent;
+    return;
+  }
+  // Go half of the way first.
+  tool_ = before;
+  const Intent half{0.5 * (intent_.grip + intent.grip),
+                    turned(intent_.orientation, 0.5 * turn_between(intent_.orientation, intent.orientation))};
+  follow_in_parts(half, bisections - 1, step);
+  follow_in_parts(intent, bisections - 1, step);
+}
+
+SixDofDevice::Step SixDofDevice::follow(const Intent& intent) noexcept {
+  Step step;
+  if (starts_) {
+    starts_ = false;
+    intent_ = intent;
+    tool_ = relaxed(springs_at(intent));
+  }
+  follow_in_parts(intent, was_solved_ ? kBisections : 0, step);
+  was_solved_ = step.solved;
+  const PoseSprings springs = springs_at(intent);
+  handle_.force = spring_force(springs, tool_);
+  handle_.torque = spring_torque(springs, tool_);
+  handle_.orientation = tool_.handle;
+  handle_.position = intent.grip - springs_.grip * tool_.handle_axis() + handle_.force / springs_.hand;
+  return step;
+}
+
+ThreeDofDevice::ThreeDofDevice(const PointShell& shell, const ToolShape& tool, const HandAndCoupling& springs,
+                               const RenderingConfig& config, double dt)
+    : tool_(&tool),
+      springs_(springs),
+      source_(std::make_unique<ShellSource>(shell, tool, make_contact_query(shell, tool, config.skips),
+                                            make_depth_model(config), config.skips)),
+      law_(turns(config) ? make_turning_proxy(config, springs.force_point) : make_algorithm(config)),
+      contacts_(source_->capacity()),
+      step_(kJump * tool.half_width()) {
+  law_->prepare({.capacity = contacts_.capacity(), .tool = &tool, .shell = &shell, .dt = dt});
+}
+
+void ThreeDofDevice::reset() noexcept {
+  source_->reset();
+  law_->reset();
+  handle_ = {};
+  starts_ = true;
+}
+
+/// Puts the handle where the hand holds it against a force of the device.
+void ThreeDofDevice::place(const Intent& intent, const Vec3& force) noexcept {
+  Vec3 yield = Vec3::Zero();
+  Vec3 axis = axis_of(intent.orientation);
+  if (springs_.grip != 0.0) {
+    // The moment depends on the turn by terms of the second order, which this iteration contracts by |c f| / K_phi.
+    for (int i = 0; i < kMaxNewtonSteps; ++i) {
+      const Vec3 next = -springs_.grip / springs_.hand_rotation * axis.cross(force);
+      const double change = (next - yield).norm();
+      yield = next;
+      axis = axis_of(turned(intent.orientation, yield));
+      if (change < 1e-15) break;
+    }
+  }
+  handle_.orientation = turned(intent.orientation, yield);
+  handle_.position = intent.grip + force / springs_.hand - springs_.grip * axis;
+}
+
+/// Returns by how much the force that the device renders differs from the force that the hand holds.
+Vec3 ThreeDofDevice::unbalanced(const Intent& intent, const Vec3& force) noexcept {
+  place(intent, force);
+  ToolState tool;
+  tool.pose.axis = axis_of(handle_.orientation);
+  tool.pose.position = handle_.position + springs_.force_point * tool.pose.axis;
+  if (!tool_->is_axisymmetric()) tool.pose.roll = roll_of(handle_.orientation);
+  source_->contacts_at(tool.pose, contacts_);
+  RenderedForce rendered;
+  law_->compute(tool, contacts_, rendered);
+  handle_.force = rendered.spring;
+  return rendered.spring - force;
+}
+
+/// Returns unbalanced() of a law with a memory, such as a proxy, when the law has come to its own equilibrium.
+Vec3 ThreeDofDevice::settled(const Intent& intent, const Vec3& force) noexcept {
+  Vec3 rest = unbalanced(intent, force);
+  for (int i = 0; i < kMaxSettling; ++i) {
+    const Vec3 next = unbalanced(intent, force);
+    const bool still = (next - rest).norm() <= kExact;
+    rest = next;
+    if (still) break;
+  }
+  return rest;
+}
+
+double ThreeDofDevice::follow(const Intent& intent) noexcept {
+  if (starts_) from_ = intent;
+  starts_ = false;
+  // Sub-steps that move no point of the tool far keep a law with a memory on its branch.
+  const Vec3 turn = turn_between(from_.orientation, intent.orientation);
+  const double far = (intent.grip - from_.grip).norm() + (tool_->reach() + springs_.force_point) * turn.norm();
+  const double steps = std::clamp(std::ceil(far / step_), 1.0, kMaxSubsteps);
+  double rest = 0.0;
+  for (double k = 1.0; k <= steps; k += 1.0) {
+    const double t = k / steps;
+    rest = balance(k == steps ? intent
+                              : Intent{(1.0 - t) * from_.grip + t * intent.grip, turned(from_.orientation, t * turn)});
+  }
+  from_ = intent;
+  return rest;
+}
+
+/// Finds the equilibrium at one intent.
+double ThreeDofDevice::balance(const Intent& intent) noexcept {
+  Vec3 force = handle_.force;
+  Vec3 rest = settled(intent, force);
+  for (int i = 0; i < kMaxNewtonSteps && rest.norm() > kExact; ++i) {
+    Mat3 jacobian;
+    for (int k = 0; k < 3; ++k)
+      jacobian.col(k) = (unbalanced(intent, force + kForceStep * Vec3::Unit(k)) - rest) / kForceStep;
+    Vec3 newton = -jacobian.partialPivLu().solve(rest);
+    if (const double longest = springs_.hand * step_; newton.norm() > longest) newton *= longest / newton.norm();
+    // Shorten the step until it brings hand and device closer together.
+    double step = 1.0;
+    Vec3 next = unbalanced(intent, force + newton);
+    while (!(next.norm() < rest.norm()) && step > kSmallestStep) {
+      step *= 0.5;
+      next = unbalanced(intent, force + step * newton);
+    }
+    if (next.norm() < rest.norm()) {
+      force += step * newton;
+      rest = next;
+      continue;
+    }
+    // Go on if the steps have moved a law with a memory, and it comes closer from where it is now.
+    next = settled(intent, force);
+    if (!(next.norm() < kStillMoves * rest.norm())) break;
+    rest = next;
+  }
+  unbalanced(intent, force);
+  return rest.norm();
+}
+
+}  // namespace hapbench::six_dof

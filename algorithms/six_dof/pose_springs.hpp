@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "sim/core/types.hpp"
+
+/// Springs that hold the pose of a tool: the coupling of a haptic device, in series with the hand.
+namespace hapbench::six_dof {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+/// Springs between the pose (x, theta) of the tool and the intent (q*, phi*) of a hand,
+///
+///   E = K/2 |x + c e - q*|^2 + K_r/2 |Log(phi^T theta)|^2 + K_phi/2 |Log(phi*^T phi)|^2.
+///
+/// x [m] is the force point of the tool, where the device measures and applies its force; theta is the tool's rotation.
+/// phi is the rotation of the handle and e its axis, out of the tip. The grip lies at q = p + c e, where p is the
+/// handle's force point. The stiffness K is that of coupling and hand in series, K_t K_h / (K_t + K_h), because p is
+/// eliminated exactly. With an infinite K_phi the handle keeps phi = phi*.
+struct PoseSprings {
+  double stiffness = 0.0;                                      ///< K [N/m]
+  double coupling_rotation = 0.0;                              ///< K_r [N m/rad]
+  double hand_rotation = 0.0;                                  ///< K_phi [N m/rad]; may be infinite
+  double grip = 0.0;                                           ///< c [m], from the force point towards the tip
+  Vec3 grip_target = Vec3::Zero();                             ///< q* [m]
+  Eigen::Quaterniond target = Eigen::Quaterniond::Identity();  ///< phi*, from the tool frame to the world frame
+
+  bool handle_turns() const noexcept;
+};
+
+/// Pose of the tool and rotation of the handle.
+struct CoupledPose {
+  Vec3 position = Vec3::Zero();                                     ///< x [m], force point of the tool
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< theta
+  Eigen::Quaterniond handle = Eigen::Quaterniond::Identity();       ///< phi
+
+  Vec3 axis() const noexcept { return orientation * Vec3(0.0, 0.0, -1.0); }
+  Vec3 handle_axis() const noexcept { return handle * Vec3(0.0, 0.0, -1.0); }
+};
+
+/// Returns the pose in which the springs are relaxed.
+CoupledPose relaxed(const PoseSprings& springs) noexcept;
+
+/// The energy near a pose, as a function of the move z = (dx, dtheta) of the tool [m, rad], with the handle's turn
+/// eliminated: it turns to where the quadratic model is smallest.
+struct EnergyModel {
+  Vec6 tool_gradient;                          ///< derivative by z without a turn of the handle [N, N m]
+  Vec6 gradient;                               ///< derivative by z with the turn [N, N m]
+  Mat6 hessian;                                ///< symmetric [N/m, N, N m/rad]
+  Vec3 handle_gradient;                        ///< derivative by the handle's turn [N m]
+  Vec3 handle_turn;                            ///< turn of the handle without a move of the tool [rad]
+  Eigen::Matrix<double, 3, 6> handle_follows;  ///< the handle turns by handle_turn + handle_follows z
+};
+EnergyModel energy_model(const PoseSprings& springs, const CoupledPose& pose) noexcept;
+
+/// Moves the tool by z = (dx, dtheta) and turns the handle as the model says.
+void move(CoupledPose& pose, const EnergyModel& model, const Vec6& z) noexcept;
+
+/// Force K (x + c e - q*) on the handle [N] and moment K_r Log(phi^T theta) [N m] about the force point.
+Vec3 spring_force(const PoseSprings& springs, const CoupledPose& pose) noexcept;
+Vec3 spring_torque(const PoseSprings& springs, const CoupledPose& pose) noexcept;
+
+}  // namespace hapbench::six_dof

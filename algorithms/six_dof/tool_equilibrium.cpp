@@ -1,0 +1,285 @@
+#include "algorithms/six_dof/tool_equilibrium.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "algorithms/proxy/proxy_constraints.hpp"
+#include "algorithms/six_dof/turns.hpp"
+#include "sim/tool/orientation.hpp"
+
+namespace hapbench::six_dof {
+namespace {
+
+/// Factor on the margin of the search, above the rounding errors of margin and move.
+constexpr double kQueryMargin = 1.0 + 1e-6;
+/// Relative step of the differences that give the second derivatives of the constraints. Their error, of the order of
+/// the square of the step, changes the speed of the convergence and not the solution.
+constexpr double kDifference = 1e-4;
+/// Tolerances of a quadratic program relative to its largest length (1e-4 m). The first, 1e-17 m, is ten times the
+/// rounding of a depth. Constraints of points on one line of the tool depend on each other but for rounding, and may
+/// contradict each other within the first tolerance. The second, 1e-15 m, is 2e-11 N at 20 000 N/m.
+constexpr double kProgramTolerances[] = {1e-13, 1e-11};
+/// First move off a saddle, in margins. Moves after a return to the saddle are longer.
+constexpr double kNudge = 0.02;
+/// Shortest move off a saddle relative to the first, where another point is as near as this: 2e-12 m for a drill of 1
+/// mm.
+constexpr double kShortestNudge = 1e-6;
+/// Smallest stiffness of a direction in a quadratic program, in units of the springs' stiffness along it.
+constexpr double kFlat = 1e-3;
+/// Passes after which second derivatives of the constraints are used in every second pass only: active sets that
+/// alternate under one model may converge under the other.
+constexpr int kManyPasses = 40;
+
+}  // namespace
+
+/// The linearised constraints in coordinates in which the model of the energy is |z - t|^2.
+struct ToolEquilibrium::Program {
+  const std::vector<Vec6>& rows;
+  const std::vector<double>& depths;
+  std::size_t count;
+
+  std::size_t size() const { return count; }
+  double depth(std::size_t i) const { return depths[i]; }
+  const Vec6& row(std::size_t i) const { return rows[i]; }
+  nearest_point::Violation largest_violation(const Vec6& x, double tolerance) const noexcept {
+    nearest_point::Violation worst{0, tolerance};
+    for (std::size_t i = 0; i < count; ++i) {
+      const double amount = depths[i] + rows[i].dot(x);
+      if (amount > worst.amount) worst = {i, amount};
+    }
+    return worst.amount > tolerance ? worst : nearest_point::Violation{};
+  }
+};
+
+ToolEquilibrium::ToolEquilibrium(const PointShell& shell, const ToolShape& tool, double force_point, Skips skips)
+    : tool_(&tool),
+      force_point_(force_point),
+      margin_(kProxyMargin * tool.half_width()),
+      reach_(tool.reach() + force_point),
+      recovery_(std::numeric_limits<double>::infinity()),
+      grown_(tool.grown(margin_ * kQueryMargin)),
+      near_(make_contact_query(shell, *grown_.shape, skips)),
+      contacts_(near_->capacity()),
+      probe_(6),
+      rows_(near_->capacity()),
+      scaled_rows_(near_->capacity()),
+      scaled_depths_(near_->capacity()),
+      scales_(near_->capacity()) {}
+
+void ToolEquilibrium::reset() noexcept {
+  near_->reset();
+  holding_count_ = 0;
+  deepest_ = 0.0;
+}
+
+ToolPose ToolEquilibrium::tool_pose(const Vec3& position, const Eigen::Quaterniond& orientation) const noexcept {
+  ToolPose pose;
+  pose.axis = axis_of(orientation);
+  pose.position = position + force_point_ * pose.axis;
+  if (!tool_->is_axisymmetric()) pose.roll = roll_of(orientation);
+  return pose;
+}
+
+double ToolEquilibrium::displacement(const Vec6& z) const noexcept {
+  return z.head<3>().norm() + reach_ * z.tail<3>().norm();
+}
+
+Vec6 ToolEquilibrium::row(const Vec3& position, const ContactBuffer& contacts, std::size_t i) const noexcept {
+  const Vec3 m = contacts.gradient(i), r = contacts.point(i) - position;
+  Vec6 row;
+  row << m, r.cross(m);
+  return row;
+}
+
+void ToolEquilibrium::find_constraints(const CoupledPose& pose) noexcept {
+  const ToolPose tool = tool_pose(pose.position, pose.orientation);
+  near_->contacts_at({tool.position + grown_.forward * tool.axis, tool.axis, tool.roll}, contacts_);
+  tool_->surface_constraints(tool, Vec3::Zero(), 0.0, contacts_);
+  deepest_ = 0.0;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    rows_[i] = row(pose.position, contacts_, i);
+    deepest_ = std::max(deepest_, contacts_.depth[i]);
+  }
+  leaving_ = deepest_ > recovery_;
+  if (!leaving_) return;
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    if (contacts_.depth[i] > 0.0) contacts_.depth[i] *= recovery_ / deepest_;
+}
+
+/// Returns sum lambda_i times the second derivative of -g_i by the move of the tool, over the points that held the
+/// tool in the last pass.
+Mat6 ToolEquilibrium::curvature(const CoupledPose& pose) noexcept {
+  Mat6 sum = Mat6::Zero();
+  if (holding_count_ == 0) return sum;
+  probe_.clear();
+  for (const Holding& h : holding()) probe_.push(h.index, h.point, h.surface_normal);
+  probe_.pad();
+  for (int k = 0; k < 6; ++k) {
+    Vec6 step = Vec6::Zero();
+    step[k] = kDifference * tool_->half_width() / (k < 3 ? 1.0 : reach_);
+    for (const double sign : {1.0, -1.0}) {
+      const Vec3 position = pose.position + sign * step.head<3>();
+      const Eigen::Quaterniond orientation = turned(pose.orientation, sign * step.tail<3>());
+      tool_->surface_constraints(tool_pose(position, orientation), Vec3::Zero(), 0.0, probe_);
+      for (std::size_t i = 0; i < holding_count_; ++i)
+        sum.col(k) += sign * holding_[i].load / (2.0 * step[k]) * row(position, probe_, i);
+    }
+  }
+  return 0.5 * (sum + sum.transpose());
+}
+
+/// Solves the quadratic program of a pass with these second derivatives. Writes the move z and the points that hold
+/// the tool. Returns false if the matrix is not positive definite; nothing is written then.
+bool ToolEquilibrium::solve_program(const PoseSprings& springs, const EnergyModel& model, const Mat6& hessian,
+                                    Vec6& z) noexcept {
+  const Eigen::LLT<Mat6> factor(hessian / springs.stiffness);
+  if (factor.info() != Eigen::Success) return false;
+  // In y = L^T z the model is K/2 |y - t|^2. The rows are scaled to length 1.
+  const auto L = factor.matrixL();
+  const Vec6 wanted = -L.solve(model.gradient / springs.stiffness);
+  double largest = wanted.cwiseAbs().maxCoeff();
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    scaled_rows_[i] = L.solve(rows_[i]);
+    scales_[i] = 1.0 / scaled_rows_[i].norm();
+    scaled_rows_[i] *= scales_[i];
+    scaled_depths_[i] = contacts_.depth[i] * scales_[i];
+    largest = std::max(largest, std::abs(scaled_depths_[i]));
+  }
+  const Program program{scaled_rows_, scaled_depths_, contacts_.size()};
+  Vec6 y;
+  nearest_point::ActiveSet<6> active;
+  int iterations = 0;
+  holding_count_ = 0;
+  for (const double tolerance : kProgramTolerances) {
+    y = wanted;
+    active = {};
+    iterations = 0;
+    feasible_ = nearest_point::solve_exactly<6>(program, tolerance * largest, y, active, iterations);
+    if (feasible_) break;
+  }
+  if (feasible_) {
+    for (int k = 0; k < active.size(); ++k) {
+      const std::size_t i = active.contact(k);
+      holding_[holding_count_++] = {contacts_.index[i],
+                                    contacts_.point(i),
+                                    contacts_.normal(i),
+                                    contacts_.gradient(i),
+                                    contacts_.depth[i],
+                                    springs.stiffness * active.lambda(k) * scales_[i],
+                                    rows_[i]};
+    }
+  } else {
+    y = wanted;
+    nearest_point::solve_least_squares<6>(program, kCompromiseEpsilon, kViolationTolerance * largest, y, iterations);
+  }
+  z = factor.matrixU().solve(y);
+  return true;
+}
+
+double ToolEquilibrium::residual_of(const PoseSprings& springs, const EnergyModel& model) const noexcept {
+  Vec6 unbalanced = model.tool_gradient;
+  double complementarity = 0.0;
+  for (const Holding& h : holding()) {
+    unbalanced += h.load * h.row;
+    complementarity = std::max(complementarity, h.load * std::abs(h.depth) / margin_);
+  }
+  return std::max({unbalanced.head<3>().norm(), unbalanced.tail<3>().norm() / reach_,
+                   model.handle_gradient.norm() / reach_, complementarity, springs.stiffness * deepest_});
+}
+
+/// Returns the second derivatives with which a pass models energy and constraints, and whether the pose is a minimum as
+/// far as they show it for the points that hold the tool.
+ToolEquilibrium::SecondOrder ToolEquilibrium::second_order(const PoseSprings& springs, const EnergyModel& model,
+                                                           const CoupledPose& pose) noexcept {
+  SecondOrder second{model.hessian, Vec6::Zero(), true};
+  if (holding_count_ == 0) return second;
+  const auto is_positive = [](const Mat6& m) { return Eigen::LLT<Mat6>(m).info() == Eigen::Success; };
+  second.hessian += curvature(pose);
+  if (is_positive(second.hessian)) return second;
+  // In y = L^T z, where the springs alone have the second derivatives K, keep the second derivatives along the moves
+  // that keep the holding points in touch, and take those of the springs across. What is still not positive is a
+  // descent of the energy along the constraints. Points may hold the tool by normals that differ by 1e-3 rad, as in a
+  // shallow notch, so that no finite stiffness across would tell.
+  const double K = springs.stiffness;
+  const Mat6 L = Eigen::LLT<Mat6>(model.hessian / K).matrixL();
+  const Mat6 inverse = L.inverse();
+  nearest_point::ActiveSet<6> blocked;
+  for (const Holding& h : holding()) {
+    const Vec6 row = (inverse * h.row).normalized();
+    const auto parts = blocked.split(row);
+    if (parts.remainder.squaredNorm() > nearest_point::kInSpan) blocked.add(h.index, row, parts, 0.0);
+  }
+  const Mat6 across = blocked.projector(), along = Mat6::Identity() - across;
+  const Mat6 scaled = along * (inverse * second.hessian * inverse.transpose()) * along + K * across;
+  const Eigen::SelfAdjointEigenSolver<Mat6> axes(scaled);
+  // Make a descent stiff by as much as it descends, so that a pass moves away from a saddle and not towards it.
+  const Mat6 back = L * axes.eigenvectors();
+  second.hessian = back * axes.eigenvalues().cwiseAbs().cwiseMax(kFlat * K).asDiagonal() * back.transpose();
+  second.is_minimum = axes.eigenvalues()[0] > 0.0;
+  second.descent = inverse.transpose() * axes.eigenvectors().col(0);
+  return second;
+}
+
+/// Returns the fraction of the move z after which a point that does not hold the tool would be inside.
+double ToolEquilibrium::room(const Vec6& z) const noexcept {
+  double fraction = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const auto is_it = [&](const Holding& h) { return h.index == contacts_.index[i]; };
+    const double rate = rows_[i].dot(z);
+    if (rate > 0.0 && std::ranges::none_of(holding(), is_it))
+      fraction = std::min(fraction, std::max(0.0, -contacts_.depth[i]) / rate);
+  }
+  return fraction;
+}
+
+/// Returns the n-th move off a saddle, n >= 0. Both ways descend alike, but other points may be near: the first move
+/// goes the way with more room, the next one the other way, and then twice as far.
+Vec6 ToolEquilibrium::nudge(const Vec6& descent, int n) const noexcept {
+  const double first = kNudge * margin_;
+  Vec6 z = first / displacement(descent) * descent;
+  // Neither the way nor its sign may depend on rounding where both have room.
+  Eigen::Index largest = 0;
+  z.cwiseAbs().maxCoeff(&largest);
+  if (z[largest] < 0.0) z = -z;
+  const double length = std::min(std::ldexp(1.0, n / 2), margin_ / first);
+  if ((std::min(room(-z), length) > std::min(room(z), length)) != (n % 2 == 1)) z = -z;
+  return std::max(kShortestNudge, std::min(room(z), length)) * z;
+}
+
+ToolEquilibrium::Outcome ToolEquilibrium::solve(const PoseSprings& springs, CoupledPose& pose,
+                                                int max_passes) noexcept {
+  Outcome out;
+  int nudges = 0;
+  for (out.passes = 1;; ++out.passes) {
+    // Linearise the constraints, and solve the quadratic program of the pass.
+    find_constraints(pose);
+    const EnergyModel model = energy_model(springs, pose);
+    const bool alternates = out.passes > kManyPasses && out.passes % 2 == 0;
+    Vec6 z;
+    if (alternates || !solve_program(springs, model, second_order(springs, model, pose).hessian, z)) {
+      if (!solve_program(springs, model, model.hessian, z)) return out;
+    }
+    out.feasible = feasible_;
+    out.residual = residual_of(springs, model);
+    // A pass that balances all forces is the last, unless the energy descends from there.
+    if (feasible_ && out.residual <= kSolved) {
+      const SecondOrder here = second_order(springs, model, pose);
+      out.solved = here.is_minimum;
+      if (out.solved) return out;
+      z = nudge(here.descent, nudges++);
+    }
+    if (out.passes >= max_passes) return out;
+    const double length = displacement(z);
+    if (length > margin_) z *= margin_ / length;
+    out.moved += std::min(length, margin_);
+    move(pose, model, z);
+    // Leaving points takes many steps, so one pass in each step is enough.
+    if (std::isfinite(recovery_) && (!feasible_ || leaving_)) return out;
+  }
+}
+
+}  // namespace hapbench::six_dof

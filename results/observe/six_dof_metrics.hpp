@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "results/observe/metric_observer.hpp"
+#include "sim/core/types.hpp"
+
+namespace hapbench {
+
+/// One step of the comparison of a device that renders a force (3-DOF) with a device that renders force and torque
+/// (6-DOF, the reference), both in equilibrium with the same hand.
+struct SixDofRow {
+  /// Equilibrium of the reference.
+  struct Reference {
+    Vec3 force = Vec3::Zero();        ///< on the handle [N]
+    Vec3 torque = Vec3::Zero();       ///< on the handle about the force point [N m]
+    Vec3 position = Vec3::Zero();     ///< force point of the handle [m]
+    Vec3 tip = Vec3::Zero();          ///< tip centre of the tool [m]
+    Vec3 axis = Vec3::Zero();         ///< axis of the tool
+    Vec3 handle_turn = Vec3::Zero();  ///< turn from the intent to the handle [rad]
+  };
+  /// Equilibrium of the device that renders the force of a law.
+  struct Law {
+    Vec3 force = Vec3::Zero();     ///< on the handle [N]
+    Vec3 position = Vec3::Zero();  ///< force point of the handle [m]
+    double turn = 0.0;             ///< angle between this handle and that of the reference [rad]
+  };
+  std::optional<Reference> reference;  ///< empty: no equilibrium found
+  std::optional<Law> law;              ///< empty: no equilibrium found; `turn` is valid with a reference only
+  double residual = 0.0;               ///< of the reference [N]
+  bool jumped = false;                 ///< of the reference
+};
+
+/// Metrics of the comparison (section six_dof of the summary).
+class SixDofMetrics {
+ public:
+  void add(const SixDofRow& row) noexcept;
+  void report(Section& section) const;
+
+ private:
+  /// Sum of squares over the steps with a value, and largest value.
+  struct Size {
+    double squares = 0.0, largest = 0.0;
+    std::uint64_t count = 0;
+
+    void add(double value) noexcept;
+    double rms() const;
+    std::optional<double> max() const;
+  };
+  /// Work of a force on a point, by the trapezoidal rule between consecutive equilibria.
+  struct Work {
+    double sum = 0.0;
+    std::optional<std::pair<Vec3, Vec3>> last;  ///< force [N] and position [m]
+
+    void add(const Vec3& force, const Vec3& position) noexcept;
+  };
+
+  Size reference_force_, lost_torque_, force_error_, displacement_, turn_;
+  Work work_;
+  double residual_ = 0.0;
+  std::uint64_t unsolved_ = 0, jumps_ = 0, unbalanced_ = 0;
+};
+
+}  // namespace hapbench
