@@ -161,15 +161,15 @@ def mark_ends(ax, found, rows, own):
     of_device = {}
     for row, x, y in zip(rows, found.along(rows), simulated_kinds(rows)[2]):
         if np.isfinite(y):
-            of_device.setdefault(device_of(row), {})[x] = y
+            of_device.setdefault(device_of(row), {})[x, y] = None
     if not of_device:
         return
     inches = ax.get_figure().dpi_scale_trans
     for line, (name, ends) in enumerate(of_device.items()):
         shown = {**BEYOND, "marker": BEYOND_MARKERS["y"], "ls": "none", "color": own[name].colour}
         lower = ScaledTranslation(0.0, -line * BEYOND_ROW / 72, inches)
-        ax.plot(list(ends), list(ends.values()), **shown, transform=ax.transData + lower)
-        ax.update_datalim(list(ends.items()))
+        ax.plot(*zip(*ends), **shown, transform=ax.transData + lower)
+        ax.update_datalim(list(ends))
     ax.autoscale_view()
 
 
